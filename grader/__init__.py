@@ -1,0 +1,1 @@
+"""Grades students' ROS 2 nodes by spinning them, sandboxed, against reference publishers."""

@@ -1,0 +1,5 @@
+"""`python -m spinbook`."""
+
+from spinbook.cli import main
+
+main()

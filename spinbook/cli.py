@@ -1,0 +1,61 @@
+"""The `spinbook` command: one name for every verb, each of which lives in a folder of its own."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+
+import click
+
+from spinbook import __version__
+from spinbook.problem import SpinbookError
+
+#: Verb -> where its click command is. Loaded when it is called, so that no verb waits for another's imports.
+VERBS = {
+    "build": "spinbook.build.command:build",
+    "lint": "spinbook.lint.command:lint",
+    "package": "spinbook.package.command:package",
+    "ros2": "spinbook.ros2.command:ros2",
+    "turtle": "spinbook.turtlesim.command:turtle",
+    "grade": "grader.command:grade",
+    "doctor": "spinbook.doctor.command:doctor",
+}
+
+
+class Verbs(click.Group):
+    """A click group that imports a verb only when it is used."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(VERBS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in VERBS:
+            return None
+        module, _, name = VERBS[cmd_name].partition(":")
+        command = getattr(importlib.import_module(module), name)
+        assert isinstance(command, click.Command)
+        return command
+
+
+@click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="spinbook")
+def spinbook() -> None:
+    """Chapters about ROS 2 become notebooks that really run; students' nodes are graded by spinning them.
+
+    Start in a course's folder (the one with course.toml):
+
+    \b
+      spinbook lint               what will not run in the chapters, and why
+      spinbook build --execute    chapters -> notebooks, run with real nodes
+      spinbook package            the chapters' nodes as a ROS 2 package
+      spinbook grade EXERCISE F   what is right and wrong in a student's node
+    """
+
+
+def main() -> None:
+    """Run `spinbook` as a program; bad input is told in words and exits with 1, bad usage with 2."""
+    try:
+        spinbook()
+    except SpinbookError as error:
+        click.echo(str(error), err=True)
+        sys.exit(1)

@@ -1,0 +1,46 @@
+"""What is wrong in an author's file, told so that a person can mend it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+
+
+class Severity(str, Enum):
+    """An error stops the chapter it stands in; a warning is only told."""
+
+    ERROR = "error"
+    WARNING = "warning"
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing to mend in one file.
+
+    `found` says what stands there, `mend` what was expected and what to do. `line` counts from 1, and is
+    None where the whole file is meant.
+    """
+
+    file: Path
+    line: int | None
+    found: str
+    mend: str
+    severity: Severity = Severity.ERROR
+
+    @property
+    def is_error(self) -> bool:
+        """Whether this stops the chapter."""
+        return self.severity is Severity.ERROR
+
+    def __str__(self) -> str:
+        place = f"{self.file}:{self.line}" if self.line is not None else f"{self.file}"
+        return f"{place}: {self.severity.value}: {self.found}\n    {self.mend}"
+
+
+class SpinbookError(Exception):
+    """Raised where the work can't go on, with every problem that stopped it."""
+
+    def __init__(self, *problems: Problem) -> None:
+        super().__init__("\n".join(str(problem) for problem in problems))
+        self.problems = problems
