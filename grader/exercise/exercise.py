@@ -1,0 +1,54 @@
+"""An exercise as plain data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from grader.exercise.interface import Topic
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """One folder of `exercises/`, read.
+
+    `task` is the text for the student, in Markdown. `points` is what all checks give together.
+    `solution_folder` holds the author's solution, and is None in a student's copy of the course.
+    """
+
+    name: str
+    folder: Path
+    title: str
+    points: float
+    file_name: str
+    class_name: str
+    node_name: str
+    task: str
+    topics: tuple[Topic, ...]
+    solution_folder: Path | None
+
+    @property
+    def scenarios_file(self) -> Path:
+        """The file that declares what the node is spun against."""
+        return self.folder / "scenarios.py"
+
+    @property
+    def check_files(self) -> tuple[Path, ...]:
+        """The public checks, then the hidden ones where they are present."""
+        files = (self.folder / "checks.py", self.folder / "hidden_checks.py")
+        return tuple(file for file in files if file.exists())
+
+    @property
+    def solution_file(self) -> Path | None:
+        """The author's solution, from which the starter is made and which every check must pass."""
+        return self.solution_folder / "solution.py" if self.solution_folder else None
+
+    @property
+    def inputs(self) -> tuple[Topic, ...]:
+        """The topics that the node subscribes."""
+        return tuple(topic for topic in self.topics if topic.direction == "subscribe")
+
+    @property
+    def outputs(self) -> tuple[Topic, ...]:
+        """The topics that the node publishes."""
+        return tuple(topic for topic in self.topics if topic.direction == "publish")
