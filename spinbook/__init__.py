@@ -1,3 +1,14 @@
 """Spinbook turns Markdown chapters about ROS 2 into notebooks whose cells are nodes that really run."""
 
+from __future__ import annotations
+
+from typing import Any
+
 __version__ = "0.1.0"
+
+
+def load_ipython_extension(shell: Any) -> None:
+    """What `%load_ext spinbook` calls."""
+    from spinbook.runtime.extension import load
+
+    load(shell)

@@ -1,0 +1,1 @@
+"""A chapter: Markdown read, every code fence classified, cells in order."""

@@ -1,0 +1,71 @@
+"""A chapter as data: what it is called, and its cells in order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+
+from spinbook.chapter.terminal import Command
+
+
+class CellKind(str, Enum):
+    """What a cell is, which decides what it becomes in each product."""
+
+    PROSE = "prose"
+    NODE = "node"
+    SNIPPET = "snippet"
+    SHELL = "shell"
+    EXERCISE = "exercise"
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One cell of a chapter. `line` is the chapter's line on which its source begins, counted from 1.
+
+    `name` is a node's name (its file without .py) or an exercise's. `seconds` bounds how long it shows or runs
+    (None: the runtime's default). `raises` says that failing is the lesson. `spin_class` is the class to spin
+    where a node's code only defines one.
+    """
+
+    kind: CellKind
+    id: str
+    source: str
+    line: int
+    name: str | None = None
+    seconds: float | None = None
+    raises: bool = False
+    spin_class: str | None = None
+    commands: tuple[Command, ...] = ()
+
+    @property
+    def module(self) -> str:
+        """The file name of a node's code."""
+        return f"{self.name}.py"
+
+
+@dataclass(frozen=True)
+class StaticFence:
+    """A fence that is shown and not run, with the reason, for `spinbook lint` to tell."""
+
+    line: int
+    language: str
+    why: str
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """A chapter that was read. `file` is as course.toml names it, relative to the course."""
+
+    name: str
+    file: Path
+    title: str
+    summary: str
+    cells: tuple[Cell, ...]
+    static_fences: tuple[StaticFence, ...] = ()
+
+    @property
+    def nodes(self) -> Iterator[Cell]:
+        """The cells that are nodes, in order."""
+        return (cell for cell in self.cells if cell.kind is CellKind.NODE)

@@ -1,0 +1,113 @@
+"""A code fence of a chapter: its language, its attributes, its code, and where it stands.
+
+The info string is the text behind the opening backticks: a language, then attributes such as
+`title="joint_publisher.py"` (the form Docusaurus and others use) or bare words. MyST's `{code-cell} python`
+with its `:option:` lines is read as the same thing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+#: Attribute -> what it means, for error messages and `docs/writing-chapters.md`.
+ATTRIBUTES = {
+    "title": "the file this code is, such as joint_publisher.py",
+    "seconds": "how long the log is shown, or how long each command may run",
+    "raises": "the cell is expected to fail, and failing is the lesson",
+    "static": "shown, never run",
+}
+
+_ATTRIBUTE = re.compile(r"""([A-Za-z_][\w-]*)=(?:"([^"]*)"|'([^']*)'|(\S+))|(\S+)""")
+_OPTION = re.compile(r"^:([\w-]+):\s*(.*)$")
+
+PYTHON = frozenset({"python", "py", "python3", "ipython", "ipython3"})
+SHELL = frozenset({"bash", "sh", "shell", "zsh", "console", "shell-session", "terminal"})
+
+
+@dataclass(frozen=True)
+class Fence:
+    """One fenced block. `line` is the line of the opening fence, counted from 1; the code starts below it.
+
+    `code` ends with a newline unless it is empty. `skipped` lines of options stand between the opening and the code.
+    """
+
+    language: str
+    code: str
+    line: int
+    attributes: Mapping[str, str] = field(default_factory=dict)
+    skipped: int = 0
+
+    @property
+    def is_python(self) -> bool:
+        """Whether the fence says that it is Python."""
+        return self.language in PYTHON
+
+    @property
+    def is_shell(self) -> bool:
+        """Whether the fence says that it is for a terminal."""
+        return self.language in SHELL
+
+    @property
+    def title(self) -> str | None:
+        """The file name that the author gave it."""
+        return self.attributes.get("title") or None
+
+    @property
+    def first_code_line(self) -> int:
+        """The chapter's line on which the code's first line stands."""
+        return self.line + 1 + self.skipped
+
+    def has(self, flag: str) -> bool:
+        """Whether a bare attribute such as `raises` is set."""
+        return self.attributes.get(flag, "false").lower() not in {"false", "no", "0"}
+
+
+def parse_info(info: str) -> tuple[str, dict[str, str]]:
+    """Split an info string into its language and its attributes; a bare word is an attribute that is "true".
+
+    >>> parse_info('python title="joint_publisher.py" raises')
+    ('python', {'title': 'joint_publisher.py', 'raises': 'true'})
+    """
+    info = info.strip()
+    myst = re.match(r"\{code-cell\}\s*(\S*)\s*(.*)$", info)
+    if myst:
+        language, rest = myst.group(1) or "python", myst.group(2)
+    else:
+        language, _, rest = info.partition(" ")
+    # ```python{title=...} and ```python {1,3} are written by people who come from other tools.
+    language, brace, glued = language.partition("{")
+    if brace and language:
+        rest = glued.rstrip("}") + " " + rest
+    elif brace:
+        language = brace + glued
+    attributes: dict[str, str] = {}
+    for key, double, single, plain, word in _ATTRIBUTE.findall(rest):
+        if key:
+            attributes[key] = double or single or plain.rstrip("}")
+        elif re.fullmatch(r"[A-Za-z_][\w-]*", word):
+            attributes[word] = "true"
+    return language.lower(), attributes
+
+
+def make_fence(info: str, content: str, line: int) -> Fence:
+    """A fence from what Markdown says of it; a MyST code cell's option lines become attributes.
+
+    `raises-exception` among a code cell's tags is `raises`.
+    """
+    language, attributes = parse_info(info)
+    skipped = 0
+    if info.strip().startswith("{code-cell}"):
+        lines = content.splitlines(keepends=True)
+        while skipped < len(lines) and (option := _OPTION.match(lines[skipped].rstrip("\n"))):
+            key, value = option.group(1), option.group(2).strip()
+            if key == "tags" and "raises-exception" in value:
+                attributes["raises"] = "true"
+            elif key == "caption" and value.endswith(".py"):
+                attributes["title"] = value
+            else:
+                attributes[key] = value or "true"
+            skipped += 1
+        content = "".join(lines[skipped:])
+    return Fence(language=language, code=content, line=line, attributes=attributes, skipped=skipped)

@@ -1,0 +1,101 @@
+"""A chapter's file as text: decoded, line ends and byte-order mark taken care of, front matter split off."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from spinbook.problem import Problem, Severity
+
+_CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\x80-\x9f\u2028\u2029]")
+
+
+@dataclass(frozen=True)
+class Source:
+    """A chapter's text with `\\n` line ends and the lines of its front matter left blank, so that lines keep their numbers."""
+
+    text: str
+    front_matter: Mapping[str, Any]
+
+
+def read_source(file: Path, shown_as: Path) -> tuple[Source | None, list[Problem]]:
+    """Read a chapter's file. Without a Source, one of the problems is an error.
+
+    `shown_as` is the path that problems name, usually relative to the course.
+    """
+    problems: list[Problem] = []
+    try:
+        data = file.read_bytes()
+    except OSError as error:
+        mend = "Write the chapter, or take it out of `chapters` in course.toml."
+        return None, [Problem(shown_as, None, f"the file can't be read: {error.strerror}.", mend)]
+    if data.startswith(b"\xef\xbb\xbf"):
+        data = data[3:]
+        problems.append(
+            Problem(
+                shown_as,
+                1,
+                "the file begins with a byte-order mark (BOM).",
+                "It is ignored here, but other tools stumble over it: save the file as UTF-8 without BOM.",
+                Severity.WARNING,
+            )
+        )
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = data[: error.start].count(b"\n") + 1
+        found = f"byte 0x{data[error.start]:02x} is not UTF-8."
+        return None, [*problems, Problem(shown_as, line, found, "Save the file as UTF-8.")]
+    if "\r" in text:
+        line = text[: text.index("\r")].count("\n") + 1
+        problems.append(
+            Problem(
+                shown_as,
+                line,
+                "lines end as on Windows (CRLF).",
+                "They are read as if they ended in LF: save the file with LF, or set `* text=auto` in .gitattributes.",
+                Severity.WARNING,
+            )
+        )
+        text = text.replace("\r\n", "\n").replace("\r", "\n")
+    for number, content in enumerate(text.split("\n"), start=1):
+        if control := _CONTROL.search(content):
+            found = f"control character U+{ord(control.group()):04X} in column {control.start() + 1}."
+            problems.append(
+                Problem(
+                    shown_as,
+                    number,
+                    found,
+                    "Delete it; it can't be seen, and notebooks and browsers reject it.",
+                )
+            )
+    front_matter, body, front_problems = _split_front_matter(text, shown_as)
+    return Source(body, front_matter), problems + front_problems
+
+
+def _split_front_matter(text: str, file: Path) -> tuple[Mapping[str, Any], str, list[Problem]]:
+    lines = text.split("\n")
+    if lines[0].rstrip() != "---":
+        return {}, text, []
+    end = next((i for i, line in enumerate(lines[1:], start=1) if line.rstrip() in {"---", "..."}), None)
+    if end is None:
+        found = "the front matter that begins here never ends."
+        return {}, "\n" + "\n".join(lines[1:]), [Problem(file, 1, found, "Close it with a line `---`.")]
+    body = "\n" * (end + 1) + "\n".join(lines[end + 1 :])
+    try:
+        front_matter = yaml.safe_load("\n".join(lines[1:end])) or {}
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        line = 2 + mark.line if mark else 1
+        what = getattr(error, "problem", None) or "it can't be read"
+        mend = "Write it as YAML, one `key: value` a line; put a value that holds a colon in quotes."
+        return {}, body, [Problem(file, line, f"the front matter is not YAML: {what}.", mend)]
+    if not isinstance(front_matter, dict):
+        found = f"the front matter is a {type(front_matter).__name__}, not `key: value` lines."
+        return {}, body, [Problem(file, 2, found, "Write for example `title: Nodes and Topics`.")]
+    return front_matter, body, []

@@ -1,0 +1,1 @@
+"""A course: what course.toml says."""

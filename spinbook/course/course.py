@@ -1,0 +1,148 @@
+"""course.toml: title, ROS package, order of chapters, versions."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from spinbook.problem import Problem, SpinbookError
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+FILE = Path("course.toml")
+
+
+@dataclass(frozen=True)
+class Package:
+    """The ROS 2 package that the chapters' nodes make."""
+
+    name: str
+    workspace: str = "humanoid_ws"
+    version: str = "0.1.0"
+    description: str = ""
+    maintainer: str = "The authors of the course"
+    email: str = "course@example.org"
+    license: str = "Apache-2.0"
+
+
+@dataclass(frozen=True)
+class Course:
+    """A course. `root` is the folder of course.toml; `chapters` are relative to it, in reading order."""
+
+    root: Path
+    title: str
+    chapters: tuple[Path, ...]
+    package: Package
+    repository: str = ""
+    ros_distro: str = "jazzy"
+
+    @property
+    def build_folder(self) -> Path:
+        """Where everything that is made goes."""
+        return self.root / "build"
+
+    @property
+    def exercises(self) -> frozenset[str]:
+        """The names of the exercises that exist."""
+        folder = self.root / "exercises"
+        return frozenset(p.parent.name for p in folder.glob("*/exercise.toml"))
+
+
+def find_course(start: Path) -> Course:
+    """Read the course.toml of this folder or of the nearest one above it. Raises SpinbookError."""
+    for folder in (start.resolve(), *start.resolve().parents):
+        if (folder / FILE).is_file():
+            return read_course(folder)
+    found = f"there is no course.toml in {start.resolve()} or in any folder above it."
+    raise SpinbookError(Problem(FILE, None, found, "Go into a course's folder, or name it: spinbook --help"))
+
+
+def read_course(root: Path) -> Course:
+    """Read `root / course.toml`. Raises SpinbookError with all that is wrong in it."""
+    try:
+        data = tomllib.loads((root / FILE).read_text(encoding="utf-8-sig"))
+    except tomllib.TOMLDecodeError as error:
+        raise SpinbookError(
+            Problem(FILE, None, f"it is not TOML: {error}.", "See docs/writing-chapters.md.")
+        ) from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise SpinbookError(Problem(FILE, None, f"it can't be read: {error}.", "Save it as UTF-8.")) from None
+    problems: list[Problem] = []
+    title = _text(data, "title", problems)
+    chapters = data.get("chapters")
+    if not isinstance(chapters, list) or not chapters or not all(isinstance(c, str) for c in chapters):
+        found = "`chapters` is no list of files."
+        problems.append(Problem(FILE, None, found, 'Write for example: chapters = ["chapters/01-start.md"]'))
+        chapters = []
+    for name in {c for c in chapters if chapters.count(c) > 1}:
+        problems.append(Problem(FILE, None, f"`{name}` is listed twice.", "Take one of them out."))
+    stems = [Path(c).stem for c in chapters]
+    for stem in sorted(
+        {s for s in stems if stems.count(s) > 1 and chapters.count(chapters[stems.index(s)]) == 1}
+    ):
+        found = f"two chapters would both become {stem}.ipynb."
+        problems.append(Problem(FILE, None, found, "Give one of the files another name."))
+    for name in chapters:
+        if Path(name).is_absolute() or ".." in Path(name).parts:
+            problems.append(
+                Problem(
+                    FILE, None, f"`{name}` is outside the course.", "Name files inside the course's folder."
+                )
+            )
+    package = _package(data.get("package"), problems)
+    if problems:
+        raise SpinbookError(*problems)
+    assert package is not None
+    return Course(
+        root=root,
+        title=title,
+        chapters=tuple(Path(name) for name in chapters),
+        package=package,
+        repository=str(data.get("repository", "")).rstrip("/"),
+        ros_distro=str(data.get("ros_distro", "jazzy")),
+    )
+
+
+def _text(data: dict[str, Any], key: str, problems: list[Problem]) -> str:
+    value = data.get(key)
+    if not isinstance(value, str) or not value.strip():
+        problems.append(Problem(FILE, None, f"`{key}` is missing.", f'Write a line such as: {key} = "…"'))
+        return ""
+    return value
+
+
+def _package(table: Any, problems: list[Problem]) -> Package | None:
+    if not isinstance(table, dict) or not isinstance(table.get("name"), str):
+        problems.append(
+            Problem(
+                FILE,
+                None,
+                "the table `[package]` with a `name` is missing.",
+                'Write: [package]\\nname = "my_robot"',
+            )
+        )
+        return None
+    name = table["name"]
+    # REP 144's rule for package names.
+    if not (name[:1].isalpha() and name.isidentifier() and name.islower() and "__" not in name):
+        found = f"`{name}` can't be a ROS package's name."
+        problems.append(
+            Problem(
+                FILE, None, found, "Use lower-case letters, digits and single underscores, a letter first."
+            )
+        )
+    unknown = sorted(set(table) - set(Package.__dataclass_fields__))
+    if unknown:
+        known = ", ".join(Package.__dataclass_fields__)
+        problems.append(
+            Problem(
+                FILE, None, f"`[package]` has unknown keys: {', '.join(unknown)}.", f"Known are: {known}."
+            )
+        )
+        return None
+    return Package(**{key: str(value) for key, value in table.items()})

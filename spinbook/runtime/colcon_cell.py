@@ -1,0 +1,24 @@
+"""`%colcon`: colcon in the notebook's workspace, with what PyPI has or with a sourced ROS 2."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+from spinbook.runtime.failure import CellFailed
+from spinbook.runtime.session import Session
+
+#: How long a build may take (s).
+SECONDS = 120.0
+
+
+def run(session: Session, words: list[str], seconds: float) -> None:
+    """Run colcon with these words. Raises CellFailed where there is nothing to build, or where the build fails."""
+    workspace = session.workspace
+    if not (workspace / "src").is_dir():
+        raise CellFailed(f"There is nothing to build in {workspace.name} yet: run the chapter's node cells first.")
+    # Where ROS 2 came from PyPI, this Python's prefix is the underlay that /opt/ros/jazzy is elsewhere.
+    prefixes = [p for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
+    settings = {"AMENT_PREFIX_PATH": os.pathsep.join(dict.fromkeys([*prefixes, sys.prefix]))}
+    argv = [sys.executable, "-m", "colcon", "--log-base", os.fspath(workspace / "log"), *words]
+    session.run_command(argv, settings, workspace, seconds, "colcon")

@@ -1,0 +1,44 @@
+"""`%load_ext spinbook`: gives a notebook its commands, a ROS domain of its own, and an orderly end."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import warnings
+from typing import Any
+
+from spinbook.runtime import domain, environment, magics
+from spinbook.runtime.process import KeptProcess
+from spinbook.runtime.session import Session
+
+#: Names a domain to share with other programs, in place of one of the notebook's own.
+DOMAIN_VARIABLE = "SPINBOOK_DOMAIN"
+#: How long the nodes have to end in order when the kernel does (s).
+_FAREWELL_S = 2.0
+
+
+def load(shell: Any) -> None:
+    """Set up a notebook; loading twice changes nothing."""
+    if getattr(shell, "spinbook_session", None) is not None:
+        return
+    if name := environment.missing_middleware(os.environ):
+        warnings.warn(
+            f"RMW_IMPLEMENTATION names {name}, which is not installed here; the notebook uses the default middleware.",
+            stacklevel=2,
+        )
+        del os.environ["RMW_IMPLEMENTATION"]
+    asked_for = os.environ.get(DOMAIN_VARIABLE, "")
+    session = Session(domain.shared(int(asked_for)) if asked_for.isdigit() else domain.claim())
+    shell.spinbook_session = session
+    magics.register(shell, session)
+    atexit.register(farewell, session)
+
+
+def farewell(session: Session) -> None:
+    """End every node, as gently as a kernel's end allows."""
+    processes: list[KeptProcess] = [node.process for name in session.nodes.names() if (node := session.nodes.get(name))]
+    for process in processes:
+        process.stop((_FAREWELL_S / 2, _FAREWELL_S / 4))
+    for process in processes:
+        process.wait(_FAREWELL_S)
+        process.close()

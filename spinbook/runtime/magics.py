@@ -1,0 +1,195 @@
+"""The notebook's commands: `%%node`, `%nodes`, `%stop`, `%log`, `%ros2`, `%colcon`, `%plot`, `%turtle`, `%domain`, `%chapter`.
+
+Thin: each reads its line and calls the session.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+from collections.abc import Sequence
+from typing import Any, NoReturn
+
+from IPython.core.magic import Magics, cell_magic, line_magic, magics_class, no_var_expand
+
+from spinbook.course.course import Package
+from spinbook.runtime import colcon_cell, domain, plot_cell, ros2_cell, turtle_cell
+from spinbook.runtime.failure import CellFailed
+from spinbook.runtime.session import COMMAND_SECONDS, NODE_SECONDS, Session
+
+
+class LineReader(argparse.ArgumentParser):
+    """Reads a magic's line; bad usage is told in the cell, and `--help` prints there."""
+
+    def __init__(self, prog: str, description: str) -> None:
+        super().__init__(prog=prog, description=description, allow_abbrev=False)
+
+    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
+        raise CellFailed(message or "")
+
+    def error(self, message: str) -> NoReturn:
+        raise CellFailed(f"{message}\n{self.format_usage().rstrip()}")
+
+    def read(self, line: str) -> argparse.Namespace | None:
+        """The arguments, or None where help was asked for and has been printed."""
+        words = split(line)
+        if "-h" in words or "--help" in words:
+            print(self.format_help())
+            return None
+        return self.parse_args(words)
+
+
+def split(line: str) -> list[str]:
+    """The words of a line, quoted as in a shell. Raises CellFailed."""
+    try:
+        return shlex.split(line)
+    except ValueError as error:
+        raise CellFailed(f"can't read this line: {error}. A quotation mark is missing in: {line}") from None
+
+
+def own_options(line: str) -> tuple[float | None, str]:
+    """Take a leading `--seconds N` off a line whose rest belongs to another command."""
+    words = line.split(maxsplit=2)
+    if words[:1] != ["--seconds"]:
+        return None, line
+    try:
+        return float(words[1]), words[2] if len(words) > 2 else ""
+    except (IndexError, ValueError):
+        raise CellFailed("`--seconds` wants a number, as in --seconds 5.") from None
+
+
+@magics_class
+class SpinbookMagics(Magics):
+    """The commands of one notebook."""
+
+    def __init__(self, shell: Any, session: Session) -> None:
+        super().__init__(shell)
+        self.session = session
+
+    @no_var_expand
+    @line_magic
+    def chapter(self, line: str) -> None:
+        """%chapter NAME --package PACKAGE: what this notebook's nodes belong to."""
+        reader = LineReader("%chapter", "Say which chapter this notebook is, and which package its nodes make.")
+        reader.add_argument("name")
+        reader.add_argument("--package", default="notebook_nodes")
+        reader.add_argument("--workspace", default="notebook_ws")
+        if given := reader.read(line):
+            self.session.package = Package(name=given.package, workspace=given.workspace)
+
+    @no_var_expand
+    @cell_magic
+    def node(self, line: str, cell: str) -> None:
+        """%%node NAME: run this cell's code as a process of its own, as `ros2 run` would."""
+        reader = LineReader("%%node", "Run this cell as a node: a process of its own. Running it again restarts it.")
+        reader.add_argument("name", help="the node's file, without .py")
+        reader.add_argument("--seconds", type=float, default=NODE_SECONDS, help="how long its log is shown")
+        reader.add_argument("--class", dest="spin_class", help="spin this Node class; the code does not do it itself")
+        if given := reader.read(line):
+            name = given.name.removesuffix(".py")
+            if not name.isidentifier():
+                raise CellFailed(f"`{name}` can't be a node's file name: use letters, digits and underscores.")
+            self.session.run_node(name, cell, given.seconds, given.spin_class)
+
+    @no_var_expand
+    @line_magic
+    def nodes(self, line: str) -> None:
+        """%nodes: what this notebook has started, and whether it still runs."""
+        reader = LineReader("%nodes", "List the nodes that this notebook has started.")
+        if reader.read(line) is None:
+            return
+        names = self.session.nodes.names()
+        for name in names:
+            status = self.session.nodes.status(name)
+            state = "running" if status.exit is None else f"ended (exit code {status.exit})"
+            print(f"{name:<28} {state:<22} {status.lines} lines logged")
+        if not names:
+            print("No nodes. Run a cell that begins with %%node.")
+
+    @no_var_expand
+    @line_magic
+    def stop(self, line: str) -> None:
+        """%stop NAME … | --all: end nodes as Ctrl-C would."""
+        reader = LineReader("%stop", "End nodes as Ctrl-C in their terminal would.")
+        reader.add_argument("names", nargs="*")
+        reader.add_argument("--all", action="store_true", help="every node of this notebook")
+        given = reader.read(line)
+        if given is None:
+            return
+        if not given.names and not given.all:
+            running = ", ".join(self.session.nodes.names()) or "none"
+            raise CellFailed(f"Which one? %stop NAME, or %stop --all. Started are: {running}.")
+        for stopped in self.session.stop(None if given.all else given.names):
+            if stopped.status.exit not in (0, None):
+                print(stopped.said.rstrip())
+            print(stopped.in_words)
+
+    @no_var_expand
+    @line_magic
+    def log(self, line: str) -> None:
+        """%log NAME [--all]: what a node has printed so far."""
+        reader = LineReader("%log", "Show what a node has printed since it was started.")
+        reader.add_argument("name")
+        reader.add_argument("--all", action="store_true", help="every line, however many")
+        if given := reader.read(line):
+            print(self.session.log(given.name, given.all))
+
+    @no_var_expand
+    @line_magic
+    def ros2(self, line: str) -> None:
+        """%ros2 …: the command of a terminal, bounded in time."""
+        seconds, rest = own_options(line)
+        ros2_cell.run(self.session, split(rest), seconds)
+
+    @no_var_expand
+    @line_magic
+    def colcon(self, line: str) -> None:
+        """%colcon build …: colcon in this notebook's workspace."""
+        seconds, rest = own_options(line)
+        colcon_cell.run(self.session, split(rest), seconds or colcon_cell.SECONDS)
+
+    @no_var_expand
+    @line_magic
+    def plot(self, line: str) -> None:
+        """%plot TOPIC/FIELD[i] …: draw what topics carry, as rqt_plot would."""
+        reader = LineReader("%plot", "Record topics for a while and draw them; live where somebody watches.")
+        reader.add_argument("what", nargs="+", metavar="TOPIC/FIELD[i]", help="such as /joint_commands/position[0]")
+        reader.add_argument("--seconds", type=float, default=COMMAND_SECONDS, help="how long to record")
+        reader.add_argument("--title", default="", help="stands above the plot")
+        if given := reader.read(line):
+            plot_cell.run(given.what, given.seconds, given.title)
+
+    @no_var_expand
+    @line_magic
+    def turtle(self, line: str) -> None:
+        """%turtle: turtlesim's window as a picture: the turtle and its trail."""
+        reader = LineReader("%turtle", "Show turtlesim's window as it is now.")
+        if reader.read(line) is not None:
+            turtle_cell.run()
+
+    @no_var_expand
+    @line_magic
+    def domain(self, line: str) -> None:
+        """%domain [N]: the ROS domain in which this notebook's nodes talk."""
+        reader = LineReader("%domain", "Tell this notebook's ROS domain, or share another one with other programs.")
+        reader.add_argument("number", nargs="?", type=int, help="hear and be heard by everything in this domain")
+        given = reader.read(line)
+        if given is None:
+            return
+        if given.number is not None:
+            try:
+                chosen = domain.shared(given.number)
+            except ValueError as error:
+                raise CellFailed(str(error)) from None
+            self.session.stop(None)
+            self.session.domain.release()
+            self.session.use_domain(chosen)
+        print(f"ROS_DOMAIN_ID={self.session.domain.number}", end="")
+        print(" (this notebook's own)" if self.session.domain.lock is not None else " (shared)")
+
+
+def register(shell: Any, session: Session) -> Sequence[str]:
+    """Give a shell the commands. Returns their names."""
+    magics = SpinbookMagics(shell, session)
+    shell.register_magics(magics)
+    return [*magics.magics["line"], *magics.magics["cell"]]

@@ -1,0 +1,74 @@
+"""Shows in a cell what a process prints, while it prints it, for a bounded time and a bounded number of lines."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections import deque
+
+from spinbook.runtime.process import KeptProcess
+
+#: Lines shown as they come, and lines kept for the end when more come.
+FIRST_LINES = 60
+LAST_LINES = 10
+_POLL_S = 0.03
+
+
+class Shown:
+    """Prints lines as they come; of very many it prints the first and, at the end, the last."""
+
+    def __init__(self, first: int = FIRST_LINES, last: int = LAST_LINES) -> None:
+        self._first = first
+        self._last: deque[str] = deque(maxlen=last)
+        self._count = 0
+        self._part = ""
+        self._lost = False
+
+    def add(self, data: bytes, dropped: int = 0) -> None:
+        """Take in more output; `dropped` bytes before it were too many to keep."""
+        self._lost = self._lost or dropped > 0
+        text = self._part + data.decode(errors="replace")
+        *lines, self._part = text.split("\n")
+        for line in lines:
+            self._line(line)
+        sys.stdout.flush()
+
+    def _line(self, line: str) -> None:
+        self._count += 1
+        if self._count <= self._first:
+            print(line.rstrip("\r"))
+        else:
+            self._last.append(line)
+
+    def end(self, total_lines: int, rest_is: str) -> None:
+        """Print what was held back. `rest_is` tells where the lines between can be read."""
+        if self._part:
+            self._line(self._part)
+            self._part = ""
+        hidden = max(self._count, total_lines) - self._first - len(self._last)
+        if hidden > 0 or self._lost:
+            print(f"… {hidden:,} more lines{rest_is} …")
+        for line in self._last:
+            print(line.rstrip("\r"))
+        sys.stdout.flush()
+
+
+def show_for(process: KeptProcess, seconds: float, rest_is: str) -> None:
+    """Show what a process prints until it ends, or for so many seconds."""
+    shown = Shown()
+    deadline = time.monotonic() + seconds
+    while True:
+        shown.add(*process.read())
+        if not process.status.running or time.monotonic() >= deadline:
+            break
+        time.sleep(_POLL_S)
+    shown.end(process.status.lines, rest_is)
+
+
+def in_short(text: str, first: int = FIRST_LINES, last: int = LAST_LINES) -> str:
+    """A long log with its middle left out."""
+    lines = text.rstrip("\n").split("\n")
+    if len(lines) <= first + last:
+        return "\n".join(lines)
+    left_out = len(lines) - first - last
+    return "\n".join([*lines[:first], f"… {left_out:,} more lines …", *lines[-last:]])
