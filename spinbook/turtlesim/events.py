@@ -1,0 +1,91 @@
+"""What happens in the world, as plain values: the world returns them, the node publishes and logs them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+class Severity(Enum):
+    """How a log line is marked."""
+
+    INFO = "info"
+    WARN = "warn"
+    ERROR = "error"
+
+
+@dataclass(frozen=True)
+class LogLine:
+    """A line that turtlesim writes into its log."""
+
+    severity: Severity
+    text: str
+
+
+@dataclass(frozen=True)
+class Spawned:
+    """A turtle has come into the world."""
+
+    turtle: str
+
+
+@dataclass(frozen=True)
+class Killed:
+    """A turtle has left the world."""
+
+    turtle: str
+
+
+@dataclass(frozen=True)
+class PoseReport:
+    """Where a turtle is after a tick: units, rad, units/s and rad/s, every number as a float32 holds it.
+
+    `linear_velocity` is the length of the commanded velocity, so it is never negative.
+    """
+
+    turtle: str
+    x: float
+    y: float
+    theta: float
+    linear_velocity: float
+    angular_velocity: float
+
+
+@dataclass(frozen=True)
+class ColorReport:
+    """The colour under a turtle's centre, each part 0..255."""
+
+    turtle: str
+    r: int
+    g: int
+    b: int
+
+
+@dataclass(frozen=True)
+class RotationFeedback:
+    """How far a rotation still has to go, in rad."""
+
+    turtle: str
+    goal: int
+    remaining: float
+
+
+class Outcome(Enum):
+    """How a rotation ended."""
+
+    SUCCEEDED = "succeeded"
+    CANCELED = "canceled"
+    ABORTED = "aborted"
+
+
+@dataclass(frozen=True)
+class RotationEnded:
+    """A rotation is over. `delta` (rad) is the heading at its start minus the heading at its end."""
+
+    turtle: str
+    goal: int
+    outcome: Outcome
+    delta: float
+
+
+Event = LogLine | Spawned | Killed | PoseReport | ColorReport | RotationFeedback | RotationEnded

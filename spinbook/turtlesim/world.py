@@ -1,0 +1,139 @@
+"""The world of the turtles: who is in it, what is asked of it, and what a tick does. No ROS, no clock of its own."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from spinbook.turtlesim.canvas import Canvas
+from spinbook.turtlesim.events import Event, Killed, LogLine, Severity, Spawned
+from spinbook.turtlesim.geometry import CENTRE, single
+from spinbook.turtlesim.trail import Trail
+from spinbook.turtlesim.turtle import AbsoluteTeleport, RelativeTeleport, Turtle
+
+# A turtle's name begins the names of its topics, so it must be good for one.
+_NAME = re.compile(r"/?[A-Za-z]\w{0,40}(/[A-Za-z]\w{0,40}){0,2}", re.ASCII)
+
+
+class World:
+    """Turtles by name, the canvas they share and the trail they leave.
+
+    Everything that is asked of it returns what follows from it. Lengths in units, angles in rad, y up, times in ns
+    of one clock, whichever. Requests with a number that is not finite are refused with a warning: turtlesim takes
+    them, and its turtle is nowhere from then on.
+    """
+
+    def __init__(self) -> None:
+        self.turtles: dict[str, Turtle] = {}
+        self.canvas = Canvas()
+        self.trail = Trail()
+        self._spawned = 0
+        self._ticking = False
+
+    def start(self) -> list[Event]:
+        """Put turtle1 into the middle."""
+        return self.spawn(CENTRE, CENTRE, 0.0)
+
+    def spawn(self, x: float, y: float, theta: float, name: str = "") -> list[Event]:
+        """A new turtle; without a name it gets the next free one of turtle1, turtle2 …."""
+        x, y, theta = single(x), single(y), single(theta)
+        if refusal := _refusal("spawn", x, y, theta):
+            return refusal
+        if name and not _NAME.fullmatch(name):
+            text = f"[{name}] can't be the name of a turtle: topics begin with it (letters, digits and _)"
+            return [LogLine(Severity.ERROR, text)]
+        if name in self.turtles:
+            return [LogLine(Severity.ERROR, f"A turtle named [{name}] already exists")]
+        name = name or self._free_name()
+        self.turtles[name] = Turtle(name, x, y, theta)
+        text = f"Spawning turtle [{name}] at x=[{x:f}], y=[{y:f}], theta=[{theta:f}]"
+        return [Spawned(name), LogLine(Severity.INFO, text)]
+
+    def _free_name(self) -> str:
+        while True:
+            self._spawned += 1
+            if (name := f"turtle{self._spawned}") not in self.turtles:
+                return name
+
+    def kill(self, name: str) -> list[Event]:
+        """Take a turtle away; what it drew stays."""
+        if name not in self.turtles:
+            return [LogLine(Severity.ERROR, f"Tried to kill turtle [{name}], which does not exist")]
+        events = self.turtles[name].abort_rotation(f"Turtle [{name}] is gone. Aborting its rotation goal")
+        del self.turtles[name]
+        return [*events, Killed(name)]
+
+    def clear(self) -> list[Event]:
+        """Wipe what was drawn; the turtles stay as they are."""
+        self._wipe()
+        return [LogLine(Severity.INFO, "Clearing turtlesim.")]
+
+    def reset(self) -> list[Event]:
+        """Begin again with turtle1 alone."""
+        events: list[Event] = [LogLine(Severity.INFO, "Resetting turtlesim.")]
+        for name in sorted(self.turtles):
+            events += self.kill(name)
+        self._spawned = 0
+        self._wipe()
+        return events + self.start()
+
+    def _wipe(self) -> None:
+        self.canvas.clear()
+        self.trail = Trail()
+
+    def command(self, turtle: str, forward: float, left: float | None, turn: float, now_ns: int) -> list[Event]:
+        """A turtle's velocities (units/s, rad/s) from now on; a `left` of None leaves the old one as it was."""
+        if refusal := _refusal(f"{turtle}/cmd_vel", forward, left or 0.0, turn):
+            return refusal
+        return self.turtles[turtle].command(forward, left, turn, now_ns)
+
+    def set_pen(self, turtle: str, r: int, g: int, b: int, width: int, off: int) -> list[Event]:
+        """The pen a turtle draws with from now on: colour and width in 0..255; `off` unless 0 lifts it."""
+        self.turtles[turtle].pen = self.turtles[turtle].pen.changed(r, g, b, width, off)
+        return []
+
+    def teleport_absolute(self, turtle: str, x: float, y: float, theta: float) -> list[Event]:
+        """Set a turtle to a place and heading at the next tick; the walls act after that."""
+        x, y, theta = single(x), single(y), single(theta)
+        if refusal := _refusal(f"{turtle}/teleport_absolute", x, y, theta):
+            return refusal
+        self.turtles[turtle].teleport(AbsoluteTeleport(x, y, theta))
+        return []
+
+    def teleport_relative(self, turtle: str, linear: float, angular: float) -> list[Event]:
+        """Turn a turtle by `angular`, then move it by `linear`, at the next tick."""
+        linear, angular = single(linear), single(angular)
+        if refusal := _refusal(f"{turtle}/teleport_relative", linear, angular):
+            return refusal
+        self.turtles[turtle].teleport(RelativeTeleport(linear, angular))
+        return []
+
+    def rotate(self, turtle: str, goal: int, theta: float) -> list[Event]:
+        """Turn a turtle to the heading `theta`; `goal` marks what is reported about it."""
+        if refusal := _refusal(f"{turtle}/rotate_absolute", single(theta)):
+            return refusal
+        return self.turtles[turtle].rotate(goal, single(theta))
+
+    def cancel_rotation(self, turtle: str, goal: int | None = None) -> bool:
+        """Ask for the end of a rotation at the next tick; of any, without a `goal`. Whether there is one."""
+        rotation = self.turtles[turtle].rotation if turtle in self.turtles else None
+        if rotation is None or goal not in (None, rotation.goal):
+            return False
+        rotation.cancel_requested = True
+        return True
+
+    def tick(self, now_ns: int) -> list[Event]:
+        """16 ms of every turtle's life, in the order of their names. The very first tick only begins the count."""
+        if not self._ticking:
+            self._ticking = True
+            return []
+        turtles = [self.turtles[name] for name in sorted(self.turtles)]
+        return [event for turtle in turtles for event in turtle.tick(now_ns, self.canvas, self.trail)]
+
+
+def _refusal(what: str, *numbers: float) -> list[Event]:
+    """A warning where a number is infinite or none at all, else nothing."""
+    if all(math.isfinite(number) for number in numbers):
+        return []
+    told = ", ".join(f"{number:f}" for number in numbers)
+    return [LogLine(Severity.WARN, f"Ignoring a request for {what} with numbers that are not finite: {told}")]
