@@ -1,0 +1,135 @@
+"""The node `turtlesim`: `python -m spinbook.turtlesim.node` is what `ros2 run turtlesim turtlesim_node` runs."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+
+import rclpy
+from geometry_msgs.msg import Twist
+from rcl_interfaces.msg import IntegerRange, ParameterDescriptor
+from rclpy.clock import ROSClock
+from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.subscription import Subscription
+from rclpy.utilities import try_shutdown
+from std_srvs.srv import Empty, Trigger
+
+from spinbook.turtlesim.events import Event, Killed, LogLine, Severity, Spawned
+from spinbook.turtlesim.geometry import TICK_NS
+from spinbook.turtlesim.interface import Interface
+from spinbook.turtlesim.pacing import Pacing
+from spinbook.turtlesim.standin import DEPTH, StandIn
+from spinbook.turtlesim.world import World
+from spinbook.turtlesim.world_picture import BLUE, picture_of
+
+_NS_PER_S = 1_000_000_000
+
+
+class Turtlesim:
+    """The world of the turtles on ROS: parameters, services and topics of turtlesim, and ~/picture for drawing."""
+
+    def __init__(self) -> None:
+        self.node = Node("turtlesim")
+        self._declare_parameters()
+        self._world = World()
+        self._pacing = Pacing()
+        self._commands: dict[str, Subscription] = {}
+        self._interface = self._choose_interface()
+        self.node.create_service(Empty, "clear", self._clear)
+        self.node.create_service(Empty, "reset", self._reset)
+        self.node.create_service(Trigger, "~/picture", self._picture)
+        self.node.get_logger().info(f"Starting turtlesim with node name {self.node.get_fully_qualified_name()}")
+        self._perform(self._world.start())
+        if self._interface.statement:
+            self.node.get_logger().info(self._interface.statement)
+        self.node.create_timer(TICK_NS / _NS_PER_S, self._tick)
+
+    def _declare_parameters(self) -> None:
+        part = IntegerRange(from_value=0, to_value=255, step=1)
+        for name, default in zip(("r", "g", "b"), BLUE, strict=True):
+            told = f"How much of {name} is in the background's colour"
+            descriptor = ParameterDescriptor(description=told, integer_range=[part])
+            self.node.declare_parameter(f"background_{name}", default, descriptor)
+        told = "Whether linear.y of a command moves a turtle sideways"
+        self.node.declare_parameter("holonomic", False, ParameterDescriptor(description=told))
+
+    def _choose_interface(self) -> Interface:
+        try:
+            importlib.import_module("turtlesim.msg")
+        except ImportError:
+            return StandIn(self.node, self._world, self._perform)
+        from spinbook.turtlesim.real import Real
+
+        return Real(self.node, self._world, self._perform)
+
+    def _perform(self, events: list[Event]) -> None:
+        """Log and publish what has happened."""
+        for event in events:
+            if isinstance(event, LogLine):
+                self._log(event)
+            elif isinstance(event, Spawned):
+                self._add(event.turtle)
+            elif isinstance(event, Killed):
+                self.node.destroy_subscription(self._commands.pop(event.turtle))
+                self._interface.remove(event.turtle)
+            else:
+                self._interface.publish(event)
+
+    def _log(self, line: LogLine) -> None:
+        # rclpy wants a source line of its own for each severity.
+        if line.severity is Severity.INFO:
+            self.node.get_logger().info(line.text)
+        elif line.severity is Severity.WARN:
+            self.node.get_logger().warning(line.text)
+        else:
+            self.node.get_logger().error(line.text)
+
+    def _add(self, turtle: str) -> None:
+        def command(twist: Twist) -> None:
+            left = twist.linear.y if self.node.get_parameter("holonomic").value else None
+            now_ns = self.node.get_clock().now().nanoseconds
+            self._perform(self._world.command(turtle, twist.linear.x, left, twist.angular.z, now_ns))
+
+        self._commands[turtle] = self.node.create_subscription(Twist, f"{turtle}/cmd_vel", command, DEPTH)
+        self._interface.add(turtle)
+
+    def _clear(self, _: Empty.Request, response: Empty.Response) -> Empty.Response:
+        self._perform(self._world.clear())
+        return response
+
+    def _reset(self, _: Empty.Request, response: Empty.Response) -> Empty.Response:
+        self._perform(self._world.reset())
+        return response
+
+    def _picture(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        r, g, b = (self.node.get_parameter(f"background_{part}").value for part in "rgb")
+        response.success = True
+        response.message = picture_of(self._world, (r, g, b)).to_json()
+        return response
+
+    def _tick(self) -> None:
+        clock = self.node.get_clock()
+        simulated = isinstance(clock, ROSClock) and clock.ros_time_is_active
+        for now_ns in self._pacing.due(clock.now().nanoseconds, simulated):
+            self._perform(self._world.tick(now_ns))
+
+
+def main() -> int:
+    """Run the node until it is told to stop; the exit code."""
+    try:
+        rclpy.init()
+        rclpy.spin(Turtlesim().node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    except (InvalidParameterTypeException, InvalidParameterValueException) as error:
+        print(f"turtlesim: a parameter can't be used: {error}", file=sys.stderr)
+        return 1
+    finally:
+        try_shutdown()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
