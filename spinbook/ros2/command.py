@@ -1,0 +1,58 @@
+"""`spinbook ros2`: the nouns, and what happens around every verb."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from spinbook.ros2 import stopping
+from spinbook.ros2.groups import Entry, Menu
+from spinbook.ros2.real import hand_over
+
+NOUNS = {
+    "action": Entry("spinbook.ros2.action:action", "List actions, send a goal to one."),
+    "daemon": Entry("spinbook.ros2.daemon:daemon", "There is none: says so."),
+    "interface": Entry("spinbook.ros2.interface:interface", "Show the fields of message, service and action types."),
+    "node": Entry("spinbook.ros2.node:node", "List running nodes, show what one offers."),
+    "param": Entry("spinbook.ros2.param:param", "Read and change parameters of running nodes."),
+    "pkg": Entry("spinbook.ros2.pkg:pkg", "List packages and their executables."),
+    "run": Entry("spinbook.ros2.run:run", "Start an executable of a package."),
+    "service": Entry("spinbook.ros2.service:service", "List services, call one."),
+    "topic": Entry("spinbook.ros2.topic:topic", "Watch, measure and publish topics."),
+}
+
+
+class Ros2(Menu):
+    """The whole command: hands over to the real one where it is installed, and ends quietly on a signal."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        if not ctx.resilient_parsing:
+            hand_over(args)
+        return super().parse_args(ctx, args)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        stopping.listen()
+        try:
+            return super().invoke(ctx)
+        except stopping.Stopped as stopped:
+            raise click.exceptions.Exit(stopped.exit_code) from None
+
+
+ros2 = Ros2(
+    name="ros2",
+    entries=NOUNS,
+    help="""Look at running ROS 2 nodes and talk to them; works without a ROS installation.
+
+    Start a node, and in another terminal:
+
+    \b
+      ros2 node list                       which nodes run
+      ros2 topic list -t                   the topics, with their types
+      ros2 topic hz /joint_commands        how many messages a second
+      ros2 topic echo /joint_commands      what is in them (Ctrl-C ends it)
+      ros2 interface show sensor_msgs/msg/JointState
+
+    Where a ROS 2 installation provides `ros2`, that one answers. SPINBOOK_ROS2=own prevents it.
+    """,
+)

@@ -1,0 +1,117 @@
+"""Message, service and action types by name: from `sensor_msgs/msg/JointState` to the class."""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+from typing import Any, Literal
+
+from spinbook.ros2 import interface_files
+from spinbook.ros2.refusal import Refusal
+
+Kind = Literal["msg", "srv", "action"]
+
+KINDS: dict[Kind, str] = {"msg": "message", "srv": "service", "action": "action"}
+
+#: Types that courses name but that no wheel brings -> what has the same or nearly the same fields.
+STAND_INS = {
+    "turtlesim/msg/Pose": "geometry_msgs/msg/Pose2D (x, y, theta; our turtlesim publishes it as /turtle1/pose)",
+    "example_interfaces/action/Fibonacci": "test_msgs/action/Fibonacci (the same fields)",
+    "example_interfaces/srv/SetBool": "std_srvs/srv/SetBool (the same fields)",
+    "example_interfaces/srv/Trigger": "std_srvs/srv/Trigger (the same fields)",
+    "example_interfaces/srv/AddTwoInts": "nothing with its fields; std_srvs/srv/SetBool or std_srvs/srv/Trigger"
+    " show how services work",
+}
+
+
+def message_class(name: str) -> Any:
+    """The class of a message type. Raises `Refusal` for a name that is no type installed here."""
+    return _load(name, "msg")
+
+
+def service_class(name: str) -> Any:
+    """The class of a service type, with `Request` and `Response`. Raises `Refusal` as `message_class` does."""
+    return _load(name, "srv")
+
+
+def action_class(name: str) -> Any:
+    """The class of an action type, with `Goal`, `Result` and `Feedback`. Raises `Refusal` as `message_class` does."""
+    return _load(name, "action")
+
+
+def interface_class(name: str) -> Any:
+    """The class of a message, service or action type, by its name with the middle part."""
+    parts = name.split("/")
+    if len(parts) != 3 or parts[1] not in KINDS:
+        raise Refusal(
+            f"The passed type '{name}' is invalid",
+            "Expected PACKAGE/msg/NAME, PACKAGE/srv/NAME or PACKAGE/action/NAME.",
+        )
+    return _load(name, parts[1])
+
+
+def _load(name: str, kind: Kind) -> Any:
+    full = full_name(name, kind)
+    package, _, short = full.split("/")
+    check_installed(full)
+    try:
+        return getattr(importlib.import_module(f"{package}.{kind}"), short)
+    except (ImportError, AttributeError) as error:
+        raise Refusal(
+            f"The type '{full}' has no Python code in this environment: {error}",
+            f"Its package was found in {interface_files.folder_of(package)}, built for another Python perhaps.",
+        ) from None
+
+
+def full_name(name: str, kind: Kind) -> str:
+    """`std_msgs/String` -> `std_msgs/msg/String`. Raises `Refusal` for what can't be a type's name."""
+    parts = name.split("/")
+    if len(parts) == 2:
+        parts.insert(1, kind)
+    if len(parts) != 3 or parts[1] != kind or not all(parts):
+        raise Refusal(
+            f"The passed {KINDS[kind]} type is invalid: '{name}'",
+            f"Expected PACKAGE/{kind}/NAME. `ros2 interface list` shows what is installed.",
+        )
+    return "/".join(parts)
+
+
+def check_installed(full: str) -> None:
+    """Raise `Refusal` where the type `PACKAGE/KIND/NAME` is not installed: what stands in, or what is like it."""
+    package, kind, short = full.split("/")
+    known = interface_files.interfaces_of(package)
+    if known is not None and f"{kind}/{short}" in known:
+        return
+    stand_in = _stand_in(full)
+    if known is None:
+        lines = [f"Unknown package '{package}': the type '{full}' is not installed here."]
+    else:
+        lines = [f"The package '{package}' has no type '{kind}/{short}'."]
+    if stand_in:
+        lines.append(f"In its place: {stand_in}.")
+    else:
+        lines.append(_alike(full))
+    raise Refusal(*lines)
+
+
+def _stand_in(full: str) -> str | None:
+    package, kind, short = full.split("/")
+    if full in STAND_INS:
+        return STAND_INS[full]
+    if (
+        package == "example_interfaces"
+        and kind == "msg"
+        and f"msg/{short}" in (interface_files.interfaces_of("std_msgs") or ())
+    ):
+        return f"std_msgs/msg/{short} (the same fields)"
+    return None
+
+
+def _alike(full: str) -> str:
+    everything = [f"{package}/{name}" for package, names in interface_files.everything().items() for name in names]
+    short = full.rpartition("/")[2]
+    alike = [name for name in everything if name.rpartition("/")[2].lower() == short.lower()]
+    alike += difflib.get_close_matches(full, everything, n=3, cutoff=0.7)
+    if alike:
+        return f"Did you mean {' or '.join(list(dict.fromkeys(alike))[:3])}?"
+    return "`ros2 interface list` shows what is installed."

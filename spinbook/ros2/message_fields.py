@@ -1,0 +1,168 @@
+"""Filling a message from what a person typed in YAML, with errors that name the field and its type."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import yaml
+from rosidl_parser import definition
+
+from spinbook.ros2.refusal import Refusal
+
+#: Sets a field that was given as 'now' or 'auto' to a builtin_interfaces/msg/Time.
+SetStamp = Callable[[Any], None]
+
+_LISTED = 12
+
+
+def read_values(text: str, what: str) -> dict[str, Any]:
+    """YAML text -> a mapping. Raises `Refusal` where it is not YAML, or no mapping."""
+    try:
+        values = yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        place = f" at its letter {mark.column + 1}" if mark is not None else ""
+        raise Refusal(
+            f"The passed {what} is not YAML{place}: {getattr(error, 'problem', None) or error}",
+            "Quote it for the shell, and put a blank after each colon and comma: '{linear: {x: 2.0}}'",
+        ) from None
+    if not isinstance(values, dict):
+        raise Refusal(
+            "The passed value needs to be a dictionary in YAML format",
+            f"Found: {text!r}. Expected FIELD: VALUE in braces, as in '{{data: hello}}', with a blank after the colon.",
+        )
+    return values
+
+
+def fill(message: Any, values: dict[str, Any], *, stamps: bool = False) -> list[SetStamp]:
+    """Set a message's fields from plain values; fields not named keep their defaults.
+
+    With `stamps`, a header given as `auto` and a time given as `now` are left for the returned setters. Raises
+    `Refusal` for a field that is not there and for a value that is not of the field's type.
+    """
+    filling = _Filling(stamps)
+    filling.message(message, values, "")
+    return filling.setters
+
+
+class _Filling:
+    def __init__(self, stamps: bool) -> None:
+        self.stamps = stamps
+        self.setters: list[SetStamp] = []
+
+    def message(self, message: Any, values: Any, path: str) -> None:
+        if not isinstance(values, dict):
+            raise _wrong(path, values, f"the fields of {type_name(message)}: {field_names(message)}")
+        types = message.get_fields_and_field_types()
+        slots = dict(zip(types, message.SLOT_TYPES, strict=True))
+        for name, value in values.items():
+            if name not in slots:
+                raise _unknown(message, name, path)
+            self.field(message, name, slots[name], value, f"{path}.{name}" if path else name)
+
+    def field(self, message: Any, name: str, slot: Any, value: Any, path: str) -> None:
+        present = getattr(message, name)
+        if isinstance(slot, definition.NamespacedType):
+            full = "/".join(slot.namespaced_name())
+            if self.stamps and value == "auto" and full == "std_msgs/msg/Header":
+                self.setters.append(partial(setattr, present, "stamp"))
+            elif self.stamps and value == "now" and full == "builtin_interfaces/msg/Time":
+                self.setters.append(partial(setattr, message, name))
+            else:
+                self.message(present, value, path)
+            return
+        kind = message.get_fields_and_field_types()[name]
+        converted = self.array(slot, value, path, kind) if _is_array(slot) else _scalar(slot, value, path, kind)
+        try:
+            setattr(message, name, converted)
+        except (AssertionError, ValueError, TypeError, OverflowError):
+            raise _wrong(path, value, f"{kind}: out of its range or of another length") from None
+
+    def array(self, slot: Any, value: Any, path: str, kind: str) -> list[Any]:
+        if isinstance(value, (bytes, bytearray)):
+            value = list(value)
+        if not isinstance(value, list):
+            raise _wrong(path, value, f"{kind}, a list as in [a, b]")
+        element = slot.value_type
+        places = [f"{path}[{place}]" for place in range(len(value))]
+        if isinstance(element, definition.NamespacedType):
+            return [self.element(element, item, place) for item, place in zip(value, places, strict=True)]
+        single = kind.partition("[")[0].replace("sequence<", "").partition(",")[0].rstrip(">")
+        return [_scalar(element, item, place, single) for item, place in zip(value, places, strict=True)]
+
+    def element(self, slot: Any, value: Any, path: str) -> Any:
+        *packages, name = slot.namespaced_name()
+        message = getattr(importlib.import_module(".".join(packages)), name)()
+        self.message(message, value, path)
+        return message
+
+
+def _is_array(slot: Any) -> bool:
+    return isinstance(slot, definition.AbstractNestedType)
+
+
+def _scalar(slot: Any, value: Any, path: str, kind: str) -> Any:
+    """A number, text or truth value in the type of its field, converted where nothing is lost."""
+    if isinstance(slot, (definition.AbstractString, definition.AbstractWString)):
+        if isinstance(value, (str, int, float, bool)):
+            return str(value)
+        raise _wrong(path, value, kind)
+    if slot.typename == "boolean":
+        if isinstance(value, (bool, int)) and value in (0, 1):
+            return bool(value)
+        raise _wrong(path, value, "boolean: true or false")
+    if slot.typename == "octet":
+        return _octet(value, path)
+    try:
+        if value is None or isinstance(value, (dict, list)):
+            raise TypeError
+        if "float" in slot.typename or "double" in slot.typename:
+            return float(value)
+        if isinstance(value, float) and not value.is_integer():
+            raise ValueError
+        return int(value)
+    except (TypeError, ValueError, OverflowError):
+        raise _wrong(path, value, kind) from None
+
+
+def _octet(value: Any, path: str) -> bytes:
+    if isinstance(value, str) and len(value) == 1:
+        value = ord(value)
+    if isinstance(value, int) and 0 <= value <= 255:
+        return bytes([value])
+    raise _wrong(path, value, "byte: a number from 0 to 255")
+
+
+def _wrong(path: str, value: Any, expected: str) -> Refusal:
+    return Refusal(
+        f"Failed to populate field: '{path}' got {value!r}" if path else f"Failed to populate field: got {value!r}",
+        f"Expected {expected}.",
+    )
+
+
+def _unknown(message: Any, name: Any, path: str) -> Refusal:
+    where = f" in '{path}'" if path else ""
+    lines = [
+        f"Failed to populate field: '{type(message).__name__}' object has no attribute '{name}'{where}",
+        f"Fields of {type_name(message)}: {field_names(message)}.",
+    ]
+    if not isinstance(name, str):
+        lines.append(f"YAML reads this field's name as {name!r}, not as text: quote it.")
+    return Refusal(*lines)
+
+
+def type_name(message: Any) -> str:
+    """`geometry_msgs/msg/Twist` of a message or its class."""
+    kind = message if isinstance(message, type) else type(message)
+    package, interface = kind.__module__.split(".")[:2]
+    return f"{package}/{interface}/{kind.__name__}"
+
+
+def field_names(message: Any) -> str:
+    """The fields of a message or its class with their types, for a line of text."""
+    fields = [f"{name} ({kind})" for name, kind in message.get_fields_and_field_types().items()]
+    more = f" and {len(fields) - _LISTED} more" if len(fields) > _LISTED else ""
+    return ", ".join(fields[:_LISTED]) + more if fields else "none"

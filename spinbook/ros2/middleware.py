@@ -1,0 +1,80 @@
+"""What must be right before rclpy is imported, because rclpy would end the process without a word about it."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from spinbook.ros2 import prefixes
+from spinbook.ros2.refusal import Refusal
+
+if TYPE_CHECKING:
+    from spinbook.ros2.graph import Graph
+
+#: Above this, DDS has no port numbers left (https://docs.ros.org/en/jazzy/Concepts/Intermediate/About-Domain-ID.html).
+LARGEST_DOMAIN = 232
+
+
+def open_graph(*, node_name: str | None = None, spin_time: float | None = None, use_sim_time: bool = False) -> Graph:
+    """Check the environment, then create a node of ours that looks at the graph (a context manager).
+
+    `spin_time` bounds discovery, in seconds. Raises `Refusal` for an environment that rclpy can't work in.
+    """
+    prepare()
+    from spinbook.ros2.graph import Graph
+
+    return Graph(node_name=node_name, spin_time=spin_time, use_sim_time=use_sim_time)
+
+
+def prepare() -> None:
+    """Raise `Refusal` for what would make rclpy fail, and give it a folder for its logs."""
+    _check_installed()
+    _check_rmw()
+    domain_id()
+    _give_log_folder()
+
+
+def domain_id() -> int:
+    """ROS_DOMAIN_ID as a number. Raises `Refusal` if it is none or out of range."""
+    text = os.environ.get("ROS_DOMAIN_ID") or "0"
+    if not text.isdecimal() or int(text) > LARGEST_DOMAIN:
+        raise Refusal(
+            f"ROS_DOMAIN_ID is '{text}', expected a whole number from 0 to {LARGEST_DOMAIN}.",
+            "Every terminal and notebook that should see one another needs the same number.",
+        )
+    return int(text)
+
+
+def _check_installed() -> None:
+    import importlib.util
+
+    if importlib.util.find_spec("rclpy") is None:
+        raise Refusal(
+            "ROS 2's Python library, rclpy, is not installed for this Python.",
+            "On Linux x86_64: pip install 'spinbook[ros]'",
+            "Elsewhere, use a ROS 2 installation or a ros:jazzy container.",
+        )
+
+
+def _check_rmw() -> None:
+    wanted = os.environ.get("RMW_IMPLEMENTATION")
+    if not wanted:
+        return
+    here = prefixes.resources("rmw_typesupport", prefixes.installed())
+    here.pop("rmw_implementation", None)
+    if here and wanted not in here:
+        raise Refusal(
+            f"RMW_IMPLEMENTATION is '{wanted}', which is not installed here.",
+            f"Installed: {', '.join(here)}. Set it to one of these, or unset it: unset RMW_IMPLEMENTATION",
+        )
+
+
+def _give_log_folder() -> None:
+    """Set ROS_LOG_DIR where the default, a folder below HOME, can't be written."""
+    if os.environ.get("ROS_LOG_DIR") or os.environ.get("ROS_HOME"):
+        return
+    home = Path(os.environ.get("HOME") or "/nonexistent")
+    if not os.access(home, os.W_OK | os.X_OK):
+        os.environ["ROS_LOG_DIR"] = str(Path(tempfile.gettempdir(), f"ros-log-{os.getuid()}"))

@@ -1,0 +1,330 @@
+"""`ros2 param`: list, get, set, describe, dump and delete, through each node's own parameter services."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+import yaml
+
+from spinbook.ros2.groups import CONTEXT, Entry, Menu, discovery_options
+from spinbook.ros2.middleware import open_graph
+from spinbook.ros2.refusal import Refusal
+
+if TYPE_CHECKING:
+    from spinbook.ros2.graph import Graph
+
+param = Menu(
+    name="param",
+    entries={
+        "delete": Entry("spinbook.ros2.param:delete", "Delete a parameter of a node."),
+        "describe": Entry("spinbook.ros2.param:describe", "What is known of a parameter: type, range."),
+        "dump": Entry("spinbook.ros2.param:dump", "All parameters of a node, in a parameter file's YAML."),
+        "get": Entry("spinbook.ros2.param:get", "The value of a parameter."),
+        "list": Entry("spinbook.ros2.param:list_", "The parameters of one node or of all."),
+        "set": Entry("spinbook.ros2.param:set_", "Give a parameter another value."),
+    },
+    help="""Read and change parameters of running nodes.
+
+    \b
+      ros2 param list /joint_state_monitor
+      ros2 param get /joint_state_monitor use_sim_time
+    """,
+)
+
+#: Seconds that a node's parameter services get to appear, and then to answer.
+READY, ANSWER = 5.0, 10.0
+
+# By rcl_interfaces/msg/ParameterType: how `describe` names a type, and how `get` begins its line.
+_TYPES = {
+    0: ("not set", "Parameter not set."),
+    1: ("boolean", "Boolean value is:"),
+    2: ("integer", "Integer value is:"),
+    3: ("double", "Double value is:"),
+    4: ("string", "String value is:"),
+    5: ("byte array", "Byte values are:"),
+    6: ("boolean array", "Boolean values are:"),
+    7: ("integer array", "Integer values are:"),
+    8: ("double array", "Double values are:"),
+    9: ("string array", "String values are:"),
+}
+_VALUE_FIELDS = (
+    "",
+    "bool_value",
+    "integer_value",
+    "double_value",
+    "string_value",
+    "byte_array_value",
+    "bool_array_value",
+    "integer_array_value",
+    "double_array_value",
+    "string_array_value",
+)
+
+_hidden_nodes = click.option("-a", "--include-hidden-nodes", is_flag=True, help="Hidden nodes too.")
+
+
+@click.command(name="list", context_settings=CONTEXT)
+@click.argument("node_name", required=False)
+@_hidden_nodes
+@click.option("--param-type", is_flag=True, help="Show each parameter's type too.")
+@discovery_options
+def list_(
+    node_name: str | None, include_hidden_nodes: bool, param_type: bool, spin_time: float | None, use_sim_time: bool
+) -> None:
+    """The parameters of one node or of all.
+
+    \b
+      ros2 param list /joint_state_monitor
+    """
+    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        if node_name is None:
+            graph.settle()
+            names = sorted({node.full_name for node in graph.nodes() if include_hidden_nodes or not node.hidden})
+        else:
+            names = [_find_node(graph, node_name, include_hidden_nodes)]
+        for name in names:
+            try:
+                client = _client(graph, name)
+                params = sorted(_answer(graph, name, client.list_parameters()).result.names)
+                types = _described(graph, name, client, params) if param_type else {}
+            except Refusal as refusal:
+                if node_name is not None:
+                    raise
+                refusal.show()
+                continue
+            if node_name is None:
+                click.echo(f"{name}:")
+            for parameter in params:
+                click.echo(f"  {parameter} (type: {types[parameter]})" if param_type else f"  {parameter}")
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("node_name")
+@click.argument("parameter_name")
+@_hidden_nodes
+@click.option("--hide-type", is_flag=True, help="The value alone.")
+@discovery_options
+def get(
+    node_name: str,
+    parameter_name: str,
+    include_hidden_nodes: bool,
+    hide_type: bool,
+    spin_time: float | None,
+    use_sim_time: bool,
+) -> None:
+    """The value of a parameter.
+
+    \b
+      ros2 param get /joint_state_monitor use_sim_time
+      Boolean value is: False
+    """
+    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        name = _find_node(graph, node_name, include_hidden_nodes)
+        client = _client(graph, name)
+        values = _answer(graph, name, client.get_parameters([parameter_name])).values
+        if not values:
+            raise Refusal("Parameter not set", _parameters_of(graph, name, client))
+    kind = values[0].type
+    label = _TYPES.get(kind, ("", f"Unknown parameter type '{kind}'"))[1]
+    value = _value(values[0])
+    if hide_type:
+        click.echo(str(value))
+    else:
+        click.echo(label if value is None else f"{label} {value}")
+
+
+# Negative values begin as an option does.
+@click.command(name="set", context_settings={**CONTEXT, "ignore_unknown_options": True})
+@click.argument("node_name")
+@click.argument("parameter_name")
+@click.argument("value")
+@_hidden_nodes
+@discovery_options
+def set_(
+    node_name: str,
+    parameter_name: str,
+    value: str,
+    include_hidden_nodes: bool,
+    spin_time: float | None,
+    use_sim_time: bool,
+) -> None:
+    """Give a parameter another value, in YAML: 3 is an integer, 3.0 a double, true a boolean.
+
+    \b
+      ros2 param set /joint_state_monitor use_sim_time true
+    """
+    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        from rcl_interfaces.msg import Parameter
+
+        name = _find_node(graph, node_name, include_hidden_nodes)
+        client = _client(graph, name)
+        wanted = Parameter(name=parameter_name, value=_parameter_value(value))
+        result = _answer(graph, name, client.set_parameters([wanted])).results[0]
+        if not result.successful:
+            raise Refusal(_with_reason("Setting parameter failed", result.reason))
+    click.echo(_with_reason("Set parameter successful", result.reason))
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("node_name")
+@click.argument("parameter_name")
+@_hidden_nodes
+@discovery_options
+def delete(
+    node_name: str, parameter_name: str, include_hidden_nodes: bool, spin_time: float | None, use_sim_time: bool
+) -> None:
+    """Delete a parameter of a node, which most nodes refuse for those they declared.
+
+    \b
+      ros2 param delete /joint_state_monitor gain
+    """
+    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        name = _find_node(graph, node_name, include_hidden_nodes)
+        client = _client(graph, name)
+        result = _answer(graph, name, client.delete_parameters([parameter_name])).results[0]
+        if not result.successful:
+            raise Refusal(_with_reason("Deleting parameter failed", result.reason))
+    click.echo(_with_reason("Deleted parameter successfully", result.reason))
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("node_name")
+@click.argument("parameter_names", nargs=-1, required=True)
+@_hidden_nodes
+@discovery_options
+def describe(
+    node_name: str,
+    parameter_names: tuple[str, ...],
+    include_hidden_nodes: bool,
+    spin_time: float | None,
+    use_sim_time: bool,
+) -> None:
+    """What is known of a parameter: its type and range.
+
+    \b
+      ros2 param describe /joint_state_monitor use_sim_time
+    """
+    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        name = _find_node(graph, node_name, include_hidden_nodes)
+        client = _client(graph, name)
+        descriptors = _answer(graph, name, client.describe_parameters(list(parameter_names))).descriptors
+        if not descriptors:
+            raise Refusal("Parameter not set", _parameters_of(graph, name, client))
+    for descriptor in descriptors:
+        for line in _description(descriptor):
+            click.echo(line)
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("node_name")
+@_hidden_nodes
+@discovery_options
+def dump(node_name: str, include_hidden_nodes: bool, spin_time: float | None, use_sim_time: bool) -> None:
+    """All parameters of a node, as a parameter file for `ros2 run … --ros-args --params-file FILE`.
+
+    \b
+      ros2 param dump /joint_state_monitor > monitor.yaml
+    """
+    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        name = _find_node(graph, node_name, include_hidden_nodes)
+        client = _client(graph, name)
+        names = sorted(_answer(graph, name, client.list_parameters()).result.names)
+        values = _answer(graph, name, client.get_parameters(names)).values if names else []
+    tree: dict[str, Any] = {}
+    for parameter, value in zip(names, values, strict=True):
+        *branches, leaf = parameter.split(".")
+        branch = tree
+        for step in branches:
+            branch = branch.setdefault(step, {})
+        branch[leaf] = _plain(_value(value))
+    click.echo(yaml.dump({name: {"ros__parameters": tree}}, default_flow_style=False))
+
+
+def _find_node(graph: Graph, node_name: str, include_hidden: bool) -> str:
+    """The full name of a running node. Raises `Refusal` with those that run if it does not."""
+    from spinbook.ros2.names import absolute_node, seen
+
+    full = absolute_node(node_name)
+
+    def visible() -> list[str]:
+        return [node.full_name for node in graph.nodes() if include_hidden or not node.hidden]
+
+    graph.settle(lambda: full in visible())
+    if full not in visible():
+        raise Refusal("Node not found", seen("Nodes", visible()))
+    return full
+
+
+def _client(graph: Graph, name: str) -> Any:
+    from rclpy.parameter_client import AsyncParameterClient
+
+    client = AsyncParameterClient(graph.node, name)
+    if not graph.spin_until(client.services_are_ready, READY):
+        raise Refusal(
+            f"Wait for service timed out waiting for parameter services for node {name}",
+            "The node has none (start_parameter_services=False), or is ending.",
+        )
+    return client
+
+
+def _answer(graph: Graph, name: str, future: Any) -> Any:
+    if not graph.spin_until(future.done, ANSWER):
+        raise Refusal(
+            f"The node {name} did not answer within {ANSWER:.0f} s.",
+            "A node answers while it spins: it may be stuck in a callback, or never call rclpy.spin.",
+        )
+    if future.exception() is not None or future.result() is None:
+        raise Refusal(f"Exception while calling service of node '{name}': {future.exception()}")
+    return future.result()
+
+
+def _parameters_of(graph: Graph, name: str, client: Any) -> str:
+    names = sorted(_answer(graph, name, client.list_parameters()).result.names)
+    return f"Parameters of {name}: {', '.join(names)}."
+
+
+def _described(graph: Graph, name: str, client: Any, params: list[str]) -> dict[str, str]:
+    descriptors = _answer(graph, name, client.describe_parameters(params)).descriptors
+    return {descriptor.name: _TYPES[descriptor.type][0] for descriptor in descriptors}
+
+
+def _description(descriptor: Any) -> list[str]:
+    lines = [f"Parameter name: {descriptor.name}", f"  Type: {_TYPES[descriptor.type][0]}"]
+    if descriptor.description:
+        lines.append(f"  Description: {descriptor.description}")
+    lines.append("  Constraints:")
+    if descriptor.read_only:
+        lines.append("    Read only: true")
+    for limits in [*descriptor.floating_point_range, *descriptor.integer_range][:1]:
+        lines += [f"    Min value: {limits.from_value}", f"    Max value: {limits.to_value}"]
+        if limits.step:
+            lines.append(f"    Step: {limits.step}")
+    if descriptor.additional_constraints:
+        lines.append(f"    Additional constraints: {descriptor.additional_constraints}")
+    return lines
+
+
+def _parameter_value(text: str) -> Any:
+    from rclpy.parameter import get_parameter_value
+
+    try:
+        return get_parameter_value(text)
+    except yaml.YAMLError:
+        from rcl_interfaces.msg import ParameterType, ParameterValue
+
+        # Not YAML, so a text, as the real command takes it.
+        return ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=text)
+
+
+def _value(value: Any) -> Any:
+    """The value of a rcl_interfaces/msg/ParameterValue as the message has it; None if it is not set."""
+    return getattr(value, _VALUE_FIELDS[value.type]) if 0 < value.type < len(_VALUE_FIELDS) else None
+
+
+def _plain(value: Any) -> Any:
+    return value if isinstance(value, (bool, int, float, str, type(None))) else list(value)
+
+
+def _with_reason(text: str, reason: str) -> str:
+    return f"{text}: {reason}" if reason else text

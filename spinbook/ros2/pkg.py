@@ -1,0 +1,74 @@
+"""`ros2 pkg`: list, executables and prefix."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from spinbook.ros2 import executables as search
+from spinbook.ros2.groups import CONTEXT, Entry, Menu
+from spinbook.ros2.refusal import Refusal
+
+pkg = Menu(
+    name="pkg",
+    entries={
+        "executables": Entry("spinbook.ros2.pkg:executables", "What `ros2 run` can start."),
+        "list": Entry("spinbook.ros2.pkg:list_", "The packages there are."),
+        "prefix": Entry("spinbook.ros2.pkg:prefix", "Where a package is installed."),
+    },
+    help="""List packages and their executables; a built colcon workspace here counts.
+
+    \b
+      ros2 pkg executables humanoid_control
+    """,
+)
+
+
+@click.command(name="list", context_settings=CONTEXT)
+def list_() -> None:
+    """The packages there are.
+
+    \b
+      ros2 pkg list
+    """
+    for name in sorted({*search.everywhere(Path.cwd()), *search.BUILT_IN}):
+        click.echo(name)
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("package_name", required=False)
+@click.option("--full-path", is_flag=True, help="Each one's file.")
+def executables(package_name: str | None, full_path: bool) -> None:
+    """What `ros2 run` can start.
+
+    \b
+      ros2 pkg executables turtlesim
+      turtlesim draw_square
+      turtlesim turtlesim_node
+    """
+    packages = search.everywhere(Path.cwd())
+    if package_name is not None and package_name not in packages and package_name not in search.BUILT_IN:
+        raise Refusal(f"Package '{package_name}' not found", "`ros2 pkg list` shows those that are there.")
+    for name in [package_name] if package_name else sorted({*packages, *search.BUILT_IN}):
+        if name in packages:
+            for path in search.in_prefix(packages[name], name):
+                click.echo(str(path) if full_path else f"{name} {path.name}")
+        else:
+            for executable, module in search.BUILT_IN[name].items():
+                click.echo(f"{sys.executable} -m {module}" if full_path else f"{name} {executable}")
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("package_name")
+def prefix(package_name: str) -> None:
+    """Where a package is installed.
+
+    \b
+      ros2 pkg prefix std_msgs
+    """
+    packages = search.everywhere(Path.cwd())
+    if package_name not in packages and package_name not in search.BUILT_IN:
+        raise Refusal("Package not found", "`ros2 pkg list` shows those that are there.")
+    click.echo(str(packages.get(package_name, sys.prefix)))

@@ -1,0 +1,27 @@
+"""`ros2 topic`: a file a verb."""
+
+from __future__ import annotations
+
+from spinbook.ros2.groups import Entry, Menu
+
+topic = Menu(
+    name="topic",
+    entries={
+        "bw": Entry("spinbook.ros2.topic.bw:bw", "How many bytes a second a topic carries."),
+        "delay": Entry("spinbook.ros2.topic.delay:delay", "How old messages are on arrival, by their header."),
+        "echo": Entry("spinbook.ros2.topic.echo:echo", "Print the messages of a topic."),
+        "find": Entry("spinbook.ros2.topic.find:find", "The topics of a type."),
+        "hz": Entry("spinbook.ros2.topic.hz:hz", "How many messages a second arrive."),
+        "info": Entry("spinbook.ros2.topic.info:info", "Who publishes and subscribes, with which QoS."),
+        "list": Entry("spinbook.ros2.topic.list:list_", "The topics there are."),
+        "pub": Entry("spinbook.ros2.topic.pub:pub", "Publish messages."),
+        "type": Entry("spinbook.ros2.topic.type:type_", "The type of a topic."),
+    },
+    help="""Watch, measure and publish topics.
+
+    \b
+      ros2 topic list -t
+      ros2 topic hz /joint_commands
+      ros2 topic pub --rate 10 /turtle1/cmd_vel geometry_msgs/msg/Twist '{linear: {x: 2.0}, angular: {z: 1.0}}'
+    """,
+)
