@@ -1,8 +1,8 @@
 """Puts a chapter's prose and fences in order, by jupytext, as cells with ids that stay and can be read.
 
-jupytext knows how Markdown splits into cells. It would also run every ```` ```bash ```` and drop what it does not know, so in
-place of each fence it is shown a placeholder of the same height, by which the fence is found again and lines keep their
-numbers.
+jupytext knows how Markdown splits into cells. It would also run every ```` ```bash ```` and drop what it does not
+know, so in place of each fence it is shown a placeholder of the same height, by which the fence is found again and
+lines keep their numbers.
 """
 
 from __future__ import annotations

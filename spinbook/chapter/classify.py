@@ -97,7 +97,7 @@ def _python(
         code = inspect(fence.code)
     except CodeError as error:
         line = fence.first_code_line + error.line - 1
-        mend = "Mend the code, or write `static` behind the language if it is only to be shown: it can't become a cell as it is."
+        mend = "Mend the code, or write `static` behind the language if it is only to be shown and not run."
         problems.append(Problem(file, line, f"not Python: {error.message} (column {error.column}).", mend))
         return Classified(fence, FenceKind.STATIC, "it is not Python"), problems
     if why := _why_static(fence, code):
@@ -139,15 +139,9 @@ def _node_name(fence: Fence, code: PythonCode, file: Path) -> tuple[str, list[Pr
             return stem, []
         found = f"`{fence.title}` can't be a module: `{stem}` is no Python name."
         return stem, [
-            Problem(
-                file, fence.line, found, "Use letters, digits and underscores, such as joint_publisher.py."
-            )
+            Problem(file, fence.line, found, "Use letters, digits and underscores, such as joint_publisher.py.")
         ]
-    name = (
-        code.ros_name or re.sub(r"(?<!^)(?=[A-Z])", "_", code.node_classes[0]).lower()
-        if code.node_classes
-        else None
-    )
+    name = code.ros_name or re.sub(r"(?<!^)(?=[A-Z])", "_", code.node_classes[0]).lower() if code.node_classes else None
     name = name or code.ros_name or "node"
     found = f"this fence is a node without a file name; it is called `{name}`."
     mend = f'Name its file: ```python title="{name}.py"'

@@ -29,7 +29,10 @@ def missing_imports(item: Classified, own_modules: frozenset[str], file: Path) -
         top = module.partition(".")[0]
         if top not in own_modules and not _is_installed(top):
             found = f"imports `{top}`, which is not installed here."
-            mend = f"{_similar(top, own_modules)}Install it and add it to the course's dependencies, or write `static` behind the fence's language."
+            mend = (
+                f"{_similar(top, own_modules)}Install it and add it to the course's dependencies, "
+                "or write `static` behind the fence's language."
+            )
             problems.append(Problem(file, item.fence.first_code_line + line - 1, found, mend))
     for (module, name), line in code.interfaces.items():
         known = interfaces_of(module)
@@ -41,9 +44,7 @@ def missing_imports(item: Classified, own_modules: frozenset[str], file: Path) -
     return problems
 
 
-def unknown_executables(
-    item: Classified, package: str, executables: Iterable[str], file: Path
-) -> list[Problem]:
+def unknown_executables(item: Classified, package: str, executables: Iterable[str], file: Path) -> list[Problem]:
     """Each `ros2 run PACKAGE EXECUTABLE` of a shell fence that nothing here provides.
 
     `package` is the course's own, `executables` those that its node cells make.
@@ -78,9 +79,7 @@ def _is_installed(module: str) -> bool:
 
 
 def _similar(module: str, own: frozenset[str]) -> str:
-    close = difflib.get_close_matches(
-        module, [*own, *ros_packages(), "rclpy", "numpy", "matplotlib"], n=1, cutoff=0.75
-    )
+    close = difflib.get_close_matches(module, [*own, *ros_packages(), "rclpy", "numpy", "matplotlib"], n=1, cutoff=0.75)
     return f"Did you mean `{close[0]}`? " if close else ""
 
 

@@ -81,9 +81,7 @@ def inspect(code: str) -> PythonCode:
     Raises CodeError where it isn't Python even so.
     """
     code = blank_magics(code) if has_magics(code) else code
-    first = next(
-        (line for line in code.split("\n") if line.strip() and not line.lstrip().startswith("#")), ""
-    )
+    first = next((line for line in code.split("\n") if line.strip() and not line.lstrip().startswith("#")), "")
     indented = first[:1].isspace()
     # `if True:` keeps line numbers right for an indented fragment, at the cost of one line.
     tree = _parse("if True:\n" + code, shift=1) if indented else _parse(code)
@@ -186,9 +184,7 @@ def _node_name(call: ast.Call, function: str) -> str | None:
 def _names(tree: ast.Module, code: str) -> tuple[frozenset[str], dict[str, int]]:
     """The names that the code defines, and those it uses and does not define, by Python's own symbol table."""
     table = symtable.symtable(code, "<chapter>", "exec")
-    defined = {
-        s.get_name() for s in table.get_symbols() if s.is_assigned() or s.is_imported() or s.is_namespace()
-    }
+    defined = {s.get_name() for s in table.get_symbols() if s.is_assigned() or s.is_imported() or s.is_namespace()}
     used: set[str] = set()
 
     def collect(scope: symtable.SymbolTable) -> None:

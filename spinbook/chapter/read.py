@@ -110,7 +110,7 @@ def _two_of_one_name(classified: Sequence[Classified], file: Path) -> list[Probl
             continue
         if item.name in first:
             found = f"a second node is called `{item.name}`; the first one stands in line {first[item.name]}."
-            mend = "Give it another file name: starting the one would stop the other, and the package can hold only one."
+            mend = "Give it another file name: starting one would stop the other, and the package can hold only one."
             problems.append(Problem(file, item.fence.line, found, mend))
         first.setdefault(item.name, item.fence.line)
     return problems
@@ -137,9 +137,7 @@ def _references(
         if path and not (root / file.parent / path).exists():
             found = f"a link leads to `{target}`, and there is no such file."
             problems.append(
-                Problem(
-                    file, line, found, "Write the path relative to the chapter's folder.", Severity.WARNING
-                )
+                Problem(file, line, found, "Write the path relative to the chapter's folder.", Severity.WARNING)
             )
     return problems
 

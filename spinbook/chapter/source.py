@@ -17,7 +17,7 @@ _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\x80-\x9f\u2028\u2029]")
 
 @dataclass(frozen=True)
 class Source:
-    """A chapter's text with `\\n` line ends and the lines of its front matter left blank, so that lines keep their numbers."""
+    """A chapter's text with `\\n` line ends. Its front matter's lines are blank, so that lines keep their numbers."""
 
     text: str
     front_matter: Mapping[str, Any]

@@ -1,7 +1,7 @@
 """A shell fence: the commands in it, and whether a notebook can run them.
 
-A notebook runs `ros2 …`, `colcon …` and `rqt_plot …`. Moving about (`cd`, `source`, `export`) is what a person does in a
-terminal before them; in a notebook it is not needed and stays as a comment. Anything else is shown and not run.
+A notebook runs `ros2 …`, `colcon …` and `rqt_plot …`. Moving about (`cd`, `source`, `export`) is what a person does
+in a terminal before them; in a notebook it is not needed and stays as a comment. Anything else is shown and not run.
 """
 
 from __future__ import annotations

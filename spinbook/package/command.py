@@ -37,7 +37,7 @@ def package(start: Path, workspace: Path | None) -> None:
 
 
 def course_modules(course: Course) -> list[Module]:
-    """Every node cell of the course as a module. Raises SpinbookError where two chapters name one module differently."""
+    """Every node cell of the course as a module. Raises SpinbookError where two chapters' modules clash."""
     first: dict[str, tuple[Path, Cell]] = {}
     problems: list[Problem] = []
     for reading in read_all(course):

@@ -19,6 +19,10 @@ def run(session: Session, words: list[str], seconds: float) -> None:
         raise CellFailed(f"There is nothing to build in {workspace.name} yet: run the chapter's node cells first.")
     # Where ROS 2 came from PyPI, this Python's prefix is the underlay that /opt/ros/jazzy is elsewhere.
     prefixes = [p for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
-    settings = {"AMENT_PREFIX_PATH": os.pathsep.join(dict.fromkeys([*prefixes, sys.prefix]))}
+    settings = {
+        "AMENT_PREFIX_PATH": os.pathsep.join(dict.fromkeys([*prefixes, sys.prefix])),
+        # It would warn that this prefix has no local_setup script; nothing here needs one.
+        "COLCON_LOG_LEVEL": os.environ.get("COLCON_LOG_LEVEL", "error"),
+    }
     argv = [sys.executable, "-m", "colcon", "--log-base", os.fspath(workspace / "log"), *words]
     session.run_command(argv, settings, workspace, seconds, "colcon")

@@ -1,7 +1,7 @@
 """The ROS domain of a notebook: one of its own, so that two notebooks open at once do not hear each other.
 
 A domain is held by a lock on a file that every user of the machine can open; the lock goes when the kernel does,
-however it ends. Domains up to 101 have ports below Linux's ephemeral range (see "The ROS_DOMAIN_ID" in ROS 2's concepts).
+however it ends. Domains up to 101 have ports below Linux's ephemeral range (ROS 2's concepts, "The ROS_DOMAIN_ID").
 """
 
 from __future__ import annotations

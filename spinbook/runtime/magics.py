@@ -1,4 +1,4 @@
-"""The notebook's commands: `%%node`, `%nodes`, `%stop`, `%log`, `%ros2`, `%colcon`, `%plot`, `%turtle`, `%domain`, `%chapter`.
+"""The notebook's commands: `%%node`, `%nodes`, `%stop`, `%log`, `%ros2`, `%colcon`, `%plot`, `%turtle` and others.
 
 Thin: each reads its line and calls the session.
 """
@@ -120,7 +120,7 @@ class SpinbookMagics(Magics):
             running = ", ".join(self.session.nodes.names()) or "none"
             raise CellFailed(f"Which one? %stop NAME, or %stop --all. Started are: {running}.")
         for stopped in self.session.stop(None if given.all else given.names):
-            if stopped.status.exit not in (0, None):
+            if not stopped.had_ended and stopped.status.exit not in (0, None) and stopped.said.strip():
                 print(stopped.said.rstrip())
             print(stopped.in_words)
 

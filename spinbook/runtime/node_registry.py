@@ -25,11 +25,14 @@ class Stopped:
     name: str
     status: Status
     said: str
+    had_ended: bool
 
     @property
     def in_words(self) -> str:
         """One line for the reader."""
         code, by = self.status.exit, self.status.ended_by
+        if self.had_ended:
+            return f"{self.name} had ended before (exit code {code})."
         if by == "SIGKILL":
             return f"{self.name} ignored Ctrl-C and SIGTERM for {sum(STOP_GRACE):g} s; it was killed."
         if code == 0 or (code is not None and code < 0):
@@ -71,16 +74,16 @@ class NodeRegistry:
     def stop_all(self, names: Sequence[str] | None = None) -> list[Stopped]:
         """End these nodes (all without `names`) at the same time, and forget them."""
         chosen = [self._nodes.pop(name) for name in (self.names() if names is None else names)]
-        running = []
+        had_ended = []
         for node in chosen:
             node.process.read()
-            running.append(node.process.status.running)
-            if running[-1]:
+            had_ended.append(not node.process.status.running)
+            if not had_ended[-1]:
                 node.process.stop()
         stopped = []
-        for node in chosen:
+        for node, ended in zip(chosen, had_ended, strict=True):
             status = node.process.wait(sum(STOP_GRACE) + 5)
             said, _ = node.process.read()
             node.process.close()
-            stopped.append(Stopped(node.name, status, said.decode(errors="replace")))
+            stopped.append(Stopped(node.name, status, said.decode(errors="replace"), ended))
         return stopped

@@ -1,4 +1,4 @@
-"""`%plot`: records topics for a while and shows them; again and again where somebody watches, once where nobody does."""
+"""`%plot`: records topics for a while and shows them; live where somebody watches, once where nobody does."""
 
 from __future__ import annotations
 

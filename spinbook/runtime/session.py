@@ -49,7 +49,9 @@ class Session:
         """Write a node's code as a module of the package, start it and show its log for so many seconds."""
         if self.package.name == name:
             raise CellFailed(f"A node can't have the package's name, {name}.")
-        module = add_module(self.workspace, self.package, Module(name, code))
+        module = add_module(self.workspace, self.package, Module(name, code.rstrip("\n") + "\n"))
+        # A path that begins at the notebook: what a traceback shows is then the same on every machine.
+        module = module.relative_to(Path.cwd())
         if spin_class:
             argv = [sys.executable, "-u", "-m", "spinbook.runtime.spin_class", os.fspath(module), spin_class]
         else:

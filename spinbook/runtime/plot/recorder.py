@@ -2,7 +2,8 @@
 
     python -m spinbook.runtime.plot.recorder PATH …
 
-Lines: ["waiting", [topic paths not found yet]], ["sample", topic, kind, unit, label, time (s), value], ["error", words].
+Lines: ["waiting", [paths not found yet], [topics there are]], ["sample", topic, kind, unit, label, time (s), value],
+["error", words].
 A process and not a thread: the kernel then needs no rclpy, and its Stop button can't break one.
 """
 

@@ -1,0 +1,1 @@
+"""`spinbook build`: chapters become notebooks, and notebooks are run."""

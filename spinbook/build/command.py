@@ -1,0 +1,103 @@
+"""`spinbook build`: chapters become notebooks; with `--execute` they are run."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import click
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
+from rich.progress import Progress as Bars
+
+from spinbook.build.execution import DEADLINE_S, Executed, Job, Progress, execute
+from spinbook.build.notebooks import Built, build_notebooks
+from spinbook.course.course import Course, find_course
+
+#: Nodes wait more than they compute: twice the cores keep a machine busy and responsive.
+_AT_ONCE = 2 * (os.cpu_count() or 1)
+
+
+@click.command()
+@click.option("--course", "start", type=click.Path(path_type=Path), default=".", help="The course's folder.")
+@click.option("--execute", "run", is_flag=True, help="Run every notebook, with real nodes, and keep its outputs.")
+@click.option("--jobs", type=click.IntRange(1, 50), default=_AT_ONCE, show_default=True, help="Notebooks run at once.")
+@click.option("--deadline", type=click.FloatRange(1), default=DEADLINE_S, show_default=True, help="Seconds a notebook.")
+@click.option("--again", is_flag=True, help="Run notebooks again that have not changed since a good run.")
+@click.argument("chapters", nargs=-1)
+def build(start: Path, run: bool, jobs: int, deadline: float, again: bool, chapters: tuple[str, ...]) -> None:
+    """Make a notebook of each chapter that course.toml lists, in build/notebooks/.
+
+    With --execute each is run too, beside the others and unheard by them, and lies with its outputs in
+    build/executed/. A chapter whose code has not changed since a good run is not run again. CHAPTERS, such as
+    03-nodes-and-topics, run only those.
+
+    Exit code: 0 all is well, 1 a chapter has an error or a cell failed; the other chapters are built all the same.
+    """
+    course = find_course(start)
+    console = Console(soft_wrap=True, highlight=False)
+    built = list(build_notebooks(course))
+    _report_built(console, built)
+    failed = any(item.failed for item in built)
+    if run:
+        chosen = [item for item in built if not item.failed and _is_chosen(item, chapters)]
+        failed = _execute(console, course, chosen, jobs, deadline, again) or failed
+    sys.exit(1 if failed else 0)
+
+
+def _is_chosen(item: Built, chapters: tuple[str, ...]) -> bool:
+    return not chapters or item.chapter.stem in {Path(name).stem for name in chapters}
+
+
+def _report_built(console: Console, built: list[Built]) -> None:
+    for item in built:
+        for problem in item.problems:
+            console.print(str(problem), markup=False, style="red" if problem.is_error else None)
+    made = sum(item.fresh and not item.failed for item in built)
+    broken = sum(item.failed for item in built)
+    console.print(
+        f"{len(built)} chapters: {made} built, {len(built) - made - broken} unchanged, {broken} with errors",
+        markup=False,
+    )
+
+
+def _execute(
+    console: Console, course: Course, built: list[Built], at_once: int, deadline_s: float, again: bool
+) -> bool:
+    """Run notebooks with a progress bar. True if one failed."""
+    jobs = [Job(item.chapter, item.notebook, course.build_folder, deadline_s) for item in built]
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("cells"),
+        TimeElapsedColumn(),
+    )
+    failed = False
+    with Bars(*columns, console=console, transient=True) as bars:
+        tasks = {job.chapter: bars.add_task(job.chapter.stem, total=None, start=False, visible=False) for job in jobs}
+
+        def on_progress(progress: Progress) -> None:
+            task = tasks[progress.chapter]
+            bars.start_task(task)
+            bars.update(task, total=progress.cells or None, completed=progress.done, visible=True)
+
+        for executed in execute(jobs, at_once, on_progress, again=again):
+            bars.remove_task(tasks[executed.chapter])
+            _report_executed(console, executed)
+            failed = failed or bool(executed.failures)
+    return failed
+
+
+def _report_executed(console: Console, executed: Executed) -> None:
+    name = executed.chapter.stem
+    if executed.cached:
+        console.print(f"  ✓ {name}: unchanged since its last run", markup=False)
+    elif not executed.failures:
+        console.print(f"  ✓ {name}: ran in {executed.seconds:.0f} s", markup=False, style="green")
+    else:
+        count = len(executed.failures)
+        console.print(f"  ✗ {name}: {count} cell{'s' * (count > 1)} failed", markup=False, style="red")
+        for failure in executed.failures:
+            console.print(str(failure), markup=False)

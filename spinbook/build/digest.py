@@ -1,0 +1,56 @@
+"""Digests that say whether something must be made again."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import importlib.metadata
+import platform
+from collections.abc import Iterable
+from pathlib import Path
+
+import spinbook
+
+
+def digest(*parts: str | bytes) -> str:
+    """A digest of these parts, in this order and with these borders."""
+    total = hashlib.sha256()
+    for part in parts:
+        data = part.encode() if isinstance(part, str) else part
+        total.update(len(data).to_bytes(8, "big"))
+        total.update(data)
+    return total.hexdigest()
+
+
+def files_digest(files: Iterable[Path]) -> str:
+    """A digest of files' contents; one that is missing counts as such."""
+    return digest(*(part for file in sorted(files) for part in (str(file), _bytes(file))))
+
+
+def _bytes(file: Path) -> bytes:
+    try:
+        return file.read_bytes()
+    except OSError:
+        return b"\0missing"
+
+
+@functools.cache
+def code_digest(*folders: str) -> str:
+    """A digest of Spinbook's own code in these folders: what it makes may change with it."""
+    root = Path(spinbook.__file__).parent
+    return files_digest(file for folder in folders for file in (root / folder).rglob("*.*") if file.suffix != ".pyc")
+
+
+@functools.cache
+def versions() -> str:
+    """The versions on which a notebook's outputs depend."""
+    names = ("ros-rclpy", "matplotlib", "ipykernel", "nbclient")
+    found = [f"{name}={_version(name)}" for name in names]
+    return " ".join([f"python={platform.python_version()}", *found])
+
+
+def _version(distribution: str) -> str:
+    try:
+        return importlib.metadata.version(distribution)
+    except importlib.metadata.PackageNotFoundError:
+        return "none"

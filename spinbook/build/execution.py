@@ -1,0 +1,176 @@
+"""Runs the notebooks of a course side by side, each in processes of its own that leave nothing behind."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sys
+import time
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from spinbook.build.digest import code_digest, digest, versions
+from spinbook.build.failures import CellFailure, find_failures
+from spinbook.runtime.process import KeptProcess
+from spinbook.written import write_if_changed
+
+#: How long a notebook may take (s), and how much longer its process may take to say so.
+DEADLINE_S = 300.0
+_TO_SAY_SO_S = 20.0
+
+
+@dataclass(frozen=True)
+class Executed:
+    """What came of one notebook. `file` holds its outputs, also where cells failed."""
+
+    chapter: Path
+    file: Path
+    failures: tuple[CellFailure, ...]
+    seconds: float
+    cached: bool
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a notebook has come: `done` of `cells`."""
+
+    chapter: Path
+    done: int
+    cells: int
+
+
+@dataclass(frozen=True)
+class Job:
+    """One notebook to run. `chapter` is its source, for messages."""
+
+    chapter: Path
+    notebook: Path
+    build_folder: Path
+    deadline_s: float = DEADLINE_S
+
+    @property
+    def executed(self) -> Path:
+        """Where the notebook with its outputs goes."""
+        return self.build_folder / "executed" / self.notebook.name
+
+    @property
+    def record(self) -> Path:
+        """What is remembered of the last good run."""
+        return self.build_folder / ".cache" / "executed" / f"{self.notebook.stem}.json"
+
+    @property
+    def folder(self) -> Path:
+        """The folder in which it runs."""
+        return self.build_folder / "run" / self.notebook.stem
+
+
+def execute(
+    jobs: Iterable[Job], at_once: int, on_progress: Callable[[Progress], None], *, again: bool = False
+) -> Iterator[Executed]:
+    """Run notebooks, so many at once, and yield each as it is done.
+
+    One whose code has not changed since a good run is not run: it gets that run's outputs. `again` runs it anyway.
+    """
+    pool = ThreadPoolExecutor(max_workers=max(1, at_once))
+    try:
+        running = [pool.submit(_execute_one, job, on_progress, again) for job in jobs]
+        for future in as_completed(running):
+            yield future.result()
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _execute_one(job: Job, on_progress: Callable[[Progress], None], again: bool) -> Executed:
+    notebook = json.loads(job.notebook.read_text(encoding="utf-8"))
+    key = _key(notebook)
+    if not again and (outputs := _remembered(job, key)) is not None:
+        write_if_changed(job.executed, _with_outputs(notebook, outputs))
+        return Executed(job.chapter, job.executed, (), 0.0, cached=True)
+    started = time.monotonic()
+    raw = job.folder.with_suffix(".ipynb")
+    ended = _run(job, raw, on_progress)
+    failures = find_failures(job.chapter, notebook, _read(raw), ended)
+    ran = _read(raw) or notebook
+    outputs = {cell["id"]: _tidy(cell, job) for cell in ran["cells"] if cell["cell_type"] == "code"}
+    write_if_changed(job.executed, _with_outputs(notebook, outputs))
+    raw.unlink(missing_ok=True)
+    job.record.unlink(missing_ok=True)
+    if not failures:
+        write_if_changed(job.record, json.dumps({"key": key, "outputs": outputs}))
+    return Executed(job.chapter, job.executed, tuple(failures), time.monotonic() - started, cached=False)
+
+
+def _run(job: Job, raw: Path, on_progress: Callable[[Progress], None]) -> dict[str, Any]:
+    """Run the notebook's process. Returns what it said last of how it ended, {} if it ended well."""
+    shutil.rmtree(job.folder, ignore_errors=True)
+    job.folder.mkdir(parents=True)
+    raw.unlink(missing_ok=True)
+    private = {"IPYTHONDIR": str(job.folder / ".ipython"), "ROS_LOG_DIR": str(job.folder / ".ros-log")}
+    argv = [sys.executable, "-m", "spinbook.build.run_notebook", str(job.notebook), str(raw), str(job.deadline_s)]
+    process = KeptProcess(argv, {**os.environ, **private}, job.folder)
+    deadline = time.monotonic() + job.deadline_s + _TO_SAY_SO_S
+    cells, ended, rest, said = 0, {"crashed": ""}, "", ""
+    try:
+        while True:
+            data, _ = process.read()
+            *lines, rest = (rest + data.decode(errors="replace")).split("\n")
+            for line in lines:
+                if not line.startswith("{"):
+                    said += f"{line}\n"
+                    continue
+                message = json.loads(line)
+                cells = message.get("cells", cells)
+                on_progress(Progress(job.chapter, message.get("done", 0), cells))
+                if not {"cells", "done"} & set(message):
+                    ended = message
+            if process.status.exit is not None:
+                return ended if ended != {"crashed": ""} else {"crashed": said}
+            if time.monotonic() > deadline:
+                return {"timed_out": None}
+            time.sleep(0.05)
+    finally:
+        if process.status.running:
+            process.stop((1.0, 1.0))
+            process.wait(10)
+        process.close()
+
+
+def _key(notebook: dict[str, Any]) -> str:
+    """What the outputs depend on: the code, not the prose around it."""
+    code = [(c["id"], c["source"], c["metadata"].get("tags")) for c in notebook["cells"] if c["cell_type"] == "code"]
+    return digest(repr(code), code_digest("runtime", "ros2", "turtlesim", "package"), versions())
+
+
+def _remembered(job: Job, key: str) -> dict[str, Any] | None:
+    try:
+        record = json.loads(job.record.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return record["outputs"] if record.get("key") == key else None
+
+
+def _with_outputs(notebook: dict[str, Any], outputs: dict[str, Any]) -> str:
+    for cell in notebook["cells"]:
+        if cell["cell_type"] == "code" and cell["id"] in outputs:
+            cell.update(outputs[cell["id"]])
+    return json.dumps(notebook, ensure_ascii=False, indent=1, sort_keys=True) + "\n"
+
+
+def _tidy(cell: dict[str, Any], job: Job) -> dict[str, Any]:
+    """A cell's outputs, without the folders of the machine that made them."""
+    text = json.dumps(cell["outputs"])
+    for folder, name in ((job.folder, "."), (Path(sys.prefix), ".venv")):
+        text = text.replace(json.dumps(f"{folder}/")[1:-1], f"{name}/")
+    return {"outputs": json.loads(text), "execution_count": cell["execution_count"]}
+
+
+def _read(file: Path) -> dict[str, Any] | None:
+    try:
+        notebook = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return notebook if isinstance(notebook, dict) else None
