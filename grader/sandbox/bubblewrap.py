@@ -1,0 +1,107 @@
+"""Makes a student's namespaces with bubblewrap, which is told to hold them open until the student has been put in.
+
+The program that bubblewrap itself runs is `cat`: it answers when all is mounted, and ends (and all with it) when this
+end of its pipe is closed, however that comes about.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from . import kernel, seccomp
+from .room import Room
+from .view import Step
+
+
+def find() -> str | None:
+    """The path of bubblewrap, if it is installed."""
+    return shutil.which("bwrap")
+
+
+def build(plan: Sequence[Step], user_namespace: int) -> Room:
+    """Makes the namespaces and their root, and moves this process into them (all but the pid namespace's children).
+
+    Raises:
+        OSError: if bubblewrap could not be run or ended early; the text has what it said.
+    """
+    program = find()
+    if program is None:
+        raise OSError("bubblewrap (bwrap) is not installed")
+    texts = {step.path: _memory_file(step.content.encode()) for step in plan if step.action == "text"}
+    filters = [_memory_file(seccomp.program())] if seccomp.supported() else []
+    information, information_end = os.pipe()
+    process = subprocess.Popen(
+        [
+            *(program, "--userns", str(user_namespace), "--unshare-pid", "--unshare-ipc", "--unshare-uts"),
+            *("--hostname", "student", "--cap-drop", "ALL", "--die-with-parent", "--info-fd", str(information_end)),
+            *(option for number in filters for option in ("--seccomp", str(number))),
+            *_options(plan, texts),
+            *("--", "cat"),
+        ],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        pass_fds=[user_namespace, information_end, *texts.values(), *filters],
+        env={"PATH": "/usr/bin:/bin"},
+        bufsize=0,
+    )
+    assert process.stdin is not None
+    assert process.stdout is not None
+    assert process.stderr is not None
+    os.close(information_end)
+    with contextlib.suppress(BrokenPipeError):
+        process.stdin.write(b"!")
+    if process.stdout.read(1) != b"!":
+        said = process.stderr.read().decode(errors="replace").strip()
+        raise OSError(f"bubblewrap ended with {process.wait()}: {said}")
+    with os.fdopen(information) as stream:
+        init = int(json.load(stream)["child-pid"])
+    holders = frozenset(map(int, Path(f"/proc/{init}/task/{init}/children").read_text().split()))
+    _join(init, user_namespace)
+    return Room(init, holders, builder=process)
+
+
+def _options(plan: Sequence[Step], texts: dict[str, int]) -> Iterator[str]:
+    for step in plan:
+        if step.action == "folder":
+            yield from ("--perms", "0755", "--dir", step.path)
+        elif step.action == "scratch":
+            yield from ("--perms", "1777", "--size", str(step.size), "--tmpfs", step.path)
+        elif step.action == "bind":
+            yield from ("--ro-bind", step.path, step.path)
+        elif step.action == "mask":
+            yield from ("--ro-bind", "/dev/null", step.path) if Path(step.path).is_file() else ("--tmpfs", step.path)
+        elif step.action == "device":
+            yield from ("--dev-bind", step.path, step.path)
+        elif step.action == "link":
+            yield from ("--symlink", step.content, step.path)
+        elif step.action == "text":
+            yield from ("--perms", "0644", "--file", str(texts[step.path]), step.path)
+        elif step.action == "processes":
+            yield from ("--proc", step.path)
+        elif step.action == "seal":
+            yield from ("--remount-ro", step.path)
+
+
+def _join(init: int, user_namespace: int) -> None:
+    """Moves this process into the namespaces of bubblewrap's first process."""
+    opened = {name: os.open(f"/proc/{init}/ns/{name}", os.O_RDONLY) for name in ("ipc", "uts", "pid", "mnt")}
+    kernel.setns(user_namespace, kernel.CLONE_NEWUSER)
+    for namespace in opened.values():
+        kernel.setns(namespace)
+        os.close(namespace)
+    os.chdir("/")
+
+
+def _memory_file(content: bytes) -> int:
+    """The descriptor of a file without a name, ready to be read from its beginning."""
+    number = os.memfd_create("sandbox")
+    os.write(number, content)
+    os.lseek(number, 0, os.SEEK_SET)
+    return number

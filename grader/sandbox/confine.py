@@ -1,0 +1,102 @@
+"""The last steps of a student's process before it runs the student's code: it gives up all that it does not need."""
+
+from __future__ import annotations
+
+import os
+import signal
+from dataclasses import dataclass
+from pathlib import Path
+
+from . import kernel, landlock, seccomp, view
+from .level import Isolation
+from .limits import Limits, apply
+from .program import Program
+from .view import USER_ID
+
+_DESCRIPTORS = 1024
+
+
+@dataclass(frozen=True)
+class Start:
+    """What a rig asks for: a program, how far to confine it, what it may use, and the CPU to stay on (None: any)."""
+
+    program: Program
+    isolation: Isolation
+    limits: Limits
+    core: int | None
+
+
+@dataclass(frozen=True)
+class Place:
+    """The folders of a student's program, as it sees them: its files, its home, and for temporary files."""
+
+    folder: str
+    home: str
+    temporary: str
+
+
+def confine(
+    start: Start,
+    place: Place,
+    processes_beside: int,
+    output: int,
+    *,
+    keep_open: int,
+) -> None:
+    """Confines the calling process for good.
+
+    Args:
+        start: what is started, how far it is confined, and what it may use.
+        place: its folders.
+        processes_beside: see `limits.apply`.
+        output: becomes its standard output and error; every other descriptor but `keep_open` is closed.
+        keep_open: a descriptor that the caller still needs.
+
+    Raises:
+        OSError: if the kernel refuses one of the steps; nothing of the student's may run then.
+    """
+    os.setsid()
+    _take_output(output, keep_open)
+    _reset_signals()
+    apply(start.limits, processes_beside=processes_beside)
+    if start.core is not None:
+        os.sched_setaffinity(0, {start.core})
+    os.chdir(place.home)
+    isolation = start.isolation
+    if isolation is Isolation.NONE:
+        return
+    hidden = (*view.own_packages(), *start.program.hidden)
+    filters = seccomp.program(no_signals=_signals_leave(isolation)) if seccomp.supported() else None
+    user = USER_ID if isolation is not Isolation.LANDLOCK else Path(place.home).stat().st_uid
+    kernel.drop_bounding_capabilities()
+    if os.geteuid() != user:
+        os.setresgid(user, user, user)
+        os.setresuid(user, user, user)
+    kernel.drop_capabilities()
+    kernel.prctl(kernel.PR_SET_NO_NEW_PRIVS, 1)
+    kernel.prctl(kernel.PR_SET_DUMPABLE, 1)  # lost with the change of user; without it /proc/self is closed
+    if isolation is Isolation.LANDLOCK:
+        landlock.restrict(place, start.program.readonly, hidden)
+    if filters is not None:
+        seccomp.install(filters)
+
+
+def _take_output(output: int, keep_open: int) -> None:
+    nothing = os.open("/dev/null", os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.dup2(output, 1)
+    os.dup2(output, 2)
+    os.closerange(3, keep_open)
+    os.closerange(keep_open + 1, _DESCRIPTORS)
+
+
+def _reset_signals() -> None:
+    """As in a Python that has just been started from a shell."""
+    for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGCHLD, signal.SIGQUIT):
+        signal.signal(number, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.pthread_sigmask(signal.SIG_SETMASK, set())
+
+
+def _signals_leave(isolation: Isolation) -> bool:
+    return isolation is Isolation.LANDLOCK and not landlock.keeps_signals_inside()

@@ -1,0 +1,171 @@
+"""The trusted process beside each student: makes the sandbox, starts the student in it, reports its end, kills it all.
+
+A keeper is a fork of the nursery with a single thread. It speaks with the rig over a packet socket:
+
+    keeper -> rig   {"event": "started", "pid", "init", "holders", "folder"} | {"event": "failed", "reason"}
+                    {"event": "exited", "status", "cpu_s"} | {"event": "dead"}
+    rig -> keeper   b"interrupt" | b"kill"; the end of the rig counts as b"kill"
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import select
+import signal
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from . import bubblewrap, kernel, landlock, limits, namespaces, open_room, room, user_namespace, view
+from .confine import Place, Start, confine
+from .level import Isolation
+from .program import SUBMISSION, Program
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a freshly made student process is to run."""
+
+    program: Program
+    place: Place
+
+
+def keep(start: Start, control: int, output: int, rig_namespaces: Sequence[int]) -> Job:
+    """Starts a student and stays with it until it is dead. Returns only in the student itself; the keeper exits.
+
+    Args:
+        start: what to start.
+        control: the socket to the rig.
+        output: where the student's standard output and error go.
+        rig_namespaces: the user namespace of the rig and its network namespace; empty for the levels without.
+    """
+    reported = False
+    try:
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        os.chdir("/")
+        beside = _tasks_beside(start)
+        for namespace in rig_namespaces:
+            _join(namespace)
+        house, place = _build(start)
+        child = _fork_student(start, place, house, beside, output)
+        if isinstance(child, Job):
+            return child
+        os.close(output)
+        started = {"event": "started", "pid": child, "folder": place.folder}
+        _tell(control, started | {"init": house.init, "holders": sorted(house.holders)})
+        reported = True
+        _watch(control, child, house)
+        _tell(control, {"event": "dead"})
+    except BaseException as fault:
+        if not reported:
+            _tell(control, {"event": "failed", "reason": f"{type(fault).__name__}: {fault}"})
+    os._exit(0)
+
+
+def _build(start: Start) -> tuple[room.Room | open_room.OpenRoom, Place]:
+    program = start.program
+    if start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
+        plan = view.steps(program, start.limits.file_bytes)
+        builder = bubblewrap if start.isolation is Isolation.BUBBLEWRAP else namespaces
+        house = builder.build(plan, user_namespace.create())
+        room.place(program.files)
+        return house, Place(SUBMISSION, view.HOME, "/tmp")
+    place = open_room.make_place(program.files, _owner(start.isolation))
+    kernel.prctl(kernel.PR_SET_CHILD_SUBREAPER, 1)
+    return open_room.OpenRoom(Path(place.folder).parent), place
+
+
+def _fork_student(
+    start: Start, place: Place, house: room.Room | open_room.OpenRoom, beside: int, output: int
+) -> int | Job:
+    """Forks the student. Returns its pid here, and there, once it has been confined, what it is to run."""
+    fault_at, fault_to = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            if isinstance(house, room.Room):
+                house.forget()
+            confine(start, place, beside, output, keep_open=fault_to)
+        except BaseException as fault:
+            os.write(fault_to, f"{type(fault).__name__}: {fault}".encode())
+            os._exit(1)
+        os.close(fault_to)
+        return Job(start.program, place)
+    os.close(fault_to)
+    with os.fdopen(fault_at, "rb") as stream:
+        fault_told = stream.read()
+    if fault_told:
+        house.end()
+        raise OSError(fault_told.decode(errors="replace"))
+    return child
+
+
+def _watch(control: int, child: int, house: room.Room | open_room.OpenRoom) -> None:
+    """Until told to kill: passes on interrupts, and reports the end of the student's first process."""
+    ended = os.pidfd_open(child)
+    poll = select.poll()
+    poll.register(control, select.POLLIN)
+    poll.register(ended, select.POLLIN)
+    alive = True
+    while True:
+        ready = dict(poll.poll())
+        if ended in ready:
+            poll.unregister(ended)
+            alive = False
+            _report_end(control, child)
+        if control in ready:
+            order = _hear(control)
+            if order == b"interrupt":
+                if alive:
+                    os.kill(child, signal.SIGINT)
+                continue
+            house.end()
+            if alive:
+                _report_end(control, child)
+            return
+
+
+def _report_end(control: int, child: int) -> None:
+    try:
+        _, status, usage = os.wait4(child, 0)
+    except ChildProcessError:  # buried with all others
+        _tell(control, {"event": "exited", "status": int(signal.SIGKILL), "cpu_s": 0.0})
+        return
+    _tell(control, {"event": "exited", "status": status, "cpu_s": usage.ru_utime + usage.ru_stime})
+
+
+def _hear(control: int) -> bytes:
+    try:
+        return os.read(control, 64)
+    except OSError:
+        return b""
+
+
+def _tell(control: int, message: dict[str, object]) -> None:
+    try:
+        os.write(control, json.dumps(message).encode())
+    except OSError:
+        pass  # the rig is gone: its end is noticed when listening
+
+
+def _join(namespace: int) -> None:
+    """Enters a namespace of the rig's, unless this process is in it already."""
+    for name in ("user", "net"):
+        mine = os.stat(f"/proc/self/ns/{name}")
+        if (mine.st_dev, mine.st_ino) == (os.fstat(namespace).st_dev, os.fstat(namespace).st_ino):
+            return
+    kernel.setns(namespace)
+
+
+def _tasks_beside(start: Start) -> int:
+    """The processes of the same user that RLIMIT_NPROC will count beside the student's."""
+    apart = start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES)
+    if apart and (os.geteuid() == 0 or limits.counts_for_each_user_namespace()):
+        return 4  # this process and those that hold the namespace open
+    return limits.tasks_of_user(os.getuid())
+
+
+def _owner(isolation: Isolation) -> int | None:
+    """Whom the folders of a program belong to that runs without namespaces."""
+    return landlock.student_user() if isolation is Isolation.LANDLOCK and os.geteuid() == 0 else None

@@ -1,0 +1,123 @@
+"""Where a machine allows no user namespaces: Landlock keeps a student's program off the files of this machine.
+
+Weaker than the namespaces: it sees the machine's loopback network and the numbers of other processes; it can neither
+read their memory nor, from Linux 6.12 on, signal them (before that, a seccomp filter refuses it every signal).
+
+Source: landlock(7) and Documentation/userspace-api/landlock.rst of the Linux kernel.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import stat
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from . import kernel, view
+from .user_namespace import dedicated_user
+
+if TYPE_CHECKING:
+    from .confine import Place
+
+_CREATE_RULESET, _ADD_RULE, _RESTRICT_SELF = 444, 445, 446
+_ASK_VERSION = 1
+_RULE_PATH_BENEATH = 1
+
+_EXECUTE, _WRITE_FILE, _READ_FILE, _READ_FOLDER = 1 << 0, 1 << 1, 1 << 2, 1 << 3
+_FILES_FROM_VERSION_1 = (1 << 13) - 1
+_REFER, _TRUNCATE, _DEVICE_CONTROL = 1 << 13, 1 << 14, 1 << 15  # versions 2, 3 and 5
+_TCP_BIND_AND_CONNECT = 0b11  # version 4
+_ABSTRACT_SOCKETS_AND_SIGNALS = 0b11  # version 6
+
+_READ = _EXECUTE | _READ_FILE | _READ_FOLDER
+_FILE_ONLY = _EXECUTE | _WRITE_FILE | _READ_FILE | _TRUNCATE | _DEVICE_CONTROL
+
+
+@cache
+def version() -> int:
+    """The version of Landlock that the kernel speaks; 0 if it has none or it is switched off."""
+    try:
+        return kernel.system_call(
+            _CREATE_RULESET, None, ctypes.c_size_t(0), ctypes.c_uint32(_ASK_VERSION), what="landlock"
+        )
+    except OSError:
+        return 0
+
+
+def keeps_signals_inside() -> bool:
+    """Whether Landlock itself refuses signals to processes outside: version 6, Linux 6.12."""
+    return version() >= 6
+
+
+def student_user() -> int:
+    """Whom a student's program runs as: when root starts it, a user of no other process, if that one can read Python."""
+    if os.geteuid() != 0:
+        return os.geteuid()
+    needed = {folder for path in view.interpreter() for folder in path.resolve().parents}
+    everybody_may_pass = all(folder.stat().st_mode & stat.S_IXOTH for folder in needed)
+    return dedicated_user() if everybody_may_pass else 0
+
+
+def restrict(place: Place, readonly: Sequence[Path], hidden: Sequence[Path]) -> None:
+    """Confines this process, and all that it starts, to reading Python and ROS 2 and writing its own folders.
+
+    Needs no_new_privs.
+
+    Args:
+        place: its own folders.
+        readonly: what else it may read.
+        hidden: what it may not read, although it lies in something that it may; it sees the names in there.
+
+    Raises:
+        OSError: if the kernel has no Landlock.
+    """
+    files = _FILES_FROM_VERSION_1
+    for since, right in ((2, _REFER), (3, _TRUNCATE), (5, _DEVICE_CONTROL)):
+        files |= right if version() >= since else 0
+    handled = (ctypes.c_uint64 * 3)(
+        files,
+        _TCP_BIND_AND_CONNECT if version() >= 4 else 0,
+        _ABSTRACT_SOCKETS_AND_SIGNALS if version() >= 6 else 0,
+    )
+    size = 24 if version() >= 6 else 16 if version() >= 4 else 8
+    ruleset = kernel.system_call(
+        _CREATE_RULESET, handled, ctypes.c_size_t(size), ctypes.c_uint32(0), what="landlock_create_ruleset"
+    )
+    for path in (*view.system(), *view.interpreter(), *readonly, Path(place.folder)):
+        _allow_reading(ruleset, path, [path.resolve() for path in hidden])
+    for path in map(Path, ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")):
+        _allow(ruleset, path, (_READ_FILE | _WRITE_FILE) & files)
+    for path in (Path(place.home), Path(place.temporary)):
+        _allow(ruleset, path, files)
+    kernel.system_call(_RESTRICT_SELF, ctypes.c_int(ruleset), ctypes.c_uint32(0), what="landlock_restrict_self")
+    os.close(ruleset)
+
+
+def _allow_reading(ruleset: int, path: Path, hidden: Sequence[Path]) -> None:
+    real = path.resolve()
+    if real in hidden:
+        return
+    if not any(secret.is_relative_to(real) for secret in hidden):
+        _allow(ruleset, path, _READ)
+        return
+    # Rights reach all that lies below, so what lies beside the hidden is allowed piece by piece.
+    _allow(ruleset, path, _READ_FOLDER)
+    for piece in path.iterdir():
+        _allow_reading(ruleset, piece, hidden)
+
+
+def _allow(ruleset: int, path: Path, rights: int) -> None:
+    if not path.exists():
+        return
+    opened = os.open(path, os.O_PATH | os.O_CLOEXEC)
+    if not path.is_dir():
+        rights &= _FILE_ONLY
+    # struct landlock_path_beneath_attr is packed: 8 bytes of rights, 4 of the descriptor.
+    rule = rights.to_bytes(8, "little") + opened.to_bytes(4, "little")
+    kernel.system_call(
+        _ADD_RULE, ctypes.c_int(ruleset), ctypes.c_int(_RULE_PATH_BENEATH), rule, ctypes.c_uint32(0), what=str(path)
+    )
+    os.close(opened)

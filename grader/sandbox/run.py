@@ -1,0 +1,84 @@
+"""Runs a student's file as Python itself would run it, in a process that has imported rclpy already."""
+
+from __future__ import annotations
+
+import atexit
+import builtins
+import importlib.machinery
+import io
+import os
+import signal
+import sys
+import types
+from pathlib import Path
+from typing import NoReturn
+
+from . import view
+from .confine import Place
+from .program import Program
+
+
+def run(program: Program, place: Place) -> None:
+    """Runs a program as `__main__` in this process; returns or raises SystemExit as the program does.
+
+    An uncaught exception prints its traceback, beginning with the student's own lines, and exits with 1; an uncaught
+    KeyboardInterrupt ends the process by SIGINT. Threads, atexit and the rest of the end are the interpreter's own.
+    """
+    path = program.main if os.path.isabs(program.main) else os.path.join(place.folder, program.main)
+    variables = view.environment(program, place.home, place.temporary)
+    os.environ.clear()
+    os.environ.update(variables)
+    if not program.warm:
+        os.execv(sys.executable, [sys.executable, path, *program.arguments])
+    module = _prepare(path, program.arguments)
+    try:
+        exec(compile(Path(path).read_bytes(), path, "exec", dont_inherit=True), module.__dict__)
+    except SystemExit:
+        raise
+    except BaseException as fault:
+        _die_of(fault)
+
+
+def _prepare(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
+    """Makes this interpreter look as if it had been started with the file."""
+    sys.argv = [path, *arguments]
+    sys.orig_argv = [sys.executable, *sys.argv]
+    sys.path[0] = os.path.dirname(path)
+    imported = [entry for entry in os.environ.get("PYTHONPATH", "").split(os.pathsep) if entry]
+    sys.path[1:1] = [entry for entry in imported if entry not in sys.path]
+    sys.path_importer_cache.clear()
+    for name, number in {"stdout": 1, "stderr": 2}.items():
+        stream = io.open(number, "w", encoding="utf-8", errors="backslashreplace", buffering=1, closefd=False)
+        setattr(sys, name, stream)
+        setattr(sys, f"__{name}__", stream)
+    sys.stdin = sys.__stdin__ = io.open(0, encoding="utf-8", closefd=False)  # type: ignore[misc]
+    module = types.ModuleType("__main__")
+    module.__file__ = path
+    module.__loader__ = importlib.machinery.SourceFileLoader("__main__", path)
+    module.__dict__["__builtins__"] = builtins
+    module.__dict__["__cached__"] = None
+    _ours.append(sys.modules["__main__"])
+    sys.modules["__main__"] = module
+    for name in [name for name in sys.modules if name == "grader" or name.startswith("grader.")]:
+        _ours.append(sys.modules.pop(name))
+    return module
+
+
+# The modules whose code is still running below the student's: without a reference they would be torn down.
+_ours: list[types.ModuleType] = []
+
+
+def _die_of(fault: BaseException) -> NoReturn:
+    """Prints an exception as an interpreter does that ends with it, without the lines of this file."""
+    trace = fault.__traceback__.tb_next if fault.__traceback__ is not None else None
+    if isinstance(fault, KeyboardInterrupt):
+        atexit.register(_die_of_interrupt)
+    sys.excepthook(type(fault), fault.with_traceback(trace), trace)
+    sys.exit(1)
+
+
+def _die_of_interrupt() -> None:
+    sys.stdout.flush()
+    sys.stderr.flush()
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    os.kill(os.getpid(), signal.SIGINT)

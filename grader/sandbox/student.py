@@ -1,0 +1,109 @@
+"""A student's running program, as the rig holds it."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import signal
+import socket
+from types import TracebackType
+
+from . import processes
+from .level import SandboxError
+from .limits import Limits
+from .output import Output
+from .warden import Exit, Warden
+
+_START_S = 30.0
+_DEATH_S = 30.0
+
+
+class Student:
+    """A student's program in its sandbox. Leaving the `with` block kills all of it."""
+
+    def __init__(self, control: socket.socket, output: int, limits: Limits) -> None:
+        """Waits until the program has been started by the keeper at the other end of the socket.
+
+        Args:
+            control: the socket to the keeper.
+            output: the end to read of the pipe that the program prints to.
+            limits: what it may use.
+
+        Raises:
+            SandboxError: if it could not be started.
+        """
+        self._control = control
+        control.settimeout(_START_S)
+        try:
+            answer = json.loads(control.recv(65536) or b"{}")
+        except TimeoutError as fault:
+            answer = {"reason": f"no answer within {_START_S:g} s: {fault}"}
+        if answer.get("event") != "started":
+            control.close()
+            os.close(output)
+            raise SandboxError(f"the sandbox could not be made: {answer.get('reason', 'the keeper died')}")
+        control.settimeout(None)
+        self.pid: int = answer["pid"]
+        """The number of the node's process, as seen from outside the sandbox."""
+        self.folder: str = answer["folder"]
+        """Where the submission's files lie, as the program sees them."""
+        self._warden = Warden(control, output, limits, self.pid, answer["init"], frozenset(answer["holders"]))
+
+    @property
+    def exit(self) -> Exit | None:
+        """How the node's process ended; None while it runs."""
+        return self._warden.exit
+
+    def poll(self) -> Exit | None:
+        """The same as `exit`."""
+        return self._warden.exit
+
+    def wait(self, timeout_s: float) -> Exit | None:
+        """Waits for the end of the node's process, at most so many seconds; None if it still runs."""
+        self._warden.ended.wait(timeout_s)
+        return self._warden.exit
+
+    def output(self) -> Output:
+        """What it has printed until now."""
+        return self._warden.output()
+
+    def interrupt(self) -> None:
+        """Sends SIGINT to the node's process, as Ctrl-C would. Nothing if it has ended."""
+        with contextlib.suppress(OSError):
+            self._control.send(b"interrupt")
+
+    def cpu_seconds(self) -> float:
+        """What all its processes have used of the CPU, those that have ended included (s)."""
+        return self._warden.cpu_seconds()
+
+    def runnable_threads(self) -> int:
+        """How many of its threads run or wait for a CPU now (of its children, those found within the last 50 ms)."""
+        return sum(processes.runnable_threads(pid) for pid in (self.pid, *self._warden.others))
+
+    def processes(self) -> int:
+        """How many processes it has now."""
+        return len(self._warden.members())
+
+    def kill(self) -> Exit:
+        """Kills every process of it, daemons too, and returns when all are dead. Again: the same answer.
+
+        Raises:
+            SandboxError: if something of it does not die.
+        """
+        with contextlib.suppress(OSError):
+            self._control.send(b"kill")
+        if not self._warden.dead.wait(_DEATH_S):
+            raise SandboxError(f"the student's process {self.pid} did not die within {_DEATH_S:g} s of being killed")
+        self._warden.join()
+        return self._warden.exit or Exit(None, int(signal.SIGKILL), None)
+
+    def __enter__(self) -> Student:
+        """Nothing: it runs already."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Kills everything."""
+        self.kill()

@@ -1,0 +1,40 @@
+"""Tries whether a level of isolation works here, by starting a program in it: ends with 0, or prints why not and with 1.
+
+    python -m grader.sandbox.trial LEVEL
+"""
+
+from __future__ import annotations
+
+import sys
+
+from . import landlock
+from .level import Isolation, SandboxError
+from .nursery import Nursery
+from .program import Program
+from .rig_namespace import enter
+
+_WORD = "works"
+_PROGRAM = f"import rclpy.exceptions, sys\nprint({_WORD!r})\n"
+
+
+def main(level: Isolation) -> str | None:
+    """Why a level does not work here; None if it does."""
+    if level is Isolation.LANDLOCK and not landlock.version():
+        return "the kernel has no Landlock (Linux 5.13 and newer have it, unless it is switched off)"
+    try:
+        enter(level)
+        # Not warm: so it shows too that Python itself can be started in there.
+        program = Program("trial.py", {"trial.py": _PROGRAM.encode()}, warm=False)
+        with Nursery(preload=()) as nursery, nursery.start(program, level) as student:
+            end = student.wait(20.0)
+            said = student.output().text.strip()
+    except (OSError, SandboxError) as fault:
+        return str(fault)
+    return None if said == _WORD else f"a program started in it ended with {end} and said: {said.splitlines()[-1:]}"
+
+
+if __name__ == "__main__":
+    reason = main(Isolation(sys.argv[1]))
+    if reason is not None:
+        print(reason.replace("\n", " "))
+        sys.exit(1)

@@ -1,0 +1,204 @@
+"""What a sandbox shows of the file system: the steps that build its root, whoever takes them.
+
+The root is a new, empty, read-only tmpfs. Into it come Python and ROS 2 (read-only, at the paths they have outside),
+the few parts of /etc and /dev that programs expect, and three small places to write to. Of an installation only the
+folders named in `_PARTS` are shown: a course kept in /usr/src, or beside its own virtual environment, stays unseen.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+import sys
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Literal
+
+from .program import SUBMISSION, Program
+
+HOME = "/home/student"
+USER_ID = 1000
+
+_PARTS = ("bin", "sbin", "lib", "lib32", "lib64", "libx32", "libexec", "share", "pyvenv.cfg")
+_DEVICES = ("null", "zero", "full", "random", "urandom")
+_ETC = ("ld.so.cache", "alternatives", "localtime", "timezone")
+_TEXTS = {
+    "/etc/passwd": f"student:x:{USER_ID}:{USER_ID}:student:{HOME}:/bin/sh\n",
+    "/etc/group": f"student:x:{USER_ID}:\n",
+    "/etc/hosts": "127.0.0.1 localhost\n",
+    "/etc/nsswitch.conf": "passwd: files\ngroup: files\nhosts: files\n",
+}
+
+Action = Literal["folder", "scratch", "bind", "mask", "device", "link", "text", "processes", "seal"]
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of building the root.
+
+    - folder: an empty folder
+    - scratch: a tmpfs of `size` bytes that anybody may write to
+    - bind: the file or folder at `path` outside, read-only
+    - mask: the file or folder at `path`, which a bind has shown, becomes empty
+    - device: the device at `path` outside
+    - link: a symbolic link to `content`
+    - text: a file that contains `content`
+    - processes: /proc
+    - seal: what has been mounted at `path` becomes read-only
+    """
+
+    action: Action
+    path: str
+    content: str = ""
+    size: int = 0
+
+
+def steps(program: Program, scratch_bytes: int) -> list[Step]:
+    """The steps that build the root for a program, in order. Each of its places to write to has `scratch_bytes`."""
+    shown = list(_without_nested([*interpreter(), *program.readonly]))
+    plan = _Plan()
+    for place in ("/tmp", HOME):
+        plan.add("scratch", place, size=scratch_bytes)
+    plan.add("folder", SUBMISSION)
+    plan.add("folder", "/dev")
+    for device in _DEVICES:
+        plan.add("device", f"/dev/{device}")
+    plan.add("scratch", "/dev/shm", size=scratch_bytes)
+    for name, target in {"fd": "", "stdin": "/0", "stdout": "/1", "stderr": "/2"}.items():
+        plan.add("link", f"/dev/{name}", f"/proc/self/fd{target}")
+    plan.add("processes", "/proc")
+    for path in (*system(), *shown):
+        if path.is_symlink() and _is_inside(path, (other for other in (*system(), *shown) if other != path)):
+            plan.add("link", str(path), str(path.readlink()))
+        else:
+            plan.add("bind", str(path))
+    for path_of_text, text in _TEXTS.items():
+        plan.add("text", path_of_text, text)
+    masks = sorted(set(_masks((*own_packages(), *program.hidden), shown)))
+    for mask in masks:
+        plan.add("mask", str(mask))
+    for path in program.readonly:
+        if _is_inside(path, masks):  # asked for by name, in a folder that is hidden otherwise
+            plan.add("bind", str(path))
+    for mask in masks:
+        if mask.is_dir():
+            plan.add("seal", str(mask))
+    plan.add("seal", "/")
+    return plan.steps
+
+
+class _Plan:
+    """Collects steps, each after those that make the folders which it lies in."""
+
+    def __init__(self) -> None:
+        self.steps: list[Step] = []
+        self._made: set[str] = {"/"}
+        self._bound: list[str] = []
+
+    def add(self, action: Action, path: str, content: str = "", size: int = 0) -> None:
+        for parent in reversed(Path(path).parents):
+            inside = any(parent.is_relative_to(bound) for bound in self._bound)
+            if str(parent) not in self._made and not inside:
+                self._made.add(str(parent))
+                self.steps.append(Step("folder", str(parent)))
+        if action == "bind":
+            self._bound.append(path)
+        self._made.add(path)
+        self.steps.append(Step(action, path, content, size))
+
+
+def environment(program: Program, home: str, temporary: str) -> dict[str, str]:
+    """The whole environment of a program: what Python and ROS 2 need, its private folders, and what it was given."""
+    needed = {name: os.environ[name] for name in RUNTIME_VARIABLES if name in os.environ}
+    return {
+        **needed,
+        "HOME": home,
+        "TMPDIR": temporary,
+        "ROS_LOG_DIR": f"{home}/log",
+        "USER": "student",
+        "LOGNAME": "student",
+        **program.environment,
+    }
+
+
+# What Python and ROS 2 themselves need of the environment. Nothing else of it reaches a sandbox.
+RUNTIME_VARIABLES = (
+    "PATH",
+    "LANG",
+    "LD_LIBRARY_PATH",
+    "_ROS_WHEELS_BOOTSTRAP_COMPLETE",
+    "PYTHONPATH",
+    "PYTHONHASHSEED",
+    "PYTHONDONTWRITEBYTECODE",
+    "OPENBLAS_NUM_THREADS",
+    "AMENT_PREFIX_PATH",
+    "RMW_IMPLEMENTATION",
+    "ROS_DISTRO",
+    "ROS_VERSION",
+    "ROS_PYTHON_VERSION",
+    "CONDA_PREFIX",
+)
+
+
+def ros_prefixes() -> tuple[Path, ...]:
+    """Where a ROS 2 that was sourced is installed (/opt/ros/…): none when it came from PyPI into this environment.
+
+    An instructor's own workspace, sourced on top of it, is not part of it.
+    """
+    prefixes = [Path(path) for path in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if path]
+    return tuple(path for path in prefixes if path.is_relative_to("/opt/ros") and path.is_dir())
+
+
+@cache
+def system() -> tuple[Path, ...]:
+    """The system's libraries and programs, and its symlinks such as /lib -> usr/lib."""
+    top = [Path("/", name) for name in ("bin", "sbin", "lib", "lib32", "lib64", "libx32")]
+    user = [Path("/usr", name) for name in _PARTS]
+    etc = [Path("/etc", name) for name in _ETC]
+    return tuple(path for path in (*top, *user, *etc) if path.exists() and _readable_kind(path))
+
+
+@cache
+def interpreter() -> tuple[Path, ...]:
+    """The folders of this Python, of the one that its virtual environment was made from, and of ROS 2."""
+    prefixes: dict[Path, None] = {}
+    for prefix in (sys.prefix, sys.exec_prefix, sys.base_prefix, sys.base_exec_prefix):
+        prefixes[Path(prefix)] = None
+        prefixes[Path(prefix).resolve()] = None
+    prefixes[Path(sys.executable).resolve().parents[1]] = None
+    found = [prefix / part for prefix in prefixes for part in _PARTS if prefix != Path("/usr")]
+    return tuple(path for path in (*found, *ros_prefixes()) if path.exists())
+
+
+def own_packages() -> tuple[Path, ...]:
+    """This package and Spinbook's: installed, they lie among the libraries that a sandbox shows."""
+    grader = Path(__file__).resolve().parents[1]
+    return (grader, grader.with_name("spinbook"))
+
+
+def _masks(hidden: Iterable[Path], shown: Iterable[Path]) -> Iterator[Path]:
+    """Where hidden files and folders would be seen: under each name by which a shown folder has them."""
+    for source in shown:
+        real = source.resolve()
+        for path in hidden:
+            if path.exists() and path.resolve().is_relative_to(real):
+                yield source / path.resolve().relative_to(real)
+
+
+def _is_inside(path: Path, folders: Iterable[Path]) -> bool:
+    return any(path.resolve().is_relative_to(folder.resolve()) for folder in folders)
+
+
+def _without_nested(paths: Iterable[Path]) -> Iterator[Path]:
+    """Without what lies inside another one and is therefore shown anyway."""
+    ordered = sorted(set(paths), key=lambda path: len(path.parts))
+    for at, path in enumerate(ordered):
+        if not any(path.is_relative_to(earlier) and not path.is_symlink() for earlier in ordered[:at]):
+            yield path
+
+
+def _readable_kind(path: Path) -> bool:
+    mode = path.stat().st_mode
+    return stat.S_ISDIR(mode) or stat.S_ISREG(mode)
