@@ -1,0 +1,166 @@
+"""The harder scenarios of `joint_velocity`. Every rule that they rely on is told in task.md."""
+
+from __future__ import annotations
+
+from grader.checking import Run, check, fail
+
+COMMANDS, VELOCITIES, CLOCK = "/joint_commands", "/joint_velocities", "/clock"
+
+PUBLISHES = ["test_publishes_velocities"]
+VELOCITY = ["test_velocity_of_each_joint"]
+
+
+@check(points=3, hint="dt is not always 0.1 s. Take it from the stamps.", depends=PUBLISHES, misconception="fixed dt")
+def test_speed_that_never_changes(steady: Run) -> None:
+    """A joint that moves at one speed has that velocity, at whatever times the messages come."""
+    speeds = {"left_elbow": 0.25, "right_elbow": -1.5, "left_shoulder_pitch": 0.0}
+    for exchange in list(steady)[1:]:
+        for answer in exchange.answers:
+            for joint, velocity in answer.by("name", "velocity").items():
+                if abs(velocity - speeds.get(joint, 0.0)) > 1e-6:
+                    told = f"expected velocity {speeds.get(joint, 0.0):g} rad/s, got {velocity:.6g} rad/s."
+                    steady.wrong(exchange, told, joint, f"{speeds.get(joint, 0.0):g}", f"{velocity:.6g}")
+    steady.must_answer()
+
+
+@check(points=3, hint="dt is not always 0.1 s. Take it from the stamps.", depends=PUBLISHES, misconception="fixed dt")
+def test_uneven_times(irregular: Run) -> None:
+    """Velocities are right when the messages come at uneven times."""
+    irregular.must_match("velocity", per="name")
+
+
+@check(
+    points=3,
+    hint="A message may arrive late. Its stamp says when it was true, the clock only when it arrived.",
+    depends=PUBLISHES,
+    misconception="time of arrival for the stamp",
+)
+def test_late_messages(delayed: Run) -> None:
+    """Velocities are right when messages arrive later than their stamps say."""
+    delayed.must_match("velocity", per="name")
+
+
+@check(points=2, hint="answer.header = message.header copies both.", depends=PUBLISHES)
+def test_frame_is_copied(delayed: Run) -> None:
+    """The frame is that of the message that arrived, also when it changes."""
+    delayed.must_match("header.frame_id")
+
+
+@check(
+    points=3,
+    hint="Neither time.time() nor the node's clock: only the stamps tell the time.",
+    depends=PUBLISHES,
+    misconception="wall clock",
+)
+def test_same_messages_same_answers(irregular: Run, irregular_again: Run) -> None:
+    """The same messages get the same answers: it does not read the computer's clock."""
+    for once, again in zip(irregular, irregular_again, strict=True):
+        for first, second in zip(once.answers, again.answers, strict=False):
+            for joint, velocity in first.by("name", "velocity").items():
+                other = second.by("name", "velocity").get(joint)
+                if other is not None and velocity != other and not (velocity != velocity and other != other):
+                    told = "the same messages got another velocity when they were sent a second time."
+                    irregular.wrong(once, told, joint, "the same velocity twice", "two velocities")
+
+
+@check(points=3, hint="The stamps tell the time since the last message that arrived.", depends=VELOCITY)
+def test_lost_messages(lossy: Run) -> None:
+    """Velocities are right when messages are lost."""
+    lossy.must_match("velocity", per="name")
+
+
+@check(
+    points=3,
+    hint="Remember positions by name, not by place in the list.",
+    depends=VELOCITY,
+    misconception="joints by index",
+)
+def test_joints_in_another_order(reordered: Run) -> None:
+    """Velocities are right when the joints stand in another order in each message."""
+    reordered.must_match("velocity", per="name")
+
+
+@check(points=3, hint="Leave out a joint that the message just before did not have.", depends=VELOCITY)
+def test_new_joint(new_joint: Run) -> None:
+    """A joint that is new is left out once."""
+    new_joint.must_match("velocity", per="name")
+
+
+@check(
+    points=3,
+    hint="Compare with the message just before, and with no older one.",
+    depends=VELOCITY,
+    misconception="remembers joints that were missing",
+)
+def test_joint_that_comes_back(missing_joint: Run) -> None:
+    """A joint that was missing counts as new when it comes back."""
+    missing_joint.must_match("velocity", per="name")
+
+
+@check(points=3, hint="Publish nothing when dt is 0.", depends=VELOCITY, misconception="divides by dt = 0")
+def test_repeated_stamp(repeated_stamp: Run) -> None:
+    """Nothing is published when the stamp is the one before; then it goes on as usual."""
+    _silent_and_right(repeated_stamp)
+
+
+@check(points=3, hint="Publish nothing when dt is negative.", depends=VELOCITY, misconception="negative dt")
+def test_backward_stamp(backward_stamp: Run) -> None:
+    """Nothing is published when the stamp goes back; then it goes on as usual."""
+    _silent_and_right(backward_stamp)
+
+
+@check(points=2, hint="Divide by the whole time, however long.", depends=VELOCITY)
+def test_long_gap(gap: Run) -> None:
+    """Velocities are right after 30 s without a message."""
+    gap.must_match("velocity", per="name")
+
+
+@check(points=3, hint="math.isfinite(position) tells. Leave such a joint out, this time and the next.", depends=VELOCITY)
+def test_not_finite(not_finite: Run) -> None:
+    """A joint whose position is not a number or infinite is left out; the others go on."""
+    not_finite.must_match("velocity", per="name")
+
+
+@check(points=2, hint="After an empty message every joint is new.", depends=VELOCITY)
+def test_empty_message(empty: Run) -> None:
+    """Nothing is published for an empty message, nor for the one after it."""
+    _silent_and_right(empty)
+
+
+@check(points=2, hint="zip() ends with the shorter list.", depends=VELOCITY)
+def test_fewer_positions_than_names(short: Run) -> None:
+    """Joints without a position are left out; the others go on."""
+    short.must_match("velocity", per="name")
+
+
+@check(points=2, hint="Keep the callback short; never sleep in it.", depends=VELOCITY)
+def test_burst(burst: Run) -> None:
+    """Each of 200 messages in 0.2 s gets its answer."""
+    burst.must_match("velocity", per="name")
+
+
+@check(points=2, hint="Nothing is special about it: the position jumps.", depends=VELOCITY)
+def test_publisher_restarts(restarted: Run) -> None:
+    """When another publisher starts from zero, the jump is answered like any change."""
+    restarted.must_match("velocity", per="name")
+
+
+@check(points=2, hint="Create the publisher once, in __init__.", depends=PUBLISHES)
+def test_one_publisher(chapter: Run) -> None:
+    """There is exactly one publisher on /joint_velocities."""
+    count = len(chapter.publishers(VELOCITIES))
+    if count != 1:
+        fail(f"Publishers on {VELOCITIES}.", expected=1, got=count)
+
+
+@check(points=3, hint="Publish only on /joint_velocities.", depends=PUBLISHES)
+def test_leaves_other_topics_alone(chapter: Run) -> None:
+    """It publishes nothing on /joint_commands and nothing on /clock."""
+    for topic in (COMMANDS, CLOCK):
+        if chapter.publishers(topic):
+            fail(f"Your node has a publisher on {topic}.", expected="none", got=len(chapter.publishers(topic)))
+
+
+def _silent_and_right(run: Run) -> None:
+    run.must_be_silent()
+    run.must_match("velocity", per="name")

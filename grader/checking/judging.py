@@ -1,0 +1,64 @@
+"""Runs an exercise's checks on recordings. The student's program is long gone by then."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+from grader.checking.plugin import Checks, fixtures_of
+from grader.checking.run import Run
+from grader.checking.verdict import Verdict
+from grader.exercise import Exercise, ExerciseError
+from grader.recording import Recording
+
+
+def judge(
+    exercise: Exercise, recordings: dict[str, Recording], references: dict[str, Recording], titles: dict[str, str]
+) -> tuple[Verdict, ...]:
+    """The verdict of every check, in the order in which they stand.
+
+    `recordings` are the student's and `references` the solution's, by scenario. Raises `ExerciseError` where the
+    files of checks are unusable. Runs pytest in this process, with none of the plugins installed on this machine.
+    """
+    runs = {
+        name: Run(exercise, recordings[name], references[name], titles.get(name, "")) for name in recordings
+    }
+    return _pytest(exercise, runs)
+
+
+def _pytest(exercise: Exercise, runs: dict[str, Run]) -> tuple[Verdict, ...]:
+    if not exercise.check_files:
+        raise ExerciseError(exercise.folder / "checks.py", "there is no such file", "Write at least one check.")
+    checks = Checks()
+    arguments = [
+        *("--assert=plain", "--import-mode=importlib", "-p", "no:cacheprovider", "-p", "no:terminal"),
+        *("-c", os.devnull, "--rootdir", str(exercise.folder), "-o", "python_files=*.py", "--capture=fd"),
+        *(str(file) for file in exercise.check_files),
+    ]
+    with _nothing_from_outside(), contextlib.redirect_stdout(io.StringIO()):
+        code = pytest.main(arguments, plugins=[checks, fixtures_of(runs)])
+    if checks.problem:
+        raise checks.problem
+    if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
+        file: Path = exercise.check_files[0]
+        raise ExerciseError(file, f"pytest ended with {pytest.ExitCode(code).name}", "Are there any checks in it?")
+    return tuple(checks.verdicts.values())
+
+
+@contextlib.contextmanager
+def _nothing_from_outside():  # type: ignore[no-untyped-def]  # noqa: ANN202
+    """Keep pytest's environment variables and byte code files away from the checks."""
+    kept = {name: os.environ.pop(name) for name in list(os.environ) if name.startswith("PYTEST_")}
+    os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
+    wrote, sys.dont_write_bytecode = sys.dont_write_bytecode, True
+    try:
+        yield
+    finally:
+        sys.dont_write_bytecode = wrote
+        del os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"]
+        os.environ.update(kept)

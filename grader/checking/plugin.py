@@ -1,0 +1,124 @@
+"""The pytest plugin that runs checks on recordings: fixtures for scenarios, verdicts instead of reports."""
+
+from __future__ import annotations
+
+import inspect
+import traceback
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+from grader.checking.check import Mark, mark_of
+from grader.checking.run import Run
+from grader.checking.verdict import Verdict
+from grader.checking.wrong import Finding, Wrong
+from grader.exercise import ExerciseError
+
+
+def fixtures_of(runs: dict[str, Run]) -> ModuleType:
+    """A module with one fixture for each scenario, by its name."""
+    module = ModuleType("scenarios")
+    for name, run in runs.items():
+        setattr(module, name, pytest.fixture(name=name)(_giving(run)))
+    return module
+
+
+def _giving(run: Run) -> Any:
+    def scenario() -> Run:
+        if run.ending.outcome != "completed":
+            raise Wrong(Finding(f"{run.ending.story} ({run.title})", run.scenario))
+        return run
+
+    return scenario
+
+
+class Checks:
+    """Collects an exercise's checks and keeps their verdicts."""
+
+    def __init__(self, run: bool = True) -> None:
+        self._run = run
+        self._marks: dict[str, Mark] = {}
+        self.verdicts: dict[str, Verdict] = {}
+        self.problem: ExerciseError | None = None
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
+        """Read every mark, and see that the checks can be run in the order in which they stand."""
+        for item in items:
+            try:
+                self._marks[item.name] = self._mark(item)
+            except ExerciseError as error:
+                self.problem = self.problem or error
+        if self.problem or not self._run:
+            items.clear()
+
+    def _mark(self, item: pytest.Item) -> Mark:
+        function = getattr(item, "function", None)
+        line = inspect.unwrap(function).__code__.co_firstlineno if function else None
+        mark = mark_of(function)
+        if not mark:
+            found, mend = f"{item.name} is no check", "Put @check(points=…, hint=…) above it."
+        elif item.name in self._marks:
+            found, mend = f"there are two checks called {item.name}", "Give each a name of its own."
+        elif not inspect.getdoc(function):
+            found, mend = f"{item.name} has no docstring", "Its docstring is the title that the student reads."
+        elif mark.points < 0:
+            found, mend = f"{item.name} gives {mark.points:g} points", "Give points of 0 or more."
+        elif unknown := [name for name in mark.depends if name not in self._marks]:
+            found = f"{item.name} depends on {unknown[0]}, which no check above it is called"
+            mend = "A check may depend on those that stand before it; public checks come before hidden ones."
+        else:
+            return mark
+        raise ExerciseError(item.path, found, mend, line)
+
+    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+        """A file of checks that can't be imported is its author's to mend."""
+        if report.failed and not self.problem:
+            last = str(report.longrepr).strip().splitlines()[-1].removeprefix("E").strip()
+            self.problem = ExerciseError(Path(report.nodeid), f"it can't be read: {last}", "It must import.")
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_setup(self, item: pytest.Item) -> None:
+        """Leave out what can't be judged."""
+        if not self._run:
+            pytest.skip("only listed")
+        blocking = self._blocking(item.name)
+        if blocking:
+            pytest.skip("blocked by " + ", ".join(blocking))
+
+    def _blocking(self, name: str) -> tuple[str, ...]:
+        depends = self._marks[name].depends
+        return tuple(other for other in depends if self.verdicts[other].status != "passed")
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Any:
+        """Turn pytest's outcome into a verdict."""
+        report: pytest.TestReport = yield
+        if report.when == "call" or (report.when == "setup" and not report.passed):
+            self.verdicts[item.name] = self._verdict(item, call)
+        return report
+
+    def _verdict(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Verdict:
+        mark = self._marks[item.name]
+        title = (inspect.getdoc(getattr(item, "function", None)) or "").replace("\n", " ")
+        hidden = item.path.name == "hidden_checks.py"
+        common = (mark.points, mark.hint, mark.misconception, hidden)
+        error = call.excinfo.value if call.excinfo else None
+        if error is None:
+            return Verdict(item.name, title, "passed", *common)
+        if isinstance(error, pytest.skip.Exception):
+            return Verdict(item.name, title, "blocked", *common, blocked_by=self._blocking(item.name))
+        if isinstance(error, Wrong):
+            return Verdict(item.name, title, "failed", *common, finding=error.finding)
+        if isinstance(error, AssertionError):
+            return Verdict(item.name, title, "failed", *common, finding=Finding(str(error)))
+        return Verdict(item.name, title, "error", *common, error=_told(error, item.path))
+
+
+def _told(error: BaseException, file: Path) -> str:
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(file)]
+    place = f"{file}:{lines[-1]}" if lines else f"{file}"
+    text = str(error).strip().splitlines()
+    return f"{place}: {type(error).__name__}: {text[0] if text else ''}"

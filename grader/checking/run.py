@@ -1,0 +1,175 @@
+"""A run: one scenario as a check sees it, with what was sent, what came back, and what the solution answered."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NoReturn
+
+from grader.checking.wrong import Finding, Wrong
+from grader.exercise import Exercise
+from grader.recording import EndPoint, Ending, Received, Recording, Sent
+from grader.scenario.scenario import SECOND, START
+
+
+class Part:
+    """Some fields of a message, by name: `message.header.frame_id`."""
+
+    def __init__(self, fields: dict[str, Any]) -> None:
+        self._fields = fields
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            value = self._fields[name]
+        except KeyError:
+            raise AttributeError(f"a message of this type has no field {name!r}") from None
+        return Part(value) if isinstance(value, dict) else value
+
+    def __repr__(self) -> str:
+        return f"Message({self._fields})"
+
+
+class Message(Part):
+    """A message that was sent or received: its fields by name, its `stamp` (s), its topic, and when it came (s)."""
+
+    def __init__(self, kept: Sent | Received) -> None:
+        super().__init__(kept.fields)
+        self.at = (kept.at - START) / SECOND
+        self.topic = kept.topic
+
+    @property
+    def stamp(self) -> float:
+        """The header's stamp in seconds."""
+        return self.stamp_ns / SECOND
+
+    @property
+    def stamp_ns(self) -> int:
+        """The header's stamp in nanoseconds."""
+        stamp = self._fields["header"]["stamp"]
+        return int(stamp["sec"]) * SECOND + int(stamp["nanosec"])
+
+    def value(self, field: str) -> Any:
+        """A field by its full name, such as `header.frame_id`."""
+        value: Any = self._fields
+        for name in field.split("."):
+            value = value[name]
+        return value
+
+    def by(self, key: str, field: str) -> dict[str, Any]:
+        """Two lists as a dictionary: `by("name", "velocity")` gives each joint's velocity."""
+        return dict(zip(self.value(key), self.value(field), strict=False))
+
+
+@dataclass(frozen=True)
+class Exchange:
+    """One message sent, everything that the node answered to it, and what the solution answered.
+
+    `number` counts the messages sent, from 1.
+    """
+
+    number: int
+    sent: Message
+    answers: tuple[Message, ...]
+    expected: tuple[Message, ...]
+
+
+class Run:
+    """What happened in one scenario. Iterate over it to get each `Exchange`."""
+
+    def __init__(self, exercise: Exercise, recording: Recording, reference: Recording, title: str = "") -> None:
+        self.exercise = exercise
+        self.scenario = recording.scenario
+        self.title = title
+        self.recording = recording
+        self._reference = reference
+
+    @cached_property
+    def sent(self) -> list[Message]:
+        """Every message sent to the node."""
+        return [Message(sent) for sent in self.recording.sent]
+
+    @cached_property
+    def received(self) -> list[Message]:
+        """Every message that the node published on the exercise's topics."""
+        return [Message(received) for received in self.recording.received]
+
+    @cached_property
+    def exchanges(self) -> list[Exchange]:
+        """Each message sent, with its answers."""
+        answers = _answers(self.recording)
+        expected = _answers(self._reference)
+        return [
+            Exchange(i + 1, sent, tuple(answers.get(i, ())), tuple(expected.get(i, ())))
+            for i, sent in enumerate(self.sent)
+        ]
+
+    def __iter__(self) -> Iterator[Exchange]:
+        return iter(self.exchanges)
+
+    @property
+    def nodes(self) -> tuple[str, ...]:
+        """Full names of the student's nodes."""
+        return self.recording.nodes
+
+    @property
+    def ending(self) -> Ending:
+        """How the run ended."""
+        return self.recording.ending
+
+    def publishers(self, topic: str) -> list[EndPoint]:
+        """The student's publishers on `topic`."""
+        return [e for e in self.recording.end_points if e.kind == "publisher" and e.topic == topic]
+
+    def subscriptions(self, topic: str) -> list[EndPoint]:
+        """The student's subscriptions of `topic`."""
+        return [e for e in self.recording.end_points if e.kind == "subscription" and e.topic == topic]
+
+    def topics(self, kind: str) -> list[str]:
+        """Names of all topics that the student's nodes publish (kind "publisher") or subscribe ("subscription")."""
+        return sorted({e.topic for e in self.recording.end_points if e.kind == kind})
+
+    def must_match(self, field: str, per: str = "", tolerance: float = 1e-6) -> None:
+        """Wherever the solution answers, the node must answer, with the same `field`.
+
+        `per` names the list of names that `field` goes with, so that the order does not count: `must_match("velocity",
+        per="name")`. Numbers may differ by `tolerance`, absolute or relative, whichever is larger.
+        """
+        from grader.checking.matching import must_match
+
+        must_match(self, field, per, tolerance)
+
+    def must_answer(self) -> None:
+        """The node must answer every message that the solution answers, once."""
+        from grader.checking.matching import must_answer
+
+        must_answer(self)
+
+    def must_be_silent(self, first_only: bool = False) -> None:
+        """The node must answer no message that the solution leaves without an answer (only the first: `first_only`)."""
+        from grader.checking.matching import must_be_silent
+
+        must_be_silent(self, first_only)
+
+    def wrong(self, exchange: Exchange, text: str, part: str = "", expected: str = "", got: str = "") -> NoReturn:
+        """End the check: `text` tells what is wrong with the answers to this exchange's message."""
+        where = f"Message {exchange.number} of {len(self.sent)} ({exchange.sent.at:.2f} s after the start"
+        where += f"; {self.title})" if self.title else ")"
+        told = f"{where}{f', {part}' if part else ''}: {text}"
+        raise Wrong(Finding(told, self.scenario, exchange.number, exchange.sent.at, part, expected, got))
+
+
+def _answers(recording: Recording) -> dict[int, list[Message]]:
+    """Index of a message sent -> what was received for it.
+
+    A message is matched by its stamp where exactly one message sent has that stamp, else by when it came.
+    """
+    index: dict[int, list[int]] = {}
+    for i, sent in enumerate(recording.sent):
+        index.setdefault(Message(sent).stamp_ns if "header" in sent.fields else -1, []).append(i)
+    answers: dict[int, list[Message]] = {}
+    for received in recording.received:
+        message = Message(received)
+        by_stamp = index.get(message.stamp_ns, []) if "header" in received.fields else []
+        answers.setdefault(by_stamp[0] if len(by_stamp) == 1 else max(received.after - 1, 0), []).append(message)
+    return answers

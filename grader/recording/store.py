@@ -1,0 +1,32 @@
+"""Recordings as JSON, which keeps every number to the last bit."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from typing import Any
+
+from grader.recording.recording import Ending, EndPoint, Received, Recording, Sent
+
+
+def to_json(recordings: dict[str, Recording]) -> str:
+    """`recordings` as a text from which `from_json` makes equal ones."""
+    return json.dumps({name: dataclasses.asdict(recording) for name, recording in recordings.items()})
+
+
+def from_json(text: str) -> dict[str, Recording]:
+    """The recordings that `to_json` wrote. Raises ValueError, KeyError or TypeError where it did not write them."""
+    return {name: _recording(entries) for name, entries in json.loads(text).items()}
+
+
+def _recording(entries: dict[str, Any]) -> Recording:
+    return Recording(
+        **{
+            **entries,
+            "sent": tuple(Sent(**sent) for sent in entries["sent"]),
+            "received": tuple(Received(**received) for received in entries["received"]),
+            "nodes": tuple(entries["nodes"]),
+            "end_points": tuple(EndPoint(**end_point) for end_point in entries["end_points"]),
+            "ending": Ending(**entries["ending"]),
+        }
+    )

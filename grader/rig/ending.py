@@ -1,0 +1,46 @@
+"""How a student's program ends: by itself, or because it is asked to."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from grader.recording import Ending
+from grader.rig.patience import Patience
+from grader.rig.story import TRACEBACK, last_words, of_exit
+from grader.rig.student import Student
+
+if TYPE_CHECKING:
+    from grader.rig.spin import Spin
+
+#: How long a node may take to end after Ctrl-C, in CPU time and blocked time together.
+MAY_TAKE_S = 2.0
+
+
+def cut_short(student: Student, what: Spin, met: bool, sent: int) -> Ending:
+    """The ending of a program that ended by itself, after `sent` messages."""
+    exit_ = student.poll() or student.kill()
+    log = student.output().text
+    why, line = of_exit(exit_, log, what.file_name, what.source)
+    if exit_.limit:
+        return Ending("over-limit", f"Your program was ended: {why}", line)
+    if not met:
+        if exit_.code == 0 and not line:
+            why = "it came to its end and created no node that spins. Is main() called, and does it call rclpy.spin()?"
+        return Ending("did-not-start", f"Your program did not start: {why}", line)
+    return Ending("crashed", f"Your program ended at message {sent}: {why}", line)
+
+
+def interrupted(student: Student) -> Ending:
+    """Ask the program to end, as Ctrl-C does, and see how it takes it."""
+    before = student.output().text.count(TRACEBACK)
+    student.interrupt()
+    patience = Patience(student, cpu_s=MAY_TAKE_S, blocked_s=MAY_TAKE_S)
+    while student.wait(0.02) is None:
+        patience.look()
+        if patience.blocked + patience.cpu >= MAY_TAKE_S:
+            return Ending("completed", interrupted=True, ended_in_time=False)
+    time.sleep(0)
+    log = student.output().text
+    words = last_words(log, "") if log.count(TRACEBACK) > before else None
+    return Ending("completed", interrupted=True, traceback=words.error if words else "")

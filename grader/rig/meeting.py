@@ -1,0 +1,49 @@
+"""The rig and the student's node get to know one another."""
+
+from __future__ import annotations
+
+from grader.rig.clock import Clock
+from grader.rig.fence import Fence
+from grader.rig.graph import Graph
+from grader.rig.patience import Patience
+from grader.rig.publishers import ReferencePublishers
+from grader.rig.recorder import Recorder
+from grader.rig.ros import Ros
+from grader.rig.stopped import Stopped
+from grader.rig.student import Student
+
+#: Importing large libraries takes computing time; nothing that a node needs takes this much.
+START_CPU_S, START_BLOCKED_S = 20.0, 3.0
+
+NO_NODE_BUSY = f"Your program computed for {START_CPU_S:g} s and created no node. Is there an endless loop before it?"
+NO_NODE_BLOCKED = (
+    "Your program waits and creates no node. Does something wait or sleep before the node is created, and is main() "
+    "called?"
+)
+
+
+def wait_for_nodes(ros: Ros, graph: Graph, fence: Fence, student: Student) -> list[str]:
+    """The student's nodes, once there is one. Raises `Stopped` when none appears and `Gone` when the program ends."""
+    patience = Patience(student, START_CPU_S, START_BLOCKED_S)
+    while not (nodes := graph.nodes()):
+        fence.alive()
+        which = patience.ended()
+        if which:
+            raise Stopped("timed-out", NO_NODE_BUSY if which == "cpu" else NO_NODE_BLOCKED)
+        ros.executor.spin_once(timeout_sec=0.004)
+    return nodes
+
+
+def wait_until_connected(
+    ros: Ros, student: Student, fence: Fence, clock: Clock, publishers: ReferencePublishers, recorder: Recorder
+) -> None:
+    """Wait until every topic has found its other end, or until it is clear that some never will.
+
+    A topic of another name or type never does; the checks tell that from the graph.
+    """
+    patience = Patience(student, cpu_s=5.0, blocked_s=0.5)
+    while not (publishers.heard and recorder.hears and clock.heard):
+        fence.alive()
+        if patience.ended():
+            return
+        ros.executor.spin_once(timeout_sec=0.004)

@@ -1,0 +1,50 @@
+"""How long a student's program may take: in its own CPU time and in time it spends blocked, never in wall time."""
+
+from __future__ import annotations
+
+import time
+
+from grader.rig.stopped import Stopped
+from grader.rig.student import Student
+
+#: The longest piece of time between two looks that counts as blocked: a rig that did not run itself saw nothing.
+LONGEST_LOOK_S = 0.1
+
+
+class Patience:
+    """Ends when the program has used `cpu_s` of CPU time, or was blocked for `blocked_s`, since this was made.
+
+    A program that waits for a CPU on a busy machine uses up neither.
+    """
+
+    def __init__(self, student: Student, cpu_s: float = 3.0, blocked_s: float = 3.0) -> None:
+        self._student = student
+        self._cpu_s, self._blocked_s = cpu_s, blocked_s
+        self._cpu_start = student.cpu_seconds()
+        self._looked = time.monotonic()
+        self.blocked = 0.0
+
+    @property
+    def cpu(self) -> float:
+        """Seconds of CPU time used so far."""
+        return self._student.cpu_seconds() - self._cpu_start
+
+    def look(self) -> None:
+        """Count the time since the last look as blocked if none of the program's threads could run."""
+        now = time.monotonic()
+        if self._student.runnable_threads() == 0:
+            self.blocked += min(now - self._looked, LONGEST_LOOK_S)
+        self._looked = now
+
+    def ended(self) -> str | None:
+        """"cpu" or "blocked" when it has ended, else None."""
+        self.look()
+        if self.blocked >= self._blocked_s:
+            return "blocked"
+        return "cpu" if self.cpu >= self._cpu_s else None
+
+    def check(self, busy: str, blocked: str) -> None:
+        """Raise `Stopped` with one of the two stories once the patience has ended."""
+        which = self.ended()
+        if which:
+            raise Stopped("timed-out", busy if which == "cpu" else blocked)

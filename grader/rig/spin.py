@@ -1,0 +1,144 @@
+"""Spins one student's program through one scenario, in lockstep with simulated time."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from grader.exercise import Exercise
+from grader.recording import Ending, Recording
+from grader.rig.clock import Clock
+from grader.rig.ending import cut_short, interrupted
+from grader.rig.fence import AFTER_CLOCK, AFTER_MESSAGES, Fence, Gone
+from grader.rig.graph import Graph
+from grader.rig.meeting import wait_for_nodes, wait_until_connected
+from grader.rig.publishers import ReferencePublishers
+from grader.rig.recorder import Recorder
+from grader.rig.ros import Ros
+from grader.rig.stopped import Stopped
+from grader.rig.student import Student
+from grader.scenario import Scenario
+from grader.scenario.scenario import SECOND, START
+
+#: How far simulated time goes on after the last message, for what a node does by timer.
+AFTERWARDS = SECOND // 2
+
+
+@dataclass(frozen=True)
+class Spin:
+    """What to spin. `domain` is the ROS domain, `pace` is 1.0 for the pace of real time and None for as fast as it goes.
+
+    `file_name` and `source` are the student's, to name lines in what is told.
+    """
+
+    exercise: Exercise
+    scenario: Scenario
+    domain: int
+    file_name: str
+    source: str
+    pace: float | None = None
+
+
+def spin(what: Spin, start: Callable[[], Student]) -> Recording:
+    """Start the student's program and spin it through the scenario; every fault of the student's is in the recording.
+
+    Anything raised is a fault of the machine's or of ours.
+    """
+    began = time.monotonic()
+    student = start()
+    try:
+        with Ros(what.domain) as ros:
+            return Rig(ros, what, student).run(began)
+    finally:
+        student.kill()
+
+
+class Rig:
+    """One run: the rig's ends of the graph around one student."""
+
+    def __init__(self, ros: Ros, what: Spin, student: Student) -> None:
+        self._ros, self._what, self._student = ros, what, student
+        node = ros.node("rig")
+        self._clock = Clock(node)
+        self._publishers = ReferencePublishers(ros.node("joint_command_publisher"), what.scenario)
+        self._recorder = Recorder(node, what.exercise.outputs, self._moment)
+        ros.executor.add_node(node)
+        self._graph = Graph(node, ros.names, "/clock")
+        self._fence = Fence(ros, node, student)
+        self._nodes: list[str] = []
+        self._sim_time = False
+        self._met = False
+
+    def _moment(self) -> tuple[int, int]:
+        return self._clock.now, len(self._publishers.sent)
+
+    def run(self, began: float) -> Recording:
+        """The whole run, from the first sign of the node to its end."""
+        try:
+            self._meet()
+            self._lockstep()
+            ending = interrupted(self._student) if self._what.scenario.interrupt else Ending("completed")
+        except Stopped as stopped:
+            ending = Ending(stopped.outcome, stopped.story)
+        except Gone:
+            ending = cut_short(self._student, self._what, self._met, len(self._publishers.sent))
+        self._ros.turn()
+        end_points = self._graph.end_points()
+        self._student.kill()
+        return Recording(
+            scenario=self._what.scenario.name,
+            sent=tuple(self._publishers.sent),
+            received=tuple(self._recorder.received),
+            nodes=tuple(self._nodes),
+            end_points=self._end_points or end_points,
+            hold=self._fence.hold if self._met else "none",
+            uses_sim_time=self._sim_time,
+            ending=ending,
+            log=self._student.output().text,
+            seconds=time.monotonic() - began,
+        )
+
+    def _meet(self) -> None:
+        self._nodes = wait_for_nodes(self._ros, self._graph, self._fence, self._student)
+        self._fence.take_hold(self._graph, self._nodes)
+        self._fence.wait(1)
+        if self._fence.hold == "parameters":
+            self._sim_time = all([self._fence.use_sim_time(node) for node in self._nodes])
+        wait_until_connected(
+            self._ros, self._student, self._fence, self._clock, self._publishers, self._recorder
+        )
+        self._clock.set(START)
+        self._fence.wait(AFTER_CLOCK)
+        self._met = True
+
+    def _lockstep(self) -> None:
+        began = time.monotonic()
+        for message in self._what.scenario.messages:
+            if message.at > self._clock.now:
+                self._keep_pace(began, message.at)
+                self._clock.set(message.at)
+                self._fence.wait(AFTER_CLOCK)
+            self._publishers.publish(message)
+            self._fence.wait(AFTER_MESSAGES)
+            self._recorder.check()
+        self._drain()
+
+    def _keep_pace(self, began: float, at: int) -> None:
+        if self._what.pace:
+            due = began + (at - START) / SECOND / self._what.pace
+            time.sleep(max(0.0, due - time.monotonic()))
+
+    def _drain(self) -> None:
+        """Let the node finish what it began, and take everything it has published."""
+        self._end_points = self._graph.end_points()
+        self._clock.set(self._clock.now + AFTERWARDS)
+        self._fence.wait(AFTER_CLOCK)
+        while True:
+            before = len(self._recorder.received)
+            self._fence.wait(AFTER_MESSAGES)
+            self._recorder.check()
+            if len(self._recorder.received) == before:
+                return
+
+    _end_points: tuple = ()  # type: ignore[type-arg]

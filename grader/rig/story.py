@@ -1,0 +1,64 @@
+"""What a program's last words say, for the student who wrote it."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from grader.rig.student import Exit
+
+FRAME = re.compile(r'^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)', re.MULTILINE)
+TRACEBACK = "Traceback (most recent call last):"
+LIMITS = {
+    "cpu": "it used more computing time than a node may",
+    "memory": "it used more memory than a node may",
+    "processes": "it started more processes than a node may",
+    "file-size": "it wrote more to disk than a node may",
+    "output": "it printed more than a node may",
+    "wall": "it ran longer than a node may",
+}
+
+
+@dataclass(frozen=True)
+class LastWords:
+    """The error that ended a program: its last line, such as `ZeroDivisionError: float division by zero`, and the line
+    of the student's file it came from, where there is one."""
+
+    error: str
+    line: int | None
+    text: str = ""
+
+
+def last_words(log: str, file_name: str, source: str = "") -> LastWords | None:
+    """The last error in `log`, or None when it tells of none."""
+    start = log.rfind(TRACEBACK)
+    if start < 0:
+        start = log.rfind('  File "')
+        if start < 0:
+            return None
+    block = log[start:]
+    error = ""
+    for row in block.splitlines()[1:]:
+        if row and not row[0].isspace() and re.match(r"[A-Za-z_][\w.]*(:|$)", row):
+            error = row.strip()
+            break
+    lines = [int(m["line"]) for m in FRAME.finditer(block) if m["file"].rpartition("/")[2] == file_name]
+    line = lines[-1] if lines else None
+    rows = source.splitlines()
+    return LastWords(error, line, rows[line - 1].strip() if line and line <= len(rows) else "")
+
+
+def of_exit(exit_: Exit, log: str, file_name: str, source: str) -> tuple[str, int | None]:
+    """Why a program ended, as a clause that follows "Your program ended: ", and the line to blame."""
+    if exit_.limit:
+        return f"{LIMITS.get(exit_.limit, exit_.limit)}.", None
+    words = last_words(log, file_name, source)
+    if words and words.error:
+        place = f" in line {words.line}" if words.line else ""
+        text = f": {words.text}" if words.text else ""
+        return f"{words.error}{place}{text}", words.line
+    if exit_.signal:
+        return f"it was killed by signal {exit_.signal}.", None
+    if exit_.code == 0:
+        return "it came to its end by itself, before it was asked to.", None
+    return f"it gave up with exit code {exit_.code}.", None
