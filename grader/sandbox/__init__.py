@@ -1,10 +1,10 @@
 """Runs a student's program where it can neither see nor harm anything: see docs/sandbox.md.
 
-    nursery = Nursery()                       # once in a worker, before the rigs are forked
+nursery = Nursery()                       # once in a worker, before the rigs are forked
+...
+enter(isolation)                          # in the rig, freshly forked
+with nursery.start(Program("node.py", {"node.py": source}), isolation) as student:
     ...
-    enter(isolation)                          # in the rig, freshly forked
-    with nursery.start(Program("node.py", {"node.py": source}), isolation) as student:
-        ...
 """
 
 from .level import Isolation, SandboxError, SandboxUnavailable, available, choose

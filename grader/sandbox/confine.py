@@ -18,12 +18,21 @@ _DESCRIPTORS = 1024
 
 @dataclass(frozen=True)
 class Start:
-    """What a rig asks for: a program, how far to confine it, what it may use, and the CPU to stay on (None: any)."""
+    """What a rig asks for.
+
+    Attributes:
+        program: what to run.
+        isolation: how far to confine it.
+        limits: what it may use.
+        core: the CPU to stay on; None for any.
+        plan: the steps that build its root, at the levels that have one.
+    """
 
     program: Program
     isolation: Isolation
     limits: Limits
     core: int | None
+    plan: tuple[view.Step, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """The nursery's process: imports, then forks a keeper for each request; a keeper's fork runs the student.
 
-    python -m grader.sandbox.fork_server DESCRIPTOR MODULE…
+python -m grader.sandbox.fork_server DESCRIPTOR MODULE…
 """
 
 from __future__ import annotations
@@ -15,10 +15,12 @@ import signal
 import socket
 import sys
 
+from . import view
 from .keeper import Job, keep
 from .run import run
 
 _MOST_DESCRIPTORS = 8
+_USED_BY_EVERY_NODE = ("rcl_interfaces", "rosgraph_msgs", "builtin_interfaces")
 
 
 def main(arguments: list[str]) -> None:
@@ -27,6 +29,8 @@ def main(arguments: list[str]) -> None:
     os.chdir("/")
     for name in modules:
         _import(name)
+    view.system()  # found once, not in every fork
+    view.interpreter()
     gc.collect()
     gc.freeze()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -55,16 +59,18 @@ def serve(requests: int) -> Job | None:
 
 
 def _import(name: str) -> None:
-    """Imports a module and, if it is one of message types, loads their compiled support as their first use would."""
+    """Imports a module and, if every node uses its message types, loads their compiled support."""
     try:
         module = importlib.import_module(name)
     except ImportError:
         return
+    if name.split(".")[0] not in _USED_BY_EVERY_NODE:
+        return
     for _, kind in inspect.getmembers(module, inspect.isclass):
-        load = getattr(type(kind), "__import_type_support__", None)
-        if load is not None and name.split(".")[0] in ("rcl_interfaces", "rosgraph_msgs", "builtin_interfaces"):
-            with contextlib.suppress(Exception):
-                kind.__import_type_support__()
+        load = getattr(kind, "__import_type_support__", None)
+        if load is not None:
+            with contextlib.suppress(Exception):  # as it would fail in the student's own process, if it is used there
+                load()
 
 
 if __name__ == "__main__":

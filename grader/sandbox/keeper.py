@@ -9,6 +9,7 @@ A keeper is a fork of the nursery with a single thread. It speaks with the rig o
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import select
@@ -17,7 +18,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from . import bubblewrap, kernel, landlock, limits, namespaces, open_room, room, user_namespace, view
+from . import bubblewrap, kernel, landlock, limits, namespaces, open_room, room, view
 from .confine import Place, Start, confine
 from .level import Isolation
 from .program import SUBMISSION, Program
@@ -38,16 +39,18 @@ def keep(start: Start, control: int, output: int, rig_namespaces: Sequence[int])
         start: what to start.
         control: the socket to the rig.
         output: where the student's standard output and error go.
-        rig_namespaces: the user namespace of the rig and its network namespace; empty for the levels without.
+        rig_namespaces: the user namespace that the rig has made for its students, and its own user and network
+            namespace; empty for the levels without.
     """
     reported = False
     try:
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         os.chdir("/")
         beside = _tasks_beside(start)
-        for namespace in rig_namespaces:
+        users, *rig = rig_namespaces or (-1,)
+        for namespace in rig:
             _join(namespace)
-        house, place = _build(start)
+        house, place = _build(start, users)
         child = _fork_student(start, place, house, beside, output)
         if isinstance(child, Job):
             return child
@@ -63,12 +66,11 @@ def keep(start: Start, control: int, output: int, rig_namespaces: Sequence[int])
     os._exit(0)
 
 
-def _build(start: Start) -> tuple[room.Room | open_room.OpenRoom, Place]:
+def _build(start: Start, users: int) -> tuple[room.Room | open_room.OpenRoom, Place]:
     program = start.program
     if start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
-        plan = view.steps(program, start.limits.file_bytes)
         builder = bubblewrap if start.isolation is Isolation.BUBBLEWRAP else namespaces
-        house = builder.build(plan, user_namespace.create())
+        house = builder.build(start.plan, users)
         room.place(program.files)
         return house, Place(SUBMISSION, view.HOME, "/tmp")
     place = open_room.make_place(program.files, _owner(start.isolation))
@@ -96,7 +98,9 @@ def _fork_student(
     with os.fdopen(fault_at, "rb") as stream:
         fault_told = stream.read()
     if fault_told:
-        house.end()
+        house.kill()
+        os.waitpid(child, 0)
+        house.bury()
         raise OSError(fault_told.decode(errors="replace"))
     return child
 
@@ -120,18 +124,15 @@ def _watch(control: int, child: int, house: room.Room | open_room.OpenRoom) -> N
                 if alive:
                     os.kill(child, signal.SIGINT)
                 continue
-            house.end()
+            house.kill()
             if alive:
                 _report_end(control, child)
+            house.bury()
             return
 
 
 def _report_end(control: int, child: int) -> None:
-    try:
-        _, status, usage = os.wait4(child, 0)
-    except ChildProcessError:  # buried with all others
-        _tell(control, {"event": "exited", "status": int(signal.SIGKILL), "cpu_s": 0.0})
-        return
+    _, status, usage = os.wait4(child, 0)
     _tell(control, {"event": "exited", "status": status, "cpu_s": usage.ru_utime + usage.ru_stime})
 
 
@@ -143,16 +144,14 @@ def _hear(control: int) -> bytes:
 
 
 def _tell(control: int, message: dict[str, object]) -> None:
-    try:
+    with contextlib.suppress(OSError):  # the rig is gone: its end is noticed when listening
         os.write(control, json.dumps(message).encode())
-    except OSError:
-        pass  # the rig is gone: its end is noticed when listening
 
 
 def _join(namespace: int) -> None:
     """Enters a namespace of the rig's, unless this process is in it already."""
     for name in ("user", "net"):
-        mine = os.stat(f"/proc/self/ns/{name}")
+        mine = Path(f"/proc/self/ns/{name}").stat()
         if (mine.st_dev, mine.st_ino) == (os.fstat(namespace).st_dev, os.fstat(namespace).st_ino):
             return
     kernel.setns(namespace)

@@ -53,7 +53,7 @@ def keeps_signals_inside() -> bool:
 
 
 def student_user() -> int:
-    """Whom a student's program runs as: when root starts it, a user of no other process, if that one can read Python."""
+    """Whom a student's program runs as: for root a user of no other process, if that one can read Python."""
     if os.geteuid() != 0:
         return os.geteuid()
     needed = {folder for path in view.interpreter() for folder in path.resolve().parents}

@@ -30,7 +30,7 @@ class Isolation(str, Enum):
         return self.value
 
 
-class SandboxUnavailable(Exception):  # noqa: N818: what it is, not that it is an error of ours
+class SandboxUnavailable(Exception):
     """This machine does not allow the sandbox that was wanted, or none at all."""
 
 

@@ -76,7 +76,7 @@ def tasks_of_user(uid: int) -> int:
         if entry.name.isdigit():
             with contextlib.suppress(OSError):  # it has just ended
                 if entry.stat().st_uid == uid:
-                    count += len(os.listdir(Path(entry.path) / "task"))  # noqa: PTH208: names alone, quickly
+                    count += len(os.listdir(Path(entry.path) / "task"))  # noqa: PTH208 - names alone
     return count
 
 

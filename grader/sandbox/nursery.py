@@ -16,7 +16,7 @@ import sys
 from collections.abc import Sequence
 from types import TracebackType
 
-from . import view
+from . import rig_namespace, view
 from .confine import Start
 from .level import Isolation, SandboxError
 from .limits import Limits
@@ -77,12 +77,17 @@ class Nursery:
             SandboxError: if the sandbox could not be made: our fault or the machine's, never the student's.
         """
         limits = limits or Limits()
-        request = pickle.dumps(Start(program, isolation, limits, core))
+        apart = isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES)
+        plan = view.steps(program.readonly, program.hidden, limits.file_bytes) if apart else ()
+        request = pickle.dumps(Start(program, isolation, limits, core, plan))
+        passed = [_memory_file(request)]
+        if apart:
+            passed.append(os.dup(rig_namespace.students_users()))
+            passed += [os.open(f"/proc/self/ns/{name}", os.O_RDONLY) for name in ("user", "net")]
         ours, control = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         output, output_end = os.pipe2(os.O_CLOEXEC)
-        passed = [_memory_file(request), control.fileno(), output_end]
-        if isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
-            passed += [os.open(f"/proc/self/ns/{name}", os.O_RDONLY) for name in ("user", "net")]
+        passed[1:1] = [os.dup(control.fileno()), output_end]
+        control.close()
         try:
             socket.send_fds(self._socket, [b"start"], passed)
         except OSError as fault:
@@ -90,8 +95,7 @@ class Nursery:
             ours.close()
             raise SandboxError(f"the process that starts students is gone: {fault}") from fault
         finally:
-            control.close()
-            for number in (passed[0], *passed[2:]):
+            for number in passed:
                 os.close(number)
         return Student(ours, output, limits)
 

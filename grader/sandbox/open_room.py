@@ -24,13 +24,18 @@ class OpenRoom:
     init: int = field(default_factory=os.getpid)
     holders: frozenset[int] = frozenset()
 
-    def end(self) -> None:
-        """Kills everything that the student has started, returns when all is dead, and removes the folder."""
-        while alive := descendants(self.init):
-            for order in (signal.SIGSTOP, signal.SIGKILL):  # first nobody forks any more
-                for process in alive:
-                    with contextlib.suppress(ProcessLookupError):
-                        os.kill(process, order)
+    def kill(self) -> None:
+        """Kills what the student has started. What it starts meanwhile is found by `bury`."""
+        alive = descendants(self.init)
+        for order in (signal.SIGSTOP, signal.SIGKILL):  # first nobody forks any more
+            for process in alive:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(process, order)
+
+    def bury(self) -> None:
+        """Returns when all is dead, and removes the folder."""
+        while descendants(self.init):
+            self.kill()
             with contextlib.suppress(ChildProcessError):
                 while os.waitpid(-1, os.WNOHANG)[0]:
                     pass

@@ -19,7 +19,7 @@ class Program:
         files: name to content, written into the read-only folder /submission. Contents and not paths, so that neither a
             symlink nor a change made meanwhile can show the program another file of this machine.
         arguments: what follows the file's name in sys.argv.
-        environment: variables beyond those that Python and ROS 2 need; nothing of the caller's environment is passed on.
+        environment: variables beyond those that Python and ROS 2 need; nothing of the caller's own is passed on.
         readonly: files and folders of this machine that are to be seen, read-only, at the same path.
         hidden: files and folders of this machine that are never seen, also inside one that is.
         warm: run in a fork of the nursery, in which rclpy has been imported already. Otherwise in a new Python process.

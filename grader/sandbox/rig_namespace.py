@@ -8,8 +8,8 @@ import socket
 import struct
 from pathlib import Path
 
-from . import kernel
-from .level import Isolation
+from . import kernel, user_namespace
+from .level import Isolation, SandboxError
 
 _SIOCSIFFLAGS = 0x8914  # netdevice(7)
 _IFF_UP = 1
@@ -41,6 +41,22 @@ def enter(isolation: Isolation) -> None:
     if Path("/dev/shm").is_dir():
         kernel.mount("tmpfs", "/dev/shm", "tmpfs", kernel.MS_NOSUID | kernel.MS_NODEV, "mode=1777,size=64m")
     _bring_loopback_up()
+    _made.append(user_namespace.create())
+
+
+# The descriptor of the students' user namespace, once this process is a rig.
+_made: list[int] = []
+
+
+def students_users() -> int:
+    """The user namespace that this rig's students run in, one after the other: a descriptor.
+
+    Raises:
+        SandboxError: if this process has not entered namespaces of its own.
+    """
+    if not _made:
+        raise SandboxError("call grader.sandbox.enter(isolation) in the rig's process before it starts a student")
+    return _made[-1]
 
 
 def _bring_loopback_up() -> None:

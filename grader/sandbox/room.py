@@ -28,14 +28,17 @@ class Room:
     holders: frozenset[int] = frozenset()
     builder: subprocess.Popen[bytes] | None = None
 
-    def end(self) -> None:
-        """Kills everything inside and returns when all of it is dead.
+    def kill(self) -> None:
+        """Kills everything inside. It is dead when `bury` returns."""
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(self.init, signal.SIGKILL)
+
+    def bury(self) -> None:
+        """Returns when all is dead. Children of the caller inside have to be waited for before.
 
         The death of a namespace's first process is told to its parent only after every other process in it is gone:
         pid_namespaces(7).
         """
-        with contextlib.suppress(ProcessLookupError):
-            os.kill(self.init, signal.SIGKILL)
         if self.builder is not None:
             self.builder.wait()
         else:

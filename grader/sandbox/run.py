@@ -24,7 +24,7 @@ def run(program: Program, place: Place) -> None:
     An uncaught exception prints its traceback, beginning with the student's own lines, and exits with 1; an uncaught
     KeyboardInterrupt ends the process by SIGINT. Threads, atexit and the rest of the end are the interpreter's own.
     """
-    path = program.main if os.path.isabs(program.main) else os.path.join(place.folder, program.main)
+    path = str(Path(place.folder, program.main))
     variables = view.environment(program, place.home, place.temporary)
     os.environ.clear()
     os.environ.update(variables)
@@ -43,20 +43,24 @@ def _prepare(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
     """Makes this interpreter look as if it had been started with the file."""
     sys.argv = [path, *arguments]
     sys.orig_argv = [sys.executable, *sys.argv]
-    sys.path[0] = os.path.dirname(path)
+    sys.path[0] = str(Path(path).parent)
     imported = [entry for entry in os.environ.get("PYTHONPATH", "").split(os.pathsep) if entry]
     sys.path[1:1] = [entry for entry in imported if entry not in sys.path]
     sys.path_importer_cache.clear()
-    for name, number in {"stdout": 1, "stderr": 2}.items():
-        stream = io.open(number, "w", encoding="utf-8", errors="backslashreplace", buffering=1, closefd=False)
+    for name, number, mode in (("stdin", 0, "r"), ("stdout", 1, "w"), ("stderr", 2, "w")):
+        errors = "surrogateescape" if mode == "r" else "backslashreplace"
+        binary = io.FileIO(number, mode, closefd=False)
+        buffered = io.BufferedReader(binary) if mode == "r" else io.BufferedWriter(binary)
+        # By the line, as on a terminal, so that what was printed is there when the program is killed.
+        stream = io.TextIOWrapper(buffered, "utf-8", errors, line_buffering=True)
         setattr(sys, name, stream)
         setattr(sys, f"__{name}__", stream)
-    sys.stdin = sys.__stdin__ = io.open(0, encoding="utf-8", closefd=False)  # type: ignore[misc]
     module = types.ModuleType("__main__")
     module.__file__ = path
     module.__loader__ = importlib.machinery.SourceFileLoader("__main__", path)
     module.__dict__["__builtins__"] = builtins
     module.__dict__["__cached__"] = None
+    atexit.register(_die_of_interrupt)  # the first to be registered is the last to be called
     _ours.append(sys.modules["__main__"])
     sys.modules["__main__"] = module
     for name in [name for name in sys.modules if name == "grader" or name.startswith("grader.")]:
@@ -66,18 +70,21 @@ def _prepare(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
 
 # The modules whose code is still running below the student's: without a reference they would be torn down.
 _ours: list[types.ModuleType] = []
+# Not empty when an uncaught KeyboardInterrupt ends the program.
+_interrupted: list[bool] = []
 
 
 def _die_of(fault: BaseException) -> NoReturn:
     """Prints an exception as an interpreter does that ends with it, without the lines of this file."""
     trace = fault.__traceback__.tb_next if fault.__traceback__ is not None else None
-    if isinstance(fault, KeyboardInterrupt):
-        atexit.register(_die_of_interrupt)
+    _interrupted.extend([True] if isinstance(fault, KeyboardInterrupt) else [])
     sys.excepthook(type(fault), fault.with_traceback(trace), trace)
     sys.exit(1)
 
 
 def _die_of_interrupt() -> None:
+    if not _interrupted:
+        return
     sys.stdout.flush()
     sys.stderr.flush()
     signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -1,8 +1,8 @@
 """The system calls that no student's node needs and that would weaken the sandbox: refused by a seccomp filter.
 
-Denied are: looking into other processes, changing mounts or namespaces, keys, kernel interfaces with a history of holes,
-and memory that no limit counts (System V shared memory, memfd). A list of what is refused, and not of what is allowed,
-so that no right node ever fails by it; the namespaces and the absence of every capability are what really confines.
+Denied are: looking into other processes, changing mounts or namespaces, keys, kernel interfaces with a history of
+holes, and memory that no limit counts (System V shared memory, memfd). A list of what is refused, and not of what is
+allowed, so that no right node ever fails by it; the namespaces and the absence of every capability are what confines.
 
 Source: seccomp(2), bpf(4), and the kernel's tables of system calls for x86-64 and arm64.
 """

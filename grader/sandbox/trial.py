@@ -1,6 +1,6 @@
-"""Tries whether a level of isolation works here, by starting a program in it: ends with 0, or prints why not and with 1.
+"""Tries whether a level of isolation works here, by starting a program in it: ends with 0, or says why not and with 1.
 
-    python -m grader.sandbox.trial LEVEL
+python -m grader.sandbox.trial LEVEL
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ import stat
 import sys
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Literal
 
@@ -55,9 +55,16 @@ class Step:
     size: int = 0
 
 
-def steps(program: Program, scratch_bytes: int) -> list[Step]:
-    """The steps that build the root for a program, in order. Each of its places to write to has `scratch_bytes`."""
-    shown = list(_without_nested([*interpreter(), *program.readonly]))
+@lru_cache(maxsize=8)
+def steps(readonly: tuple[Path, ...], hidden: tuple[Path, ...], scratch_bytes: int) -> tuple[Step, ...]:
+    """The steps that build a root, in order.
+
+    Args:
+        readonly: what is shown beside Python and ROS 2.
+        hidden: what is not, although it lies in something that is.
+        scratch_bytes: the size of each of the places to write to.
+    """
+    shown = list(_without_nested([*interpreter(), *readonly]))
     plan = _Plan()
     for place in ("/tmp", HOME):
         plan.add("scratch", place, size=scratch_bytes)
@@ -76,17 +83,17 @@ def steps(program: Program, scratch_bytes: int) -> list[Step]:
             plan.add("bind", str(path))
     for path_of_text, text in _TEXTS.items():
         plan.add("text", path_of_text, text)
-    masks = sorted(set(_masks((*own_packages(), *program.hidden), shown)))
+    masks = sorted(set(_masks((*own_packages(), *hidden), shown)))
     for mask in masks:
         plan.add("mask", str(mask))
-    for path in program.readonly:
+    for path in readonly:
         if _is_inside(path, masks):  # asked for by name, in a folder that is hidden otherwise
             plan.add("bind", str(path))
     for mask in masks:
         if mask.is_dir():
             plan.add("seal", str(mask))
     plan.add("seal", "/")
-    return plan.steps
+    return tuple(plan.steps)
 
 
 class _Plan:
@@ -114,6 +121,7 @@ def environment(program: Program, home: str, temporary: str) -> dict[str, str]:
     needed = {name: os.environ[name] for name in RUNTIME_VARIABLES if name in os.environ}
     return {
         **needed,
+        "PATH": f"{sys.prefix}/bin:/usr/local/bin:/usr/bin:/bin",
         "HOME": home,
         "TMPDIR": temporary,
         "ROS_LOG_DIR": f"{home}/log",
