@@ -1,0 +1,37 @@
+"""`spinbook turtle`: a picture of the turtlesim that is running."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+_SECONDS = click.FloatRange(min=0)
+
+
+@click.command()
+@click.argument(
+    "out", type=click.Path(dir_okay=False, path_type=Path), default="turtle.png", metavar="[OUT.png|OUT.svg]"
+)
+@click.option("--timeout", default=5.0, show_default=True, type=_SECONDS, help="Seconds to look for the node.")
+@click.option(
+    "--listen",
+    default=7.0,
+    show_default=True,
+    type=_SECONDS,
+    help="Seconds, all in all, to listen to a turtlesim that can't give a picture.",
+)
+@click.option("--node", default="/turtlesim", show_default=True, help="The node's full name.")
+def turtle(out: Path, timeout: float, listen: float, node: str) -> None:
+    """Draw the turtles of the running turtlesim and what they have drawn."""
+    # rclpy and matplotlib take long to import, and --help needs neither.
+    from spinbook.turtlesim.picture import NoPictureError, write
+
+    try:
+        world = write(out, timeout, listen, node)
+    except NoPictureError as error:
+        click.echo(str(error), err=True)
+        sys.exit(1)
+    turtles = ", ".join(each.name for each in world.turtles) or "no turtle"
+    click.echo(f"{out}: {turtles}" + (f" ({world.incomplete})" if world.incomplete else ""))

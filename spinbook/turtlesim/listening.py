@@ -1,0 +1,65 @@
+"""The path of a turtle as its pose topic tells it, for a turtlesim that has no picture to give."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+from typing import Any
+
+from geometry_msgs.msg import Pose2D
+from rclpy.node import Node
+
+from spinbook.turtlesim.geometry import SIDE
+from spinbook.turtlesim.pen import Pen
+from spinbook.turtlesim.trail import Point, Trail
+from spinbook.turtlesim.world_picture import BLUE, TurtlePicture, WorldPicture, strokes
+
+
+class Heard:
+    """Listens to `topic`, one turtle's poses, from the first `look` that finds it; `node` must be spun meanwhile."""
+
+    def __init__(self, node: Node, topic: str) -> None:
+        self.topic = topic
+        self._turtle = topic.split("/")[-2]
+        self._node = node
+        self._types = pose_types()
+        self._trail = Trail()
+        self._last: Any = None
+        self._listening = False
+
+    def look(self) -> None:
+        """Listen as soon as somebody publishes: the type is theirs, and a node may have one type a topic only."""
+        for found in self._published_types() if not self._listening else []:
+            if found in self._types:
+                self._node.create_subscription(self._types[found], self.topic, self._hear, 50)
+                self._listening = True
+                return
+
+    def _published_types(self) -> list[str]:
+        return sorted({each.topic_type for each in self._node.get_publishers_info_by_topic(self.topic)})
+
+    def _hear(self, pose: Any) -> None:
+        here: Point = (pose.x, pose.y)
+        before = here if self._last is None else (self._last.x, self._last.y)
+        if here != before:
+            self._trail.line(self._turtle, Pen(), before, here)
+        self._last = pose
+
+    def picture(self, incomplete: str) -> WorldPicture | None:
+        """The path heard so far in turtlesim's usual colours, which poses don't tell; None if nothing came."""
+        if self._last is None:
+            return None
+        turtle = TurtlePicture(self._turtle, self._last.x, self._last.y, self._last.theta, Pen())
+        return WorldPicture(SIDE, BLUE, (turtle,), strokes(self._trail.strokes), incomplete)
+
+    def unreadable_types(self) -> list[str]:
+        """What is published on the topic though this Python has no such message."""
+        return [found for found in self._published_types() if found not in self._types]
+
+
+def pose_types() -> dict[str, type]:
+    """The types a pose may have here, by name: turtlesim's own where it is installed, and its stand-in."""
+    types: dict[str, type] = {"geometry_msgs/msg/Pose2D": Pose2D}
+    with contextlib.suppress(ImportError):
+        types["turtlesim/msg/Pose"] = importlib.import_module("turtlesim.msg").Pose
+    return types
