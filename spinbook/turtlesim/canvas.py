@@ -36,7 +36,9 @@ class Canvas:
 
     def line(self, start: Place, end: Place, pen: Pen) -> None:
         """Draw a straight line with square caps from `start` to `end` (units, y down)."""
-        x0, y0, x1, y1 = (part * PIXELS_PER_UNIT for part in (*start, *end))
+        # Measured from the end that is nearer to the canvas: the other may be too far away to be exact.
+        near, far = sorted((start, end), key=lambda place: math.hypot(*place))
+        x0, y0, x1, y1 = (part * PIXELS_PER_UNIT for part in (*near, *far))
         half = pen.width / 2
         # A cap's corner lies up to sqrt(2) of half the width away.
         reach = half * math.sqrt(2)

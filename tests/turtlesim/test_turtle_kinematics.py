@@ -113,10 +113,11 @@ def act(driven: Driven, oracle: OracleTurtle, kind: str, numbers: tuple[float, .
     elif kind == "rotate":
         driven.world.rotate("turtle1", 1, *numbers)
         oracle.goal = numbers[0]
+    elif kind == "absolute":
+        driven.world.teleport_absolute("turtle1", *numbers)
+        oracle.jumps.append((kind, numbers))
     else:
-        {"absolute": driven.world.teleport_absolute, "relative": driven.world.teleport_relative}[kind](
-            "turtle1", *numbers
-        )
+        driven.world.teleport_relative("turtle1", *numbers)
         oracle.jumps.append((kind, numbers))
 
 
