@@ -44,6 +44,12 @@ def _tell(**what: Any) -> None:
 
 async def run(notebook: Any, folder: Path, deadline_s: float) -> None:
     """Run the cells of `notebook` in place, in `folder`, failing ones too, and tell how it ended."""
+    current = 0
+
+    def on_start(cell: Any, cell_index: int) -> None:
+        nonlocal current
+        current = cell_index
+
     client = NotebookClient(
         notebook,
         km=_kernel_manager(),
@@ -52,20 +58,21 @@ async def run(notebook: Any, folder: Path, deadline_s: float) -> None:
         record_timing=False,
         coalesce_streams=True,
         resources={"metadata": {"path": str(folder)}},
+        on_cell_execute=on_start,
         on_cell_executed=lambda cell, cell_index, execute_reply: _tell(done=cell_index + 1),
     )
     _tell(cells=len(notebook.cells))
     running = asyncio.ensure_future(client.async_execute())
     done, _ = await asyncio.wait([running], timeout=deadline_s)
     if not done:
-        _tell(timed_out=_first_unfinished(notebook))
+        _tell(timed_out=current)
         running.cancel()
         await asyncio.wait([running], timeout=_FAREWELL_S)
         return
     try:
         running.result()
     except DeadKernelError:
-        _tell(died=_first_unfinished(notebook))
+        _tell(died=current)
     else:
         _tell(finished=True)
 
@@ -76,13 +83,6 @@ def _kernel_manager() -> Any:
     manager.transport = "ipc"
     manager.ip = str(Path(tempfile.mkdtemp(prefix="sb-")) / "k")
     return manager
-
-
-def _first_unfinished(notebook: Any) -> int:
-    for index, cell in enumerate(notebook.cells):
-        if cell.cell_type == "code" and cell.source.strip() and not cell.execution_count:
-            return index
-    return len(notebook.cells) - 1
 
 
 def main() -> None:

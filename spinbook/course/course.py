@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -65,13 +66,16 @@ def find_course(start: Path) -> Course:
 def read_course(root: Path) -> Course:
     """Read `root / course.toml`. Raises SpinbookError with all that is wrong in it."""
     try:
-        data = tomllib.loads((root / FILE).read_text(encoding="utf-8-sig"))
-    except tomllib.TOMLDecodeError as error:
-        raise SpinbookError(
-            Problem(FILE, None, f"it is not TOML: {error}.", "See docs/writing-chapters.md.")
-        ) from None
+        text = (root / FILE).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise SpinbookError(Problem(FILE, None, f"it can't be read: {error}.", "Save it as UTF-8.")) from None
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        at = re.search(r"line (\d+)", str(error))
+        line = int(at.group(1)) if at else text.count("\n") + 1
+        mend = "Texts stand in quotes, lists in square brackets; see docs/writing-chapters.md."
+        raise SpinbookError(Problem(FILE, line, f"it is not TOML: {error}.", mend)) from None
     problems: list[Problem] = []
     title = _text(data, "title", problems)
     chapters = data.get("chapters")
@@ -82,17 +86,13 @@ def read_course(root: Path) -> Course:
     for name in {c for c in chapters if chapters.count(c) > 1}:
         problems.append(Problem(FILE, None, f"`{name}` is listed twice.", "Take one of them out."))
     stems = [Path(c).stem for c in chapters]
-    for stem in sorted(
-        {s for s in stems if stems.count(s) > 1 and chapters.count(chapters[stems.index(s)]) == 1}
-    ):
+    for stem in sorted({s for s in stems if stems.count(s) > 1 and chapters.count(chapters[stems.index(s)]) == 1}):
         found = f"two chapters would both become {stem}.ipynb."
         problems.append(Problem(FILE, None, found, "Give one of the files another name."))
     for name in chapters:
         if Path(name).is_absolute() or ".." in Path(name).parts:
             problems.append(
-                Problem(
-                    FILE, None, f"`{name}` is outside the course.", "Name files inside the course's folder."
-                )
+                Problem(FILE, None, f"`{name}` is outside the course.", "Name files inside the course's folder.")
             )
     package = _package(data.get("package"), problems)
     if problems:
@@ -132,17 +132,13 @@ def _package(table: Any, problems: list[Problem]) -> Package | None:
     if not (name[:1].isalpha() and name.isidentifier() and name.islower() and "__" not in name):
         found = f"`{name}` can't be a ROS package's name."
         problems.append(
-            Problem(
-                FILE, None, found, "Use lower-case letters, digits and single underscores, a letter first."
-            )
+            Problem(FILE, None, found, "Use lower-case letters, digits and single underscores, a letter first.")
         )
     unknown = sorted(set(table) - set(Package.__dataclass_fields__))
     if unknown:
         known = ", ".join(Package.__dataclass_fields__)
         problems.append(
-            Problem(
-                FILE, None, f"`[package]` has unknown keys: {', '.join(unknown)}.", f"Known are: {known}."
-            )
+            Problem(FILE, None, f"`[package]` has unknown keys: {', '.join(unknown)}.", f"Known are: {known}.")
         )
         return None
     return Package(**{key: str(value) for key, value in table.items()})
