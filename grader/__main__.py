@@ -1,0 +1,5 @@
+"""`python -m grader`."""
+
+from grader.command import grade
+
+grade(prog_name="python -m grader")

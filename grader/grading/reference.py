@@ -1,0 +1,105 @@
+"""The solution's recordings, against which students' are compared: made once, then kept."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import tempfile
+from pathlib import Path
+
+from grader.checking.verdict import Verdict
+from grader.crew.jobs import JudgeJob
+from grader.exercise import Exercise, ExerciseError
+from grader.exercise.starter import MarkError, starter
+from grader.grading.spinning import Spinner
+from grader.grading.versions import digest_of, versions
+from grader.recording import Recording
+from grader.recording.store import from_json, to_json
+from grader.submission.reading import of_source
+
+
+def reference(spinner: Spinner) -> dict[str, Recording]:
+    """The solution's recordings, by scenario.
+
+    They are made when anything that they depend on has changed; then the exercise itself is put to the test: the
+    solution must pass every check and the points must add up. Raises `ExerciseError` where they do not.
+    """
+    kept = _kept_in(spinner)
+    try:
+        return from_json(kept.read_text(encoding="utf-8"))
+    except (OSError, ValueError, KeyError, TypeError):
+        pass
+    recordings = _made(spinner)
+    _prove(spinner, recordings)
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=kept.parent, delete=False) as file:
+        file.write(to_json(recordings))
+    Path(file.name).replace(kept)
+    return recordings
+
+
+def cache_folder() -> Path:
+    """Where the solution's recordings are kept: `SPINBOOK_CACHE`, else the user's cache folder."""
+    if given := os.environ.get("SPINBOOK_CACHE"):
+        return Path(given) / "reference"
+    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(base) / "spinbook" / "reference"
+
+
+def solution_file(exercise: Exercise) -> Path:
+    """The author's solution. Raises `ExerciseError` when there is none."""
+    file = exercise.solution_file
+    if not file or not file.exists():
+        expected = exercise.folder.parent.parent / "solutions" / exercise.name / "solution.py"
+        raise ExerciseError(expected, "there is no such file", "The checks compare with the solution; write it here.")
+    return file
+
+
+def _kept_in(spinner: Spinner) -> Path:
+    exercise = spinner.exercise
+    key = {
+        "solution": digest_of([solution_file(exercise)]),
+        "exercise": digest_of([exercise.folder / "exercise.toml", *exercise.check_files]),
+        "scenarios": [scenario.digest for scenario in spinner.scenarios],
+        "versions": versions(),
+        "pace": spinner.options.pace,
+    }
+    digest = hashlib.sha256(json.dumps(key, sort_keys=True).encode()).hexdigest()
+    return cache_folder() / f"{exercise.name}-{digest[:24]}.json"
+
+
+def _made(spinner: Spinner) -> dict[str, Recording]:
+    file = solution_file(spinner.exercise)
+    code = file.read_bytes()
+    try:
+        starter(code.decode("utf-8"))
+    except MarkError as error:
+        raise ExerciseError(file, str(error), "Put every mark in order; the starter is made from them.") from None
+    recordings = spinner.spin(of_source("the solution", code, spinner.exercise))
+    for recording in recordings.values():
+        ending = recording.ending
+        if ending.outcome != "completed":
+            found = f"the solution does not come through the scenario {recording.scenario}: {ending.story}"
+            raise ExerciseError(file, found, "Mend the solution or the scenario.", ending.line)
+    return recordings
+
+
+def _prove(spinner: Spinner, recordings: dict[str, Recording]) -> None:
+    exercise = spinner.exercise
+    titles = {scenario.name: scenario.title for scenario in spinner.scenarios}
+    verdicts: tuple[Verdict, ...] = spinner.crew.do(JudgeJob(exercise, recordings, recordings, titles))
+    checks = exercise.check_files[0]
+    for verdict in verdicts:
+        if verdict.status == "error":
+            raise ExerciseError(checks, f"the check {verdict.name} breaks: {verdict.error}", "Mend the check.")
+        if verdict.status == "failed":
+            told = verdict.finding.text if verdict.finding else ""
+            found = f"the solution does not pass the check {verdict.name}: {told}"
+            raise ExerciseError(checks, found, "Mend the check or the solution.")
+    total = sum(verdict.points for verdict in verdicts)
+    # In a student's copy the hidden checks are missing, and with them their points.
+    complete = (exercise.folder / "hidden_checks.py").exists() or exercise.solution_folder is None
+    if complete and abs(total - exercise.points) > 1e-9:
+        found = f"the checks give {total:g} points together, but points = {exercise.points:g}"
+        raise ExerciseError(exercise.folder / "exercise.toml", found, "Make the two agree.")

@@ -1,0 +1,82 @@
+"""Spins one program through all scenarios, several at once."""
+
+from __future__ import annotations
+
+import os
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+from grader.crew import Crew
+from grader.crew.environment import PROFILE, STUDENTS
+from grader.crew.jobs import SpinJob
+from grader.exercise import Exercise
+from grader.grading.options import Options
+from grader.recording import Ending, Recording
+from grader.sandbox import Isolation
+from grader.scenario import Scenario
+from grader.submission import Submission
+
+ARGUMENTS = ("--ros-args", "-p", "use_sim_time:=true")
+
+
+@dataclass(frozen=True)
+class Spinner:
+    """Spins submissions of one exercise through its scenarios, at one level of isolation."""
+
+    exercise: Exercise
+    scenarios: tuple[Scenario, ...]
+    isolation: Isolation
+    options: Options
+    crew: Crew
+
+    def spin(self, submission: Submission) -> dict[str, Recording]:
+        """The recording of each scenario. Raises `HostFault` when one can't be had.
+
+        The first scenario decides whether the program works at all; if it does not, nothing else is spun, and every
+        recording ends as that one does.
+        """
+        gave_up = threading.Event()
+        jobs = [self._job(submission, scenario, i) for i, scenario in enumerate(self.scenarios)]
+        # The longest first, so that none is left over at the end; the very first is needed at once.
+        rest = sorted(jobs[1:], key=lambda job: -len(job.scenario.messages))
+        with ThreadPoolExecutor(self.options.parallel) as pool:
+            try:
+                futures = {job.scenario.name: pool.submit(self.crew.do, job, gave_up) for job in (jobs[0], *rest)}
+                first: Recording = futures[self.scenarios[0].name].result()
+                if first.ending.outcome != "completed":
+                    return {scenario.name: _likewise(first, scenario) for scenario in self.scenarios}
+                self.crew.prepare_to_judge()
+                return {scenario.name: futures[scenario.name].result() for scenario in self.scenarios}
+            finally:
+                gave_up.set()
+                for future in futures.values():
+                    future.cancel()
+
+    def _job(self, submission: Submission, scenario: Scenario, number: int) -> SpinJob:
+        assert submission.program
+        program = replace(
+            submission.program,
+            arguments=ARGUMENTS,
+            environment={**STUDENTS, **submission.program.environment},
+            readonly=(PROFILE, *submission.program.readonly),
+            hidden=(self.exercise.folder, *([self.exercise.solution_folder] if self.exercise.solution_folder else [])),
+        )
+        cores = sorted(os.sched_getaffinity(0))
+        return SpinJob(
+            exercise=self.exercise,
+            scenario=scenario,
+            program=program,
+            isolation=self.isolation,
+            limits=self.options.limits,
+            source=submission.source,
+            file_name=submission.file_name,
+            core=cores[number % len(cores)],
+            pace=self.options.pace,
+        )
+
+
+def _likewise(first: Recording, scenario: Scenario) -> Recording:
+    if first.scenario == scenario.name:
+        return first
+    return Recording(scenario.name, (), (), first.nodes, (), "none", False, Ending(first.ending.outcome, first.ending.story))
