@@ -61,12 +61,22 @@ def _of_the_kind(name: str, value: object, default: object) -> float | int | str
     if isinstance(default, str):
         return str(value) if value is not None else ""
     if isinstance(default, float):
-        if isinstance(value, int | float) and not isinstance(value, bool):
-            return float(value) if abs(value) < 1e300 else math.inf
-        raise ValueError(f"{name} must be a number, not {value!r}")
+        return _number(name, value)
     if isinstance(value, int) and 0 <= value <= 255:
         return int(value)
     raise ValueError(f"{name} must be a whole number from 0 to 255, not {value!r}")
+
+
+def _number(name: str, value: object) -> float:
+    # YAML takes 1e-1, without a point, for text.
+    if isinstance(value, int | float | str) and not isinstance(value, bool):
+        try:
+            return float(value)
+        except OverflowError:
+            return math.inf
+        except ValueError:
+            pass
+    raise ValueError(f"{name} must be a number, not {value!r}")
 
 
 def _expected(defaults: dict[str, Any], found: str) -> str:

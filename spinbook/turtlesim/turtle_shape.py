@@ -50,7 +50,7 @@ def _flipper(corners: list[tuple[float, float]], side: int, look: dict[str, Any]
 
 
 def _head(skin: str) -> Iterator[Shape]:
-    yield Ellipse((0.43, 0), 0.32, 0.27, facecolor=skin, edgecolor=_LINE, linewidth=0.8)
+    yield Ellipse((0.43, 0), 0.32, 0.27, gid="head", facecolor=skin, edgecolor=_LINE, linewidth=0.8)
     for side in (1, -1):
         yield Circle((0.485, side * 0.078), 0.046, facecolor="white", edgecolor=_LINE, linewidth=0.5)
         yield Circle((0.5, side * 0.08), 0.024, facecolor=_LINE, linewidth=0)
