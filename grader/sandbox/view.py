@@ -124,6 +124,7 @@ def environment(program: Program, home: str, temporary: str) -> dict[str, str]:
         "PATH": f"{sys.prefix}/bin:/usr/local/bin:/usr/bin:/bin",
         "HOME": home,
         "TMPDIR": temporary,
+        "PYTHONUNBUFFERED": "1",
         "ROS_LOG_DIR": f"{home}/log",
         "USER": "student",
         "LOGNAME": "student",

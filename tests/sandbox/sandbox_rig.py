@@ -1,0 +1,132 @@
+"""A rig in a process of its own, for tests: it enters its namespaces once, then runs what a test hands to it.
+
+Also as a user who is not root, when the tests are run as root: the rig's process then changes its user before anything.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+from grader.sandbox import Exit, Isolation, Limits, Nursery, Program, enter, kernel
+
+NOBODY = 65534
+
+
+@dataclass(frozen=True)
+class Run:
+    """How a program ended and what it printed."""
+
+    exit: Exit | None
+    text: str
+
+
+class Rig:
+    """A rig's process as a test holds it: functions of a test module are run in there."""
+
+    def __init__(self, level: Isolation, *, rootless: bool) -> None:
+        """Starts it."""
+        self.level = level
+        self.rootless = rootless
+        context = multiprocessing.get_context("spawn")
+        self._connection, theirs = context.Pipe()
+        self._process = context.Process(target=_serve, args=(theirs, level, rootless), daemon=False)
+        self._process.start()
+        theirs.close()
+
+    def do(self, function: Callable[..., Any], *arguments: object) -> Any:
+        """Calls `function(nursery, level, *arguments)` in the rig and returns what it returns."""
+        self._connection.send((function, arguments))
+        fault, result = self._connection.recv()
+        if fault is not None:
+            raise AssertionError(f"in the rig's process: {fault}")
+        return result
+
+    def run(
+        self,
+        source: str | bytes,
+        *,
+        limits: Limits | None = None,
+        warm: bool = True,
+        name: str = "student.py",
+        environment: Mapping[str, str] | None = None,
+        timeout_s: float = 60.0,
+    ) -> Run:
+        """Runs a program in a sandbox until its first process ends, and kills the rest."""
+        content = source if isinstance(source, bytes) else source.encode()
+        program = Program(name, {name: content}, ("--ros-args",), environment=environment or {}, warm=warm)
+        run: Run = self.do(run_to_end, program, limits, timeout_s)
+        return run
+
+    @property
+    def pid(self) -> int:
+        """The number of the rig's process."""
+        assert self._process.pid is not None
+        return self._process.pid
+
+    def kill(self) -> None:
+        """Kills the rig's process as the kernel would for want of memory."""
+        self._process.kill()
+        self._process.join()
+
+    def close(self) -> None:
+        """Ends the rig."""
+        self._connection.close()
+        self._process.join(20)
+        self._process.kill()
+
+
+def run_to_end(
+    nursery: Nursery, level: Isolation, program: Program, limits: Limits | None, timeout_s: float
+) -> Run:
+    """Runs in the rig."""
+    with nursery.start(program, level, limits) as student:
+        end = student.wait(timeout_s)
+    return Run(end, student.output().text)
+
+
+def _serve(connection: Connection, level: Isolation, rootless: bool) -> None:
+    if rootless:
+        become_nobody()
+    enter(level)
+    with Nursery() as nursery:
+        while True:
+            try:
+                function, arguments = connection.recv()
+            except EOFError:
+                return
+            try:
+                connection.send((None, function(nursery, level, *arguments)))
+            except Exception as fault:
+                connection.send((f"{type(fault).__name__}: {fault}", None))
+
+
+def become_nobody() -> None:
+    """Gives up root for good. The Python in use stays readable, also where it lies in root's own home."""
+    kernel.unshare(kernel.CLONE_NEWNS)
+    kernel.mount("", "/", flags=kernel.MS_REC | kernel.MS_PRIVATE)
+    needed = {Path(path).resolve() for path in (sys.prefix, sys.base_prefix)}
+    closed = {parent for path in needed for parent in path.parents if not parent.stat().st_mode & 0o001}
+    for folder in sorted(closed):
+        inside = [path for path in needed if path.is_relative_to(folder)]
+        held = {path: os.open(path, os.O_PATH) for path in inside}
+        kernel.mount("tmpfs", str(folder), "tmpfs", 0, "mode=0755")
+        for path, number in held.items():
+            path.mkdir(parents=True)
+            kernel.mount(f"/proc/self/fd/{number}", str(path), flags=kernel.MS_BIND | kernel.MS_REC)
+            os.close(number)
+    home = tempfile.mkdtemp(prefix="nobody-")
+    os.chown(home, NOBODY, NOBODY)
+    os.setgroups([])
+    os.setresgid(NOBODY, NOBODY, NOBODY)
+    os.setresuid(NOBODY, NOBODY, NOBODY)
+    kernel.prctl(kernel.PR_SET_DUMPABLE, 1)  # lost with the change of user; a user who has logged in has it
+    os.environ.update(HOME=home, TMPDIR=tempfile.gettempdir())
+    os.chdir("/")

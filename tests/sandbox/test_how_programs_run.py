@@ -1,0 +1,131 @@
+"""A student's program runs in a sandbox as `python student.py` would run it."""
+
+from __future__ import annotations
+
+import signal
+
+import pytest
+from sandbox_rig import Rig
+
+from grader.sandbox import Exit, Isolation, Nursery, Program
+
+PROGRAMS = {
+    "says who it is": "import sys\nprint(__name__, __file__, sys.argv, sys.path[0], __spec__, __builtins__)",
+    "prints to both": "import sys\nprint('out')\nprint('err', file=sys.stderr)\nprint('out again')",
+    "ends with a code": "import sys\nsys.exit(3)",
+    "ends with words": "import sys\nsys.exit('what went wrong')",
+    "ends at once": "import os\nprint('before', flush=True)\nos._exit(7)",
+    "raises": "def callback():\n    raise RuntimeError('message 37')\n\ncallback()",
+    "raises from": "try:\n    1 / 0\nexcept ZeroDivisionError as e:\n    raise ValueError('x') from e",
+    "has a syntax error": "def broken(:\n    pass\n",
+    "does not import": "import a_library_that_does_not_exist",
+    "cleans up": "import atexit\natexit.register(print, 'cleaned up')\nraise SystemExit(2)",
+    "waits for threads": (
+        "import threading, time\nthreading.Thread(target=lambda: (time.sleep(0.1), print('thread'))).start()"
+    ),
+    "kills itself": "import os, signal\nos.kill(os.getpid(), signal.SIGTERM)",
+    "has a hook": "import sys\nsys.excepthook = lambda *_: print('hooked')\n1 / 0",
+    "is a dataclass": "from dataclasses import dataclass\n@dataclass\nclass A:\n    x: 'int' = 1\nprint(A())",
+    "pickles itself": "import pickle\nclass A: pass\nprint(type(pickle.loads(pickle.dumps(A()))).__module__)",
+    "reads its input": "import sys\nprint(repr(sys.stdin.read()))",
+}
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_a_warm_start_behaves_as_a_new_python(any_rig: Rig, name: str) -> None:
+    warm = any_rig.run(PROGRAMS[name])
+    cold = any_rig.run(PROGRAMS[name], warm=False)
+
+    if any_rig.level in (Isolation.LANDLOCK, Isolation.NONE):  # a folder with a random name
+        assert warm.exit == cold.exit
+        assert len(warm.text.splitlines()) == len(cold.text.splitlines())
+    else:
+        assert (warm.exit, warm.text) == (cold.exit, cold.text)
+
+
+def test_the_source_may_declare_its_encoding(any_rig: Rig) -> None:
+    run = any_rig.run("# -*- coding: latin-1 -*-\nprint('größer')".encode("latin-1"))
+
+    assert run.text == "größer\n"
+
+
+def test_source_that_is_not_utf8_is_a_syntax_error_of_the_student(any_rig: Rig) -> None:
+    run = any_rig.run("print('größer')".encode("latin-1"))
+
+    assert run.exit == Exit(1, None, None)
+    assert "SyntaxError" in run.text
+    assert "grader" not in run.text
+
+
+@pytest.mark.parametrize("name", ["a file.py", "größe.py", "-c.py", "'; rm -rf ~ #.py", "\n.py", "a" * 200 + ".py"])
+def test_odd_file_names_are_run(any_rig: Rig, name: str) -> None:
+    run = any_rig.run("print('ran')", name=name)
+
+    assert run.text == "ran\n"
+
+
+@pytest.mark.parametrize("name", ["../x.py", "/etc/x.py", "", "..", "a/b.py", "x\0.py"])
+def test_a_file_name_that_leaves_the_folder_is_refused(name: str) -> None:
+    with pytest.raises(ValueError, match="not a plain file name"):
+        Program("main.py", {"main.py": b"", name: b""})
+
+
+def test_only_the_environment_that_was_passed_arrives(any_rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
+    code = "import os\nprint(sorted(os.environ))\nprint(os.environ['GIVEN'])"
+
+    names, given = any_rig.run(code, environment={"GIVEN": "this"}).text.splitlines()
+
+    assert given == "this"
+    assert not {"PYTEST_CURRENT_TEST", "SSH_AUTH_SOCK", "PIP_CERT", "TERM", "SHELL", "PWD"} & set(eval(names))
+
+
+def test_the_nursery_is_not_to_be_seen_in_the_program(any_rig: Rig) -> None:
+    code = "import sys\nprint([name for name in sys.modules if name.split('.')[0] in ('grader', 'spinbook')])"
+
+    assert any_rig.run(code).text == "[]\n"
+
+
+def interrupt_a_spinning_node(nursery: Nursery, level: Isolation) -> tuple[Exit | None, str]:
+    code = "import signal\nprint('ready')\ntry:\n    signal.pause()\nfinally:\n    print('finally')\n"
+    with nursery.start(Program("n.py", {"n.py": code.encode()}), level) as student:
+        while "ready" not in student.output().text:
+            assert student.wait(0.001) is None
+        student.interrupt()
+        return student.wait(30.0), student.output().text
+
+
+def test_an_interrupt_is_what_ctrl_c_is(any_rig: Rig) -> None:
+    end, text = any_rig.do(interrupt_a_spinning_node)
+
+    assert end == Exit(None, signal.SIGINT, None)
+    assert "finally" in text
+    assert text.rstrip().endswith("KeyboardInterrupt")
+
+
+def watch_cpu(nursery: Nursery, level: Isolation) -> tuple[bool, float, int, int]:
+    busy = Program("n.py", {"n.py": b"print('ready')\nwhile True: pass"})
+    with nursery.start(busy, level, core=0) as student:
+        while student.cpu_seconds() < 0.3:
+            assert student.wait(0.001) is None
+        runs = any(student.runnable_threads() == 1 for _ in range(100))
+        return runs, student.cpu_seconds(), student.processes(), student.pid
+
+
+def test_the_rig_sees_what_the_program_uses(any_rig: Rig) -> None:
+    runs, cpu_s, processes, pid = any_rig.do(watch_cpu)
+
+    assert runs
+    assert cpu_s >= 0.3
+    assert processes == 1
+    assert pid > 1
+
+
+def test_a_program_stays_on_its_core(confined_rig: Rig) -> None:
+    assert confined_rig.do(escape_the_core) == "{0}\n"
+
+
+def escape_the_core(nursery: Nursery, level: Isolation) -> str:
+    code = "import os\nos.sched_setaffinity(0, range(os.cpu_count()))\nprint(os.sched_getaffinity(0))"
+    with nursery.start(Program("n.py", {"n.py": code.encode()}), level, core=0) as student:
+        student.wait(30.0)
+    return student.output().text
