@@ -7,6 +7,7 @@ that is still inside the middleware; three after the clock and two after message
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Literal
 
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
@@ -15,7 +16,7 @@ from type_description_interfaces.srv import GetTypeDescription
 
 from grader.rig.graph import Graph
 from grader.rig.patience import Patience
-from grader.rig.quiet import activity, wait_for_quiet
+from grader.rig.quiet import Threads
 from grader.rig.ros import Ros
 from grader.rig.stopped import Stopped
 from grader.rig.student import Student
@@ -37,6 +38,11 @@ DEAF = (
     "callback wait or sleep?"
 )
 
+SLEEPY = "Your node waits and sleeps instead of answering: {0:g} s in this scenario. Let callbacks return at once."
+
+#: A node may be blocked this long in one scenario, over all messages.
+MOST_BLOCKED_S = 20.0
+
 
 class Gone(Exception):
     """Raised when the student's program has ended by itself."""
@@ -48,6 +54,8 @@ class Fence:
     def __init__(self, ros: Ros, node: Any, student: Student) -> None:
         self._ros, self._node, self._student = ros, node, student
         self._calls: list[tuple[Any, Any]] = []
+        self._threads = Threads(student.pid)
+        self._blocked = 0.0
         self._restless = 0
         self.hold: Hold = "quiet"
 
@@ -81,13 +89,7 @@ class Fence:
         self._wait_until_ready()
 
     def _wait_until_ready(self) -> None:
-        patience = Patience(self._student, cpu_s=10.0)
-
-        def meanwhile() -> None:
-            self.alive()
-            patience.check(ENDLESS.format(10.0), DEAF)
-
-        self._ros.turn_until(lambda: all(c.service_is_ready() for c, _ in self._calls), meanwhile, 0.002)
+        self._wait_for(lambda: all(client.service_is_ready() for client, _ in self._calls), 10.0, 0.002)
 
     def wait(self, times: int) -> None:
         """Wait until the nodes have handled what was published before this call. Raises `Stopped` or `Gone`."""
@@ -97,14 +99,25 @@ class Fence:
         self._ros.turn()
 
     def _once(self) -> None:
-        patience = Patience(self._student)
         answers = [client.call_async(request) for client, request in self._calls]
+        self._wait_for(lambda: all(answer.done() for answer in answers))
+
+    def _wait_for(self, done: Callable[[], bool], cpu_s: float = 3.0, every_s: float = 0.02) -> None:
+        """Handle what arrives until `done`. Raises `Stopped` or `Gone` when it can't be waited for any longer."""
+        patience: Patience | None = None
 
         def meanwhile() -> None:
+            nonlocal patience
             self.alive()
-            patience.check(ENDLESS.format(3.0), DEAF)
+            # Most waits are over before this is needed the first time.
+            patience = patience or Patience(self._student, cpu_s)
+            blocked = patience.blocked
+            patience.check(ENDLESS.format(cpu_s), DEAF)
+            self._blocked += patience.blocked - blocked
+            if self._blocked > MOST_BLOCKED_S:
+                raise Stopped("timed-out", SLEEPY.format(MOST_BLOCKED_S))
 
-        self._ros.turn_until(lambda: all(answer.done() for answer in answers), meanwhile)
+        self._ros.turn_until(done, meanwhile, every_s)
 
     def _rest(self) -> None:
         """Wait until none of the program's threads is at work: a node may use threads of its own."""
@@ -112,33 +125,28 @@ class Fence:
         if self.hold == "quiet":
             self._rest_without_answers()
         elif self._restless < RESTLESS_TIMES:
-            before = activity(self._student.pid)
-            if before is not None and before == activity(self._student.pid):
-                return
-            if not wait_for_quiet(self._student.pid, 0.0, RESTLESS_S):
+            if not self._threads.still() and not self._threads.wait_until_still(0.0, RESTLESS_S):
                 self._restless += 1
 
     def _rest_without_answers(self) -> None:
         patience = Patience(self._student)
-        while not wait_for_quiet(self._student.pid, STILL_S, 0.1):
+        while not self._threads.wait_until_still(STILL_S, 0.1):
             self.alive()
             self._ros.turn()
             if patience.ended() == "cpu":
                 raise Stopped("timed-out", ENDLESS.format(3.0))
 
+    def close(self) -> None:
+        """Let go of the student's program."""
+        self._threads.close()
+
     def call(self, kind: Any, name: str, request: Any) -> Any:
         """Call any service of the node and return its answer."""
         client = self._node.create_client(kind, name)
-        patience = Patience(self._student)
-
-        def meanwhile() -> None:
-            self.alive()
-            patience.check(ENDLESS.format(3.0), DEAF)
-
         try:
-            self._ros.turn_until(client.service_is_ready, meanwhile, 0.002)
+            self._wait_for(client.service_is_ready, every_s=0.002)
             answer = client.call_async(request)
-            self._ros.turn_until(answer.done, meanwhile)
+            self._wait_for(answer.done)
             return answer.result()
         finally:
             self._node.destroy_client(client)

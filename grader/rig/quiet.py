@@ -2,52 +2,97 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import time
-from pathlib import Path
 
-#: Process -> thread -> what its schedstat says: ns on a CPU, ns waiting for one, times it got one.
-Activity = dict[str, str]
+#: Thread -> what its schedstat says: ns on a CPU, ns waiting for one, times it got one.
+Activity = dict[str, bytes]
+
+#: How often a program's child processes are looked for.
+CHILDREN_EVERY_S = 0.05
 
 
-def activity(pid: int) -> Activity | None:
-    """The state of every thread of `pid` and of its children; None where one of them runs or could run."""
-    seen: Activity = {}
-    waiting = [str(pid)]
-    while waiting:
-        process = waiting.pop()
-        try:
-            threads = os.listdir(f"/proc/{process}/task")
-        except OSError:
-            continue
-        for thread in threads:
-            task = f"/proc/{process}/task/{thread}"
+class Threads:
+    """The threads of a program and of its children. Files stay open from one look to the next, which makes one cheap."""
+
+    def __init__(self, pid: int) -> None:
+        self._pid = pid
+        self._processes = [str(pid)]
+        self._searched = 0.0
+        self._open: dict[str, tuple[int, int]] = {}
+
+    def activity(self) -> Activity | None:
+        """What each thread has done so far; None where one of them runs or could run."""
+        self._find_children()
+        seen: Activity = {}
+        for process in self._processes:
             try:
-                stat = Path(task, "stat").read_text()
-                seen[task] = Path(task, "schedstat").read_text()
-                children = Path(task, "children").read_text()
+                threads = os.listdir(f"/proc/{process}/task")  # noqa: PTH208: names alone, quickly
             except OSError:
                 continue
-            # The state follows the program's name, which may hold any character but ends with the last bracket.
-            if stat.rpartition(")")[2].split()[0] == "R":
-                return None
-            waiting += children.split()
-    return seen
+            for thread in threads:
+                task = f"/proc/{process}/task/{thread}"
+                try:
+                    stat, schedstat = self._open.get(task) or self._opened(task)
+                    # The state follows the program's name, which may hold any character but ends with the last bracket.
+                    if os.pread(stat, 512, 0).rpartition(b") ")[2][:1] == b"R":
+                        return None
+                    seen[task] = os.pread(schedstat, 128, 0)
+                except OSError:
+                    self._close(task)
+        return seen
 
+    def still(self) -> bool:
+        """Whether no thread is at work, and none got a CPU between two looks."""
+        before = self.activity()
+        return before is not None and before == self.activity()
 
-def wait_for_quiet(pid: int, still_s: float, deadline_s: float) -> bool:
-    """Wait until no thread of `pid` has got a CPU for `still_s` seconds; False when it never came to that.
+    def wait_until_still(self, for_s: float, deadline_s: float) -> bool:
+        """Wait until no thread has got a CPU for `for_s` seconds; False when it does not come to that in time.
 
-    Packets on the loopback reach the receiving thread before the sender's call returns, and each thread wakes the
-    next before it sleeps, so a message that is on its way always shows as a thread that runs, could run or has run.
-    """
-    deadline = time.monotonic() + deadline_s
-    before, since = activity(pid), time.monotonic()
-    while time.monotonic() < deadline:
-        time.sleep(still_s / 2)
-        now = activity(pid)
-        if now is None or now != before:
-            before, since = now, time.monotonic()
-        elif time.monotonic() - since >= still_s:
-            return True
-    return False
+        Packets on the loopback reach the receiving thread before the sender's call returns, and each thread wakes the
+        next before it sleeps, so a message that is on its way always shows as a thread that runs, could run or has run.
+        """
+        deadline = time.monotonic() + deadline_s
+        before, since = self.activity(), time.monotonic()
+        while time.monotonic() < deadline:
+            time.sleep(for_s / 2)
+            now = self.activity()
+            if now is None or now != before:
+                before, since = now, time.monotonic()
+            elif time.monotonic() - since >= for_s:
+                return True
+        return False
+
+    def close(self) -> None:
+        """Close every file."""
+        for task in list(self._open):
+            self._close(task)
+
+    def _opened(self, task: str) -> tuple[int, int]:
+        stat = os.open(f"{task}/stat", os.O_RDONLY | os.O_CLOEXEC)
+        try:
+            self._open[task] = (stat, os.open(f"{task}/schedstat", os.O_RDONLY | os.O_CLOEXEC))
+        except OSError:
+            os.close(stat)
+            raise
+        return self._open[task]
+
+    def _close(self, task: str) -> None:
+        for descriptor in self._open.pop(task, ()):
+            os.close(descriptor)
+
+    def _find_children(self) -> None:
+        if time.monotonic() - self._searched < CHILDREN_EVERY_S:
+            return
+        self._searched = time.monotonic()
+        found, waiting = [], [str(self._pid)]
+        while waiting:
+            process = waiting.pop()
+            found.append(process)
+            with contextlib.suppress(OSError):
+                for thread in os.listdir(f"/proc/{process}/task"):  # noqa: PTH208
+                    with contextlib.suppress(OSError), open(f"/proc/{process}/task/{thread}/children") as file:  # noqa: PTH123
+                        waiting += file.read().split()
+        self._processes = found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -55,10 +56,12 @@ class Ros:
 
     def turn_until(self, done: Callable[[], bool], meanwhile: Callable[[], None], every_s: float = 0.02) -> None:
         """Handle what arrives until `done`; `meanwhile` is called at least every `every_s` and may raise."""
+        due = time.monotonic() + every_s
         while not done():
             self.executor.spin_once(timeout_sec=every_s)
-            if not done():
+            if time.monotonic() >= due:
                 meanwhile()
+                due = time.monotonic() + every_s
 
     def turn(self) -> None:
         """Handle everything that has arrived already."""

@@ -83,6 +83,7 @@ class Rig:
             ending = Ending(stopped.outcome, stopped.story)
         except Gone:
             ending = cut_short(self._student, self._what, self._met, len(self._publishers.sent))
+        self._fence.close()
         self._ros.turn()
         end_points = self._graph.end_points()
         self._student.kill()
