@@ -37,7 +37,7 @@ def pixels(picture: WorldPicture, tmp_path: Path) -> np.ndarray:
     """The colours 0..255 of the picture's PNG, rows from the top."""
     save(picture, tmp_path / "world.png")
     image: np.ndarray = matplotlib.image.imread(tmp_path / "world.png")[:, :, :3] * 255
-    return image.round().astype(int)
+    return np.asarray(image.round(), dtype=int)
 
 
 def near(image: np.ndarray, color: tuple[int, int, int]) -> int:

@@ -1,0 +1,378 @@
+"""The node on real DDS: as processes, from the outside, as a student meets it."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+import rclpy
+from geometry_msgs.msg import Pose2D, Twist
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParameters
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from rosgraph_msgs.msg import Clock
+from std_msgs.msg import ColorRGBA, Float32, String
+from std_srvs.srv import Empty, Trigger
+from turtle_oracle import circle
+
+from spinbook.turtlesim.geometry import CENTRE
+from spinbook.turtlesim.picture import NoPictureError, fetch
+
+DEADLINE_S = 60.0
+
+
+class Running:
+    """A process of ours, its log as it comes, and its end."""
+
+    def __init__(self, module: str, *arguments: str) -> None:
+        command = [sys.executable, "-m", f"spinbook.turtlesim.{module}", *arguments]
+        environment = {**os.environ, "RCUTILS_CONSOLE_OUTPUT_FORMAT": "[{severity}] [{name}]: {message}"}
+        self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment)
+        self.log: list[str] = []
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self.process.stderr is not None
+        self.log += []
+        for line in self.process.stderr:
+            self.log.append(line.rstrip("\n"))
+
+    def end(self, how: signal.Signals) -> int:
+        """Send a signal and wait; the exit code."""
+        self.process.send_signal(how)
+        code = self.process.wait(timeout=DEADLINE_S)
+        self._reader.join()
+        return code
+
+
+@contextmanager
+def running(module: str, *arguments: str) -> Iterator[Running]:
+    started = Running(module, *arguments)
+    try:
+        yield started
+    finally:
+        started.process.kill()
+        started.process.wait()
+
+
+class Outside:
+    """A node of the test's own, and what it has heard."""
+
+    def __init__(self) -> None:
+        self._context = Context()
+        rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+        self.node = Node("outside", context=self._context, use_global_arguments=False)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.node)
+        self._publishers: dict[str, Any] = {}
+
+    def close(self) -> None:
+        self._executor.shutdown()
+        self.node.destroy_node()
+        self._context.try_shutdown()
+
+    def until(self, condition: Callable[[], bool], what: str) -> None:
+        """Spin until the condition holds."""
+        end = time.monotonic() + DEADLINE_S
+        while not condition():
+            assert time.monotonic() < end, f"never: {what}"
+            self._executor.spin_once(timeout_sec=0.05)
+
+    def hear(self, kind: type, topic: str) -> list[Any]:
+        """A list to which everything on a topic is added."""
+        heard: list[Any] = []
+        self.node.create_subscription(kind, topic, heard.append, 100)
+        return heard
+
+    def say(self, topic: str, message: Any) -> None:
+        """Publish once, to somebody who listens."""
+        if topic not in self._publishers:
+            self._publishers[topic] = self.node.create_publisher(type(message), topic, 10)
+        publisher = self._publishers[topic]
+        self.until(lambda: publisher.get_subscription_count() > 0, f"a subscriber of {topic}")
+        publisher.publish(message)
+
+    def call(self, kind: type, name: str, request: Any = None) -> Any:
+        """Call a service and wait for the answer."""
+        client = self.node.create_client(kind, name)
+        self.until(client.service_is_ready, f"the service {name}")
+        answer = client.call_async(request or kind.Request())  # type: ignore[attr-defined]
+        self.until(answer.done, f"an answer of {name}")
+        return answer.result()
+
+    def set_integer(self, name: str, value: int) -> Any:
+        """Set a parameter of the node; its answer."""
+        told = ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=value)
+        request = SetParameters.Request(parameters=[Parameter(name=name, value=told)])
+        return self.call(SetParameters, "/turtlesim/set_parameters", request).results[0]
+
+    def picture(self) -> Any:
+        """What /turtlesim/picture tells."""
+        answer = self.call(Trigger, "/turtlesim/picture")
+        assert answer.success
+        return json.loads(answer.message)
+
+
+@pytest.fixture
+def outside(ros_domain: int) -> Iterator[Outside]:
+    """A node in a domain of the test's own."""
+    outside = Outside()
+    yield outside
+    outside.close()
+
+
+@pytest.fixture
+def turtlesim(outside: Outside) -> Iterator[Running]:
+    """The node turtlesim in the same domain."""
+    with running("node") as node:
+        yield node
+
+
+def turn(forward: float, turning: float) -> Twist:
+    twist = Twist()
+    twist.linear.x, twist.angular.z = forward, turning
+    return twist
+
+
+def test_the_log_begins_as_turtlesim_s_and_tells_what_stands_in(turtlesim: Running, outside: Outside) -> None:
+    outside.picture()
+    outside.until(lambda: len(turtlesim.log) >= 3, "three lines of log")
+    assert turtlesim.log[:2] == [
+        "[INFO] [turtlesim]: Starting turtlesim with node name /turtlesim",
+        "[INFO] [turtlesim]: Spawning turtle [turtle1] at x=[5.544445], y=[5.544445], theta=[0.000000]",
+    ]
+    assert "geometry_msgs/msg/Pose2D" in turtlesim.log[2]
+    assert len(turtlesim.log) == 3
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_the_node_ends_in_order_when_told_to(turtlesim: Running, outside: Outside, how: signal.Signals) -> None:
+    outside.picture()
+    assert turtlesim.end(how) == 0
+    assert len(turtlesim.log) == 3, turtlesim.log
+
+
+def test_one_command_drives_an_arc_of_62_or_63_ticks(turtlesim: Running, outside: Outside) -> None:
+    poses = outside.hear(Pose2D, "/turtle1/pose")
+    outside.until(lambda: len(poses) > 0, "a pose")
+    outside.say("/turtle1/cmd_vel", turn(2.0, 1.0))
+    outside.until(lambda: poses[-1].theta > 0.9 and poses[-1] == poses[-5], "the end of the drive")
+    last = poses[-1]
+    ends = [circle(ticks, 2.0, 1.0, complex(CENTRE, CENTRE), 0.0) for ticks in (62, 63)]
+    assert min(abs(complex(last.x, last.y) - place) + abs(last.theta - heading) for place, heading in ends) < 1e-5
+
+
+def test_a_circle_is_a_circle(turtlesim: Running, outside: Outside) -> None:
+    poses = outside.hear(Pose2D, "/turtle1/pose")
+    outside.until(lambda: len(poses) > 0, "a pose")
+    while len(poses) < 150:
+        outside.say("/turtle1/cmd_vel", turn(2.0, 1.0))
+        before = len(poses)
+        outside.until(lambda before=before: len(poses) > before + 5, "further poses")  # type: ignore[misc]
+    moving = [pose for pose in poses if pose.theta != 0.0]
+    # Chords of a circle of radius v/w around the point to the left of the start (half a tick askew).
+    radii = [math.dist((pose.x, pose.y), (CENTRE, CENTRE + 2.0)) for pose in moving]
+    assert radii == [pytest.approx(2.0, abs=0.04)] * len(radii)
+
+
+def test_the_picture_tells_the_world(turtlesim: Running, outside: Outside) -> None:
+    outside.say("/turtle1/teleport_absolute", Pose2D(x=2.0, y=3.0, theta=1.0))
+    outside.until(lambda: outside.picture()["turtles"][0]["x"] == 2.0, "the teleport")
+    told = outside.picture()
+    (stroke,) = told["trails"]
+    assert stroke["points"] == [[5.5444, 5.5444], [2.0, 3.0]]
+    assert told["background"] == [69, 86, 255]
+    outside.call(Empty, "/clear")
+    assert outside.picture()["trails"] == []
+    outside.call(Empty, "/reset")
+    assert outside.picture()["turtles"][0]["x"] == 5.5444
+    assert turtlesim.log[3] == "[INFO] [turtlesim]: Clearing turtlesim."
+    assert turtlesim.log[4] == "[INFO] [turtlesim]: Resetting turtlesim."
+
+
+def test_the_background_is_a_parameter_from_0_to_255(turtlesim: Running, outside: Outside) -> None:
+    assert outside.set_integer("background_r", 255).successful
+    assert outside.picture()["background"] == [255, 86, 255]
+    for value in (-1, 256):
+        refusal = outside.set_integer("background_g", value)
+        assert not refusal.successful
+        assert "range" in refusal.reason
+    assert outside.picture()["background"] == [255, 86, 255]
+
+
+def test_turtles_are_spawned_with_a_pen_and_killed(turtlesim: Running, outside: Outside) -> None:
+    poses = outside.hear(Pose2D, "/bob/pose")
+    colors = outside.hear(ColorRGBA, "/bob/color_sensor")
+    outside.say("/spawn", String(data="{x: 2, y: 3, theta: 0.5, name: bob}"))
+    outside.until(lambda: len(poses) > 0 and len(colors) > 0, "bob's poses and colours")
+    assert (poses[-1].x, poses[-1].y, poses[-1].theta) == pytest.approx((2, 3, 0.5), abs=1e-6)
+    assert (colors[-1].r, colors[-1].g, colors[-1].b, colors[-1].a) == (1, 1, 1, 1)
+    outside.say("/bob/set_pen", String(data="{r: 255, g: 51, b: 0, width: 9}"))
+    twist = turn(1.0, math.pi)
+    outside.until(lambda: outside.picture()["turtles"][0]["pen"]["width"] == 9, "the pen")
+    outside.say("/bob/teleport_relative", twist)
+    outside.until(lambda: colors[-1].b == 0, "the pen's colour under bob")
+    assert (colors[-1].r, colors[-1].g, colors[-1].b) == pytest.approx((1.0, 0.2, 0.0))
+    outside.say("/kill", String(data="bob"))
+    outside.until(lambda: not outside.node.get_publishers_info_by_topic("/bob/pose"), "the end of bob's topics")
+    assert [turtle["name"] for turtle in outside.picture()["turtles"]] == ["turtle1"]
+
+
+def test_a_wrong_request_is_told_in_the_log_and_changes_nothing(turtlesim: Running, outside: Outside) -> None:
+    outside.say("/spawn", String(data="{x: two}"))
+    outside.say("/turtle1/set_pen", String(data="red"))
+    outside.until(lambda: len(turtlesim.log) >= 5, "two more lines of log")
+    assert turtlesim.log[3] == "[ERROR] [turtlesim]: spawn: x must be a number, not 'two'"
+    assert turtlesim.log[4].startswith("[ERROR] [turtlesim]: turtle1/set_pen: expected fields of {r, g, b, width")
+
+
+def test_a_rotation_tells_what_remains_and_how_it_ended(turtlesim: Running, outside: Outside) -> None:
+    remaining = outside.hear(Float32, "/turtle1/rotate_absolute/remaining")
+    deltas = outside.hear(Float32, "/turtle1/rotate_absolute/delta")
+    outside.until(lambda: outside.node.count_publishers("/turtle1/rotate_absolute/delta") > 0, "the rotation's topics")
+    outside.say("/turtle1/rotate_absolute", Float32(data=1.0))
+    outside.until(lambda: len(deltas) > 0, "the end of the rotation")
+    assert deltas[0].data == pytest.approx(-0.992, abs=1e-6)
+    assert remaining[-1].data == pytest.approx(0.008, abs=1e-6)
+    outside.say("/turtle1/rotate_absolute", Float32(data=-2.0))
+    outside.until(lambda: remaining[-1].data < -1.0, "the second rotation")
+    assert outside.call(Trigger, "/turtle1/rotate_absolute/cancel").success
+    outside.until(lambda: len(deltas) > 1, "the end of the second rotation")
+    assert not outside.call(Trigger, "/turtle1/rotate_absolute/cancel").success
+    outside.until(lambda: len(turtlesim.log) >= 5, "the log of both ends")
+    assert turtlesim.log[3] == "[INFO] [turtlesim]: Rotation goal completed successfully"
+    assert turtlesim.log[4] == "[INFO] [turtlesim]: Rotation goal canceled"
+
+
+def test_two_worlds_live_in_namespaces_of_their_own(outside: Outside) -> None:
+    with running("node", "--ros-args", "-r", "__ns:=/sim1"), running("node", "--ros-args", "-r", "__ns:=/sim2"):
+        outside.say("/sim1/turtle1/teleport_absolute", Pose2D(x=1.0, y=1.0))
+        deadline = time.monotonic() + DEADLINE_S
+        while fetch(DEADLINE_S, node="/sim1/turtlesim").turtles[0].x != 1.0:
+            assert time.monotonic() < deadline
+        assert fetch(DEADLINE_S, node="/sim2/turtlesim").turtles[0].x == pytest.approx(CENTRE, abs=1e-4)
+
+
+def test_a_parameter_out_of_range_at_the_start_is_told_without_a_traceback(ros_domain: int) -> None:
+    with running("node", "--ros-args", "-p", "background_r:=300") as node:
+        assert node.process.wait(timeout=DEADLINE_S) == 1
+        node.end(signal.SIGTERM)
+    assert "background_r" in node.log[-1]
+    assert not any("Traceback" in line for line in node.log)
+
+
+def test_holonomic_turtles_move_sideways(outside: Outside) -> None:
+    with running("node", "--ros-args", "-p", "holonomic:=true"):
+        poses = outside.hear(Pose2D, "/turtle1/pose")
+        twist = Twist()
+        twist.linear.y = 1.0
+        outside.until(lambda: len(poses) > 0, "a pose")
+        outside.say("/turtle1/cmd_vel", twist)
+        outside.until(lambda: poses[-1].y > CENTRE + 0.5, "a move to the left")
+        assert poses[-1].x == pytest.approx(CENTRE, abs=1e-6)
+
+
+def test_simulated_time_drives_the_turtle_tick_by_tick(outside: Outside) -> None:
+    with running("node", "--ros-args", "-p", "use_sim_time:=true"):
+        poses = outside.hear(Pose2D, "/turtle1/pose")
+        outside.picture()
+        now_ms = 1000
+        clock = Clock()
+
+        def move_on(milliseconds: int) -> None:
+            nonlocal now_ms
+            now_ms += milliseconds
+            clock.clock.sec, clock.clock.nanosec = divmod(now_ms * 1_000_000, 1_000_000_000)
+            outside.say("/clock", clock)
+
+        while not poses:
+            move_on(16)
+            outside.picture()
+        outside.say("/turtle1/cmd_vel", turn(1.0, 0.0))
+        # A burst of ticks is longer than a queue: what the node itself says counts.
+        outside.picture()
+        start = now_ms
+        while now_ms < start + 960:
+            move_on(96)
+            outside.until(
+                lambda: outside.picture()["turtles"][0]["x"] >= round(CENTRE + (now_ms - start) / 1000, 4) - 1e-4,
+                f"the place at {now_ms} ms",
+            )
+        assert outside.picture()["turtles"][0]["x"] == pytest.approx(CENTRE + 0.96, abs=2e-4)
+
+
+def test_fetch_asks_the_running_node(turtlesim: Running, outside: Outside) -> None:
+    world = fetch(timeout_s=DEADLINE_S)
+    assert [turtle.name for turtle in world.turtles] == ["turtle1"]
+
+
+def test_a_turtlesim_without_pictures_is_listened_to(outside: Outside, tmp_path: Path) -> None:
+    publisher = outside.node.create_publisher(Pose2D, "/turtle1/pose", 10)
+    arguments = ("--timeout", "0", "--listen", "5")
+    with running("picture", str(tmp_path / "heard.png"), *arguments) as listener:
+        published = 0
+        while listener.process.poll() is None:
+            publisher.publish(Pose2D(x=2.0 + published / 100, y=3.0, theta=0.0))
+            published += 1
+            time.sleep(0.02)
+        assert listener.process.returncode == 0
+    assert (tmp_path / "heard.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_without_any_turtlesim_the_reader_is_told_so(ros_domain: int, tmp_path: Path) -> None:
+    with running("picture", str(tmp_path / "none.svg"), "--timeout", "0.1", "--listen", "0.2") as picture:
+        assert picture.process.wait(timeout=DEADLINE_S) == 1
+        picture.end(signal.SIGTERM)
+    assert picture.log[0].startswith("No turtlesim is running: no /turtlesim, and nothing on /turtle1/pose")
+    assert not any("Traceback" in line for line in picture.log)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_topic_of_another_type_is_told(outside: Outside) -> None:
+    outside.node.create_publisher(String, "/turtle1/pose", 10)
+    with pytest.raises(NoPictureError, match="carries std_msgs/msg/String"):
+        fetch(timeout_s=0.0, listen_s=2.0)
+
+
+def test_a_node_that_answers_with_something_else_is_told(outside: Outside) -> None:
+    def answer(_: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        response.message = "cheese"
+        return response
+
+    outside.node.create_service(Trigger, "/turtlesim/picture", answer)
+    caught: list[Exception] = []
+
+    def ask() -> None:
+        try:
+            fetch(timeout_s=DEADLINE_S)
+        except NoPictureError as error:
+            caught.append(error)
+
+    asking = threading.Thread(target=ask)
+    asking.start()
+    outside.until(lambda: not asking.is_alive(), "the end of the question")
+    assert "answered with something else" in str(caught[0])
+
+
+def test_draw_square_drives_a_side_and_turns_a_corner(turtlesim: Running, outside: Outside) -> None:
+    with running("draw_square") as square:
+        outside.until(lambda: len(square.log) >= 3, "the third goal")
+        assert square.log[0] == "[INFO] [draw_square]: New goal [7.544445 5.544445, 0.000000]"
+        assert square.log[1] == "[INFO] [draw_square]: Reached goal"
+        assert square.log[2].endswith("5.544445, 1.570796]")
+        assert square.end(signal.SIGINT) == 0
