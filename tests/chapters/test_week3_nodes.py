@@ -12,7 +12,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -82,11 +82,12 @@ class Program:
     def wait_for_log(self, text: str) -> str:
         """The next line that holds `text`."""
         deadline = time.monotonic() + PATIENCE
-        while line := self._unread.get(timeout=max(0.0, deadline - time.monotonic())):
-            self.log.append(line)
-            if text in line:
-                return line
-        raise AssertionError(f"ended without {text!r} in its log:\n{''.join(self.log)}")
+        with suppress(queue.Empty):
+            while line := self._unread.get(timeout=max(0.0, deadline - time.monotonic())):
+                self.log.append(line)
+                if text in line:
+                    return line
+        raise AssertionError(f"no (more) {text!r} in the log:\n{''.join(self.log)}")
 
     def wait_until_parked(self) -> None:
         """Until its main thread waits inside ROS and nothing wakes it.
