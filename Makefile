@@ -1,36 +1,40 @@
-# Everything a fresh machine needs is installed by these targets: `make course` and `make test`.
+# `make course` and `make test` install everything that a fresh machine needs, in $(VENV): see setup.sh.
+#
+#   make PYTHON=python3.12 ...     with another Python (default: the environment's own, else python3)
+#   make VENV=/some/place ...      with the environment in another place
 
-PYTHON ?= python3
+PYTHON ?=
 VENV   ?= .venv
 BIN    := $(VENV)/bin
-LOCKS  := constraints.txt $(shell $(PYTHON) -c 'import rclpy' 2>/dev/null || echo constraints-ros.txt)
-READY  := $(VENV)/.ready
 
-.PHONY: help setup course test lint soak lock doctor clean
+# Set by another environment's ROS wheels, it would keep ours from finding their libraries.
+unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
+
+# A sourced ROS 2 brings pytest plugins that do not load with a current pytest: only those named here are.
+PYTEST := PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(BIN)/pytest -p pytest_timeout -p xdist.plugin -p _hypothesis_pytestplugin
+
+.PHONY: help setup course test soak doctor lock clean
 
 help:    ## List what can be made.
-	@grep -hE '^[a-z]+: .*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 10
+	@sed -nE 's/^([a-z]+):.*##/\1\t/p' Makefile | expand -t 10
 
-setup: $(READY)   ## Make the virtual environment with every pinned dependency.
-
-$(READY): $(LOCKS) pyproject.toml
-	@PYTHON="$(PYTHON)" VENV="$(VENV)" LOCKS="$(LOCKS)" sh setup.sh
-	@touch $@
+setup:   ## Make the virtual environment with every pinned dependency, or bring it up to date.
+	@PYTHON="$(PYTHON)" VENV="$(VENV)" sh setup.sh
 
 course: setup   ## Build, run and package the real course.
 	$(BIN)/spinbook build --execute
 	$(BIN)/spinbook package
 	@echo
-	@echo "Open the course:  $(BIN)/jupyter lab build/notebooks      (or any other notebook editor)"
+	@echo "The course lies in build/executed. Open it in any notebook editor, with $(BIN)/python as its Python."
 
 test: setup   ## Check types and style, then run every test.
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/pytest
+	$(PYTEST)
 
 soak: setup   ## The long suites in their full size.
-	$(BIN)/pytest -m soak
+	$(PYTEST) -m soak
 
 doctor: setup   ## Say what works on this machine, and how to mend what does not.
 	$(BIN)/spinbook doctor

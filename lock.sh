@@ -1,29 +1,40 @@
 #!/bin/sh
-# Writes constraints.txt and constraints-ros.txt: every dependency with version and hashes, for Python 3.10 to 3.14.
+# Pins the newest versions of every dependency, with hashes, for Python 3.10 to 3.14 on any system: `make lock`.
+#
+#   constraints.txt       everything but ROS 2
+#   constraints-ros.txt   ROS 2 Jazzy's wheels, which are left out where a sourced ROS 2 is used
+#
+# Needs uv (https://docs.astral.sh/uv). Then: make setup && make test, and commit both files.
 set -eu
-compile() {
-    uv pip compile --quiet --universal --generate-hashes --python-version 3.10 --no-header --no-annotate "$@"
+cd "$(dirname "$0")"
+command -v uv >/dev/null 2>&1 || {
+    echo "make lock needs uv: https://docs.astral.sh/uv/getting-started/installation/" >&2
+    exit 1
 }
-compile pyproject.toml --extra colcon --extra bag --extra dev --output-file constraints.txt
-everything=$(mktemp)
-compile pyproject.toml --extra ros --constraints constraints.txt --output-file "$everything"
 
-# ROS 2 stands in a file of its own, so that it can be left out where a sourced ROS 2 is used.
-python3 - "$everything" <<'PY'
-import sys
+new=$(mktemp -d)
+trap 'rm -rf "$new"' EXIT
+# No addresses get into the files: where packages come from is each machine's own matter.
+compile() {
+    uv pip compile --quiet --upgrade --universal --generate-hashes --python-version 3.10 \
+        --no-header --no-annotate --no-emit-index-url --no-emit-find-links "$@"
+}
 
-def pins(path):
-    found, name = {}, None
-    with open(path) as lines:
-        for line in lines:
-            if not line[0].isspace() and not line.startswith("#"):
-                name = line.split("\\")[0].strip()
-            if name:
-                found[name] = found.get(name, "") + line
-    return found
+# A sourced ROS 2 leaves lark, with which it reads interface files, to the system's Python: see rosidl_parser.
+echo "lark-parser" >"$new/sourced.in"
+echo "Pinning what Spinbook needs ..." >&2
+compile pyproject.toml "$new/sourced.in" --extra colcon --extra bag --extra dev --output-file "$new/constraints.txt"
+echo "Pinning ROS 2 ..." >&2
+compile pyproject.toml --extra ros --constraints "$new/constraints.txt" --output-file "$new/everything.txt"
 
-base = pins("constraints.txt")
-with open("constraints-ros.txt", "w") as out:
-    out.writelines(text for name, text in pins(sys.argv[1]).items() if name not in base)
-PY
-rm -f "$everything"
+# What is in the first file is left out of the second. A pin is a line at the margin and the indented ones below it.
+awk '
+    /^[^ #]/ { pin = $0; sub(/ *\\$/, "", pin); known = (pin in base) }
+    NR == FNR { if (pin) base[pin]; next }
+    /^#/ { next }
+    !known
+' "$new/constraints.txt" "$new/everything.txt" >"$new/constraints-ros.txt"
+
+grep -q '^ros-jazzy-rclpy==' "$new/constraints-ros.txt" || { echo "No ROS 2 was found: nothing is changed." >&2; exit 1; }
+mv "$new/constraints.txt" "$new/constraints-ros.txt" .
+git --no-pager diff --stat -- constraints.txt constraints-ros.txt 2>/dev/null || true

@@ -1,41 +1,161 @@
 #!/bin/sh
-# Makes the virtual environment $VENV from the pinned and hashed files $LOCKS. Called by the Makefile.
+# Makes the virtual environment in which everything runs. `make` calls this first each time; when nothing has
+# changed it does nothing. Set by the caller, both optional:
+#   PYTHON  the Python to use    (default: the environment's own, else python3)
+#   VENV    where to make it     (default: .venv)
+#
+# What an environment was made for is written into $VENV/.spinbook, last of all. Without that, or made for another
+# Python, place or ROS 2, it is made anew; with other pins, it is brought up to date.
 set -eu
+cd "$(dirname "$0")"
+VENV=${VENV:-.venv}
+VENV=${VENV%/}
+MARK=$VENV/.spinbook
+LOG=$VENV/setup.log
 
-say() { printf '\n%s\n' "$*" >&2; }
+say() { printf '%s\n' "$*" >&2; }
+fail() { say "" "$@"; exit 1; }
 
-"$PYTHON" - <<'PY' || exit 1
+# Another environment's wheels mark what they have done to LD_LIBRARY_PATH; each Python here does it for itself.
+unset _ROS_WHEELS_BOOTSTRAP_COMPLETE
+
+refuse_bad_folder() {
+    case "$VENV" in /*) place=$VENV ;; *) place=$(pwd -P)/$VENV ;; esac
+    case "$(pwd -P)$place" in
+        *[[:space:]:]*)
+            fail "Spinbook can't be set up in a path with a space or a colon: colcon and ROS's search paths fall apart there.
+    here:         $(pwd -P)
+    environment:  $place
+Move the folder, then run make again." ;;
+    esac
+    # Only what this script has made is ever removed.
+    if [ -d "$VENV" ] && [ ! -e "$MARK" ] && [ -n "$(ls -A "$VENV")" ]; then
+        fail "$VENV is a folder that Spinbook's set-up has not made, so it is left alone.
+Remove it, or name another one: make VENV=/some/place ..."
+    fi
+}
+
+# Two makes at once: the second waits for the first.
+wait_for_turn() {
+    if command -v flock >/dev/null 2>&1; then
+        exec 9<setup.sh
+        flock -n 9 || { say "Another set-up is under way here: waiting for it ..."; flock 9; }
+    fi
+}
+
+made_for() { sed -n "s/^$1 //p" "$MARK" 2>/dev/null || true; }
+
+choose_python() {
+    if [ -z "${PYTHON:-}" ]; then
+        PYTHON=$(made_for python)
+        if [ -z "$PYTHON" ] || ! [ -x "$PYTHON" ]; then PYTHON=python3; fi
+    fi
+    command -v "$PYTHON" >/dev/null 2>&1 ||
+        fail "There is no '$PYTHON' here. Install Python 3.10 to 3.14 (sudo apt-get install python3), or name one:
+    make PYTHON=python3.12 ..."
+    "$PYTHON" - <<'PY' || exit 1
 import sys
 if not (3, 10) <= sys.version_info[:2] <= (3, 14):
-    sys.exit(f"Spinbook needs Python 3.10 to 3.14, and this is {sys.version.split()[0]} ({sys.executable}).\n"
-             "Name another one: make PYTHON=python3.12 ...")
+    sys.exit("\nSpinbook needs Python 3.10 to 3.14, and '%s' is %s.\nName another one: make PYTHON=python3.12 ..."
+             % (sys.executable, sys.version.split()[0]))
 PY
-
-# Debian and Ubuntu keep `ensurepip` in a package of its own: python3-venv.
-if ! "$PYTHON" -c 'import ensurepip, venv' 2>/dev/null; then
-    version=$("$PYTHON" -c 'import sys; print("python%d.%d-venv" % sys.version_info[:2])')
-    say "Python's venv module is not installed: installing the system package $version."
-    if [ "$(id -u)" = 0 ]; then as_root=""; else as_root="sudo -n"; fi
-    if ! { $as_root apt-get update -qq && $as_root apt-get install -y -qq --no-install-recommends "$version"; }; then
-        say "Could not install $version. Install it yourself, then run make again:
-    sudo apt-get install $version"
-        exit 1
+    # An environment is made from the Python that stands behind the active one, if there is one.
+    if [ "$("$PYTHON" -c 'import sys; print(sys.prefix != sys.base_prefix)')" = True ]; then
+        PYTHON=$("$PYTHON" -c 'import sys; print(sys._base_executable)')
     fi
+}
+
+read_wishes() {
+    wanted=$("$PYTHON" -c 'import os, sys; print("python", os.path.realpath(sys.executable))')
+    ros=$("$PYTHON" -I spinbook/doctor/ros_origin.py) || exit 1
+    wanted=$(printf '%s\nplace %s\nros %s' "$wanted" "$place" "$ros")
+    LOCKS=constraints.txt
+    # Nothing may shadow a sourced ROS 2, so its wheels are then left out.
+    if [ "$ros" = wheels ]; then LOCKS="$LOCKS constraints-ros.txt"; fi
+    pins=$(cat $LOCKS pyproject.toml | cksum)
+}
+
+need_venv_module() {
+    if "$PYTHON" -c 'import ensurepip, venv' 2>/dev/null; then return; fi
+    # Debian and Ubuntu keep ensurepip in a package of its own.
+    package=$("$PYTHON" -c 'import sys; print("python%d.%d-venv" % sys.version_info[:2])')
+    command -v apt-get >/dev/null 2>&1 ||
+        fail "'$PYTHON' has no ensurepip, so it can't make virtual environments. Name another one: make PYTHON=python3.12 ..."
+    say "Python's venv module is not installed: installing the system package $package ..."
+    if [ "$(id -u)" = 0 ]; then as_root=""; else as_root="sudo -n"; fi
+    if ! { $as_root apt-get update -qq && $as_root apt-get install -y -qq --no-install-recommends "$package"; } >/dev/null 2>&1; then
+        fail "It could not be installed from here. Install it, then run make again:
+    sudo apt-get install $package"
+    fi
+}
+
+make_environment() {
+    rm -rf "$VENV"
+    mkdir -p "$VENV"
+    : >"$MARK"
+    "$PYTHON" -m venv "$VENV" >"$LOG" 2>&1 || give_up "The virtual environment could not be made."
+}
+
+# pip sees this environment alone: neither what PYTHONPATH names nor what is set for other uses of pip.
+pip() {
+    env -u PYTHONPATH -u PYTHONHOME -u PIP_TARGET -u PIP_PREFIX -u PIP_CONSTRAINT -u PIP_NO_DEPS PIP_USER=0 \
+        "$VENV/bin/python" -m pip --disable-pip-version-check --quiet "$@" >>"$LOG" 2>&1
+}
+
+install_pins() {
+    # First the pinned setuptools: with it empy is built, the only one of them for which PyPI has no wheel.
+    awk '/^[^ #]/ { on = /^setuptools==/ } on' constraints.txt >"$VENV/build-tool.txt"
+    set --
+    for lock in $LOCKS; do set -- "$@" -r "$lock"; done
+    { pip install --require-hashes --only-binary :all: -r "$VENV/build-tool.txt" &&
+        pip install --require-hashes --only-binary :all: --no-binary empy --no-build-isolation --use-pep517 "$@"; } ||
+        give_up "Dependencies could not be installed."
+    pip install --no-deps --no-build-isolation --editable . || give_up "Spinbook itself could not be installed."
+}
+
+# What ended it, from the log: pip's errors, then what to do.
+give_up() {
+    say "" "$1" ""
+    { grep -E '^ *(ERROR|error|[A-Za-z.]*Error):' "$LOG" || tail -n 5 "$LOG"; } | cut -c 1-300 | head -n 8 >&2
+    if grep -qiE 'connection|name resolution|max retries|timed out|proxy' "$LOG"; then
+        say "" "PyPI can't be reached. Is there a network? Behind a proxy: export HTTPS_PROXY=...; with a mirror: export PIP_INDEX_URL=..."
+    elif grep -q 'DO NOT MATCH THE HASHES' "$LOG"; then
+        say "" "A download is not the file that was pinned. Try again; if it stays so, something on the way alters it."
+    elif grep -qi 'no space left' "$LOG"; then
+        say "" "The disk is full: about 1 GB is needed in $VENV, and as much for a moment in ${TMPDIR:-/tmp}."
+    fi
+    say "" "The whole log: $LOG. Run make again when it is mended; set-up starts over."
+    exit 1
+}
+
+# It is ready when rclpy really loads, whichever it is.
+try_ros() {
+    "$VENV/bin/python" -c 'import spinbook, std_msgs.msg, rclpy.impl.implementation_singleton' >>"$LOG" 2>&1 && return
+    case "$ros" in
+        wheels) give_up "Everything is installed, but ROS 2's Python library does not load." ;;
+        *) give_up "The sourced ROS 2 (${ros#sourced }) does not load in $VENV. Was its setup file sourced in this terminal?" ;;
+    esac
+}
+
+refuse_bad_folder
+wait_for_turn
+choose_python
+read_wishes
+if [ "$(cat "$MARK" 2>/dev/null)" = "$(printf '%s\npins %s' "$wanted" "$pins")" ] && [ -x "$VENV/bin/python" ]; then exit 0; fi
+
+if [ "$(sed '/^pins /d' "$MARK" 2>/dev/null)" = "$wanted" ] && [ -x "$VENV/bin/python" ]; then
+    say "The pinned dependencies have changed: bringing $VENV up to date ..."
+    : >"$MARK"
+    : >"$LOG"
+else
+    need_venv_module
+    if [ -s "$MARK" ]; then say "$VENV was made for something else ($(made_for ros), $(made_for python)): making it anew."; fi
+    case "$ros" in
+        wheels) say "Installing Spinbook's pinned dependencies and ROS 2 Jazzy from PyPI into $VENV: about a minute ..." ;;
+        *) say "Installing Spinbook's pinned dependencies into $VENV; ROS 2 is the sourced one in ${ros#sourced } ..." ;;
+    esac
+    make_environment
 fi
-
-# bubblewrap is the grader's best sandbox. Without it the same namespaces are made by other means, so this may fail.
-if ! command -v bwrap >/dev/null 2>&1 && [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1; then
-    { apt-get update -qq && apt-get install -y -qq --no-install-recommends bubblewrap; } >/dev/null 2>&1 ||
-        say "bubblewrap could not be installed; the grader will make its sandbox without it (see: spinbook doctor)."
-fi
-
-[ -x "$VENV/bin/python" ] || "$PYTHON" -m venv "$VENV"
-
-case "$LOCKS" in
-    *constraints-ros.txt*) say "Installing Spinbook's pinned dependencies, with ROS 2 Jazzy from PyPI (about a minute) ..." ;;
-    *) say "Installing Spinbook's pinned dependencies; ROS 2 is the one that you have sourced ..." ;;
-esac
-set --
-for lock in $LOCKS; do set -- "$@" -r "$lock"; done
-"$VENV/bin/python" -m pip install --quiet --disable-pip-version-check --require-hashes "$@"
-"$VENV/bin/python" -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+install_pins
+try_ros
+printf '%s\npins %s\n' "$wanted" "$pins" >"$MARK"
