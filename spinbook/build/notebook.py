@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shlex
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -68,25 +69,30 @@ def _runnable(cell: Cell) -> dict[str, Any]:
     metadata: dict[str, Any] = {"kind": cell.kind.value, "line": cell.line}
     if cell.kind is CellKind.NODE:
         metadata["node"] = cell.name
-        seconds = f" --seconds {cell.seconds:g}" if cell.seconds else ""
         spin_class = f" --class {cell.spin_class}" if cell.spin_class else ""
-        source = f"%%node {cell.name}{seconds}{spin_class}\n{cell.source}"
+        source = f"%%node {cell.name}{_bounds(cell)}{spin_class}\n{cell.source}"
     elif cell.kind is CellKind.SHELL:
-        source = "\n".join(_shell_line(command, cell.seconds) for command in cell.commands)
+        source = "\n".join(_shell_line(command, cell) for command in cell.commands)
     else:
         source = cell.source
     return _code(cell.id, source, metadata, ["raises-exception"] if cell.raises else [])
 
 
-def _shell_line(command: Command, seconds: float | None) -> str:
+def _bounds(cell: Cell) -> str:
+    """The options that say how long a cell shows or runs."""
+    seconds = f" --seconds {cell.seconds:g}" if cell.seconds else ""
+    return seconds + (f" --until {shlex.quote(cell.until)}" if cell.until else "")
+
+
+def _shell_line(command: Command, cell: Cell) -> str:
     if command.kind is CommandKind.NOTE:
         return command.text
     # A magic is one line: a value that a terminal would take over several loses its line breaks.
     text = " ".join(command.text.split("\n"))
     program, _, rest = text.partition(" ")
     if command.kind is CommandKind.PLOT:
-        return f"%plot {rest}" + (f" --seconds {seconds:g}" if seconds else "")
-    return f"%{program}" + (f" --seconds {seconds:g}" if seconds else "") + f" {rest}"
+        return f"%plot {rest}" + (f" --seconds {cell.seconds:g}" if cell.seconds else "")
+    return f"%{program}{_bounds(cell)} {rest}"
 
 
 def _exercise(cell: Cell, course: Course) -> Iterator[dict[str, Any]]:

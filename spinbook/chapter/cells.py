@@ -97,6 +97,7 @@ def _runnable(item: Classified, ids: _Ids) -> Cell:
         fence.first_code_line,
         name=item.name,
         seconds=seconds,
+        until=fence.attributes.get("until"),
         raises=fence.has("raises"),
         spin_class=item.spin_class,
         commands=item.commands,

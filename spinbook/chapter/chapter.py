@@ -25,8 +25,8 @@ class Cell:
     """One cell of a chapter. `line` is the chapter's line on which its source begins, counted from 1.
 
     `name` is a node's name (its file without .py) or an exercise's. `seconds` bounds how long it shows or runs
-    (None: the runtime's default). `raises` says that failing is the lesson. `spin_class` is the class to spin
-    where a node's code only defines one.
+    (None: the runtime's default), `until` is a text in its log that ends that time early. `raises` says that failing
+    is the lesson. `spin_class` is the class to spin where a node's code only defines one.
     """
 
     kind: CellKind
@@ -35,6 +35,7 @@ class Cell:
     line: int
     name: str | None = None
     seconds: float | None = None
+    until: str | None = None
     raises: bool = False
     spin_class: str | None = None
     commands: tuple[Command, ...] = ()

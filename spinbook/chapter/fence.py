@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 ATTRIBUTES = {
     "title": "the file this code is, such as joint_publisher.py",
     "seconds": "how long the log is shown, or how long each command may run",
+    "until": "a text: once the log holds it, the cell is done",
     "raises": "the cell is expected to fail, and failing is the lesson",
     "static": "shown, never run",
 }

@@ -7,12 +7,13 @@ import sys
 
 from spinbook.runtime.failure import CellFailed
 from spinbook.runtime.session import Session
+from spinbook.runtime.showing import Bound
 
 #: How long a build may take (s).
 SECONDS = 120.0
 
 
-def run(session: Session, words: list[str], seconds: float) -> None:
+def run(session: Session, words: list[str], bound: Bound) -> None:
     """Run colcon with these words. Raises CellFailed where there is nothing to build, or where the build fails."""
     workspace = session.workspace
     if not (workspace / "src").is_dir():
@@ -25,4 +26,4 @@ def run(session: Session, words: list[str], seconds: float) -> None:
         "COLCON_LOG_LEVEL": os.environ.get("COLCON_LOG_LEVEL", "error"),
     }
     argv = [sys.executable, "-m", "colcon", "--log-base", os.fspath(workspace / "log"), *words]
-    session.run_command(argv, settings, workspace, seconds, "colcon")
+    session.run_command(argv, settings, workspace, bound, "colcon")

@@ -6,6 +6,7 @@ Thin: each reads its line and calls the session.
 from __future__ import annotations
 
 import argparse
+import re
 import shlex
 from collections.abc import Sequence
 from typing import Any, NoReturn
@@ -16,6 +17,9 @@ from spinbook.course.course import Package
 from spinbook.runtime import colcon_cell, domain, plot_cell, ros2_cell, turtle_cell
 from spinbook.runtime.failure import CellFailed
 from spinbook.runtime.session import COMMAND_SECONDS, NODE_SECONDS, Session
+from spinbook.runtime.showing import Bound
+
+_OWN_OPTION = re.compile(r"""\s*--(seconds|until)\s+("[^"]*"|'[^']*'|\S+)\s*""")
 
 
 class LineReader(argparse.ArgumentParser):
@@ -47,15 +51,23 @@ def split(line: str) -> list[str]:
         raise CellFailed(f"can't read this line: {error}. A quotation mark is missing in: {line}") from None
 
 
-def own_options(line: str) -> tuple[float | None, str]:
-    """Take a leading `--seconds N` off a line whose rest belongs to another command."""
-    words = line.split(maxsplit=2)
-    if words[:1] != ["--seconds"]:
-        return None, line
-    try:
-        return float(words[1]), words[2] if len(words) > 2 else ""
-    except (IndexError, ValueError):
-        raise CellFailed("`--seconds` wants a number, as in --seconds 5.") from None
+def own_options(line: str, seconds: float) -> tuple[Bound, str]:
+    """Take leading options `--seconds N` and `--until TEXT` off a line whose rest belongs to another command.
+
+    `seconds` holds where the line does not say.
+    """
+    until = None
+    while match := _OWN_OPTION.match(line):
+        option, value = match.groups()
+        line = line[match.end() :]
+        if option == "until":
+            until = shlex.split(value)[0]
+            continue
+        try:
+            seconds = float(value)
+        except ValueError:
+            raise CellFailed("`--seconds` wants a number, as in --seconds 5.") from None
+    return Bound(seconds, until), line
 
 
 @magics_class
@@ -84,12 +96,13 @@ class SpinbookMagics(Magics):
         reader = LineReader("%%node", "Run this cell as a node: a process of its own. Running it again restarts it.")
         reader.add_argument("name", help="the node's file, without .py")
         reader.add_argument("--seconds", type=float, default=NODE_SECONDS, help="how long its log is shown")
+        reader.add_argument("--until", help="stop showing once the log holds this text")
         reader.add_argument("--class", dest="spin_class", help="spin this Node class; the code does not do it itself")
         if given := reader.read(line):
             name = given.name.removesuffix(".py")
             if not name.isidentifier():
                 raise CellFailed(f"`{name}` can't be a node's file name: use letters, digits and underscores.")
-            self.session.run_node(name, cell, given.seconds, given.spin_class)
+            self.session.run_node(name, cell, Bound(given.seconds, given.until), given.spin_class)
 
     @no_var_expand
     @line_magic
@@ -138,15 +151,15 @@ class SpinbookMagics(Magics):
     @line_magic
     def ros2(self, line: str) -> None:
         """%ros2 …: the command of a terminal, bounded in time."""
-        seconds, rest = own_options(line)
-        ros2_cell.run(self.session, split(rest), seconds)
+        bound, rest = own_options(line, COMMAND_SECONDS)
+        ros2_cell.run(self.session, split(rest), bound)
 
     @no_var_expand
     @line_magic
     def colcon(self, line: str) -> None:
         """%colcon build …: colcon in this notebook's workspace."""
-        seconds, rest = own_options(line)
-        colcon_cell.run(self.session, split(rest), seconds or colcon_cell.SECONDS)
+        bound, rest = own_options(line, colcon_cell.SECONDS)
+        colcon_cell.run(self.session, split(rest), bound)
 
     @no_var_expand
     @line_magic

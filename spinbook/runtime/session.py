@@ -15,7 +15,7 @@ from spinbook.runtime.domain import Domain
 from spinbook.runtime.failure import CellFailed
 from spinbook.runtime.node_registry import NodeRegistry, RunningNode, Stopped
 from spinbook.runtime.process import KeptProcess
-from spinbook.runtime.showing import in_short, show_for
+from spinbook.runtime.showing import Bound, in_short, show_for
 
 #: How long a node's log is shown, and how long a command that does not end may run (s).
 NODE_SECONDS = 3.0
@@ -45,29 +45,27 @@ class Session:
         """The colcon workspace: beside the notebook."""
         return Path.cwd() / self.package.workspace
 
-    def run_node(self, name: str, code: str, seconds: float, spin_class: str | None) -> None:
-        """Write a node's code as a module of the package, start it and show its log for so many seconds."""
+    def run_node(self, name: str, code: str, bound: Bound, spin_class: str | None) -> None:
+        """Write a node's code as a module of the package, start it and show its log for a while."""
         if self.package.name == name:
             raise CellFailed(f"A node can't have the package's name, {name}.")
         module = add_module(self.workspace, self.package, Module(name, code.rstrip("\n") + "\n"))
-        # A path that begins at the notebook: what a traceback shows is then the same on every machine.
-        module = module.relative_to(Path.cwd())
         if spin_class:
             argv = [sys.executable, "-u", "-m", "spinbook.runtime.spin_class", os.fspath(module), spin_class]
         else:
             argv = [sys.executable, "-u", os.fspath(module)]
-        self.run_background(name, argv, {}, Path.cwd(), seconds)
+        self.run_background(name, argv, {}, Path.cwd(), bound)
 
-    def run_background(self, name: str, argv: list[str], settings: dict[str, str], cwd: Path, seconds: float) -> None:
-        """Start a process that goes on behind the cell, and show its log for so many seconds. Raises CellFailed."""
+    def run_background(self, name: str, argv: list[str], settings: dict[str, str], cwd: Path, bound: Bound) -> None:
+        """Start a process that goes on behind the cell, and show its log for a while. Raises CellFailed."""
         if self.nodes.get(name) and self.nodes.status(name).running:
             print(f"(restarting {name})")
         node = self.nodes.start(name, argv, settings, cwd)
-        self._show(node, seconds)
+        self._show(node, bound)
 
-    def _show(self, node: RunningNode, seconds: float) -> None:
+    def _show(self, node: RunningNode, bound: Bound) -> None:
         try:
-            show_for(node.process, seconds, f": %log {node.name} shows them")
+            show_for(node.process, bound, f": %log {node.name} shows them")
         except KeyboardInterrupt:
             print(f"\n{self.nodes.stop(node.name).in_words}")
             return
@@ -79,21 +77,21 @@ class Session:
         else:
             raise CellFailed(f"{node.name} {_how_it_ended(status.exit)} Its last words are above.")
 
-    def run_command(self, argv: list[str], settings: dict[str, str], cwd: Path, seconds: float, shown_as: str) -> None:
-        """Run a command in the cell; one that has not ended after so many seconds is ended as Ctrl-C would.
+    def run_command(self, argv: list[str], settings: dict[str, str], cwd: Path, bound: Bound, shown_as: str) -> None:
+        """Run a command in the cell; one that has not ended when its time is up is ended as Ctrl-C would.
 
         Raises CellFailed where it fails.
         """
         process = KeptProcess(argv, {**os.environ, **settings}, cwd)
         try:
             try:
-                show_for(process, seconds, "")
+                show_for(process, bound, "")
                 bounded = process.status.running
             except KeyboardInterrupt:
                 bounded = True
             if bounded:
                 process.stop(COMMAND_GRACE)
-                show_for(process, sum(COMMAND_GRACE) + 1, "")
+                show_for(process, Bound(sum(COMMAND_GRACE) + 1), "")
         finally:
             process.close()
         status = process.status

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections import deque
+from dataclasses import dataclass
 
 from spinbook.runtime.process import KeptProcess
 
@@ -12,6 +13,14 @@ from spinbook.runtime.process import KeptProcess
 FIRST_LINES = 60
 LAST_LINES = 10
 _POLL_S = 0.03
+
+
+@dataclass(frozen=True)
+class Bound:
+    """How long a process is shown: for so many seconds, or until it has printed this text, or until it ends."""
+
+    seconds: float
+    until: str | None = None
 
 
 class Shown:
@@ -23,11 +32,15 @@ class Shown:
         self._count = 0
         self._part = ""
         self._lost = False
+        self.seen = ""
+        """The last lines, for who waits for a text in them."""
 
     def add(self, data: bytes, dropped: int = 0) -> None:
         """Take in more output; `dropped` bytes before it were too many to keep."""
         self._lost = self._lost or dropped > 0
         text = self._part + data.decode(errors="replace")
+        # What comes in two pieces is found as well.
+        self.seen = self.seen[-1000:] + data.decode(errors="replace")
         *lines, self._part = text.split("\n")
         for line in lines:
             self._line(line)
@@ -53,13 +66,15 @@ class Shown:
         sys.stdout.flush()
 
 
-def show_for(process: KeptProcess, seconds: float, rest_is: str) -> None:
-    """Show what a process prints until it ends, or for so many seconds."""
+def show_for(process: KeptProcess, bound: Bound, rest_is: str) -> None:
+    """Show what a process prints until it ends, or until its time is up."""
     shown = Shown()
-    deadline = time.monotonic() + seconds
+    deadline = time.monotonic() + bound.seconds
     while True:
         shown.add(*process.read())
         if not process.status.running or time.monotonic() >= deadline:
+            break
+        if bound.until is not None and bound.until in shown.seen:
             break
         time.sleep(_POLL_S)
     shown.end(process.status.lines, rest_is)

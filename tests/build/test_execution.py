@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from conftest import CourseFolder, ProcessMark
 
-TALKER = """```python title="talker.py" seconds=2
+TALKER = """```python title="talker.py" seconds=60 until=talking
 import rclpy
 from rclpy.executors import ExternalShutdownException
 from std_msgs.msg import String
@@ -40,7 +40,10 @@ while len(heard) < 20:
 
 
 def test_cells_run_and_their_outputs_are_kept(course: CourseFolder, process_mark: ProcessMark) -> None:
-    course.write(one=f"# One\n\n{TALKER}\n```bash\nros2 topic hz /chatter\n```\n\n```python\n6 * 7\n```\n")
+    course.write(
+        one=f"# One\n\n{TALKER}\n```bash seconds=60 until='window: 2'\nros2 topic hz /chatter\n```\n\n"
+        "```python\n6 * 7\n```\n"
+    )
 
     said = course.spinbook("build", "--execute")
 
@@ -108,7 +111,7 @@ def test_no_folder_of_the_machine_gets_into_the_outputs(course: CourseFolder) ->
 
 HOSTILE = """# Nodes that misbehave
 
-```python title="endless.py" seconds=0.5
+```python title="endless.py" seconds=60 until=spinning
 import rclpy
 print("spinning for ever")
 while rclpy: pass
@@ -120,7 +123,7 @@ import rclpy
 rclpy.spin(undefined)
 ```
 
-```python title="stubborn.py" seconds=1
+```python title="stubborn.py" seconds=60 until=stop
 import rclpy, signal
 signal.signal(signal.SIGINT, signal.SIG_IGN)
 signal.signal(signal.SIGTERM, signal.SIG_IGN)
@@ -135,7 +138,7 @@ while True:
 %stop stubborn
 ```
 
-```python title="flood.py" seconds=20
+```python title="flood.py" seconds=120
 import rclpy
 line = "x" * 999
 for i in range(100_000): print(i, line)
@@ -143,7 +146,7 @@ print("that was 100 MB")
 if not rclpy: rclpy.spin(None)
 ```
 
-```python title="daemon.py" seconds=1
+```python title="daemon.py" seconds=60 until=forked
 import os, rclpy, time
 if os.fork() == 0:
     os.setsid()

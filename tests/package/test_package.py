@@ -1,0 +1,113 @@
+"""The chapters' nodes become a ROS 2 package that colcon builds and `ros2 run` runs."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from conftest import CourseFolder
+
+NODE = '''"""Says hello."""
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from std_msgs.msg import String
+
+
+def main():
+    rclpy.init()
+    node = rclpy.create_node("hello")
+    node.create_publisher(String, "/hello", 10)
+    node.create_timer(0.1, lambda: print("hello from the package", flush=True))
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+
+
+if __name__ == "__main__":
+    main()
+'''
+CHAPTER = f'# One\n\n```python title="hello.py"\n{NODE}```\n'
+
+
+def test_modules_are_the_chapters_code_to_the_byte(course: CourseFolder) -> None:
+    said = course.write(one=CHAPTER).spinbook("package")
+
+    folder = course.root / "robot_ws/src/robot"
+    assert said.returncode == 0, said.stderr
+    assert "ros2 run robot hello" in said.stdout
+    assert (folder / "robot/hello.py").read_text() == NODE
+    assert {p.name for p in folder.iterdir()} >= {"package.xml", "setup.py", "setup.cfg", "resource", "robot"}
+    assert (folder / "resource/robot").read_bytes() == b""
+
+
+def test_package_xml_names_what_the_modules_import(course: CourseFolder) -> None:
+    course.write(one=CHAPTER).spinbook("package")
+
+    root = ElementTree.parse(course.root / "robot_ws/src/robot/package.xml").getroot()
+    assert root.findtext("name") == "robot"
+    assert [item.text for item in root.findall("exec_depend")] == ["rclpy", "std_msgs"]
+    assert root.findtext("export/build_type") == "ament_python"
+
+
+def test_a_module_that_left_the_chapters_leaves_the_package_and_other_files_stay(course: CourseFolder) -> None:
+    course.write(one=CHAPTER).spinbook("package")
+    folder = course.root / "robot_ws/src/robot"
+    (folder / "robot/mine.py").write_text("# written by a person\n")
+
+    course.write(one=CHAPTER.replace("hello.py", "greet.py")).spinbook("package")
+
+    assert {p.name for p in (folder / "robot").iterdir()} == {"__init__.py", "greet.py", "mine.py"}
+
+
+def test_two_chapters_with_different_code_of_one_name_are_refused(course: CourseFolder) -> None:
+    course.write(one=CHAPTER, two=CHAPTER.replace("Says hello", "Says hi"))
+
+    said = course.spinbook("package")
+
+    assert said.returncode == 1
+    assert "chapters/two.md:4: error: the node `hello` also stands in chapters/one.md:4, with other code" in said.stderr
+    assert not (course.root / "robot_ws").exists()
+
+
+def test_a_chapter_with_an_error_leaves_the_package_as_it_was(course: CourseFolder) -> None:
+    course.write(one=CHAPTER).spinbook("package")
+
+    said = course.write(two="# Two\n\n```python\nx = = 1\n```\n").spinbook("package")
+
+    assert said.returncode == 1
+    assert "chapters/two.md:4" in said.stderr
+    assert (course.root / "robot_ws/src/robot/robot/hello.py").exists()
+
+
+def test_colcon_builds_it_and_ros2_run_runs_it_and_ctrl_c_ends_it(course: CourseFolder, ros_domain: int) -> None:
+    course.write(one=CHAPTER).spinbook("package")
+    built = subprocess.run(
+        [sys.executable, "-m", "colcon", "build", "--symlink-install"],
+        cwd=course.root / "robot_ws",
+        env={**os.environ, "AMENT_PREFIX_PATH": sys.prefix},
+        capture_output=True,
+        text=True,
+    )
+    assert "1 package finished" in built.stdout, built.stderr
+
+    node = subprocess.Popen(
+        [sys.executable, "-m", "spinbook", "ros2", "run", "robot", "hello"],
+        cwd=course.root / "robot_ws",
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    assert node.stdout is not None
+    assert node.stdout.readline() == "hello from the package\n"
+    # What --symlink-install promises: the executable runs the file that stands in src.
+    assert (course.root / "robot_ws/build/robot/robot").resolve() == course.root / "robot_ws/src/robot/robot"
+    node.send_signal(signal.SIGINT)
+    assert node.wait(30) == 0
+    assert "Traceback" not in node.stdout.read()

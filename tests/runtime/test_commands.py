@@ -1,0 +1,174 @@
+"""`%ros2`, `%colcon`, `%plot` and `%turtle` in a notebook."""
+
+from __future__ import annotations
+
+import struct
+from base64 import b64decode
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from runtime.conftest import Kernel
+
+ARM = """import math
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from sensor_msgs.msg import JointState
+
+
+def main():
+    rclpy.init()
+    node = rclpy.create_node("arm")
+    publisher = node.create_publisher(JointState, "/arm/joints", 10)
+    count = 0
+
+    def publish():
+        nonlocal count
+        count += 1
+        message = JointState(name=["shoulder", "elbow"], position=[math.sin(count / 10), 0.5], velocity=[0.0, 1.0])
+        message.header.stamp = node.get_clock().now().to_msg()
+        publisher.publish(message)
+
+    node.create_timer(0.05, publish)
+    node.get_logger().info("moving")
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+
+
+if __name__ == "__main__":
+    main()
+"""
+
+
+@pytest.fixture
+def arm(new_kernel: Callable[..., Kernel]) -> Kernel:
+    """A notebook in which a node publishes two joints."""
+    kernel = new_kernel()
+    kernel.run(f"%%node arm --seconds 60 --until moving\n{ARM}")
+    return kernel
+
+
+def size_of(picture: dict[str, str]) -> tuple[int, int]:
+    """Width and height in pixels, from the PNG's header."""
+    width, height = struct.unpack(">II", b64decode(picture["image/png"])[16:24])
+    return width, height
+
+
+def test_a_command_that_does_not_end_is_bounded(arm: Kernel) -> None:
+    shown = arm.run("%ros2 --seconds 60 --until elbow topic echo /arm/joints --field name")
+
+    assert shown.error == ""
+    assert "['shoulder', 'elbow']" in shown.text
+
+
+def test_a_command_that_fails_fails_the_cell_in_words(arm: Kernel) -> None:
+    shown = arm.run("%ros2 interface show std_msgs/msg/Strin")
+
+    assert shown.error == "ros2 interface show: ended with exit code 1."
+    assert "Traceback" not in shown.text
+
+
+def test_python_variables_are_not_put_into_a_command(arm: Kernel) -> None:
+    arm.run("data = 'wrong'")
+
+    assert (
+        "data='{data}'"
+        in arm.run("%ros2 topic pub --times 1 -w 0 /words std_msgs/msg/String \"{data: '{data}'}\"").text
+    )
+
+
+def test_a_plot_names_joints_and_units(arm: Kernel) -> None:
+    (picture,) = arm.run("%plot /arm/joints/position --seconds 1").pictures
+
+    words = picture["text/plain"]
+    assert "position shoulder: " in words
+    assert "position elbow: " in words
+    assert "0.500 … 0.500 rad" in words
+    assert size_of(picture)[0] >= 800
+
+
+@pytest.mark.parametrize(
+    ("path", "curves"),
+    [
+        ("/arm/joints/position[0]", ["position shoulder"]),
+        ("arm/joints/velocity[1]", ["velocity elbow"]),
+        ("/arm/joints", ["position shoulder", "position elbow", "velocity shoulder", "velocity elbow"]),
+        ("/arm/joints/position[0] /arm/joints/velocity[0]", ["position shoulder", "velocity shoulder"]),
+    ],
+)
+def test_a_plot_takes_a_field_an_index_or_a_whole_topic(arm: Kernel, path: str, curves: list[str]) -> None:
+    (picture,) = arm.run(f"%plot {path} --seconds 0.5").pictures
+
+    assert [line.split(":")[0] for line in picture["text/plain"].splitlines()] == curves
+
+
+def test_a_plot_is_live_where_somebody_watches_and_one_figure_where_nobody_does(
+    arm: Kernel, new_kernel: Callable[..., Kernel]
+) -> None:
+    watched = arm.run("%plot /arm/joints/position --seconds 2.5")
+    assert len(watched.pictures) == 1
+    assert watched.updates >= 2
+
+    unwatched = new_kernel(SPINBOOK_EXECUTING="1")
+    unwatched.run(f"%%node arm --seconds 60 --until moving\n{ARM}")
+    shown = unwatched.run("%plot /arm/joints/position --seconds 2.5")
+    assert len(shown.pictures) == 1
+    assert shown.updates == 0
+
+
+def test_the_stop_button_ends_a_plot_with_what_it_has(arm: Kernel) -> None:
+    from threading import Timer
+
+    timer = Timer(5, arm.interrupt)
+    timer.start()
+    shown = arm.run("%plot /arm/joints/position --seconds 80")
+    timer.join()
+
+    assert shown.error == ""
+    assert "position shoulder" in shown.pictures[0]["text/plain"]
+
+
+def test_a_plot_of_nothing_says_what_there_is(arm: Kernel) -> None:
+    error = arm.run("%plot /leg/joints/position").error
+
+    assert error == "Nobody publishes /leg/joints/position. Topics with a publisher are: /arm/joints."
+
+
+def test_a_plot_of_an_unknown_field_names_the_fields(arm: Kernel) -> None:
+    error = arm.run("%plot /arm/joints/positon").error
+
+    assert "there is no `positon`. It has: header, name, position, velocity, effort." in error
+
+
+def test_colcon_builds_the_package_and_ros2_run_starts_its_executable(arm: Kernel) -> None:
+    arm.run("%stop --all")
+
+    built = arm.run("%colcon build --symlink-install")
+    assert built.error == "", built.text
+    assert "1 package finished" in built.text
+
+    assert "arm goes on in the background" in arm.run("%ros2 --seconds 60 --until moving run robot arm").text
+    assert "/arm\n" in arm.run("%ros2 node list").text
+    assert arm.run("%stop arm").text == "arm stopped.\n"
+
+
+def test_a_picture_of_a_turtle_that_does_not_run_is_refused(kernel: Kernel) -> None:
+    error = kernel.run("%turtle").error
+
+    assert "turtlesim" in error
+    assert "Traceback" not in error
+
+
+def test_the_turtle_runs_and_is_shown(kernel: Kernel) -> None:
+    kernel.run("%ros2 --seconds 60 --until 'Spawning turtle' run turtlesim turtlesim_node")
+    twist = "{linear: {x: 2.0}, angular: {z: 1.0}}"
+    kernel.run(f'%ros2 --seconds 3 topic pub --rate 5 /turtle1/cmd_vel geometry_msgs/msg/Twist "{twist}"')
+
+    (picture,) = kernel.run("%turtle").pictures
+
+    assert min(size_of(picture)) >= 300
+    assert kernel.run("%stop turtlesim_node").text == "turtlesim_node stopped.\n"
