@@ -15,12 +15,20 @@ JOINT_STATE = "sensor_msgs/msg/JointState"
 def test_publishes_velocities(chapter: Run) -> None:
     """It hears /joint_commands and publishes JointState messages on /joint_velocities."""
     if not chapter.subscriptions(COMMANDS):
-        fail("Your node does not subscribe.", expected=COMMANDS, got=chapter.topics("subscription"))
+        fail(
+            "Your node does not subscribe the topic.",
+            expected=COMMANDS,
+            got=", ".join(chapter.topics("subscription")) or "none",
+        )
     for subscription in chapter.subscriptions(COMMANDS):
         if subscription.type != JOINT_STATE:
             fail("Your subscription has another type.", expected=JOINT_STATE, got=subscription.type)
     if not chapter.publishers(VELOCITIES):
-        fail("Your node has no such publisher.", expected=VELOCITIES, got=chapter.topics("publisher") or "none")
+        fail(
+            "Your node has no publisher on the topic.",
+            expected=VELOCITIES,
+            got=", ".join(chapter.topics("publisher")) or "none",
+        )
     for publisher in chapter.publishers(VELOCITIES):
         if publisher.type != JOINT_STATE:
             fail("Your publisher has another type.", expected=JOINT_STATE, got=publisher.type)
@@ -42,7 +50,7 @@ def test_answers_each_message_once(chapter: Run) -> None:
 )
 def test_says_nothing_to_the_first_message(chapter: Run) -> None:
     """It publishes nothing for the first message."""
-    chapter.must_be_silent(first_only=True)
+    chapter.must_be_silent_at_first()
 
 
 @check(
@@ -62,7 +70,7 @@ def test_velocity_of_each_joint(chapter: Run) -> None:
 )
 def test_names_in_the_order_of_the_message(chapter: Run) -> None:
     """The joints' names stand in the order of the message that arrived."""
-    chapter.must_match("name")
+    chapter.must_match("name", missing_ok=True)
 
 
 @check(
@@ -73,7 +81,7 @@ def test_names_in_the_order_of_the_message(chapter: Run) -> None:
 )
 def test_stamp_is_copied(chapter: Run) -> None:
     """The stamp is that of the message that arrived."""
-    chapter.must_match("header.stamp")
+    chapter.must_match("header.stamp", missing_ok=True)
 
 
 @check(points=5, hint="super().__init__('joint_velocity')", depends=[test_publishes_velocities])

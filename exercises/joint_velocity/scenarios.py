@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from grader.scenario import Scenario
+from grader.scenario.joint_states import ARM_SWING as ARMS
 from grader.scenario.joint_states import (
     arm_swing,
     emptied,
@@ -24,7 +25,6 @@ from grader.scenario.joint_states import (
     uneven,
     without,
 )
-from grader.scenario.joint_states import ARM_SWING as ARMS
 
 #: Joints that move at one speed each (rad/s): whatever the stamps, that is their velocity.
 STEADY = {"left_elbow": 0.25, "right_elbow": -1.5, "left_shoulder_pitch": 0.0}

@@ -25,9 +25,7 @@ def judge(
     `recordings` are the student's and `references` the solution's, by scenario. Raises `ExerciseError` where the
     files of checks are unusable. Runs pytest in this process, with none of the plugins installed on this machine.
     """
-    runs = {
-        name: Run(exercise, recordings[name], references[name], titles.get(name, "")) for name in recordings
-    }
+    runs = {name: Run(exercise, recordings[name], references[name], titles.get(name, "")) for name in recordings}
     return _pytest(exercise, runs)
 
 

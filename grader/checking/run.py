@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 
 from grader.checking.wrong import Finding, Wrong
 from grader.exercise import Exercise
-from grader.recording import EndPoint, Ending, Received, Recording, Sent
+from grader.recording import Ending, EndPoint, Received, Recording, Sent
 from grader.scenario.scenario import SECOND, START
 
 
@@ -129,15 +129,16 @@ class Run:
         """Names of all topics that the student's nodes publish (kind "publisher") or subscribe ("subscription")."""
         return sorted({e.topic for e in self.recording.end_points if e.kind == kind})
 
-    def must_match(self, field: str, per: str = "", tolerance: float = 1e-6) -> None:
+    def must_match(self, field: str, per: str = "", tolerance: float = 1e-6, missing_ok: bool = False) -> None:
         """Wherever the solution answers, the node must answer, with the same `field`.
 
         `per` names the list of names that `field` goes with, so that the order does not count: `must_match("velocity",
-        per="name")`. Numbers may differ by `tolerance`, absolute or relative, whichever is larger.
+        per="name")`. Numbers may differ by `tolerance`, absolute or relative, whichever is larger. With `missing_ok`
+        only what came is compared, and what did not come is another check's.
         """
         from grader.checking.matching import must_match
 
-        must_match(self, field, per, tolerance)
+        must_match(self, field, per, tolerance, missing_ok)
 
     def must_answer(self) -> None:
         """The node must answer every message that the solution answers, once."""
@@ -145,11 +146,17 @@ class Run:
 
         must_answer(self)
 
-    def must_be_silent(self, first_only: bool = False) -> None:
-        """The node must answer no message that the solution leaves without an answer (only the first: `first_only`)."""
+    def must_be_silent(self) -> None:
+        """The node must leave without an answer what the solution does. The very first message does not count."""
         from grader.checking.matching import must_be_silent
 
-        must_be_silent(self, first_only)
+        must_be_silent(self.exchanges[1:], self)
+
+    def must_be_silent_at_first(self) -> None:
+        """The node must leave the very first message without an answer, if the solution does."""
+        from grader.checking.matching import must_be_silent
+
+        must_be_silent(self.exchanges[:1], self)
 
     def wrong(self, exchange: Exchange, text: str, part: str = "", expected: str = "", got: str = "") -> NoReturn:
         """End the check: `text` tells what is wrong with the answers to this exchange's message."""

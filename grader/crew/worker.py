@@ -1,4 +1,4 @@
-"""The worker process: `python -m grader.crew.worker FD`. It has rclpy in its memory and forks a process for each job."""
+"""The worker process, `python -m grader.crew.worker FD`: has rclpy in its memory and forks a process for each job."""
 
 from __future__ import annotations
 
@@ -20,9 +20,10 @@ def main() -> None:
     """Serve jobs until the other end of the control socket is closed."""
     control = socket.socket(fileno=int(sys.argv[1]))
     with Nursery() as nursery:
+        import sensor_msgs.msg  # noqa: F401
+
         import grader.crew.jobs
         import grader.rig.spin
-        import sensor_msgs.msg  # noqa: F401
 
         working: set[int] = set()
         while True:

@@ -50,7 +50,8 @@ def load(folder: Path | str) -> Exercise:
 
 def _read(file: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(file.read_text(encoding="utf-8"))
+        entries: dict[str, Any] = tomllib.loads(file.read_text(encoding="utf-8"))
+        return entries
     except FileNotFoundError:
         raise ExerciseError(file, "there is no such file", "An exercise is a folder with an exercise.toml.") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:

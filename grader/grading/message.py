@@ -13,7 +13,10 @@ MISSING = re.compile(r"ModuleNotFoundError: No module named '([^']+)'")
 NO_NAME = re.compile(r"ImportError: cannot import name '([^']+)' from '([^']+)'")
 
 ADVICE = (
-    (re.compile(r"IndentationError|TabError"), "Compare the spaces at the beginning of this line with its neighbours'."),
+    (
+        re.compile(r"IndentationError|TabError"),
+        "Compare the spaces at the beginning of this line with its neighbours'.",
+    ),
     (re.compile(r"SyntaxError: .*non-utf-8|SyntaxError: \(unicode", re.IGNORECASE), "Save the file as UTF-8."),
     (re.compile(r"SyntaxError"), "Python can't read this line; look at the end of the line before it, too."),
     (re.compile(r"NameError"), "Is the name spelled as where it was made, and made before it is used?"),

@@ -13,7 +13,9 @@ class Options:
     """How to grade. `isolation` None means the strongest that works here.
 
     `seed` chooses the numbers of scenarios that have chance in them. `pace` is 1.0 for the pace of real time, None for
-    as fast as it goes. `parallel` is how many spins run at once: most of a spin is waiting, so more than there are cores.
+    as fast as it goes.
+
+    `parallel` is how many spins run at once: more than there are cores, for much of a spin is waiting.
     """
 
     isolation: Isolation | None = None

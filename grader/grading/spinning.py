@@ -79,4 +79,6 @@ class Spinner:
 def _likewise(first: Recording, scenario: Scenario) -> Recording:
     if first.scenario == scenario.name:
         return first
-    return Recording(scenario.name, (), (), first.nodes, (), "none", False, Ending(first.ending.outcome, first.ending.story))
+    return Recording(
+        scenario.name, (), (), first.nodes, (), "none", False, Ending(first.ending.outcome, first.ending.story)
+    )

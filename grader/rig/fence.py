@@ -75,7 +75,8 @@ class Fence:
                 if f"{node}/get_parameters" in services:
                     found[node] = (f"{node}/get_parameters", GetParameters, GetParameters.Request())
                 elif f"{node}/get_type_description" in services and patience.blocked > 0.1:
-                    request = GetTypeDescription.Request()
+                    # Of a type that does not exist, in the form of a type's hash: else the node logs an error.
+                    request = GetTypeDescription.Request(type_name="none", type_hash=f"RIHS01_{64 * '0'}")
                     found[node] = (f"{node}/get_type_description", GetTypeDescription, request)
             self.alive()
             if patience.ended():
@@ -124,9 +125,10 @@ class Fence:
         self.alive()
         if self.hold == "quiet":
             self._rest_without_answers()
-        elif self._restless < RESTLESS_TIMES:
-            if not self._threads.still() and not self._threads.wait_until_still(0.0, RESTLESS_S):
-                self._restless += 1
+            return
+        enough = self._restless >= RESTLESS_TIMES or self._threads.still()
+        if not enough and not self._threads.wait_until_still(0.0, RESTLESS_S):
+            self._restless += 1
 
     def _rest_without_answers(self) -> None:
         patience = Patience(self._student)

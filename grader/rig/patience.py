@@ -37,7 +37,7 @@ class Patience:
         self._looked = now
 
     def ended(self) -> str | None:
-        """"cpu" or "blocked" when it has ended, else None."""
+        """ "cpu" or "blocked" when it has ended, else None."""
         self.look()
         if self.blocked >= self._blocked_s:
             return "blocked"

@@ -14,7 +14,7 @@ CHILDREN_EVERY_S = 0.05
 
 
 class Threads:
-    """The threads of a program and of its children. Files stay open from one look to the next, which makes one cheap."""
+    """The threads of a program and of its children. Files stay open between looks, which makes a look cheap."""
 
     def __init__(self, pid: int) -> None:
         self._pid = pid
@@ -28,7 +28,7 @@ class Threads:
         seen: Activity = {}
         for process in self._processes:
             try:
-                threads = os.listdir(f"/proc/{process}/task")  # noqa: PTH208: names alone, quickly
+                threads = os.listdir(f"/proc/{process}/task")  # noqa: PTH208
             except OSError:
                 continue
             for thread in threads:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from grader.exercise import Exercise
-from grader.recording import Ending, Recording
+from grader.recording import Ending, EndPoint, Recording
 from grader.rig.clock import Clock
 from grader.rig.ending import cut_short, interrupted
 from grader.rig.fence import AFTER_CLOCK, AFTER_MESSAGES, Fence, Gone
@@ -27,7 +27,7 @@ AFTERWARDS = SECOND // 2
 
 @dataclass(frozen=True)
 class Spin:
-    """What to spin. `domain` is the ROS domain, `pace` is 1.0 for the pace of real time and None for as fast as it goes.
+    """What to spin. `domain` is the ROS domain; `pace` is 1.0 for real time's pace and None for as fast as it goes.
 
     `file_name` and `source` are the student's, to name lines in what is told.
     """
@@ -69,6 +69,7 @@ class Rig:
         self._nodes: list[str] = []
         self._sim_time = False
         self._met = False
+        self._end_points: tuple[EndPoint, ...] = ()
 
     def _moment(self) -> tuple[int, int]:
         return self._clock.now, len(self._publishers.sent)
@@ -105,10 +106,8 @@ class Rig:
         self._fence.take_hold(self._graph, self._nodes)
         self._fence.wait(1)
         if self._fence.hold == "parameters":
-            self._sim_time = all([self._fence.use_sim_time(node) for node in self._nodes])
-        wait_until_connected(
-            self._ros, self._student, self._fence, self._clock, self._publishers, self._recorder
-        )
+            self._sim_time = all(self._fence.use_sim_time(node) for node in self._nodes)
+        wait_until_connected(self._ros, self._student, self._fence, self._clock, self._publishers, self._recorder)
         self._clock.set(START)
         self._fence.wait(AFTER_CLOCK)
         self._met = True
@@ -141,5 +140,3 @@ class Rig:
             self._recorder.check()
             if len(self._recorder.received) == before:
                 return
-
-    _end_points: tuple = ()  # type: ignore[type-arg]

@@ -37,8 +37,8 @@ def cell_of(content: bytes, exercise: Exercise) -> str:
         if found:
             return _without_magic(found[-1])
     raise NoCell(
-        f"None of the notebook's {len(codes)} code cells is the exercise's. Write the class {exercise.class_name} in the "
-        f"cell that the chapter gives for it; it begins with %%node {stem}."
+        f"None of the notebook's {len(codes)} code cells is the exercise's. Write the class {exercise.class_name} in "
+        f"the cell that the chapter gives for it; it begins with %%node {stem}."
     )
 
 

@@ -55,9 +55,7 @@ def of_source(name: str, code: bytes, exercise: Exercise, digest: str = "") -> S
     source = code.decode("utf-8", errors="replace")
     program = Program(exercise.file_name, {exercise.file_name: code})
     problem = "" if code.strip() else "Your file is empty."
-    return Submission(
-        name, digest or _digest(code), exercise.file_name, source, None if problem else program, problem
-    )
+    return Submission(name, digest or _digest(code), exercise.file_name, source, None if problem else program, problem)
 
 
 def _content(path: Path) -> bytes:

@@ -33,9 +33,7 @@ class JointVelocity(Node):
         # BEGIN SOLUTION
         stamp = message.header.stamp.sec * NANOSECONDS + message.header.stamp.nanosec
         positions = {
-            name: position
-            for name, position in zip(message.name, message.position)
-            if math.isfinite(position)
+            name: position for name, position in zip(message.name, message.position) if math.isfinite(position)
         }
         if self.stamp_before is not None and stamp > self.stamp_before:
             self.publish_velocities(message, positions, (stamp - self.stamp_before) / NANOSECONDS)
