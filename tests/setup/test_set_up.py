@@ -1,0 +1,202 @@
+"""Set-up makes an environment once, brings it up to date, and starts over where it was interrupted."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from setup_stage import Checkout
+
+
+def pips(checkout: Checkout) -> list[str]:
+    return [call for call in checkout.calls if call.startswith("pip ")]
+
+
+def test_first_installs_the_pins_by_hash_and_then_spinbook_itself(checkout: Checkout) -> None:
+    code, said = checkout.set_up()
+    assert code == 0, said
+    assert checkout.calls[0] == "venv .venv"
+    build_tool, pins, itself = pips(checkout)
+    assert "--require-hashes" in build_tool
+    assert "--require-hashes" in pins
+    assert "-r constraints.txt -r constraints-ros.txt" in pins
+    assert "--editable ." in itself
+
+
+def test_the_build_tool_is_the_pinned_setuptools(checkout: Checkout) -> None:
+    checkout.set_up()
+    pinned = (checkout.folder / ".venv" / "build-tool.txt").read_text()
+    assert pinned == "setuptools==79.0.1 \\\n    --hash=sha256:0\n"
+
+
+def test_says_little_where_all_is_well(checkout: Checkout) -> None:
+    _, said = checkout.set_up()
+    assert len(said.splitlines()) == 1
+    assert "about a minute" in said
+
+
+def test_a_second_run_does_nothing_and_says_nothing(checkout: Checkout) -> None:
+    checkout.set_up()
+    checkout.forget_calls()
+    assert checkout.set_up() == (0, "")
+    assert checkout.calls == []
+
+
+def test_changed_pins_are_installed_into_the_same_environment(checkout: Checkout) -> None:
+    checkout.set_up()
+    checkout.forget_calls()
+    with (checkout.folder / "constraints.txt").open("a") as file:
+        file.write("rich==15 \\\n    --hash=sha256:3\n")
+    code, said = checkout.set_up()
+    assert (code, len(pips(checkout))) == (0, 3)
+    assert "have changed" in said
+    assert not any(call.startswith("venv") for call in checkout.calls)
+    assert checkout.set_up() == (0, "")
+
+
+def test_after_an_interruption_the_next_run_starts_over(checkout: Checkout) -> None:
+    os.mkfifo(checkout.stage / "pip-waits")
+    process = checkout.start()
+    deadline = time.monotonic() + 30
+    while not pips(checkout):
+        assert time.monotonic() < deadline
+        assert process.poll() is None
+    os.killpg(process.pid, signal.SIGINT)
+    process.communicate(timeout=30)
+    assert process.returncode != 0
+    (checkout.stage / "pip-waits").unlink()
+    checkout.forget_calls()
+    code, said = checkout.set_up()
+    assert code == 0, said
+    assert checkout.calls[0] == "venv .venv"
+    assert checkout.set_up() == (0, "")
+
+
+def test_after_a_failure_the_next_run_starts_over(checkout: Checkout) -> None:
+    checkout.tell("pip-fails", "ERROR: something")
+    assert checkout.set_up()[0] == 1
+    (checkout.stage / "pip-fails").unlink()
+    checkout.forget_calls()
+    assert checkout.set_up()[0] == 0
+    assert checkout.calls[0] == "venv .venv"
+
+
+def test_an_environment_without_its_python_is_made_anew(checkout: Checkout) -> None:
+    checkout.set_up()
+    (checkout.folder / ".venv" / "bin" / "python").unlink()
+    checkout.forget_calls()
+    assert checkout.set_up()[0] == 0
+    assert checkout.calls[0] == "venv .venv"
+
+
+def test_a_moved_checkout_gets_its_environment_anew(checkout: Checkout, tmp_path: Path) -> None:
+    checkout.set_up()
+    moved = Checkout(tmp_path / "elsewhere", checkout.stage, checkout.environment)
+    shutil.move(checkout.folder, moved.folder)
+    checkout.forget_calls()
+    code, said = moved.set_up()
+    assert code == 0
+    assert "making it anew" in said
+    assert moved.calls[0] == "venv .venv"
+
+
+def test_the_environment_may_lie_elsewhere(checkout: Checkout, tmp_path: Path) -> None:
+    place = tmp_path / "environments" / "spinbook"
+    assert checkout.set_up(VENV=f"{place}/")[0] == 0
+    assert checkout.calls[0] == f"venv {place}"
+    assert not (checkout.folder / ".venv").exists()
+
+
+def test_a_folder_of_somebody_elses_is_left_alone(checkout: Checkout, tmp_path: Path) -> None:
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "thesis.tex").write_text("a year's work")
+    code, said = checkout.set_up(VENV=os.fspath(tmp_path / "mine"))
+    assert code == 1
+    assert "left alone" in said
+    assert (tmp_path / "mine" / "thesis.tex").read_text() == "a year's work"
+    assert checkout.calls == []
+
+
+def test_two_at_once_take_turns_and_the_second_has_nothing_to_do(checkout: Checkout) -> None:
+    os.mkfifo(checkout.stage / "pip-waits")
+    first = checkout.start()
+    deadline = time.monotonic() + 30
+    while not pips(checkout):
+        assert time.monotonic() < deadline
+    second = checkout.start()
+    assert second.stdout is not None
+    assert "waiting" in second.stdout.readline()
+    with (checkout.stage / "pip-waits").open("w") as gate:
+        (checkout.stage / "pip-waits").unlink()
+        gate.write("go\n")
+    assert first.wait(30) == 0
+    assert second.wait(30) == 0
+    assert len(pips(checkout)) == 3
+    for process in (first, second):
+        process.communicate()
+
+
+def test_another_environments_bootstrap_is_not_passed_on(checkout: Checkout) -> None:
+    checkout.set_up(_ROS_WHEELS_BOOTSTRAP_COMPLETE="1", PYTHONPATH="/nowhere")
+    assert all(call.endswith("PYTHONPATH=unset guard=unset") for call in pips(checkout))
+
+
+def test_make_does_it_before_its_other_work(checkout: Checkout) -> None:
+    said = subprocess.run(
+        ["make", "setup"],
+        cwd=checkout.folder,
+        env=checkout.environment | {"PYTHON": ""},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert "about a minute" in said.stderr
+    assert len(pips(checkout)) == 3
+
+
+# Which Python
+
+
+def test_the_environments_own_python_is_kept_where_none_is_named(checkout: Checkout) -> None:
+    checkout.set_up()
+    checkout.program("python3", "#!/bin/sh\necho 'another Python was asked'; exit 1\n")
+    checkout.forget_calls()
+    assert checkout.set_up(PYTHON="") == (0, "")
+
+
+def test_another_python_gets_an_environment_of_its_own(checkout: Checkout) -> None:
+    checkout.set_up()
+    mark = checkout.folder / ".venv" / ".spinbook"
+    mark.write_text(mark.read_text().replace(os.path.realpath(sys.executable), "/usr/bin/python3.99"))
+    code, said = checkout.set_up()
+    assert code == 0
+    assert "was made for something else (wheels, /usr/bin/python3.99)" in said
+
+
+def test_an_active_environment_is_not_built_upon(checkout: Checkout) -> None:
+    checkout.program("base-python", checkout.python.read_text().replace('"$STAGE/is-active"', '"$STAGE/never"'))
+    checkout.tell("is-active", f"{checkout.stage}/bin/base-python\n")
+    code, said = checkout.set_up()
+    assert code == 0, said
+    assert f"python {os.path.realpath(sys.executable)}" in (checkout.folder / ".venv" / ".spinbook").read_text()
+
+
+def test_a_python_that_is_too_old_or_too_new_is_refused(checkout: Checkout) -> None:
+    for version in ("3, 9, 2", "3, 15, 0"):
+        checkout.tell("version", version)
+        code, said = checkout.set_up()
+        assert code == 1
+        assert f"Spinbook needs Python 3.10 to 3.14, and '{os.path.realpath(sys.executable)}' is" in said
+        assert "make PYTHON=python3.12" in said
+        assert "Traceback" not in said
+
+
+def test_a_python_that_is_not_there_is_told(checkout: Checkout) -> None:
+    code, said = checkout.set_up(PYTHON="python3.99")
+    assert code == 1
+    assert "There is no 'python3.99' here" in said
