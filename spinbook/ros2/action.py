@@ -140,18 +140,19 @@ def send_goal(
         _wait_for_server(graph, client, name, interfaces.full_name(action_type, "action"))
         print(f"Sending goal:\n     {to_yaml(message)}", flush=True)
 
-        def tell(sent: Any) -> None:
-            print(f"Feedback:\n    {to_yaml(sent.feedback)}", flush=True)
+        def tell(told: Any) -> None:
+            print(f"Feedback:\n    {to_yaml(told.feedback)}", flush=True)
 
-        handle = _done(graph, client.send_goal_async(message, tell if feedback else None), "sending goal")
-        if not handle.accepted:
-            print("Goal was rejected.", flush=True)
-            return
-        print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n", flush=True)
+        sent = client.send_goal_async(message, tell if feedback else None)
         try:
+            handle = _done(graph, sent, "sending goal")
+            if not handle.accepted:
+                print("Goal was rejected.", flush=True)
+                return
+            print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n", flush=True)
             answer = _done(graph, handle.get_result_async(), "getting result")
         except Stopped:
-            _cancel(graph, handle)
+            _cancel(graph, sent)
             raise
         print(f"Result:\n    {to_yaml(answer.result)}", flush=True)
         print(f"Goal finished with status: {_status(answer.status)}", flush=True)
@@ -159,6 +160,7 @@ def send_goal(
 
 def _wait_for_server(graph: Graph, client: Any, name: str, wanted: str) -> None:
     """Wait without end for the server. Raises `Refusal` when it turns out to be of another type."""
+    from rclpy.action import get_action_server_names_and_types_by_node
 
     def ready_or_never() -> bool:
         if client.server_is_ready():
@@ -169,6 +171,8 @@ def _wait_for_server(graph: Graph, client: Any, name: str, wanted: str) -> None:
         return False
 
     graph.spin_until(ready_or_never)
+    for server, _ in _nodes_with(graph, name, get_action_server_names_and_types_by_node):
+        graph.wait_until_known(server)
 
 
 def _done(graph: Graph, future: Any, doing: str) -> Any:
@@ -178,9 +182,12 @@ def _done(graph: Graph, future: Any, doing: str) -> Any:
     return future.result()
 
 
-def _cancel(graph: Graph, handle: Any) -> None:
+def _cancel(graph: Graph, sent: Any) -> None:
+    """Cancel the goal that was sent, whose acceptance may be still to come."""
+    if not graph.spin_until(sent.done, CANCELLING) or not sent.result().accepted:
+        return
     print("Canceling goal...", flush=True)
-    future = handle.cancel_goal_async()
+    future = sent.result().cancel_goal_async()
     if graph.spin_until(future.done, CANCELLING) and future.result().goals_canceling:
         print("Goal canceled.", flush=True)
     else:

@@ -25,17 +25,29 @@ _WHY = "(none is needed: each command looks at the graph itself, so there is not
 
 @click.command(context_settings=CONTEXT)
 def status() -> None:
-    """Say that none is running."""
+    """Say that none is running.
+
+    \b
+      ros2 daemon status
+    """
     click.echo(f"The daemon is not running {_WHY}")
 
 
 @click.command(context_settings=CONTEXT)
 def start() -> None:
-    """Say that none is needed."""
+    """Say that none is needed.
+
+    \b
+      ros2 daemon start
+    """
     click.echo(f"The daemon has not been started {_WHY}")
 
 
 @click.command(context_settings=CONTEXT)
 def stop() -> None:
-    """Say that none is running."""
+    """Say that none is running.
+
+    \b
+      ros2 daemon stop
+    """
     click.echo(f"The daemon is not running {_WHY}")

@@ -50,7 +50,7 @@ def find(package: str, executable: str, cwd: Path) -> Launch:
         raise Refusal(
             f"Package '{package}' not found",
             _where(cwd),
-            f"Packages with executables: {', '.join(runnable(cwd))}.",
+            f"Packages to run from here: {', '.join(runnable(cwd))}.",
         )
     if executable not in modules:
         raise Refusal("No executable found", f"Executables of {package}: {', '.join(sorted(modules))}.")
@@ -73,9 +73,9 @@ def everywhere(cwd: Path) -> dict[str, Path]:
 
 
 def runnable(cwd: Path) -> list[str]:
-    """The packages that have an executable, sorted."""
-    packages = {package for package, prefix in everywhere(cwd).items() if in_prefix(prefix, package)}
-    return sorted(packages | set(BUILT_IN))
+    """The packages of near workspaces that have an executable, and those that Spinbook brings, sorted."""
+    built = prefixes.packages(prefix for near in workspace.near(cwd) for prefix in near.prefixes)
+    return sorted({package for package, prefix in built.items() if in_prefix(prefix, package)} | set(BUILT_IN))
 
 
 def _only(paths: list[Path], package: str, executable: str) -> Path:

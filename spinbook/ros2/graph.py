@@ -24,6 +24,7 @@ from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
 from spinbook.ros2 import census
 from spinbook.ros2.middleware import domain_id
+from spinbook.ros2.refusal import Refusal
 
 #: Seconds between two looks at the graph, and at most between a signal and its being noticed.
 LOOK, NAP = 0.02, 0.1
@@ -35,6 +36,10 @@ OTHER_HOSTS = 0.5
 ABSENT = 1.0
 #: Seconds after which an answer is given in any case.
 DEADLINE = 4.0
+
+#: Seconds between two questions to a node whether it knows us, and until that is given up (it may have no
+#: parameter services, or be busy in a callback).
+ASK_AGAIN, KNOWN = 0.2, 3.0
 
 # Each ROS participant writes this DDS topic, to tell which node owns which end point (package rmw_dds_common).
 _PARTICIPANTS = "ros_discovery_info"
@@ -76,8 +81,11 @@ class Graph:
 
     def __init__(self, *, node_name: str | None, spin_time: float | None, use_sim_time: bool) -> None:
         self.context = Context()
-        # Signals are ours: see stopping.py.
-        rclpy.init(args=[], context=self.context, signal_handler_options=SignalHandlerOptions.NO)
+        try:
+            # Signals are ours: see stopping.py.
+            rclpy.init(args=[], context=self.context, signal_handler_options=SignalHandlerOptions.NO)
+        except RuntimeError as error:
+            raise Refusal(f"ROS 2 could not start: {str(error).splitlines()[0]}") from None
         self.node = Node(
             node_name or f"_ros2cli_{os.getpid()}",
             context=self.context,
@@ -201,6 +209,26 @@ class Graph:
     def spin_once(self) -> None:
         """Handle what came, waiting a moment for it."""
         self.executor.spin_once(timeout_sec=NAP)
+
+    def wait_until_known(self, node_name: str) -> None:
+        """Return when a node has heard of every client that was created here before; or after a while.
+
+        A server drops the answer to a client that it has not discovered, and a client can see that it has found
+        its server but not the reverse. End points are announced in the order of their creation, so the answer to a
+        client created last proves that the others are known. The question, for the node's parameter names, has no
+        effect and is asked again until it is answered.
+        """
+        from rcl_interfaces.srv import ListParameters
+
+        client = self.node.create_client(ListParameters, f"{node_name}/list_parameters")
+        asked: list[Any] = []
+        end = time.monotonic() + KNOWN
+        while time.monotonic() < end:
+            if client.service_is_ready():
+                asked.append(client.call_async(ListParameters.Request()))
+            if self.spin_until(lambda: any(future.done() for future in asked), ASK_AGAIN):
+                break
+        self.node.destroy_client(client)
 
     def spin_until(self, done: Callable[[], bool], deadline: float | None = None) -> bool:
         """Handle what comes until `done()`, at most `deadline` seconds; whether it is done."""

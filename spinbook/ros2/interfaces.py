@@ -111,7 +111,7 @@ def _alike(full: str) -> str:
     everything = [f"{package}/{name}" for package, names in interface_files.everything().items() for name in names]
     short = full.rpartition("/")[2]
     alike = [name for name in everything if name.rpartition("/")[2].lower() == short.lower()]
-    alike += difflib.get_close_matches(full, everything, n=3, cutoff=0.7)
+    alike += difflib.get_close_matches(full, everything, n=3, cutoff=0.85)
     if alike:
         return f"Did you mean {' or '.join(list(dict.fromkeys(alike))[:3])}?"
     return "`ros2 interface list` shows what is installed."

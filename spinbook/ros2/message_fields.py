@@ -75,23 +75,19 @@ class _Filling:
                 self.message(present, value, path)
             return
         kind = message.get_fields_and_field_types()[name]
-        converted = self.array(slot, value, path, kind) if _is_array(slot) else _scalar(slot, value, path, kind)
-        try:
-            setattr(message, name, converted)
-        except (AssertionError, ValueError, TypeError, OverflowError):
-            raise _wrong(path, value, f"{kind}: out of its range or of another length") from None
+        setattr(message, name, self.array(slot, value, path, kind) if _is_array(slot) else _scalar(slot, value, path))
 
     def array(self, slot: Any, value: Any, path: str, kind: str) -> list[Any]:
         if isinstance(value, (bytes, bytearray)):
             value = list(value)
         if not isinstance(value, list):
             raise _wrong(path, value, f"{kind}, a list as in [a, b]")
+        _check_length(slot, value, path)
         element = slot.value_type
         places = [f"{path}[{place}]" for place in range(len(value))]
         if isinstance(element, definition.NamespacedType):
             return [self.element(element, item, place) for item, place in zip(value, places, strict=True)]
-        single = kind.partition("[")[0].replace("sequence<", "").partition(",")[0].rstrip(">")
-        return [_scalar(element, item, place, single) for item, place in zip(value, places, strict=True)]
+        return [_scalar(element, item, place) for item, place in zip(value, places, strict=True)]
 
     def element(self, slot: Any, value: Any, path: str) -> Any:
         *packages, name = slot.namespaced_name()
@@ -104,28 +100,62 @@ def _is_array(slot: Any) -> bool:
     return isinstance(slot, definition.AbstractNestedType)
 
 
-def _scalar(slot: Any, value: Any, path: str, kind: str) -> Any:
+def _check_length(slot: Any, value: list[Any], path: str) -> None:
+    if isinstance(slot, definition.Array) and len(value) != slot.size:
+        raise _wrong(path, value, f"exactly {slot.size} values")
+    if isinstance(slot, definition.BoundedSequence) and len(value) > slot.maximum_size:
+        raise _wrong(path, value, f"at most {slot.maximum_size} values")
+
+
+def _scalar(slot: Any, value: Any, path: str) -> Any:
     """A number, text or truth value in the type of its field, converted where nothing is lost."""
     if isinstance(slot, (definition.AbstractString, definition.AbstractWString)):
-        if isinstance(value, (str, int, float, bool)):
-            return str(value)
-        raise _wrong(path, value, kind)
-    if slot.typename == "boolean":
+        return _text(slot, value, path)
+    name = slot.typename
+    if name == "boolean":
         if isinstance(value, (bool, int)) and value in (0, 1):
             return bool(value)
         raise _wrong(path, value, "boolean: true or false")
-    if slot.typename == "octet":
+    if name == "octet":
         return _octet(value, path)
+    if name in _INTEGERS:
+        return _integer(name, value, path)
     try:
-        if value is None or isinstance(value, (dict, list)):
-            raise TypeError
-        if "float" in slot.typename or "double" in slot.typename:
-            return float(value)
+        return float(value)
+    except (TypeError, ValueError):
+        raise _wrong(path, value, f"a number ({name})") from None
+
+
+def _text(slot: Any, value: Any, path: str) -> str:
+    if not isinstance(value, (str, int, float, bool)):
+        raise _wrong(path, value, "a text (string)")
+    text = str(value)
+    most = getattr(slot, "maximum_size", None)
+    if most is not None and len(text) > most:
+        raise _wrong(path, value, f"a text of at most {most} letters")
+    return text
+
+
+# The wheels' messages check nothing themselves, and would send a number too large as another one.
+_INTEGERS = {
+    **{f"int{bits}": (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) for bits in (8, 16, 32, 64)},
+    **{f"uint{bits}": (0, 2**bits - 1) for bits in (8, 16, 32, 64)},
+    "char": (0, 255),
+}
+
+
+def _integer(name: str, value: Any, path: str) -> int:
+    least, most = _INTEGERS[name]
+    expected = f"a whole number from {least} to {most} ({name})"
+    try:
         if isinstance(value, float) and not value.is_integer():
             raise ValueError
-        return int(value)
-    except (TypeError, ValueError, OverflowError):
-        raise _wrong(path, value, kind) from None
+        number = int(value)
+    except (TypeError, ValueError):
+        raise _wrong(path, value, expected) from None
+    if not least <= number <= most:
+        raise _wrong(path, value, expected)
+    return number
 
 
 def _octet(value: Any, path: str) -> bytes:
@@ -133,7 +163,7 @@ def _octet(value: Any, path: str) -> bytes:
         value = ord(value)
     if isinstance(value, int) and 0 <= value <= 255:
         return bytes([value])
-    raise _wrong(path, value, "byte: a number from 0 to 255")
+    raise _wrong(path, value, "a whole number from 0 to 255 (byte)")
 
 
 def _wrong(path: str, value: Any, expected: str) -> Refusal:

@@ -72,9 +72,10 @@ def _check_rmw() -> None:
 
 
 def _give_log_folder() -> None:
-    """Set ROS_LOG_DIR where the default, a folder below HOME, can't be written."""
+    """Set HOME and ROS_LOG_DIR where rclpy could not find or write the folder of its logs, which is below HOME."""
+    # Without HOME rclpy fails even where ROS_LOG_DIR is set.
+    home = os.environ.setdefault("HOME", os.path.expanduser("~"))  # noqa: PTH111 (Path.home raises where there is none)
     if os.environ.get("ROS_LOG_DIR") or os.environ.get("ROS_HOME"):
         return
-    home = Path(os.environ.get("HOME") or "/nonexistent")
     if not os.access(home, os.W_OK | os.X_OK):
         os.environ["ROS_LOG_DIR"] = str(Path(tempfile.gettempdir(), f"ros-log-{os.getuid()}"))

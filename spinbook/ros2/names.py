@@ -17,7 +17,8 @@ def absolute(name: str, what: str = "topic") -> str:
         full: str = expand_topic_name(name, "ros2", "/")
         validate_full_topic_name(full)
     except (InvalidTopicNameException, InvalidServiceNameException, ValueError) as error:
-        reason = " ".join(str(error).split("\n")[0].split())
+        # The rest tells where in the C source of rcl it was noticed.
+        reason = str(error).split("\n")[0].partition(", at /")[0]
         raise Refusal(
             f"'{name}' is no name for a {what}: {reason}",
             "A name has letters, digits and underscores, in parts divided by '/', as in /left_foot/pressure.",

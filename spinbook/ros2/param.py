@@ -265,6 +265,7 @@ def _client(graph: Graph, name: str) -> Any:
             f"Wait for service timed out waiting for parameter services for node {name}",
             "The node has none (start_parameter_services=False), or is ending.",
         )
+    graph.wait_until_known(name)
     return client
 
 

@@ -170,6 +170,9 @@ def _wait_until_ready(graph: Graph, client: Any, name: str, wanted: str) -> None
         return bool(client.service_is_ready())
 
     graph.spin_until(ready_or_never)
+    for node in graph.nodes():
+        if name in dict(graph.node.get_service_names_and_types_by_node(node.name, node.namespace)):
+            graph.wait_until_known(node.full_name)
 
 
 def _visible(graph: Graph, include_hidden: bool) -> list[Named]:

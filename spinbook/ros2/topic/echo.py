@@ -64,6 +64,7 @@ def echo(topic_name: str, message_type: str | None, **options: Any) -> None:
         name = absolute(topic_name)
         path = field_path(options["field"])
         message = None if message_type is None else interfaces.message_class(message_type)
+        qos.profile(asked)
         graph.settle(lambda: bool(graph.publishers(name)))
         if message is None:
             message = type_or_refusal(graph, name)

@@ -1,0 +1,118 @@
+"""Nodes that the tests look at. Started with the names of the parts wanted; prints `ready` when they are there."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+import time
+from typing import Any
+
+import rclpy
+from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
+from rclpy.action import ActionServer, CancelResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Int32, String
+from std_srvs.srv import SetBool
+from test_msgs.action import Fibonacci
+
+
+def publisher() -> Node:
+    """`/joint_commands` at 50 Hz, and parameters."""
+    node = Node("joint_publisher")
+    limits = ParameterDescriptor(
+        description="messages a second", floating_point_range=[FloatingPointRange(from_value=-100.0, to_value=100.0)]
+    )
+    node.declare_parameter("rate", 50.0, limits)
+    node.declare_parameter("gains.left", [0.5, 0.25])
+    topic = node.create_publisher(JointState, "/joint_commands", 10)
+
+    def publish() -> None:
+        message = JointState(name=["a", "b"], position=[0.25, 0.5], velocity=[0.0, 0.0])
+        message.header.stamp = node.get_clock().now().to_msg()
+        topic.publish(message)
+
+    node.create_timer(0.02, publish)
+    return node
+
+
+def latched() -> Node:
+    """One message on `/robot_name`, published before anybody listens: transient local."""
+    node = Node("namer")
+    qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL, reliability=ReliabilityPolicy.RELIABLE)
+    node.create_publisher(String, "/robot_name", qos).publish(String(data="Ada"))
+    return node
+
+
+def counter() -> Node:
+    """`/count` best effort, `/_hidden`, and a subscription to `/cmd`."""
+    node = Node("counter")
+    topic = node.create_publisher(Int32, "/count", QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT))
+    hidden = node.create_publisher(Int32, "/_hidden", 10)
+    node.create_subscription(String, "/cmd", lambda message: print(message.data, flush=True), 10)
+    count = 0
+
+    def publish() -> None:
+        nonlocal count
+        count += 1
+        topic.publish(Int32(data=count))
+        hidden.publish(Int32(data=count))
+
+    node.create_timer(0.02, publish)
+    return node
+
+
+def service() -> Node:
+    """`/stand_up`."""
+    node = Node("stander")
+
+    def stand_up(request: Any, response: Any) -> Any:
+        response.success, response.message = request.data, "up" if request.data else "down"
+        return response
+
+    node.create_service(SetBool, "/stand_up", stand_up)
+    return node
+
+
+def action() -> Node:
+    """`/fibonacci`, a number a 50 ms."""
+    node = Node("fibonacci_server")
+
+    def execute(goal: Any) -> Any:
+        numbers = [0, 1]
+        for _ in range(1, goal.request.order):
+            if goal.is_cancel_requested:
+                goal.canceled()
+                return Fibonacci.Result()
+            numbers.append(numbers[-1] + numbers[-2] if len(numbers) < 30 else 0)
+            goal.publish_feedback(Fibonacci.Feedback(sequence=numbers))
+            time.sleep(0.05)
+        goal.succeed()
+        return Fibonacci.Result(sequence=numbers)
+
+    ActionServer(
+        node,
+        Fibonacci,
+        "fibonacci",
+        execute,
+        cancel_callback=lambda goal: CancelResponse.ACCEPT,
+        callback_group=ReentrantCallbackGroup(),
+    )
+    return node
+
+
+def main() -> None:
+    rclpy.init()
+    executor = MultiThreadedExecutor(2)
+    nodes = [globals()[part]() for part in sys.argv[1:]]
+    for node in nodes:
+        executor.add_node(node)
+    print("ready", flush=True)
+    with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+        executor.spin()
+
+
+main()

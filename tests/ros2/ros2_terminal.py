@@ -1,0 +1,83 @@
+"""A terminal to type `ros2` in, and what a command answers."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+ROBOT = Path(__file__).parent / "ros2_robot.py"
+
+#: Seconds after which something that should have happened has failed. Generous: the machine may be busy.
+PATIENCE = 60
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a finished command left."""
+
+    code: int
+    out: str
+    err: str
+
+
+class Running:
+    """A command that goes on until it is stopped."""
+
+    def __init__(self, process: subprocess.Popen[str]) -> None:
+        self.process = process
+        self.seen = ""
+
+    def lines(self, count: int) -> list[str]:
+        """The next `count` lines, as they come through the pipe."""
+        assert self.process.stdout is not None
+        got = []
+        for _ in range(count):
+            line = self.process.stdout.readline()
+            assert line, f"ended early: {self.process.communicate()[1]}"
+            got.append(line.rstrip("\n"))
+        return got
+
+    def stop(self, number: int = signal.SIGINT) -> Answer:
+        """Send a signal; what came after the lines that were read."""
+        self.process.send_signal(number)
+        out, err = self.process.communicate(timeout=PATIENCE)
+        return Answer(self.process.returncode, out, err)
+
+
+class Terminal:
+    """Runs `python -m spinbook.ros2` in children, as a notebook does."""
+
+    def __init__(self) -> None:
+        self.started: list[subprocess.Popen[str]] = []
+
+    def start(self, *arguments: str, cwd: Path | None = None) -> Running:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "spinbook.ros2", *arguments],
+            cwd=cwd,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.started.append(process)
+        return Running(process)
+
+    def ros2(self, *arguments: str, cwd: Path | None = None, stdin: str = "") -> Answer:
+        done = subprocess.run(
+            [sys.executable, "-m", "spinbook.ros2", *arguments],
+            cwd=cwd,
+            input=stdin,
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE,
+            check=False,
+        )
+        assert "Traceback" not in done.stderr, done.stderr
+        return Answer(done.returncode, done.stdout, done.stderr)
+
+
+Robot = Callable[..., subprocess.Popen[str]]

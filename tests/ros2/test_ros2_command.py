@@ -1,0 +1,184 @@
+"""The command as a whole: help, handing over, what is refused before rclpy is loaded, and signals."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from ros2_terminal import Robot, Terminal
+
+from spinbook.cli import spinbook
+from spinbook.ros2.command import NOUNS, ros2
+from spinbook.ros2.groups import Menu
+
+
+def helps() -> list[list[str]]:
+    """Every place of the command that has a help."""
+    places = [[]] + [[noun] for noun in NOUNS]
+    for noun in NOUNS:
+        group = ros2.get_command(None, noun)  # type: ignore[arg-type]
+        if isinstance(group, Menu):
+            places += [[noun, verb] for verb in group.entries]
+    return places
+
+
+@pytest.mark.parametrize("place", helps(), ids=" ".join)
+def test_every_help_has_an_example(place: list[str]) -> None:
+    shown = CliRunner().invoke(ros2, [*place, "--help"], prog_name="ros2")
+    assert shown.exit_code == 0
+    assert "\n    ros2 " in shown.output
+
+
+def test_it_is_a_verb_of_spinbook() -> None:
+    shown = CliRunner().invoke(spinbook, ["ros2", "--help"])
+    assert shown.exit_code == 0
+    assert "ros2 topic list -t" in shown.output
+
+
+def test_what_is_not_here_is_refused_with_what_is(terminal: Terminal) -> None:
+    verb = terminal.ros2("topic", "ehco", "/a")
+    assert verb.code == 2
+    assert "Did you mean 'echo'?" in verb.err
+    assert "There is: bw, delay, echo, find, hz, info, list, pub, type." in verb.err
+    noun = terminal.ros2("launch", "x")
+    assert noun.code == 2
+    assert "there is no 'ros2 launch' here" in noun.err
+
+
+def test_help_loads_neither_rclpy_nor_numpy() -> None:
+    code = (
+        "import sys; from click.testing import CliRunner; from spinbook.ros2.command import ros2\n"
+        "for place in [[], ['topic'], ['topic', 'echo'], ['param', 'set'], ['run']]:\n"
+        "    assert CliRunner().invoke(ros2, [*place, '--help']).exit_code == 0\n"
+        "assert not {'rclpy', 'numpy'} & set(sys.modules), 'loaded'\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_the_daemon_is_explained(terminal: Terminal) -> None:
+    for verb, words in {"status": "not running", "start": "not been started", "stop": "not running"}.items():
+        answer = terminal.ros2("daemon", verb)
+        assert (answer.code, words in answer.out, "none is needed" in answer.out) == (0, True, True)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp", "not installed here"),
+        ("ROS_DOMAIN_ID", "233", "a whole number from 0 to 232"),
+        ("ROS_DOMAIN_ID", "home", "a whole number from 0 to 232"),
+    ],
+)
+def test_an_environment_that_would_end_rclpy_is_told(
+    terminal: Terminal, monkeypatch: pytest.MonkeyPatch, name: str, value: str, words: str
+) -> None:
+    monkeypatch.setenv(name, value)
+    answer = terminal.ros2("topic", "list")
+    assert answer.code == 1
+    assert answer.err.startswith(f"{name} is '{value}'")
+    assert words in answer.err
+
+
+def test_it_works_without_a_home(ros_domain: int, terminal: Terminal, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("HOME")
+    monkeypatch.delenv("ROS_LOG_DIR", raising=False)
+    assert terminal.ros2("node", "list").code == 0
+
+
+# Handing over
+
+
+@pytest.fixture
+def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A `ros2` on the PATH that says what it was called with."""
+    program = tmp_path / "bin" / "ros2"
+    program.parent.mkdir()
+    program.write_text('#!/bin/sh\necho real "$@"; echo guard=$_ROS_WHEELS_BOOTSTRAP_COMPLETE\n')
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{program.parent}{os.pathsep}{os.environ['PATH']}")
+    monkeypatch.delenv("SPINBOOK_ROS2")
+    return program
+
+
+@pytest.mark.usefixtures("installed")
+def test_an_installed_ros2_answers_instead(terminal: Terminal) -> None:
+    assert terminal.ros2("topic", "list", "-t", "--any").out == "real topic list -t --any\nguard=\n"
+    assert terminal.ros2("bag", "record", "-a").out.startswith("real bag record -a\n")
+    assert terminal.ros2("--help").out.startswith("real --help\n")
+
+
+@pytest.mark.usefixtures("installed")
+def test_the_variable_keeps_ours(terminal: Terminal, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SPINBOOK_ROS2", "own")
+    assert terminal.ros2("daemon", "status").out.startswith("The daemon is not running")
+
+
+@pytest.mark.usefixtures("installed")
+def test_turtlesim_stays_ours_where_the_installation_has_none(
+    tmp_path: Path, terminal: Terminal, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert terminal.ros2("run", "turtlesim", "nothing").err.startswith("No executable found\n")
+    assert terminal.ros2("run", "--prefix", "nice", "turtlesim", "nothing").code == 1
+    packages = tmp_path / "share/ament_index/resource_index/packages"
+    packages.mkdir(parents=True)
+    (packages / "turtlesim").touch()
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    assert terminal.ros2("run", "turtlesim", "turtlesim_node").out.startswith("real run turtlesim turtlesim_node\n")
+
+
+# Signals
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["topic", "echo", "/count"],
+        ["topic", "hz", "/count"],
+        ["topic", "bw", "/count"],
+        ["topic", "pub", "/cmd", "std_msgs/msg/String", "data: x"],
+    ],
+    ids=lambda arguments: arguments[1],
+)
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 2), (signal.SIGTERM, 0)])
+def test_a_signal_ends_what_goes_on_without_a_word(
+    robot: Robot, terminal: Terminal, arguments: list[str], number: int, code: int
+) -> None:
+    robot("counter")
+    running = terminal.start(*arguments)
+    running.lines(1)
+    answer = running.stop(number)
+    assert (answer.code, answer.err) == (code, "")
+
+
+def test_a_signal_ends_what_waits_in_vain(ros_domain: int, terminal: Terminal) -> None:
+    running = terminal.start("service", "call", "/nobody", "std_srvs/srv/Trigger")
+    assert running.lines(1) == ["waiting for service to become available..."]
+    answer = running.stop()
+    assert (answer.code, answer.out, answer.err) == (2, "", "")
+
+
+def test_sigint_is_heard_even_where_it_was_ignored(robot: Robot, terminal: Terminal) -> None:
+    robot("counter")
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        running = terminal.start("topic", "echo", "/count")
+    finally:
+        signal.signal(signal.SIGINT, before)
+    running.lines(1)
+    assert running.stop().code == 2
+
+
+def test_a_reader_that_goes_away_ends_the_command_quietly(robot: Robot, terminal: Terminal) -> None:
+    robot("counter")
+    running = terminal.start("topic", "echo", "/count")
+    running.lines(1)
+    assert running.process.stdout is not None
+    running.process.stdout.close()
+    assert running.process.stderr is not None
+    assert running.process.stderr.read() == ""
+    assert running.process.wait(60) == 1
