@@ -9,7 +9,7 @@ from dataclasses import dataclass
 class Check:
     """One thing to look at.
 
-    `module` is the file of this folder whose `examine(name)` does it. `seconds` is how long it may take.
+    `module` is the one whose `examine(name)` does it. `seconds` is how long it may take.
     `needs` are the words of earlier checks without which this one can only fail, so that a cause is told once.
     """
 
@@ -25,20 +25,20 @@ _NODE = ("ros", "libraries", "middleware", "logs")
 
 
 CHECKS = (
-    Check("python", "Python", "python_version"),
-    Check("folder", "Folder", "folder"),
-    Check("libraries", "Library path", "library_path"),
-    Check("ros", "ROS 2", "ros_library", 30.0, ("libraries",)),
-    Check("middleware", "Middleware", "middleware", 30.0, ("ros",)),
-    Check("logs", "Log folder", "log_folder"),
-    Check("message", "A message", "message", 60.0, _NODE),
-    Check("environment", "ROS settings", "ros_settings"),
-    Check("memory", "Shared memory", "shared_memory"),
-    Check("kernel", "Jupyter kernel", "kernel", 60.0),
-    Check("colcon", "colcon", "colcon", 90.0),
-    Check("namespaces", "Namespaces", "namespaces"),
-    Check("sandbox", "Sandbox", "sandbox", 150.0, _NODE),
-    Check("bubblewrap", "bubblewrap", "bubblewrap"),
-    Check("ros2", "ros2, turtlesim", "ros2_command"),
-    Check("browser", "Browser", "browser", 45.0),
+    Check("python", "Python", "spinbook.doctor.python_version"),
+    Check("folder", "Folder", "spinbook.doctor.folder"),
+    Check("libraries", "Library path", "spinbook.doctor.library_path"),
+    Check("ros", "ROS 2", "spinbook.doctor.ros_library", 30.0, ("libraries",)),
+    Check("middleware", "Middleware", "spinbook.doctor.middleware", 30.0, ("ros",)),
+    Check("logs", "Log folder", "spinbook.doctor.log_folder"),
+    Check("message", "A message", "spinbook.doctor.message", 60.0, _NODE),
+    Check("environment", "ROS settings", "spinbook.doctor.ros_settings"),
+    Check("memory", "Shared memory", "spinbook.doctor.shared_memory"),
+    Check("kernel", "Jupyter kernel", "spinbook.doctor.kernel", 60.0),
+    Check("colcon", "colcon", "spinbook.doctor.colcon", 90.0),
+    Check("namespaces", "Namespaces", "spinbook.doctor.namespaces"),
+    Check("sandbox", "Sandbox", "spinbook.doctor.sandbox", 150.0, _NODE),
+    Check("bubblewrap", "bubblewrap", "spinbook.doctor.bubblewrap"),
+    Check("ros2", "ros2, turtlesim", "spinbook.doctor.ros2_command"),
+    Check("browser", "Browser", "spinbook.doctor.browser", 45.0),
 )

@@ -38,7 +38,7 @@ def diagnose(checks: Sequence[Check], done: Callable[[Finding], None]) -> list[F
 
 def examine(check: Check) -> Finding:
     """Run one check, whatever happens to it."""
-    argv = [sys.executable, "-m", "spinbook.doctor.examine", check.word]
+    argv = [sys.executable, "-m", "spinbook.doctor.examine", check.module, check.name]
     process = subprocess.Popen(
         argv,
         stdin=subprocess.DEVNULL,

@@ -1,0 +1,77 @@
+"""`spinbook doctor` examines everything that a course needs, and tells it to people and to programs."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+from rich.console import Console
+from running import doctor
+
+from spinbook.doctor.checks import CHECKS
+from spinbook.doctor.finding import Finding, missing, ok, warning
+from spinbook.doctor.table import is_able, show
+
+
+def test_here_everything_that_is_needed_works() -> None:
+    run = doctor("--json")
+    answer = json.loads(run.stdout)
+    states = {finding["name"]: finding["state"] for finding in answer["findings"]}
+    assert list(states) == [check.name for check in CHECKS]
+    # Whether there is a sandbox is up to the machine that runs the tests; all else is up to set-up.
+    assert [name for name, state in states.items() if state == "missing" and name != "Sandbox"] == []
+    assert answer["able"] is (states["Sandbox"] != "missing")
+    assert run.returncode == (0 if answer["able"] else 1)
+    assert run.stderr == ""
+
+
+def test_a_person_reads_a_line_for_each_check_and_a_sum() -> None:
+    run = doctor("python", "middleware")
+    assert run.returncode == 0
+    first, second, *_, last = run.stdout.splitlines()
+    assert first.startswith("✓  Python")
+    assert sys.executable in run.stdout
+    assert second.startswith("✓  Middleware")
+    assert last == "Courses can be built and graded here."
+
+
+def test_help_names_every_check_and_the_exit_code() -> None:
+    text = doctor("--help").stdout
+    assert all(check.word in text for check in CHECKS)
+    assert "Exit code: 0" in text
+
+
+def told(*findings: Finding) -> str:
+    console = Console(width=100, color_system=None, highlight=False)
+    with console.capture() as captured:
+        show(console, findings)
+    return captured.get()
+
+
+def test_what_is_missing_makes_it_unable_and_a_warning_does_not() -> None:
+    assert is_able([ok("One", "works"), warning("Two", "is odd", "do this")])
+    assert not is_able([ok("One", "works"), missing("Two", "is not there", "do that")])
+
+
+def test_mends_stand_below_the_list_each_with_its_name() -> None:
+    text = told(
+        ok("One", "works"), warning("Two", "is odd", "do this\nand that"), missing("Three", "is gone", "get it")
+    )
+    assert [line.rstrip() for line in text.splitlines()] == [
+        "✓  One    works",
+        "!  Two    is odd",
+        "✗  Three  is gone",
+        "",
+        "! Two",
+        "  do this",
+        "  and that",
+        "",
+        "✗ Three",
+        "  get it",
+        "",
+        "Courses can't be built or graded here until what has a ✗ is mended: 1 of 3 (1 warning).",
+    ]
+
+
+def test_square_brackets_in_what_was_found_are_no_markup() -> None:
+    assert "[red]/opt[/red]" in told(ok("One", "[red]/opt[/red]"))

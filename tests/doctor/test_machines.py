@@ -1,0 +1,175 @@
+"""What the doctor finds on machines on which something is not as it should be."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import sys
+from pathlib import Path
+
+import pytest
+from running import doctor, finding_of
+
+from spinbook.doctor import python_version, sandbox
+from spinbook.doctor.ros_library import wheels_installed
+from spinbook.ros2.bootstrap import GUARD
+
+with_wheels = pytest.mark.skipif(not wheels_installed(), reason="ROS 2 is a sourced one here")
+
+
+def program(folder: Path, name: str, text: str) -> str:
+    """A PATH on which this program comes first."""
+    file = folder / name
+    file.write_text(f"#!/bin/sh\n{text}\n")
+    file.chmod(0o755)
+    return f"{folder}:{os.environ['PATH']}"
+
+
+def test_a_message_really_goes_from_one_process_to_another() -> None:
+    finding = finding_of("message")
+    assert finding["state"] == "ok"
+    assert "arrived from another process in" in finding["found"]
+
+
+def test_a_middleware_that_is_not_installed_is_named_and_what_needs_it_is_not_tried() -> None:
+    run = doctor("--json", "ros", "middleware", "message", RMW_IMPLEMENTATION="rmw_nowhere_cpp")
+    ros, middleware, message = json.loads(run.stdout)["findings"]
+    assert run.returncode == 1
+    assert ros["state"] == "ok"
+    assert middleware["state"] == "missing"
+    assert "'rmw_nowhere_cpp', which is not installed" in middleware["found"]
+    assert "unset RMW_IMPLEMENTATION" in middleware["mend"]
+    assert message["found"] == "not tried, because of: Middleware"
+
+
+@with_wheels
+def test_a_guard_that_outlived_its_library_path_is_the_cause_that_is_told() -> None:
+    run = doctor("--json", "libraries", "ros", **{GUARD: "1", "LD_LIBRARY_PATH": None})
+    libraries, ros = json.loads(run.stdout)["findings"]
+    assert libraries["state"] == "missing"
+    assert f"unset {GUARD} LD_LIBRARY_PATH" in libraries["mend"]
+    assert ros["found"] == "not tried, because of: Library path"
+
+
+@with_wheels
+def test_libraries_of_another_ros_beside_the_wheels_are_a_warning(tmp_path: Path) -> None:
+    (tmp_path / "librcl.so").touch()
+    own = os.environ.get("LD_LIBRARY_PATH", f"{sys.prefix}/lib")
+    finding = finding_of("libraries", **{GUARD: "1", "LD_LIBRARY_PATH": f"{own}:{tmp_path}"})
+    assert finding["state"] == "warning"
+    assert os.fspath(tmp_path) in finding["found"]
+
+
+@with_wheels
+def test_a_sourced_ros_beside_the_wheels_is_a_fault(tmp_path: Path) -> None:
+    sourced = tmp_path / "site-packages"
+    sourced.mkdir()
+    (sourced / "rclpy").symlink_to(Path(importlib.import_module("rclpy").__path__[0]))
+    finding = finding_of("ros", PYTHONPATH=os.fspath(sourced))
+    assert finding["state"] == "missing"
+    assert finding["found"].startswith("two of them")
+    assert os.fspath(sourced) in finding["found"]
+    assert "make setup" in finding["mend"]
+
+
+def test_a_sourced_ros_that_is_too_old_is_a_fault(tmp_path: Path) -> None:
+    (tmp_path / "rclpy").mkdir()
+    (tmp_path / "rclpy" / "__init__.py").touch()
+    finding = finding_of("ros", PYTHONPATH=os.fspath(tmp_path), ROS_DISTRO="foxy")
+    assert finding["state"] == "missing"
+    assert "Foxy" in finding["found"]
+
+
+@pytest.mark.parametrize(
+    ("variable", "value", "mend"),
+    [
+        ("ROS_DOMAIN_ID", "kitchen", "export ROS_DOMAIN_ID=0"),
+        ("ROS_DOMAIN_ID", "230", "export ROS_DOMAIN_ID=0"),
+        ("FASTRTPS_DEFAULT_PROFILES_FILE", "/nowhere/profile.xml", "unset FASTRTPS_DEFAULT_PROFILES_FILE"),
+        ("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF", "unset ROS_AUTOMATIC_DISCOVERY_RANGE"),
+        ("ROS_DISCOVERY_SERVER", "10.0.0.1:11811", "unset ROS_DISCOVERY_SERVER"),
+    ],
+)
+def test_settings_that_surprise_are_warned_of(variable: str, value: str, mend: str) -> None:
+    finding = finding_of("environment", **{variable: value})
+    assert finding["state"] == "warning"
+    assert variable in finding["found"]
+    assert mend in finding["mend"]
+
+
+def test_a_log_folder_that_can_not_be_written_is_a_fault() -> None:
+    finding = finding_of("logs", ROS_LOG_DIR="/proc/nowhere")
+    assert finding["state"] == "missing"
+    assert "/proc/nowhere" in finding["found"]
+
+
+def test_without_a_home_there_is_another_place_for_logs() -> None:
+    finding = finding_of("logs", HOME=None, ROS_LOG_DIR=None, ROS_HOME=None)
+    assert finding["state"] == "warning"
+    assert "ROS_LOG_DIR" in finding["mend"]
+
+
+def test_a_course_in_a_folder_with_a_space_is_a_fault(tmp_path: Path) -> None:
+    course = tmp_path / "My Course"
+    course.mkdir()
+    finding = finding_of("folder", folder=course)
+    assert finding["state"] == "missing"
+    assert os.fspath(course) in finding["found"]
+
+
+def test_a_newer_setuptools_that_copies_in_place_of_linking_is_warned_of(tmp_path: Path) -> None:
+    (tmp_path / "setuptools-80.9.0.dist-info").mkdir()
+    (tmp_path / "setuptools-80.9.0.dist-info" / "METADATA").write_text("Name: setuptools\nVersion: 80.9.0\n")
+    path = f"{tmp_path}{os.pathsep}{os.environ.get('PYTHONPATH', '')}".rstrip(os.pathsep)
+    finding = finding_of("colcon", PYTHONPATH=path)
+    assert finding["state"] == "warning"
+    assert "setuptools 80.9.0" in finding["found"]
+
+
+def test_namespaces_that_are_not_allowed_are_a_warning_with_the_kernels_own_words(tmp_path: Path) -> None:
+    path = program(tmp_path, "unshare", "echo 'unshare: unshare failed: Operation not permitted' >&2; exit 1")
+    finding = finding_of("namespaces", PATH=path)
+    assert finding["state"] == "warning"
+    assert "user: unshare failed: Operation not permitted" in finding["found"]
+
+
+@pytest.mark.parametrize("text", ["exit 1", "echo 'bwrap: No permissions to create new namespace' >&2; exit 1"])
+def test_a_bubblewrap_that_fails_is_a_warning(tmp_path: Path, text: str) -> None:
+    assert finding_of("bubblewrap", PATH=program(tmp_path, "bwrap", text))["state"] == "warning"
+
+
+def test_a_browser_is_one_that_shows_a_page(tmp_path: Path) -> None:
+    shows = program(tmp_path, "chromium", 'for last; do :; done; echo "${last#data:text/html,}"')
+    assert finding_of("browser", PATH=shows)["state"] == "ok"
+    breaks = program(tmp_path, "chromium", "echo 'error while loading shared libraries: libnss3.so' >&2; exit 127")
+    finding = finding_of("browser", PATH=breaks)
+    assert finding["state"] == "warning"
+    assert "libnss3.so" in finding["found"]
+
+
+@pytest.mark.parametrize(
+    ("working", "state"),
+    [
+        (("bubblewrap", "none"), "ok"),
+        (("namespaces",), "ok"),
+        (("landlock", "none"), "warning"),
+        (("none",), "missing"),
+    ],
+)
+def test_the_strongest_sandbox_that_works_decides(
+    monkeypatch: pytest.MonkeyPatch, working: tuple[str, ...], state: str
+) -> None:
+    import grader.sandbox
+
+    levels = {level: None if level.value in working else "not allowed" for level in grader.sandbox.Isolation}
+    monkeypatch.setattr(grader.sandbox, "available", lambda: levels)
+    finding = sandbox.examine("Sandbox")
+    assert finding.state.value == state
+    assert bool(finding.mend) is (state != "ok")
+
+
+@pytest.mark.parametrize("version", [(3, 9, 2), (3, 15, 0)])
+def test_a_python_that_is_not_supported_is_a_fault(monkeypatch: pytest.MonkeyPatch, version: tuple[int, ...]) -> None:
+    monkeypatch.setattr(sys, "version_info", version)
+    assert python_version.examine("Python").state.value == "missing"
