@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import resource
 import shutil
 import subprocess
 from collections.abc import Iterator, Sequence
@@ -17,6 +18,8 @@ from pathlib import Path
 from . import kernel, seccomp
 from .room import Room
 from .view import Step
+
+_HOLDER_BYTES = 64 * 1024 * 1024
 
 
 def find() -> str | None:
@@ -63,6 +66,8 @@ def build(plan: Sequence[Step], user_namespace: int) -> Room:
     with os.fdopen(information) as stream:
         init = int(json.load(stream)["child-pid"])
     holders = frozenset(map(int, Path(f"/proc/{init}/task/{init}/children").read_text().split()))
+    for holder in (init, *holders):
+        _starve(holder)
     _join(init, user_namespace)
     return Room(init, holders, builder=process)
 
@@ -87,6 +92,13 @@ def _options(plan: Sequence[Step], texts: dict[str, int]) -> Iterator[str]:
             yield from ("--proc", step.path)
         elif step.action == "seal":
             yield from ("--remount-ro", step.path)
+
+
+def _starve(holder: int) -> None:
+    """Leaves a process nothing to use: without root it belongs to the student's user, who might take it over."""
+    for which in (resource.RLIMIT_NPROC, resource.RLIMIT_FSIZE, resource.RLIMIT_NOFILE):
+        resource.prlimit(holder, which, (0, 0))
+    resource.prlimit(holder, resource.RLIMIT_AS, (_HOLDER_BYTES, _HOLDER_BYTES))
 
 
 def _join(init: int, user_namespace: int) -> None:

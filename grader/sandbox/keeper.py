@@ -162,9 +162,11 @@ def _tasks_beside(start: Start) -> int:
     apart = start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES)
     if apart and (os.geteuid() == 0 or limits.counts_for_each_user_namespace()):
         return 4  # this process and those that hold the namespace open
-    return limits.tasks_of_user(os.getuid())
+    # The user's other processes come and go, so this is only the wall behind the rig, which counts the student's own.
+    user = landlock.student_user() if start.isolation is Isolation.LANDLOCK else os.getuid()
+    return limits.tasks_of_user(user) + 3 * start.limits.processes
 
 
 def _owner(isolation: Isolation) -> int | None:
     """Whom the folders of a program belong to that runs without namespaces."""
-    return landlock.student_user() if isolation is Isolation.LANDLOCK and os.geteuid() == 0 else None
+    return landlock.student_user() if isolation is Isolation.LANDLOCK else None

@@ -53,12 +53,17 @@ def keeps_signals_inside() -> bool:
 
 
 def student_user() -> int:
-    """Whom a student's program runs as: for root a user of no other process, if that one can read Python."""
+    """Whom a student's program runs as: as root a user of no other process, since root's are not limited in number.
+
+    Raises:
+        OSError: as root, if that user cannot reach Python.
+    """
     if os.geteuid() != 0:
         return os.geteuid()
-    needed = {folder for path in view.interpreter() for folder in path.resolve().parents}
-    everybody_may_pass = all(folder.stat().st_mode & stat.S_IXOTH for folder in needed)
-    return dedicated_user() if everybody_may_pass else 0
+    for folder in sorted({folder for path in view.interpreter() for folder in path.resolve().parents}):
+        if not folder.stat().st_mode & stat.S_IXOTH:
+            raise OSError(f"as root it needs a Python that other users can read, and this one lies in {folder}")
+    return dedicated_user()
 
 
 def restrict(place: Place, readonly: Sequence[Path], hidden: Sequence[Path]) -> None:

@@ -52,6 +52,8 @@ class Nursery:
         environment = {name: os.environ[name] for name in view.RUNTIME_VARIABLES if name in os.environ}
         # One thread: forked from several, the child could hang. And the same order of sets in each run of a submission.
         environment |= {"OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": "0", "PYTHONDONTWRITEBYTECODE": "1"}
+        # Address space is limited, and by default each thread may reserve 64 MiB of it, the more the more cores.
+        environment |= {"MALLOC_ARENA_MAX": "4"}
         self._owner = os.getpid()
         self._process = subprocess.Popen(
             [sys.executable, "-m", "grader.sandbox.fork_server", str(theirs.fileno()), *preload],

@@ -44,6 +44,14 @@ def usage(pid: int) -> Usage:
     return Usage(cpu_ticks / _TICKS, int(fields[21]) * _PAGE, int(fields[17]))
 
 
+def proportional_bytes(pid: int) -> int:
+    """The resident memory of a process, with what it shares divided by how many share it; 0 if that is not told."""
+    for line in _read(f"/proc/{pid}/smaps_rollup").splitlines():
+        if line.startswith(b"Pss:"):
+            return int(line.split()[1]) * 1024
+    return 0
+
+
 def runnable_threads(pid: int) -> int:
     """The threads of a process that run, wait for a CPU, or wait for the disk."""
     states = (_fields(f"/proc/{pid}/task/{thread}/stat")[:1] for thread in _names(f"/proc/{pid}/task"))

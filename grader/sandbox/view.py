@@ -76,14 +76,16 @@ def steps(readonly: tuple[Path, ...], hidden: tuple[Path, ...], scratch_bytes: i
     for name, target in {"fd": "", "stdin": "/0", "stdout": "/1", "stderr": "/2"}.items():
         plan.add("link", f"/dev/{name}", f"/proc/self/fd{target}")
     plan.add("processes", "/proc")
-    for path in (*system(), *shown):
-        if path.is_symlink() and _is_inside(path, (other for other in (*system(), *shown) if other != path)):
-            plan.add("link", str(path), str(path.readlink()))
-        else:
-            plan.add("bind", str(path))
+    everything = (*system(), *shown)
+    links = [path for path in everything if path.is_symlink() and _is_inside(path, set(everything) - {path})]
+    bound = [path for path in everything if path not in links]
+    for path in bound:
+        plan.add("bind", str(path))
+    for path in links:
+        plan.add("link", str(path), str(path.readlink()))
     for path_of_text, text in _TEXTS.items():
         plan.add("text", path_of_text, text)
-    masks = sorted(set(_masks((*own_packages(), *hidden), shown)))
+    masks = sorted(set(_masks((*own_packages(), *hidden), bound)))
     for mask in masks:
         plan.add("mask", str(mask))
     for path in readonly:
@@ -142,6 +144,7 @@ RUNTIME_VARIABLES = (
     "PYTHONHASHSEED",
     "PYTHONDONTWRITEBYTECODE",
     "OPENBLAS_NUM_THREADS",
+    "MALLOC_ARENA_MAX",
     "AMENT_PREFIX_PATH",
     "RMW_IMPLEMENTATION",
     "ROS_DISTRO",

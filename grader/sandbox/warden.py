@@ -189,10 +189,15 @@ class Warden:
             self._kill("wall")
         elif sum(one.threads for one in used) >= self._limits.processes:
             self._kill("processes")
-        elif sum(one.resident_bytes for one in used) > self._limits.memory_bytes:
+        elif sum(one.resident_bytes for one in used) > self._limits.memory_bytes and self._memory_is_too_much(members):
             self._kill("memory")
         elif self.cpu_seconds() > self._limits.cpu_s:
             self._kill("cpu")
+
+    def _memory_is_too_much(self, members: set[int]) -> bool:
+        """Counts again, what forks share only once: slow, so not before the first count is too high."""
+        exact = [processes.proportional_bytes(pid) for pid in members]
+        return sum(exact) > self._limits.memory_bytes or not any(exact)
 
     def _kill(self, limit: str) -> None:
         if self._limit is None and self.exit is None:

@@ -70,6 +70,14 @@ def any_rig(request: pytest.FixtureRequest, rigs: dict[tuple[Isolation, bool], R
     return _rig(request, rigs)
 
 
+@pytest.fixture(
+    params=[pytest.param((level, False), id=str(level)) for level in (Isolation.NAMESPACES, Isolation.NONE)]
+)
+def either_rig(request: pytest.FixtureRequest, rigs: dict[tuple[Isolation, bool], Rig]) -> Rig:
+    """A rig that confines and one that does not, for what does not depend on how it is done."""
+    return _rig(request, rigs)
+
+
 @pytest.fixture(params=_rigs(CONFINED))
 def confined_rig(request: pytest.FixtureRequest, rigs: dict[tuple[Isolation, bool], Rig]) -> Rig:
     """A rig at each level that keeps a student off this machine's files."""

@@ -83,9 +83,7 @@ class Rig:
         self._process.kill()
 
 
-def run_to_end(
-    nursery: Nursery, level: Isolation, program: Program, limits: Limits | None, timeout_s: float
-) -> Run:
+def run_to_end(nursery: Nursery, level: Isolation, program: Program, limits: Limits | None, timeout_s: float) -> Run:
     """Runs in the rig."""
     with nursery.start(program, level, limits) as student:
         end = student.wait(timeout_s)

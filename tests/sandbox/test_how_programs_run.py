@@ -32,25 +32,25 @@ PROGRAMS = {
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_a_warm_start_behaves_as_a_new_python(any_rig: Rig, name: str) -> None:
-    warm = any_rig.run(PROGRAMS[name])
-    cold = any_rig.run(PROGRAMS[name], warm=False)
+def test_a_warm_start_behaves_as_a_new_python(either_rig: Rig, name: str) -> None:
+    warm = either_rig.run(PROGRAMS[name])
+    cold = either_rig.run(PROGRAMS[name], warm=False)
 
-    if any_rig.level in (Isolation.LANDLOCK, Isolation.NONE):  # a folder with a random name
+    if either_rig.level in (Isolation.LANDLOCK, Isolation.NONE):  # a folder with a random name
         assert warm.exit == cold.exit
         assert len(warm.text.splitlines()) == len(cold.text.splitlines())
     else:
         assert (warm.exit, warm.text) == (cold.exit, cold.text)
 
 
-def test_the_source_may_declare_its_encoding(any_rig: Rig) -> None:
-    run = any_rig.run("# -*- coding: latin-1 -*-\nprint('größer')".encode("latin-1"))
+def test_the_source_may_declare_its_encoding(either_rig: Rig) -> None:
+    run = either_rig.run("# -*- coding: latin-1 -*-\nprint('größer')".encode("latin-1"))
 
     assert run.text == "größer\n"
 
 
-def test_source_that_is_not_utf8_is_a_syntax_error_of_the_student(any_rig: Rig) -> None:
-    run = any_rig.run("print('größer')".encode("latin-1"))
+def test_source_that_is_not_utf8_is_a_syntax_error_of_the_student(either_rig: Rig) -> None:
+    run = either_rig.run("print('größer')".encode("latin-1"))
 
     assert run.exit == Exit(1, None, None)
     assert "SyntaxError" in run.text
@@ -58,8 +58,8 @@ def test_source_that_is_not_utf8_is_a_syntax_error_of_the_student(any_rig: Rig) 
 
 
 @pytest.mark.parametrize("name", ["a file.py", "größe.py", "-c.py", "'; rm -rf ~ #.py", "\n.py", "a" * 200 + ".py"])
-def test_odd_file_names_are_run(any_rig: Rig, name: str) -> None:
-    run = any_rig.run("print('ran')", name=name)
+def test_odd_file_names_are_run(either_rig: Rig, name: str) -> None:
+    run = either_rig.run("print('ran')", name=name)
 
     assert run.text == "ran\n"
 
@@ -79,10 +79,10 @@ def test_only_the_environment_that_was_passed_arrives(any_rig: Rig, monkeypatch:
     assert not {"PYTEST_CURRENT_TEST", "SSH_AUTH_SOCK", "PIP_CERT", "TERM", "SHELL", "PWD"} & set(eval(names))
 
 
-def test_the_nursery_is_not_to_be_seen_in_the_program(any_rig: Rig) -> None:
+def test_the_nursery_is_not_to_be_seen_in_the_program(either_rig: Rig) -> None:
     code = "import sys\nprint([name for name in sys.modules if name.split('.')[0] in ('grader', 'spinbook')])"
 
-    assert any_rig.run(code).text == "[]\n"
+    assert either_rig.run(code).text == "[]\n"
 
 
 def interrupt_a_spinning_node(nursery: Nursery, level: Isolation) -> tuple[Exit | None, str]:

@@ -1,0 +1,127 @@
+"""Each limit ends the program that runs into it, tells which one it was, and harms nobody else."""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from typing import Any
+
+import pytest
+from sandbox_rig import Rig
+
+from grader.sandbox import Isolation, Limits
+from grader.sandbox.output import OutputBuffer
+
+MIB = 1024 * 1024
+SMALL = Limits(cpu_s=20.0, memory_bytes=1024 * MIB, processes=64, file_bytes=4 * MIB, output_bytes=MIB, wall_s=30.0)
+
+
+@pytest.mark.parametrize(
+    ("limit", "code"),
+    [
+        ("cpu", "while True: pass"),
+        ("cpu", "import signal\nsignal.signal(signal.SIGXCPU, signal.SIG_IGN)\nwhile True: pass"),
+        ("cpu", "import os\nos.fork(); os.fork()\nwhile True: pass"),
+        ("memory", "x = bytearray(10 << 30)"),
+        ("memory", "x = []\nwhile True: x.append(bytearray(1 << 20))"),
+        ("memory", "import os, time\nfor _ in range(4): os.fork()\nx = b'x' * (99 << 20)\ntime.sleep(60)"),
+        ("processes", "import os\nwhile True: os.fork()"),
+        ("processes", "import os\nwhile True:\n  try: os.fork()\n  except OSError: pass"),
+        ("processes", "import threading, time\nwhile True: threading.Thread(target=time.sleep, args=(60,)).start()"),
+        ("file-size", "import os\nf = open(os.environ['HOME'] + '/big', 'wb')\nwhile True: f.write(bytes(1 << 20))"),
+        ("output", "while True: print('x' * 1000)"),
+        ("output", "import os\nb = b'x' * 65536\nwhile True: os.write(2, b)"),
+        ("wall", "import time\ntime.sleep(3600)"),
+        ("wall", "import signal, time\nfor n in (1, 2, 15): signal.signal(n, signal.SIG_IGN)\ntime.sleep(99)"),
+    ],
+)
+def test_a_limit_ends_the_program_and_is_told(any_rig: Rig, limit: str, code: str) -> None:
+    if limit == "processes" and any_rig.level is Isolation.NONE and not any_rig.rootless:
+        pytest.skip("the kernel does not limit root's processes, and this level leaves the program to root")
+    short: dict[str, Any] = {"cpu": {"cpu_s": 1.0}, "wall": {"wall_s": 0.5}, "processes": {"processes": 32}}
+    limits = dataclasses.replace(SMALL, **short.get(limit, {}))
+
+    run = any_rig.run(code, limits=limits)
+
+    assert run.exit is not None
+    assert run.exit.limit == limit
+    assert run.exit.code != 0
+    assert any_rig.run("print('well')").text == "well\n"
+
+
+@pytest.mark.parametrize("place", ["HOME", "TMPDIR", "/dev/shm"])
+def test_many_small_files_fill_nothing_but_their_own_place(apart_rig: Rig, place: str) -> None:
+    code = f"""
+import os
+place = os.environ.get({place!r}, {place!r})
+written = 0
+try:
+    for n in range(10000):
+        written += open(f'{{place}}/{{n}}', 'wb').write(bytes(100_000))
+finally:
+    print(written, flush=True)
+"""
+    run = apart_rig.run(code, limits=SMALL)
+
+    assert int(run.text.splitlines()[0]) <= SMALL.file_bytes
+    assert run.exit is not None
+    assert run.exit.limit == "file-size"
+
+
+def test_no_core_file_is_written(confined_rig: Rig) -> None:
+    code = "import os, resource\nprint(resource.getrlimit(resource.RLIMIT_CORE))"
+
+    assert confined_rig.run(code).text == "(0, 0)\n"
+
+
+def test_a_program_cannot_raise_its_limits(confined_rig: Rig) -> None:
+    code = """
+import resource
+for which in (resource.RLIMIT_AS, resource.RLIMIT_NPROC, resource.RLIMIT_FSIZE, resource.RLIMIT_NOFILE):
+    try:
+        resource.setrlimit(which, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+        print('raised', which)
+    except ValueError:
+        pass
+"""
+    assert confined_rig.run(code).text == ""
+
+
+@pytest.mark.parametrize("values", [{"memory_bytes": 100 * MIB}, {"processes": 12}])
+def test_limits_in_which_rclpy_hangs_are_refused(values: dict[str, int]) -> None:
+    with pytest.raises(ValueError, match="rclpy"):
+        dataclasses.replace(Limits(), **values)
+
+
+def test_the_first_and_the_last_part_of_much_output_is_kept(any_rig: Rig) -> None:
+    code = "print('first')\nfor n in range(40000): print('line', n)\nprint('last')"
+
+    text = any_rig.run(code).text
+
+    assert text.startswith("first\nline 0\n")
+    assert text.endswith("line 39999\nlast\n")
+    assert "bytes of output are not shown" in text
+    assert len(text) < 140_000
+
+
+def test_all_output_is_counted_whatever_the_pieces() -> None:
+    buffer = OutputBuffer()
+    pieces = [bytes([n % 256]) * n for n in range(1, 900)]
+    for piece in pieces:
+        buffer.add(piece)
+
+    whole = b"".join(pieces)
+    output = buffer.output()
+    assert output.data[:65536] == whole[:65536]
+    assert output.data[65536:] == whole[-65536:]
+    assert output.dropped == len(whole) - len(output.data)
+
+
+def test_a_student_whose_output_nobody_wants_is_not_held_up(any_rig: Rig) -> None:
+    # 8 MiB go through a pipe that holds 64 KiB, and the program comes to its end by itself.
+    started = time.monotonic()
+    run = any_rig.run("import os\nfor _ in range(128): os.write(1, bytes(65536))\nos._exit(4)")
+
+    assert run.exit is not None
+    assert (run.exit.code, run.exit.limit) == (4, None)
+    assert time.monotonic() - started < 60

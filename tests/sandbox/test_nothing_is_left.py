@@ -1,0 +1,143 @@
+"""When a student's program is killed, or its rig dies, everything of it is dead and gone."""
+
+from __future__ import annotations
+
+import time
+import uuid
+from pathlib import Path
+
+import psutil
+import pytest
+from sandbox_rig import Rig
+
+from grader.sandbox import Exit, Isolation, Nursery, Program
+
+DAEMON = """
+import ctypes, os, signal, sys, time
+ctypes.CDLL(None).prctl(15, {name!r}.encode(), 0, 0, 0)
+for number in (1, 2, 3, 15, 10, 12):
+    signal.signal(number, signal.SIG_IGN)
+for depth in range(3):
+    if os.fork():
+        continue
+    os.setsid()
+    if os.fork():
+        os._exit(0)
+    os.close(1)
+    while True:
+        time.sleep(3600)
+print('daemons started', flush=True)
+"""
+
+
+def alive(name: str) -> int:
+    """How many processes of this machine have a name."""
+    return sum(process.info["name"] == name for process in psutil.process_iter(["name"]))
+
+
+def start_daemons(nursery: Nursery, level: Isolation, name: str, end: str) -> tuple[Exit | None, int, int]:
+    """Starts daemons that ignore every signal, and kills them; how many were there before and after."""
+    code = DAEMON.format(name=name) + end
+    with nursery.start(Program("d.py", {"d.py": code.encode()}), level) as student:
+        while "started" not in student.output().text or student.processes() < 3:
+            time.sleep(0.001)
+        before = student.processes()
+        if "exit" in end:
+            student.wait(30.0)
+    return student.poll(), before, student.processes()
+
+
+@pytest.mark.parametrize("end", ["signal.pause()", "os._exit(0)"])
+def test_daemons_do_not_outlive_a_killed_program(any_rig: Rig, end: str) -> None:
+    name = f"d{uuid.uuid4().hex[:12]}"
+
+    ended, before, after = any_rig.do(start_daemons, name, end)
+
+    assert before >= 3
+    assert after == 0
+    assert alive(name) == 0
+    assert ended == (Exit(0, None, None) if "exit" in end else Exit(None, 9, None))
+
+
+def test_a_program_that_kills_all_that_it_can_see_kills_only_itself(confined_rig: Rig) -> None:
+    code = """
+import os, signal
+for target in (-1, 0, os.getppid(), 1, *range(2, 40000)):
+    if target == os.getpid():
+        continue
+    try:
+        os.kill(target, signal.SIGKILL)
+    except (OSError, ProcessLookupError):
+        pass
+print('survived')
+"""
+    confined_rig.run(code)
+
+    assert confined_rig.run("print('the rig lives')").text == "the rig lives\n"
+
+
+def start_and_stay(nursery: Nursery, level: Isolation, name: str) -> None:
+    """Leaves a program with daemons running in the rig."""
+    student = nursery.start(Program("d.py", {"d.py": (DAEMON.format(name=name) + "signal.pause()").encode()}), level)
+    while "started" not in student.output().text or student.processes() < 3:
+        time.sleep(0.001)
+    _kept.append(student)
+
+
+_kept: list[object] = []
+
+
+@pytest.mark.parametrize("level", list(Isolation))
+def test_when_the_rig_is_killed_its_student_dies_with_it(level: Isolation, any_level_works: None) -> None:
+    name = f"r{uuid.uuid4().hex[:12]}"
+    rig = Rig(level, rootless=False)
+    try:
+        rig.do(start_and_stay, name)
+        assert alive(name) >= 3
+    finally:
+        rig.kill()
+
+    deadline = time.monotonic() + 60
+    while alive(name):
+        assert time.monotonic() < deadline, "the student outlives its rig"
+        time.sleep(0.01)
+
+
+@pytest.fixture
+def any_level_works(level: Isolation) -> None:
+    """Skips a level that this machine does not allow."""
+    from conftest import reason_against
+
+    reason = reason_against(level, False)
+    if reason is not None:
+        pytest.skip(f"{level}: {reason}")
+
+
+def test_no_temporary_folder_is_left(any_rig: Rig) -> None:
+    def folders() -> set[str]:
+        return {path.name for path in Path("/tmp").glob("spinbook-student-*")}
+
+    told = any_rig.run("import os\nprint(os.path.dirname(os.path.dirname(__file__)))").text.strip()
+
+    assert Path(told).name not in folders() or told == "/"
+
+
+def test_two_hundred_programs_leave_nothing(any_rig: Rig) -> None:
+    name = f"m{uuid.uuid4().hex[:12]}"
+    before = any_rig.do(resources)
+    for _ in range(200 if any_rig.level is Isolation.NAMESPACES and not any_rig.rootless else 10):
+        any_rig.do(start_and_kill, name)
+
+    assert any_rig.do(resources) == before
+    assert alive(name) == 0
+
+
+def start_and_kill(nursery: Nursery, level: Isolation, name: str) -> None:
+    code = f"import ctypes, time\nctypes.CDLL(None).prctl(15, {name!r}.encode(), 0, 0, 0)\ntime.sleep(60)"
+    nursery.start(Program("s.py", {"s.py": code.encode()}), level).kill()
+
+
+def resources(nursery: Nursery, level: Isolation) -> tuple[int, int, int]:
+    """Open files, threads and mounts of the rig."""
+    me = psutil.Process()
+    return me.num_fds(), me.num_threads(), len(Path("/proc/self/mounts").read_text().splitlines())
