@@ -346,7 +346,7 @@ def test_without_any_turtlesim_the_reader_is_told_so(ros_domain: int, tmp_path: 
 def test_a_topic_of_another_type_is_told(outside: Outside) -> None:
     outside.node.create_publisher(String, "/turtle1/pose", 10)
     with pytest.raises(NoPictureError, match="carries std_msgs/msg/String"):
-        fetch(timeout_s=0.0, listen_s=2.0)
+        fetch(timeout_s=0.0, listen_s=4.0)
 
 
 def test_a_node_that_answers_with_something_else_is_told(outside: Outside) -> None:
