@@ -1,0 +1,94 @@
+"""The real Week 3 chapter, built and run: every cell does what the chapter says of it."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from base64 import b64decode
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import nbformat
+import pytest
+from conftest import CourseFolder
+
+ROOT = Path(__file__).parents[2]
+NAME = "03-nodes-and-topics"
+JOINTS = [f"{side}_{joint}" for side in ("left", "right") for joint in ("shoulder_pitch", "shoulder_roll", "elbow")]
+
+
+@pytest.fixture(scope="module")
+def notebook(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    """The chapter's notebook with its outputs, made from a copy of the course."""
+    root = tmp_path_factory.mktemp("course")
+    shutil.copy(ROOT / "course.toml", root)
+    for folder in ("chapters", "exercises", "solutions"):
+        shutil.copytree(ROOT / folder, root / folder)
+    course = CourseFolder.__new__(CourseFolder)
+    course.root = root
+    said = course.spinbook("build", "--execute", NAME)
+    assert said.returncode == 0, said.stdout + said.stderr
+    yield nbformat.read(root / "build" / "executed" / f"{NAME}.ipynb", as_version=4)
+
+
+def cell(notebook: Any, cell_id: str) -> Any:
+    return next(cell for cell in notebook.cells if cell.id == cell_id)
+
+
+def text(notebook: Any, cell_id: str) -> str:
+    return "".join(output.get("text", "") for output in cell(notebook, cell_id).outputs)
+
+
+def pictures(notebook: Any) -> list[Any]:
+    return [output for c in notebook.cells for output in c.get("outputs", []) if "image/png" in output.get("data", {})]
+
+
+def test_every_code_cell_ran_and_only_those_that_should_fail_did(notebook: Any) -> None:
+    code = [c for c in notebook.cells if c.cell_type == "code"]
+
+    assert len(code) > 40
+    assert all(c.execution_count for c in code)
+    failed = {c.id for c in code if any(o.output_type == "error" for o in c.outputs)}
+    assert failed == {c.id for c in code if "raises-exception" in c.metadata.get("tags", [])}
+
+
+def test_about_ten_messages_a_second_are_measured(notebook: Any) -> None:
+    rates = re.findall(r"average rate: ([\d.]+)", text(notebook, "ros2-topic-hz-joint-commands"))
+
+    assert rates
+    assert float(rates[-1]) == pytest.approx(10, rel=0.2)
+
+
+def test_safety_warnings_name_an_elbow(notebook: Any) -> None:
+    assert re.search(
+        r"\[WARN\] \[joint_state_monitor\]: SAFETY: (left|right)_elbow", text(notebook, "node-joint-monitor")
+    )
+
+
+def test_six_joints_are_plotted(notebook: Any) -> None:
+    plots = [p for p in pictures(notebook) if all(joint in p["data"].get("text/plain", "") for joint in JOINTS)]
+
+    assert plots
+    assert b64decode(plots[0]["data"]["image/png"]).startswith(b"\x89PNG")
+
+
+def test_the_turtles_circle_is_shown(notebook: Any) -> None:
+    assert any("image/png" in output.get("data", {}) for output in cell(notebook, "code-drive-a-turtle").outputs)
+
+
+def test_the_package_is_built_and_its_executables_run(notebook: Any) -> None:
+    assert "1 package finished" in text(notebook, "colcon-build-symlink-install")
+    assert "Publishing on /joint_commands" in text(notebook, "ros2-run-humanoid-control-joint-publisher")
+
+
+def test_the_exercise_is_there_with_task_and_starter(notebook: Any) -> None:
+    starter = cell(notebook, "exercise-joint-velocity-starter")
+
+    assert starter.metadata.spinbook.exercise == "joint_velocity"
+    assert starter.source.startswith("%%node joint_velocity")
+    assert "SOLUTION" not in starter.source
+
+
+def test_no_folder_of_this_machine_is_in_the_outputs(notebook: Any) -> None:
+    assert str(ROOT) not in nbformat.writes(notebook)
