@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from conftest import CourseFolder, ProcessMark
+from course_folder import CourseFolder
+from process_mark import ProcessMark
 
 TALKER = """```python title="talker.py" seconds=60 until=talking
 import rclpy

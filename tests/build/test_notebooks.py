@@ -6,13 +6,10 @@ import os
 import re
 import subprocess
 import sys
-from typing import TYPE_CHECKING
 
 import nbformat
 import pytest
-
-if TYPE_CHECKING:
-    from conftest import CourseFolder
+from course_folder import CourseFolder
 
 NODE = "import rclpy\nrclpy.init()\nrclpy.spin(rclpy.create_node('talker'))\n"
 CHAPTER = f"""---

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import pytest
-
-if TYPE_CHECKING:
-    from conftest import CourseFolder
+from course_folder import CourseFolder
 
 GOOD = "# Good\n\n```python\nx = 1\n```\n"
 

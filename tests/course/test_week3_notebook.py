@@ -5,13 +5,12 @@ from __future__ import annotations
 import re
 import shutil
 from base64 import b64decode
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import nbformat
 import pytest
-from conftest import CourseFolder
+from course_folder import CourseFolder
 
 ROOT = Path(__file__).parents[2]
 NAME = "03-nodes-and-topics"
@@ -19,17 +18,15 @@ JOINTS = [f"{side}_{joint}" for side in ("left", "right") for joint in ("shoulde
 
 
 @pytest.fixture(scope="module")
-def notebook(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+def notebook(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """The chapter's notebook with its outputs, made from a copy of the course."""
     root = tmp_path_factory.mktemp("course")
     shutil.copy(ROOT / "course.toml", root)
     for folder in ("chapters", "exercises", "solutions"):
         shutil.copytree(ROOT / folder, root / folder)
-    course = CourseFolder.__new__(CourseFolder)
-    course.root = root
-    said = course.spinbook("build", "--execute", NAME)
+    said = CourseFolder(root).spinbook("build", "--execute", NAME)
     assert said.returncode == 0, said.stdout + said.stderr
-    yield nbformat.read(root / "build" / "executed" / f"{NAME}.ipynb", as_version=4)
+    return nbformat.read(root / "build" / "executed" / f"{NAME}.ipynb", as_version=4)
 
 
 def cell(notebook: Any, cell_id: str) -> Any:

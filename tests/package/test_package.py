@@ -7,10 +7,8 @@ import signal
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from conftest import CourseFolder
+from course_folder import CourseFolder
 
 NODE = '''"""Says hello."""
 

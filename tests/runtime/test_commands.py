@@ -5,12 +5,9 @@ from __future__ import annotations
 import struct
 from base64 import b64decode
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import pytest
-
-if TYPE_CHECKING:
-    from runtime.conftest import Kernel
+from notebook_kernel import Kernel
 
 ARM = """import math
 import rclpy

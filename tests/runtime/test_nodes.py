@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import pytest
-
-if TYPE_CHECKING:
-    from conftest import ProcessMark
-    from runtime.conftest import Kernel
+from notebook_kernel import Kernel
+from process_mark import ProcessMark
 
 TALKER = """import sys
 import rclpy

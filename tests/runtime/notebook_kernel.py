@@ -1,0 +1,84 @@
+"""A notebook's kernel to run cells in, as a front end would."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
+from jupyter_client.manager import KernelManager
+
+CELL_LIMIT_S = 90
+
+
+class ThisPython(KernelSpecManager):
+    """Every kernel is the Python that runs the tests."""
+
+    def get_kernel_spec(self, kernel_name: str) -> KernelSpec:
+        argv = [sys.executable, "-m", "ipykernel_launcher", "-f", "{connection_file}"]
+        return KernelSpec(argv=argv, display_name="Python 3", language="python")
+
+
+@dataclass
+class Shown:
+    """What a cell showed: its text, the message of an error, pictures, and how often a picture was replaced."""
+
+    text: str = ""
+    error: str = ""
+    pictures: list[dict[str, Any]] = field(default_factory=list)
+    updates: int = 0
+
+
+class Kernel:
+    """One running kernel, in a folder of its own, with Spinbook's commands loaded."""
+
+    def __init__(self, folder: Path, **environment: str) -> None:
+        self._manager = KernelManager(kernel_spec_manager=ThisPython())
+        self._manager.transport = "ipc"
+        self._manager.ip = os.fspath(Path(tempfile.mkdtemp(prefix="sb-")) / "k")
+        env = {key: value for key, value in {**os.environ, **environment}.items() if value}
+        self._manager.start_kernel(cwd=os.fspath(folder), env=env)
+        self._client = self._manager.client()
+        self._client.start_channels()
+        self._client.wait_for_ready(timeout=60)
+        self.folder = folder
+        self.loaded = self.run("%load_ext spinbook\n%chapter test --package robot --workspace robot_ws")
+
+    def run(self, code: str, on_text: Callable[[str], None] = lambda text: None) -> Shown:
+        """Run a cell to its end. `on_text` is called with all the text so far whenever more comes."""
+        shown = Shown()
+
+        def take(message: dict[str, Any]) -> None:
+            kind, content = message["msg_type"], message["content"]
+            if kind == "stream":
+                shown.text += content["text"]
+                on_text(shown.text)
+            elif kind == "error":
+                shown.error = "\n".join(content["traceback"])
+            elif kind == "display_data":
+                shown.pictures.append(content["data"])
+            elif kind == "update_display_data":
+                shown.updates += 1
+                shown.pictures[-1] = content["data"]
+
+        self._client.execute_interactive(code, output_hook=take, timeout=CELL_LIMIT_S, allow_stdin=False)
+        return shown
+
+    def interrupt(self) -> None:
+        """What the Stop button does."""
+        self._manager.interrupt_kernel()
+
+    def kill(self) -> None:
+        """kill -9."""
+        os.kill(self._manager.provisioner.pid, signal.SIGKILL)
+
+    def shut_down(self) -> None:
+        """What closing the notebook does."""
+        self._client.stop_channels()
+        self._manager.shutdown_kernel(now=not self._manager.is_alive())
