@@ -13,7 +13,7 @@ VENV=${VENV%/}
 MARK=$VENV/.spinbook
 LOG=$VENV/setup.log
 
-say() { printf '%s\n' "$*" >&2; }
+say() { printf '%s\n' "$@" >&2; }
 fail() { say "" "$@"; exit 1; }
 
 # Another environment's wheels mark what they have done to LD_LIBRARY_PATH; each Python here does it for itself.
