@@ -42,8 +42,18 @@ def build(start: Path, run: bool, jobs: int, deadline: float, again: bool, chapt
     failed = any(item.failed for item in built)
     if run:
         chosen = [item for item in built if not item.failed and _is_chosen(item, chapters)]
-        failed = _execute(console, course, chosen, jobs, deadline, again) or failed
+        try:
+            failed = _execute(console, course, chosen, jobs, deadline, again) or failed
+        except KeyboardInterrupt:
+            console.print("Interrupted: the notebooks that were running have been ended; finished ones are kept.")
+            sys.exit(130)
+    console.print(f"Notebooks: {_shown(course, 'executed' if run else 'notebooks')}", markup=False)
     sys.exit(1 if failed else 0)
+
+
+def _shown(course: Course, folder: str) -> str:
+    path = course.build_folder / folder
+    return f"{path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path}/"
 
 
 def _is_chosen(item: Built, chapters: tuple[str, ...]) -> bool:

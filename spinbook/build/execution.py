@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -76,15 +77,18 @@ def execute(
     One whose code has not changed since a good run is not run: it gets that run's outputs. `again` runs it anyway.
     """
     pool = ThreadPoolExecutor(max_workers=max(1, at_once))
+    given_up = threading.Event()
     try:
-        running = [pool.submit(_execute_one, job, on_progress, again) for job in jobs]
+        running = [pool.submit(_execute_one, job, on_progress, again, given_up) for job in jobs]
         for future in as_completed(running):
             yield future.result()
     finally:
+        # Reached with notebooks still running only where the caller was interrupted: they end with it.
+        given_up.set()
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _execute_one(job: Job, on_progress: Callable[[Progress], None], again: bool) -> Executed:
+def _execute_one(job: Job, on_progress: Callable[[Progress], None], again: bool, given_up: threading.Event) -> Executed:
     notebook = json.loads(job.notebook.read_text(encoding="utf-8"))
     key = _key(notebook)
     if not again and (outputs := _remembered(job, key)) is not None:
@@ -92,7 +96,7 @@ def _execute_one(job: Job, on_progress: Callable[[Progress], None], again: bool)
         return Executed(job.chapter, job.executed, (), 0.0, cached=True)
     started = time.monotonic()
     raw = job.folder.with_suffix(".ipynb")
-    ended = _run(job, raw, on_progress)
+    ended = _run(job, raw, on_progress, given_up)
     failures = find_failures(job.chapter, notebook, _read(raw), ended)
     ran = _read(raw) or notebook
     outputs = {cell["id"]: _tidy(cell, job) for cell in ran["cells"] if cell["cell_type"] == "code"}
@@ -104,7 +108,7 @@ def _execute_one(job: Job, on_progress: Callable[[Progress], None], again: bool)
     return Executed(job.chapter, job.executed, tuple(failures), time.monotonic() - started, cached=False)
 
 
-def _run(job: Job, raw: Path, on_progress: Callable[[Progress], None]) -> dict[str, Any]:
+def _run(job: Job, raw: Path, on_progress: Callable[[Progress], None], given_up: threading.Event) -> dict[str, Any]:
     """Run the notebook's process. Returns what it said last of how it ended, {} if it ended well."""
     shutil.rmtree(job.folder, ignore_errors=True)
     job.folder.mkdir(parents=True)
@@ -129,7 +133,7 @@ def _run(job: Job, raw: Path, on_progress: Callable[[Progress], None]) -> dict[s
                     ended = message
             if process.status.exit is not None:
                 return ended if ended != {"crashed": ""} else {"crashed": said}
-            if time.monotonic() > deadline:
+            if time.monotonic() > deadline or given_up.is_set():
                 return {"timed_out": None}
             time.sleep(0.05)
     finally:

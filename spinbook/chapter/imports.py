@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 import functools
 import importlib.util
-import os
 import re
 import sys
 from collections.abc import Iterable
@@ -14,6 +13,7 @@ from pathlib import Path
 from spinbook.chapter.classify import Classified
 from spinbook.chapter.terminal import CommandKind
 from spinbook.problem import Problem
+from spinbook.ros2 import interface_files, prefixes
 
 
 def missing_imports(item: Classified, own_modules: frozenset[str], file: Path) -> list[Problem]:
@@ -85,12 +85,8 @@ def _similar(module: str, own: frozenset[str]) -> str:
 
 @functools.cache
 def ros_packages() -> frozenset[str]:
-    """The ROS packages of this environment, from the ament index of each prefix."""
-    return frozenset(
-        entry.name
-        for prefix in _prefixes()
-        for entry in _listed(prefix / "share" / "ament_index" / "resource_index" / "packages")
-    )
+    """The ROS packages of this environment."""
+    return frozenset(prefixes.packages(prefixes.installed()))
 
 
 @functools.cache
@@ -100,18 +96,5 @@ def interfaces_of(module: str) -> frozenset[str]:
     if not match:
         return frozenset()
     package, kind = match.groups()
-    return frozenset(
-        entry.stem
-        for prefix in _prefixes()
-        for entry in _listed(prefix / "share" / package / kind)
-        if entry.suffix == f".{kind}"
-    )
-
-
-def _prefixes() -> list[Path]:
-    named = [Path(p) for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
-    return [*named, Path(sys.prefix)]
-
-
-def _listed(folder: Path) -> list[Path]:
-    return list(folder.iterdir()) if folder.is_dir() else []
+    interfaces = interface_files.interfaces_of(package) or []
+    return frozenset(name.partition("/")[2] for name in interfaces if name.startswith(f"{kind}/"))

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-import sys
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
+
+from spinbook.ros2 import prefixes
 
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
 #: No time stamps: the same log from build to build.
@@ -48,10 +49,5 @@ def missing_middleware(environment: Mapping[str, str]) -> str | None:
     rclpy ends the whole process (exit code 102) when asked for one that is absent, so this must be known before.
     """
     name = environment.get("RMW_IMPLEMENTATION", "")
-    if not name:
-        return None
-    folders = [Path(p) for p in environment.get("LD_LIBRARY_PATH", "").split(os.pathsep) if p]
-    folders += [Path(p) / "lib" for p in environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
-    folders += [Path(sys.prefix) / "lib", *(Path(p) / name / "lib" for p in sys.path)]
-    found = any((folder / f"lib{name}.so").exists() for folder in folders)
-    return None if found else name
+    installed = prefixes.resources("rmw_typesupport", prefixes.installed())
+    return name if name and installed and name not in installed else None

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import re
+import signal
+import subprocess
+import sys
+import time
 
 from course_folder import CourseFolder
 from process_mark import ProcessMark
@@ -219,3 +223,22 @@ def test_twenty_notebooks_that_run_at_once_do_not_hear_each_other(course: Course
     assert said.returncode == 0, said.stdout
     for name in names:
         assert set(re.findall(r"heard from (\w+)", course.outputs(name)["node-listener"])) == {name}
+
+
+def test_ctrl_c_ends_the_build_and_every_notebook_and_node(course: CourseFolder, process_mark: ProcessMark) -> None:
+    sleeper = "```python\nopen('../reached', 'w').close()\nimport time\ntime.sleep(1000)\n```\n"
+    course.write(one=f"# One\n\n{TALKER}\n{sleeper}")
+    build = subprocess.Popen(
+        [sys.executable, "-m", "spinbook", "build", "--execute"], cwd=course.root, stdout=subprocess.PIPE, text=True
+    )
+    reached = course.root / "build/run/reached"
+    deadline = time.monotonic() + 60
+    while not reached.exists():
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+
+    build.send_signal(signal.SIGINT)
+
+    assert "Interrupted" in build.communicate(timeout=60)[0]
+    assert build.returncode == 130
+    process_mark.wait_until_none()
