@@ -41,7 +41,7 @@ def wait_until_connected(
 
     A topic of another name or type never does; the checks tell that from the graph.
     """
-    patience = Patience(student, cpu_s=5.0, blocked_s=0.5)
+    patience = Patience(student, cpu_s=5.0, blocked_s=0.3)
     while not (publishers.heard and recorder.hears and clock.heard):
         fence.alive()
         if patience.ended():

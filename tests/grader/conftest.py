@@ -1,0 +1,39 @@
+"""What the grader's tests share: the exercise, and a crew that is ready to grade it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from grader.crew import Crew
+from grader.exercise import Exercise, load
+from grader.grading import Options, grading_of
+from grader.grading.grading import Grading
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="session")
+def exercise() -> Exercise:
+    """The exercise joint_velocity."""
+    return load(ROOT / "exercises" / "joint_velocity")
+
+
+@pytest.fixture(scope="session")
+def crew() -> Iterator[Crew]:
+    """One worker for the whole session."""
+    with Crew() as crew:
+        yield crew
+
+
+@pytest.fixture(scope="session")
+def grading(exercise: Exercise, crew: Crew, tmp_path_factory: pytest.TempPathFactory) -> Grading:
+    """Ready to grade joint_velocity; the solution has been spun anew, and proved."""
+    patch = pytest.MonkeyPatch()
+    patch.setenv("SPINBOOK_CACHE", str(tmp_path_factory.mktemp("cache")))
+    try:
+        return grading_of(exercise, Options(), crew)
+    finally:
+        patch.undo()

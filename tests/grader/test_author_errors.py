@@ -1,0 +1,86 @@
+"""What an author has to mend is told as the author's, with its file, before any student is graded."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+from grader.crew import Crew
+from grader.exercise import ExerciseError, load
+from grader.grading import Options, grading_of
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A copy of the course's exercise and solution, with only its first scenarios, to spoil."""
+    monkeypatch.setenv("SPINBOOK_CACHE", str(tmp_path / "cache"))
+    exercise = tmp_path / "exercises" / "small"
+    shutil.copytree(ROOT / "exercises" / "joint_velocity", exercise)
+    shutil.copytree(ROOT / "solutions" / "joint_velocity", tmp_path / "solutions" / "small")
+    (exercise / "hidden_checks.py").write_text('"""None."""\n')
+    scenarios = (exercise / "scenarios.py").read_text(encoding="utf-8")
+    (exercise / "scenarios.py").write_text(scenarios.replace("in streams.items()", "in list(streams.items())[:1]"))
+    toml = (exercise / "exercise.toml").read_text(encoding="utf-8")
+    (exercise / "exercise.toml").write_text(toml.replace("points = 100", "points = 50"))
+    return tmp_path
+
+
+def change(file: Path, old: str, new: str) -> None:
+    text = file.read_text(encoding="utf-8")
+    assert old in text
+    file.write_text(text.replace(old, new, 1), encoding="utf-8")
+
+
+def problem_of(course: Path, crew: Crew) -> ExerciseError:
+    with pytest.raises(ExerciseError) as caught:
+        grading_of(load(course / "exercises" / "small"), Options(), crew)
+    return caught.value
+
+
+def test_unspoiled_it_is_ready(course: Path, crew: Crew) -> None:
+    assert grading_of(load(course / "exercises" / "small"), Options(), crew).references["chapter"].received
+
+
+def test_a_missing_solution(course: Path, crew: Crew) -> None:
+    (course / "solutions" / "small" / "solution.py").unlink()
+    assert problem_of(course, crew).file.name == "solution.py"
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "told"),
+    [
+        ("exercise.toml", "points = 50", "points = 49", "give 50 points together, but points = 49"),
+        ("checks.py", "chapter.must_answer()", "assert False, 'never right'", "solution does not pass.*never right"),
+        ("checks.py", "chapter.must_answer()", "chapter.no_such_thing", r"breaks.*checks\.py:\d+: AttributeError"),
+        ("checks.py", "def test_answers_each_message_once(chapter", "def test_a(no_scenario", "no_scenario"),
+        ("checks.py", '    """It publishes one message for each message after the first."""\n', "", "no docstring"),
+        ("checks.py", "from grader.checking import Run, check, fail", "import no_such_module", "no_such_module"),
+        ("checks.py", "depends=[test_publishes_velocities]", "depends=['test_later']", "test_later"),
+        ("checks.py", "COMMANDS, VELOCITIES =", "def test_bare(chapter: Run) -> None: ...\n\n\nCOMMANDS, VELOCITIES =",
+         "test_bare is no check"),
+        ("scenarios.py", "arm_swing(10)", "arm_wing(10)", "arm_wing"),
+        ("exercise.toml", 'topic = "/joint_commands"', 'topic = "joint_commands"', "joint_commands"),
+    ],
+    ids=["points", "fails", "breaks", "fixture", "title", "import", "depends", "mark", "scenario", "topic"],
+)  # fmt: skip
+def test_what_is_wrong_is_told_with_its_file(
+    course: Path, crew: Crew, file: str, old: str, new: str, told: str
+) -> None:
+    change(course / "exercises" / "small" / file, old, new)
+    problem = problem_of(course, crew)
+    assert problem.file.name == file
+    assert re.search(told, problem.found), problem.found
+    assert problem.mend
+
+
+def test_a_solution_that_crashes(course: Path, crew: Crew) -> None:
+    change(course / "solutions" / "small" / "solution.py", "if math.isfinite(position)", "if math.no(position)")
+    problem = problem_of(course, crew)
+    assert problem.file.name == "solution.py"
+    assert "AttributeError" in problem.found
+    assert problem.line

@@ -1,0 +1,67 @@
+"""`spinbook grade` prints what is right and wrong, and ends with 0, 1, 2 or 3."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SOLUTIONS = ROOT / "solutions" / "joint_velocity"
+
+
+def grade(*arguments: str, cwd: Path = ROOT, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "grader", *arguments],
+        cwd=cwd, env={**os.environ, **environment}, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+
+
+def test_a_mistake_is_told_with_when_and_where_drawn_and_recorded(tmp_path: Path) -> None:
+    done = grade(
+        "joint_velocity", str(SOLUTIONS / "mistakes" / "joints_by_index.py"),
+        "--plot", str(tmp_path / "out.svg"), "--bag", str(tmp_path / "bags"), "--verbose",
+    )  # fmt: skip
+    assert done.returncode == 1, done.stderr
+    text = " ".join(done.stdout.split())
+    for told in ("91 of 100 points", "Message 2 of 20 (0.10 s", "left_shoulder_roll", "expected velocity", "Hint:"):
+        assert told in text
+    svg = (tmp_path / "out.svg").read_text()
+    assert "first wrong" in svg
+    assert all(joint in svg for joint in ("left_elbow", "right_shoulder_pitch"))
+    assert (tmp_path / "bags" / "reordered" / "metadata.yaml").exists()
+
+
+def test_full_marks_as_json() -> None:
+    done = grade("joint_velocity", str(SOLUTIONS / "solution.py"), "--json")
+    assert done.returncode == 0, done.stderr
+    entries = json.loads(done.stdout)
+    assert (entries["outcome"], entries["score"], entries["points"]) == ("graded", 100, 100)
+    assert entries["isolation"] in ("bubblewrap", "namespaces", "landlock")
+    assert len(entries["digest"]) == 64
+    assert all(verdict["status"] == "passed" for verdict in entries["verdicts"])
+
+
+@pytest.mark.parametrize("arguments", [["no_exercise", "x.py"], ["joint_velocity", "nowhere.py"], ["joint_velocity"]])
+def test_wrong_usage_ends_with_2_and_says_what_is_right(arguments: list[str]) -> None:
+    done = grade(*arguments)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert "Usage:" in done.stderr
+
+
+def test_an_authors_fault_ends_with_3(tmp_path: Path) -> None:
+    folder = tmp_path / "exercises" / "lonely"
+    folder.mkdir(parents=True)
+    for file in (ROOT / "exercises" / "joint_velocity").iterdir():
+        if file.is_file():
+            (folder / file.name).write_bytes(file.read_bytes())
+    done = grade("lonely", str(SOLUTIONS / "solution.py"), cwd=tmp_path)
+    assert done.returncode == 3
+    assert "solution.py: there is no such file" in done.stderr
+    assert "not the submission" in done.stderr
+    assert "Traceback" not in done.stderr

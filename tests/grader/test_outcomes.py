@@ -1,0 +1,83 @@
+"""Every run is a grade, also one that could not start; its message is one a student can act on."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.exercise import Exercise
+from grader.grading import Grade
+from grader.grading.grading import Grading
+from grader.submission.reading import of_source
+
+NODE = """
+import rclpy
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+import time
+
+
+class JointVelocity(Node):
+    def __init__(self):
+        super().__init__('joint_velocity')
+        self.publisher = self.create_publisher(JointState, '/joint_velocities', 10)
+        self.create_subscription(JointState, '/joint_commands', self.on_joints, 10)
+        self.count = 0
+
+    def on_joints(self, message):
+        self.count += 1
+        {body}
+
+
+rclpy.init()
+rclpy.spin(JointVelocity())
+"""
+
+
+def grade_of(grading: Grading, source: str) -> Grade:
+    exercise: Exercise = grading.spinner.exercise
+    return grading.grade(of_source("test.py", source.encode(), exercise))
+
+
+@pytest.mark.parametrize(
+    ("source", "outcome", "told"),
+    [
+        ("import rclpy\ndef main(:\n", "did-not-start", ["SyntaxError", "line 2"]),
+        ("import rclpy\nimport tensorflow\n", "did-not-start", ["tensorflow", "line 2", "numpy"]),
+        ("from sensor_msgs.msg import JointStates\n", "did-not-start", ["JointStates", "sensor_msgs.msg"]),
+        ("x = 1\n", "did-not-start", ["created no node", "main()"]),
+        ("", "did-not-start", ["empty"]),
+        ("import time\ntime.sleep(3600)\n", "timed-out", ["waits", "creates no node"]),
+        (NODE.format(body="if self.count == 37: self.no_such_method()"), "crashed", ["message 37", "no_such_method"]),
+        (NODE.format(body="if self.count == 5: import os; os._exit(0)"), "crashed", ["message 5", "by itself"]),
+        (NODE.format(body="while self.count == 5: pass"), "timed-out", ["endless loop"]),
+        (NODE.format(body="time.sleep(3600)"), "timed-out", ["sleep"]),
+        (NODE.format(body="for i in range(100_000): self.publisher.publish(message)"), "over-limit", ["5,000"]),
+    ],
+    ids=lambda value: value if isinstance(value, str) and len(value) < 15 else None,
+)
+def test_a_broken_submission_is_told_what_is_wrong(
+    grading: Grading, source: str, outcome: str, told: list[str]
+) -> None:
+    grade = grade_of(grading, source)
+    assert grade.outcome == outcome, grade.message
+    assert all(word in grade.message for word in told), grade.message
+    assert grade.score == 0
+    assert all(verdict.status in ("failed", "blocked") for verdict in grade.verdicts)
+    assert len(grade.verdicts) > 20
+
+
+def test_a_crash_in_one_scenario_costs_only_its_checks(grading: Grading) -> None:
+    solution = grading.spinner.exercise.solution_file
+    assert solution
+    source = solution.read_text(encoding="utf-8").replace(
+        "        positions = {\n",
+        "        assert message.name, 'nobody expects an empty message'\n        positions = {\n",
+        1,
+    )
+    grade = grade_of(grading, source)
+    assert grade.outcome == "graded"
+    failed = {verdict.name: verdict.finding for verdict in grade.verdicts if verdict.status == "failed"}
+    assert set(failed) == {"test_empty_message"}
+    assert failed["test_empty_message"]
+    assert "message 10" in failed["test_empty_message"].text
+    assert "nobody expects an empty message" in failed["test_empty_message"].text

@@ -1,0 +1,97 @@
+"""A submission is a file, a notebook's cell or an installed executable; whatever is in it, it is read without harm."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+from grader.exercise import Exercise
+from grader.submission import NoSubmission, read
+
+CELL = "%%node joint_velocity\nclass JointVelocity:\n    pass\n"
+
+
+def notebook(tmp_path: Path, *cells: tuple[str, dict[str, object]]) -> str:
+    file = tmp_path / "week3.ipynb"
+    entries = [{"cell_type": "code", "source": source, "metadata": metadata} for source, metadata in cells]
+    file.write_text(json.dumps({"cells": entries, "metadata": {}, "nbformat": 4, "nbformat_minor": 5}))
+    return str(file)
+
+
+def test_a_file_is_taken_as_it_is(tmp_path: Path, exercise: Exercise) -> None:
+    file = tmp_path / "my node (2).py"
+    file.write_bytes(b"x = '\xe4'\r\n")
+    submission = read(str(file), exercise)
+    assert submission.program
+    assert submission.program.files == {"joint_velocity.py": b"x = '\xe4'\r\n"}
+
+
+@pytest.mark.parametrize(
+    "cells",
+    [
+        [("x = 1", {}), ("class Other: pass", {"spinbook": {"exercise": "joint_velocity"}}), (CELL, {})],
+        [("x = 1", {}), ("%%node joint_velocity\nclass Other: pass", {}), ("class JointVelocity: pass", {})],
+        [("x = 1", {}), ("class Other: pass\nclass JointVelocity(Node): pass", {}), ("JointVelocity", {})],
+        [("x = 1", {}), ("class Other: pass\nnode = rclpy.create_node('joint_velocity')", {})],
+    ],
+    ids=["metadata", "magic", "class", "node"],
+)
+def test_a_notebooks_cell_is_found(
+    tmp_path: Path, exercise: Exercise, cells: list[tuple[str, dict[str, object]]]
+) -> None:
+    submission = read(notebook(tmp_path, *cells), exercise)
+    assert "class Other" in submission.source
+    assert "x = 1" not in submission.source
+
+
+def test_magic_lines_are_emptied_so_that_line_numbers_stay(tmp_path: Path, exercise: Exercise) -> None:
+    source = read(notebook(tmp_path, (CELL, {})), exercise).source
+    assert source.splitlines() == ["", "class JointVelocity:", "    pass"]
+
+
+def test_a_notebook_without_the_cell_is_the_students_to_hear_of(tmp_path: Path, exercise: Exercise) -> None:
+    submission = read(notebook(tmp_path, ("x = 1", {})), exercise)
+    assert submission.program is None
+    assert "JointVelocity" in submission.problem
+
+
+@pytest.mark.parametrize("content", [b"", b"{", b"[]", b'{"cells": 3}', b"\xff\xfe", b'{"cells": [1]}', b"[" * 100_000])
+def test_rubbish_instead_of_a_notebook_does_no_harm(tmp_path: Path, exercise: Exercise, content: bytes) -> None:
+    file = tmp_path / "week3.ipynb"
+    file.write_bytes(content)
+    assert read(str(file), exercise).problem
+
+
+def test_a_notebook_of_a_hundred_thousand_cells_is_read(tmp_path: Path, exercise: Exercise) -> None:
+    submission = read(notebook(tmp_path, *[("x = 1", {})] * 100_000, (CELL, {})), exercise)
+    assert "JointVelocity" in submission.source
+
+
+def test_a_file_too_large_is_told(tmp_path: Path, exercise: Exercise) -> None:
+    file = tmp_path / "large.py"
+    file.write_bytes(b"#" * 2_000_000)
+    assert "larger" in read(str(file), exercise).problem
+
+
+def test_a_symbolic_link_is_not_followed(tmp_path: Path, exercise: Exercise) -> None:
+    (tmp_path / "secret").write_text("the solution")
+    link = tmp_path / "link.py"
+    link.symlink_to(tmp_path / "secret")
+    submission = read(str(link), exercise)
+    assert "symbolic link" in submission.problem
+    assert "solution" not in submission.source
+
+
+def test_a_fifo_does_not_hang_the_grader(tmp_path: Path, exercise: Exercise) -> None:
+    os.mkfifo(tmp_path / "pipe.py")
+    assert "no regular file" in read(str(tmp_path / "pipe.py"), exercise).problem
+
+
+@pytest.mark.parametrize("given", ["nowhere.py", "notes.txt", "no_package/no_executable"])
+def test_what_is_not_there_is_a_matter_of_usage(given: str, exercise: Exercise) -> None:
+    with pytest.raises(NoSubmission) as caught:
+        read(given, exercise)
+    assert given in str(caught.value)
