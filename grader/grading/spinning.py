@@ -53,6 +53,10 @@ class Spinner:
                 for future in futures.values():
                     future.cancel()
 
+    def only(self, scenario: str) -> Spinner:
+        """The same, with one scenario alone."""
+        return replace(self, scenarios=tuple(s for s in self.scenarios if s.name == scenario))
+
     def _job(self, submission: Submission, scenario: Scenario, number: int) -> SpinJob:
         assert submission.program
         program = replace(

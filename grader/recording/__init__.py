@@ -1,5 +1,5 @@
 """What was seen while a node was spun: plain data, that nothing of the student's can change."""
 
-from grader.recording.recording import EndPoint, Ending, Recording, Received, Sent
+from grader.recording.recording import Ending, EndPoint, Received, Recording, Sent
 
 __all__ = ["EndPoint", "Ending", "Received", "Recording", "Sent"]

@@ -70,7 +70,8 @@ class Recording:
     """One spin of one node through one scenario.
 
     `hold` tells how the rig knew that the node had handled a message: by its parameter services, by its type
-    description service, or by waiting until it was quiet.
+    description service, or by waiting until it was quiet. `seconds` is how long the run took in real time, and
+    `lockstep_seconds` the part of it from the first message to the last.
     """
 
     scenario: str
@@ -83,3 +84,4 @@ class Recording:
     ending: Ending
     log: str = field(default="", compare=False)
     seconds: float = field(default=0.0, compare=False)
+    lockstep_seconds: float = field(default=0.0, compare=False)

@@ -69,6 +69,7 @@ class Rig:
         self._nodes: list[str] = []
         self._sim_time = False
         self._met = False
+        self._lockstep_seconds = 0.0
         self._end_points: tuple[EndPoint, ...] = ()
 
     def _moment(self) -> tuple[int, int]:
@@ -99,6 +100,7 @@ class Rig:
             ending=ending,
             log=self._student.output().text,
             seconds=time.monotonic() - began,
+            lockstep_seconds=self._lockstep_seconds,
         )
 
     def _meet(self) -> None:
@@ -123,6 +125,7 @@ class Rig:
             self._fence.wait(AFTER_MESSAGES)
             self._recorder.check()
         self._drain()
+        self._lockstep_seconds = time.monotonic() - began
 
     def _keep_pace(self, began: float, at: int) -> None:
         if self._what.pace:
