@@ -52,8 +52,10 @@ def counter() -> Node:
     node = Node("counter")
     topic = node.create_publisher(Int32, "/count", QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT))
     hidden = node.create_publisher(Int32, "/_hidden", 10)
-    node.create_subscription(String, "/cmd", lambda message: print(message.data, flush=True), 10)
     count = 0
+
+    def obey(message: Any) -> None:
+        print(message.data, flush=True)
 
     def publish() -> None:
         nonlocal count
@@ -61,6 +63,7 @@ def counter() -> Node:
         topic.publish(Int32(data=count))
         hidden.publish(Int32(data=count))
 
+    node.create_subscription(String, "/cmd", obey, 10)
     node.create_timer(0.02, publish)
     return node
 

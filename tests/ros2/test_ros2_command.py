@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import click
 import pytest
 from click.testing import CliRunner
 from ros2_terminal import Robot, Terminal
@@ -19,9 +20,9 @@ from spinbook.ros2.groups import Menu
 
 def helps() -> list[list[str]]:
     """Every place of the command that has a help."""
-    places = [[]] + [[noun] for noun in NOUNS]
+    places: list[list[str]] = [[], *([noun] for noun in NOUNS)]
     for noun in NOUNS:
-        group = ros2.get_command(None, noun)  # type: ignore[arg-type]
+        group = ros2.get_command(click.Context(ros2), noun)
         if isinstance(group, Menu):
             places += [[noun, verb] for verb in group.entries]
     return places
