@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import tempfile
 from pathlib import Path
@@ -15,9 +16,13 @@ from grader.checking import Run
 from grader.checking.matching import close
 from grader.exercise import Exercise
 from grader.grading import Grade
+from grader.report.printable import printable
 
 #: The same picture each time: no date in it, and identifiers made from a fixed salt.
 SETTINGS: dict[Any, Any] = {"svg.hashsalt": "spinbook", "svg.fonttype": "none", "font.family": "sans-serif"}
+
+#: The highest value that is drawn.
+HIGHEST = 1e9
 
 Line = dict[str, list[tuple[float, float]]]
 
@@ -45,7 +50,7 @@ def _panels(figure: Figure, run: Run, field: str, unit: str, per: str) -> None:
         for lines, messages in ((expected, exchange.expected), (got, exchange.answers)):
             for message in messages:
                 for joint, value in message.by(per, field).items():
-                    lines.setdefault(str(joint), []).append((exchange.sent.at, value))
+                    lines.setdefault(str(joint), []).append((exchange.sent.at, _drawable(value)))
     joints = [*expected, *(joint for joint in got if joint not in expected)][:24]
     figure.set_size_inches(9, 1.2 + 1.5 * len(joints))
     if not joints:
@@ -59,7 +64,7 @@ def _panels(figure: Figure, run: Run, field: str, unit: str, per: str) -> None:
 
 
 def _panel(panel: Axes, joint: str, expected: list[tuple[float, float]], got: list[tuple[float, float]]) -> None:
-    panel.set_title(joint, fontsize=9, loc="left")
+    panel.set_title(printable(joint, 60), fontsize=9, loc="left", parse_math=False)
     panel.plot(*_columns(expected), color="#999999", linewidth=3, label="solution")
     panel.plot(*_columns(got), color="#0b6efd", linewidth=1, marker=".", markersize=3, label="yours")
     wrong = _first_difference(expected, got)
@@ -76,8 +81,14 @@ def _first_difference(
     right, came = dict(expected), dict(got)
     for at in sorted({*right, *came}):
         if at not in right or at not in came or not close(came[at], right[at], 1e-6):
-            return at, came.get(at, right.get(at, 0.0))
+            shown = came.get(at, math.nan)
+            return at, shown if math.isfinite(shown) else right.get(at, 0.0)
     return None
+
+
+def _drawable(value: float) -> float:
+    """`value`, or NaN (a gap in the line) where no axis could show it."""
+    return value if isinstance(value, (int, float)) and abs(value) < HIGHEST else math.nan
 
 
 def _columns(points: list[tuple[float, float]]) -> tuple[list[float], list[float]]:

@@ -9,6 +9,7 @@ from rich.text import Text
 from grader.checking.verdict import Status, Verdict
 from grader.exercise import Exercise
 from grader.grading import Grade
+from grader.report.printable import printable
 
 SIGNS: dict[Status, tuple[str, str]] = {
     "passed": ("✓", "green"),
@@ -20,9 +21,9 @@ SIGNS: dict[Status, tuple[str, str]] = {
 
 def show(grade: Grade, exercise: Exercise, console: Console, verbose: bool = False) -> None:
     """Print a grade: every check with its points, and for what failed why, and where to look."""
-    console.print(Text(f"{exercise.title}: {grade.submission}", style="bold"), soft_wrap=True)
+    console.print(Text(printable(f"{exercise.title}: {grade.submission}"), style="bold"), soft_wrap=True)
     if grade.message:
-        console.print(Text(f"{grade.outcome}: {grade.message}", style="red"), soft_wrap=True)
+        console.print(Text(printable(f"{grade.outcome}: {grade.message}"), style="red"), soft_wrap=True)
     for verdict in grade.verdicts:
         _show_verdict(verdict, grade, console)
     if grade.outcome != "host-error":
@@ -31,7 +32,7 @@ def show(grade: Grade, exercise: Exercise, console: Console, verbose: bool = Fal
     console.print(Text(f"isolation: {grade.isolation}", style="dim"))
     if verbose:
         console.print(Text("the node's log:", style="bold"))
-        console.print(Text(grade.log or "(nothing)"), soft_wrap=True)
+        console.print(Text(printable(grade.log) or "(nothing)"), soft_wrap=True)
 
 
 def _show_verdict(verdict: Verdict, grade: Grade, console: Console) -> None:
@@ -52,4 +53,6 @@ def _show_verdict(verdict: Verdict, grade: Grade, console: Console) -> None:
         lines.append(verdict.error)
     for line in lines:
         if line:
-            console.print(Padding(Text(line, style="dim" if line.startswith("Can't") else ""), (0, 0, 0, 11)))
+            console.print(
+                Padding(Text(printable(line), style="dim" if line.startswith("Can't") else ""), (0, 0, 0, 11))
+            )

@@ -1,0 +1,12 @@
+"""Text of a student's, made harmless for terminals and pictures."""
+
+from __future__ import annotations
+
+
+def printable(text: str, longest: int = 0) -> str:
+    """`text` with every character that could steer a terminal shown as a replacement sign; line ends and tabs stay.
+
+    With `longest` only so many characters are kept.
+    """
+    shown = "".join(c if c.isprintable() or c in "\n\t" else "\N{REPLACEMENT CHARACTER}" for c in text)
+    return shown if not longest or len(shown) <= longest else f"{shown[:longest]}…"

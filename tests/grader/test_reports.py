@@ -1,0 +1,55 @@
+"""Reports survive whatever a student publishes, and are the same each time."""
+
+from __future__ import annotations
+
+import io
+import json
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from grader.grading import Grade
+from grader.grading.grading import Grading
+from grader.report.as_json import as_json
+from grader.report.plot import draw
+from grader.report.terminal import show
+from grader.submission.reading import of_source
+
+HOSTILE = """
+    def publish_velocities(self, message, positions, dt):
+        answer = JointState(header=message.header)
+        answer.name = ['$\\\\frac{', '\\x1b[2J\\x1b]0;owned\\x07', '<script>', 'a' * 1000, 'left_elbow', 'b', 'c']
+        answer.velocity = [float('nan'), float('inf'), 1e308, -1e308, -0.0, 5e-324, 1.0]
+        self.publisher.publish(answer)
+
+    def unused(self, message, positions, dt):"""
+
+
+@pytest.fixture(scope="module")
+def hostile(grading: Grading) -> Grade:
+    """A node that publishes names and numbers made to break whatever shows them."""
+    solution = grading.spinner.exercise.solution_file
+    assert solution
+    source = solution.read_text(encoding="utf-8")
+    source = source.replace("\n    def publish_velocities(self, message, positions, dt):", HOSTILE)
+    return grading.grade(of_source("\x1b[31mmine.py", source.encode(), grading.spinner.exercise))
+
+
+def test_the_terminal_shows_no_control_codes_of_a_students(hostile: Grade, grading: Grading) -> None:
+    text = io.StringIO()
+    show(hostile, grading.spinner.exercise, Console(file=text, force_terminal=False), verbose=True)
+    assert "\x1b" not in text.getvalue()
+    assert "left_shoulder_pitch" in text.getvalue()
+
+
+def test_the_json_is_json(hostile: Grade) -> None:
+    assert json.loads(as_json(hostile))["outcome"] == "graded"
+
+
+def test_the_plot_is_a_picture_and_the_same_each_time(hostile: Grade, grading: Grading, tmp_path: Path) -> None:
+    for name in ("a.svg", "b.svg"):
+        draw(hostile, grading.spinner.exercise, tmp_path / name)
+    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
+    assert ET.parse(tmp_path / "a.svg").getroot().tag.endswith("svg")
