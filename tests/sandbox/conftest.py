@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from sandbox_rig import Rig
 
-from grader.sandbox import Isolation, available
+from grader.sandbox import Isolation, available, choose
 
 APART = (Isolation.BUBBLEWRAP, Isolation.NAMESPACES)
 CONFINED = (*APART, Isolation.LANDLOCK)
@@ -30,7 +30,7 @@ def reason_against(level: Isolation, rootless: bool) -> str | None:
         f"import sys; sys.path[:0] = [{str(Path(__file__).parent)!r}, {str(_ROOT)!r}]\n"
         "from sandbox_rig import become_nobody\n"
         "become_nobody()\n"
-        "from grader.sandbox import Isolation, available\n"
+        "from grader.sandbox import Isolation, available, choose\n"
         f"print(available()[Isolation({level.value!r})] or '')"
     )
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
@@ -76,6 +76,15 @@ def any_rig(request: pytest.FixtureRequest, rigs: dict[tuple[Isolation, bool], R
 def either_rig(request: pytest.FixtureRequest, rigs: dict[tuple[Isolation, bool], Rig]) -> Rig:
     """A rig that confines and one that does not, for what does not depend on how it is done."""
     return _rig(request, rigs)
+
+
+@pytest.fixture
+def strongest_rig(rigs: dict[tuple[Isolation, bool], Rig]) -> Rig:
+    """A rig at the strongest level that works here, the one that is chosen without a wish."""
+    key = (choose(), False)
+    if key not in rigs:
+        rigs[key] = Rig(key[0], rootless=False)
+    return rigs[key]
 
 
 @pytest.fixture(params=_rigs(CONFINED))

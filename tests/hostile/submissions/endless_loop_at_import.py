@@ -1,0 +1,4 @@
+"""Never comes to its first import."""
+
+while True:
+    pass

@@ -1,0 +1,3 @@
+"""Does something else altogether."""
+
+print("Hello, world!")

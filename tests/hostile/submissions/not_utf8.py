@@ -1,0 +1,3 @@
+"""Saved in Latin-1, with no word about it: größer."""
+
+print('größer')

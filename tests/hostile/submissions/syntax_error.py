@@ -1,0 +1,5 @@
+"""Python cannot read it."""
+
+
+class JointVelocity(Node:
+    pass

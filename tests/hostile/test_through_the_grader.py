@@ -1,0 +1,72 @@
+"""Hostile and broken submissions through the whole grader: each gets the grade that expected.toml says, and no more."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grader.crew import Crew
+from grader.exercise import load
+from grader.grading import Grade, Options, grading_of
+from grader.grading.grading import Grading
+from grader.submission import read
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+HERE = Path(__file__).parent
+EXERCISE = HERE.parents[1] / "exercises" / "joint_velocity"
+EXPECTED: dict[str, dict[str, Any]] = tomllib.loads((HERE / "expected.toml").read_text(encoding="utf-8"))
+
+#: One of each kind, for every `make test`. `make soak` goes through all.
+ALWAYS = {
+    *("syntax_error", "missing_dependency", "not_utf8", "never_creates_a_node", "crashes_at_message_37"),
+    *("ends_with_0_in_the_callback", "endless_loop_in_the_callback", "fork_bomb", "kills_its_parent"),
+    *("looks_for_solutions", "patches_rclpy", "prints_a_forged_report", "publishes_clock", "copies_another_publisher"),
+}
+
+
+def every() -> list[Any]:
+    return [pytest.param(name, marks=() if name in ALWAYS else pytest.mark.soak) for name in sorted(EXPECTED)]
+
+
+@pytest.fixture(scope="module")
+def grading() -> Iterator[Grading]:
+    with Crew() as crew:
+        yield grading_of(load(EXERCISE), Options(), crew)
+
+
+def told(grade: Grade) -> str:
+    """Everything that the student is told."""
+    findings = [verdict.finding.text for verdict in grade.verdicts if verdict.finding]
+    titles = [verdict.title for verdict in grade.verdicts if verdict.status == "failed"]
+    return "\n".join([grade.message, *findings, *titles])
+
+
+@pytest.mark.parametrize("name", every())
+def test_the_grade_is_the_expected_one(grading: Grading, name: str) -> None:
+    expected = EXPECTED[name]
+    grade = grading.grade(read(str(HERE / "submissions" / f"{name}.py"), grading.spinner.exercise))
+    assert grade.outcome in expected["outcome"], (grade.outcome, grade.message)
+    right = {"zero": grade.score == 0, "full": grade.full_marks, "less": not grade.full_marks, "any": True}
+    assert right[expected["score"]], [v for v in grade.verdicts if v.status != "passed"]
+    for words in expected.get("words", []):
+        assert re.search(words, told(grade), re.IGNORECASE), told(grade)
+    logs = "\n".join(recording.log for recording in grade.recordings.values())
+    for word in expected.get("never", []):
+        assert word not in logs
+    if not grade.full_marks:
+        assert told(grade).strip(), "the student has to be told something"
+
+
+def test_afterwards_an_honest_submission_still_gets_full_marks(grading: Grading) -> None:
+    solution = grading.spinner.exercise.solution_file
+    assert solution
+    assert grading.grade(read(str(solution), grading.spinner.exercise)).full_marks

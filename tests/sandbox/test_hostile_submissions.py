@@ -1,0 +1,151 @@
+"""Every hostile submission, spun against a real publisher in its sandbox: it escapes nowhere, and the rig is unharmed.
+
+What the grader makes of them is another matter (see tests/hostile); here only the sandbox is asked.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+from sandbox_rig import Rig
+
+from grader.sandbox import Exit, Isolation, Limits, Nursery, Program
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+HOSTILE = Path(__file__).parents[1] / "hostile"
+EXPECTED: dict[str, dict[str, Any]] = tomllib.loads((HOSTILE / "expected.toml").read_text())
+PROFILE = Path(__file__).parents[2] / "grader" / "loopback.xml"
+# Right, and with nothing of its own to hide.
+HONEST = HOSTILE / "submissions" / "sets_use_sim_time_itself.py"
+LIMITS = Limits(cpu_s=4.0, output_bytes=4 << 20, file_bytes=16 << 20, processes=96, wall_s=20.0)
+# What is watched for files that a student has left.
+WATCHED = (Path("/tmp"), Path("/dev/shm"), Path("/var/tmp"), Path.home(), HOSTILE, HOSTILE.parents[1])
+# Attacks on the machine are tried at every level; others (they attack the grading, or nothing) at the strongest only.
+EVERYWHERE = (
+    "fork_bomb_in_the_callback",
+    "imports_the_grader",
+    "kills_everything",
+    "kills_its_parent",
+    "log_1_gb",
+    "looks_for_solutions",
+    "memory_in_many_processes",
+    "outlives_by_double_fork",
+    "ptraces_others",
+    "raises_its_limits",
+    "reads_proc_of_others",
+    "remembers_between_runs",
+    "stops_itself",
+    "writes_everywhere",
+    "writes_to_every_descriptor",
+)
+
+
+@dataclass(frozen=True)
+class Spun:
+    """What came of a submission: how it ended, what it printed, how many answers the rig heard, what it left."""
+
+    exit: Exit | None
+    text: str
+    answers: int
+    left_running: int
+
+
+def spin(nursery: Nursery, level: Isolation, source: bytes, domain: int) -> Spun:
+    """In the rig: publishes joint commands to a submission, hears its answers, interrupts and kills it."""
+    import os
+
+    import rclpy
+    from rclpy.context import Context
+    from rclpy.executors import SingleThreadedExecutor
+    from rclpy.qos import QoSProfile, ReliabilityPolicy
+    from sensor_msgs.msg import JointState
+
+    ros = {
+        "ROS_DOMAIN_ID": str(domain),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
+        "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILE),
+    }
+    os.environ.update(ros)
+    context = Context()
+    rclpy.init(context=context, domain_id=domain)
+    node = rclpy.create_node("rig", context=context)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    answers: list[JointState] = []
+    publisher = node.create_publisher(JointState, "/joint_commands", 10)
+    quality = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
+    node.create_subscription(JointState, "/joint_velocities", answers.append, quality)
+    program = Program("joint_velocity.py", {"joint_velocity.py": source}, environment=ros, readonly=(PROFILE,))
+    try:
+        with nursery.start(program, level, LIMITS, core=0) as student:
+            deadline = time.monotonic() + 3.0
+            while publisher.get_subscription_count() == 0 and time.monotonic() < deadline and student.poll() is None:
+                executor.spin_once(timeout_sec=0.01)
+            for number in range(60):
+                message = JointState(name=["left_elbow"], position=[0.01 * number])
+                message.header.stamp.sec, message.header.stamp.nanosec = divmod(number * 10**8, 10**9)
+                publisher.publish(message)
+                executor.spin_once(timeout_sec=0.01)
+            # Give a limit the time to be reached, and answers to arrive.
+            deadline = time.monotonic() + (0.0 if answers else 2.0)
+            while student.wait(0.0) is None and time.monotonic() < deadline:
+                executor.spin_once(timeout_sec=0.05)
+            student.interrupt()
+            student.wait(1.0)
+        text = student.output().text
+    finally:
+        node.destroy_node()
+        rclpy.shutdown(context=context)
+    # Of all that this rig's nursery has started only the nursery is left, once our own keeper has ended.
+    deadline = time.monotonic() + 10.0
+    while (left := len(psutil.Process(os.getpid()).children(recursive=True)) - 1) and time.monotonic() < deadline:
+        time.sleep(0.001)
+    return Spun(student.exit, text, len(answers), left)
+
+
+def files() -> set[Path]:
+    """What lies in the watched folders, but for what tests and Python make there."""
+    ours = ("pytest", "spinbook-", "nobody-", "hidden-checks-", "course-", "tmp", "pymp-", "sem.", ".", "fastrtps_")
+    return {path for folder in WATCHED for path in folder.iterdir() if not path.name.startswith(ours)}
+
+
+def spin_and_look(rig: Rig, name: str, domain: int) -> Spun:
+    """Spins a submission, and checks what holds for each of them."""
+    before = files()
+    spun: Spun = rig.do(spin, (HOSTILE / "submissions" / f"{name}.py").read_bytes(), domain)
+
+    for word in EXPECTED[name].get("never", ()):
+        assert word not in spun.text
+    left = [path for path in files() - before if path.name.startswith(("written_by_a", "note-of-an", "results.json"))]
+    assert left == []
+    assert spun.left_running == 0
+    assert spun.exit is not None
+    honest: Spun = rig.do(spin, HONEST.read_bytes(), domain)
+    assert honest.answers > 0
+    return spun
+
+
+@pytest.mark.parametrize("name", sorted(EXPECTED))
+def test_a_hostile_submission_is_contained(strongest_rig: Rig, name: str, ros_domain: int) -> None:
+    spun = spin_and_look(strongest_rig, name, ros_domain)
+
+    if EXPECTED[name]["outcome"] == ["over-limit"]:
+        assert spun.exit is not None
+        assert spun.exit.limit is not None, spun.text
+    if EXPECTED[name]["score"] == "full":
+        assert spun.answers > 0, spun.text
+
+
+@pytest.mark.parametrize("name", EVERYWHERE)
+def test_an_attack_on_the_machine_is_contained_at_every_level(confined_rig: Rig, name: str, ros_domain: int) -> None:
+    spin_and_look(confined_rig, name, ros_domain)
