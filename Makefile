@@ -21,17 +21,19 @@ help:    ## List what can be made.
 setup:   ## Make the virtual environment with every pinned dependency, or bring it up to date.
 	@PYTHON="$(PYTHON)" VENV="$(VENV)" sh setup.sh
 
-course: setup   ## Build, run and package the real course.
+course: setup   ## Build, run and package the real course, and grade a submission.
 	$(BIN)/spinbook build --execute
 	$(BIN)/spinbook package
+	$(BIN)/spinbook grade joint_velocity solutions/joint_velocity/solution.py
 	@echo
-	@echo "The course lies in build/executed. Open it in any notebook editor, with $(BIN)/python as its Python."
+	@echo "The course lies in build/notebooks, as it ran here in build/executed, its package in humanoid_ws."
+	@echo "Open a notebook in any editor, with $(BIN)/python as its Python."
 
 test: setup   ## Check types and style, then run every test.
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(PYTEST)
+	$(PYTEST) -n 2
 
 soak: setup   ## The long suites in their full size.
 	$(PYTEST) -m soak
