@@ -65,3 +65,17 @@ def test_an_authors_fault_ends_with_3(tmp_path: Path) -> None:
     assert "solution.py: there is no such file" in done.stderr
     assert "not the submission" in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_the_executable_of_an_installed_package_is_graded_with_the_modules_beside_it(tmp_path: Path) -> None:
+    prefix = tmp_path / "install" / "vel"
+    script = prefix / "lib" / "vel" / "joint_velocity"
+    modules = prefix / "lib" / "python3.11" / "site-packages" / "vel"
+    for folder in (script.parent, modules):
+        folder.mkdir(parents=True)
+    script.write_text("#!/usr/bin/env python3\nfrom vel.joint_velocity import main\nmain()\n")
+    (modules / "__init__.py").write_text("")
+    (modules / "joint_velocity.py").write_bytes((SOLUTIONS / "solution.py").read_bytes())
+    done = grade("joint_velocity", "vel/joint_velocity", AMENT_PREFIX_PATH=str(prefix))
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "100 of 100 points" in done.stdout
