@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 import yaml
 
+from spinbook.ros2 import asking_parameters as asking
 from spinbook.ros2.groups import CONTEXT, Entry, Menu, discovery_options
 from spinbook.ros2.middleware import open_graph
 from spinbook.ros2.refusal import Refusal
@@ -32,9 +33,6 @@ param = Menu(
     """,
 )
 
-#: Seconds that a node's parameter services get to appear, and then to answer.
-READY, ANSWER = 5.0, 10.0
-
 # By rcl_interfaces/msg/ParameterType: how `describe` names a type, and how `get` begins its line.
 _TYPES = {
     0: ("not set", "Parameter not set."),
@@ -48,19 +46,6 @@ _TYPES = {
     8: ("double array", "Double values are:"),
     9: ("string array", "String values are:"),
 }
-_VALUE_FIELDS = (
-    "",
-    "bool_value",
-    "integer_value",
-    "double_value",
-    "string_value",
-    "byte_array_value",
-    "bool_array_value",
-    "integer_array_value",
-    "double_array_value",
-    "string_array_value",
-)
-
 _hidden_nodes = click.option("-a", "--include-hidden-nodes", is_flag=True, help="Hidden nodes too.")
 
 
@@ -82,11 +67,11 @@ def list_(
             graph.settle()
             names = sorted({node.full_name for node in graph.nodes() if include_hidden_nodes or not node.hidden})
         else:
-            names = [_find_node(graph, node_name, include_hidden_nodes)]
+            names = [asking.find_node(graph, node_name, include_hidden_nodes)]
         for name in names:
             try:
-                client = _client(graph, name)
-                params = sorted(_answer(graph, name, client.list_parameters()).result.names)
+                client = asking.client_of(graph, name)
+                params = sorted(asking.answer(graph, name, client.list_parameters()).result.names)
                 types = _described(graph, name, client, params) if param_type else {}
             except Refusal as refusal:
                 if node_name is not None:
@@ -120,14 +105,14 @@ def get(
       Boolean value is: False
     """
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        name = _find_node(graph, node_name, include_hidden_nodes)
-        client = _client(graph, name)
-        values = _answer(graph, name, client.get_parameters([parameter_name])).values
+        name = asking.find_node(graph, node_name, include_hidden_nodes)
+        client = asking.client_of(graph, name)
+        values = asking.answer(graph, name, client.get_parameters([parameter_name])).values
         if not values:
             raise Refusal("Parameter not set", _parameters_of(graph, name, client))
     kind = values[0].type
     label = _TYPES.get(kind, ("", f"Unknown parameter type '{kind}'"))[1]
-    value = _value(values[0])
+    value = asking.value_of(values[0])
     if hide_type:
         click.echo(str(value))
     else:
@@ -157,10 +142,10 @@ def set_(
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
         from rcl_interfaces.msg import Parameter
 
-        name = _find_node(graph, node_name, include_hidden_nodes)
-        client = _client(graph, name)
-        wanted = Parameter(name=parameter_name, value=_parameter_value(value))
-        result = _answer(graph, name, client.set_parameters([wanted])).results[0]
+        name = asking.find_node(graph, node_name, include_hidden_nodes)
+        client = asking.client_of(graph, name)
+        wanted = Parameter(name=parameter_name, value=asking.parameter_value(value))
+        result = asking.answer(graph, name, client.set_parameters([wanted])).results[0]
         if not result.successful:
             raise Refusal(_with_reason("Setting parameter failed", result.reason))
     click.echo(_with_reason("Set parameter successful", result.reason))
@@ -180,9 +165,9 @@ def delete(
       ros2 param delete /joint_state_monitor gain
     """
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        name = _find_node(graph, node_name, include_hidden_nodes)
-        client = _client(graph, name)
-        result = _answer(graph, name, client.delete_parameters([parameter_name])).results[0]
+        name = asking.find_node(graph, node_name, include_hidden_nodes)
+        client = asking.client_of(graph, name)
+        result = asking.answer(graph, name, client.delete_parameters([parameter_name])).results[0]
         if not result.successful:
             raise Refusal(_with_reason("Deleting parameter failed", result.reason))
     click.echo(_with_reason("Deleted parameter successfully", result.reason))
@@ -206,9 +191,9 @@ def describe(
       ros2 param describe /joint_state_monitor use_sim_time
     """
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        name = _find_node(graph, node_name, include_hidden_nodes)
-        client = _client(graph, name)
-        descriptors = _answer(graph, name, client.describe_parameters(list(parameter_names))).descriptors
+        name = asking.find_node(graph, node_name, include_hidden_nodes)
+        client = asking.client_of(graph, name)
+        descriptors = asking.answer(graph, name, client.describe_parameters(list(parameter_names))).descriptors
         if not descriptors:
             raise Refusal("Parameter not set", _parameters_of(graph, name, client))
     for descriptor in descriptors:
@@ -227,66 +212,27 @@ def dump(node_name: str, include_hidden_nodes: bool, spin_time: float | None, us
       ros2 param dump /joint_state_monitor > monitor.yaml
     """
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        name = _find_node(graph, node_name, include_hidden_nodes)
-        client = _client(graph, name)
-        names = sorted(_answer(graph, name, client.list_parameters()).result.names)
-        values = _answer(graph, name, client.get_parameters(names)).values if names else []
+        name = asking.find_node(graph, node_name, include_hidden_nodes)
+        client = asking.client_of(graph, name)
+        names = sorted(asking.answer(graph, name, client.list_parameters()).result.names)
+        values = asking.answer(graph, name, client.get_parameters(names)).values if names else []
     tree: dict[str, Any] = {}
     for parameter, value in zip(names, values, strict=True):
         *branches, leaf = parameter.split(".")
         branch = tree
         for step in branches:
             branch = branch.setdefault(step, {})
-        branch[leaf] = _plain(_value(value))
+        branch[leaf] = _plain(asking.value_of(value))
     click.echo(yaml.dump({name: {"ros__parameters": tree}}, default_flow_style=False))
 
 
-def _find_node(graph: Graph, node_name: str, include_hidden: bool) -> str:
-    """The full name of a running node. Raises `Refusal` with those that run if it does not."""
-    from spinbook.ros2.names import absolute_node, seen
-
-    full = absolute_node(node_name)
-
-    def visible() -> list[str]:
-        return [node.full_name for node in graph.nodes() if include_hidden or not node.hidden]
-
-    graph.settle(lambda: full in visible())
-    if full not in visible():
-        raise Refusal("Node not found", seen("Nodes", visible()))
-    return full
-
-
-def _client(graph: Graph, name: str) -> Any:
-    from rclpy.parameter_client import AsyncParameterClient
-
-    client = AsyncParameterClient(graph.node, name)
-    if not graph.spin_until(client.services_are_ready, READY):
-        raise Refusal(
-            f"Wait for service timed out waiting for parameter services for node {name}",
-            "The node has none (start_parameter_services=False), or is ending.",
-        )
-    graph.wait_until_known(name)
-    return client
-
-
-def _answer(graph: Graph, name: str, future: Any) -> Any:
-    if not graph.spin_until(future.done, ANSWER):
-        raise Refusal(
-            f"The node {name} did not answer within {ANSWER:.0f} s.",
-            "A node answers while it spins: it may be stuck in a callback, or never call rclpy.spin.",
-        )
-    if future.exception() is not None or future.result() is None:
-        raise Refusal(f"Exception while calling service of node '{name}': {future.exception()}")
-    return future.result()
-
-
 def _parameters_of(graph: Graph, name: str, client: Any) -> str:
-    names = sorted(_answer(graph, name, client.list_parameters()).result.names)
+    names = sorted(asking.answer(graph, name, client.list_parameters()).result.names)
     return f"Parameters of {name}: {', '.join(names)}."
 
 
 def _described(graph: Graph, name: str, client: Any, params: list[str]) -> dict[str, str]:
-    descriptors = _answer(graph, name, client.describe_parameters(params)).descriptors
+    descriptors = asking.answer(graph, name, client.describe_parameters(params)).descriptors
     return {descriptor.name: _TYPES[descriptor.type][0] for descriptor in descriptors}
 
 
@@ -304,23 +250,6 @@ def _description(descriptor: Any) -> list[str]:
     if descriptor.additional_constraints:
         lines.append(f"    Additional constraints: {descriptor.additional_constraints}")
     return lines
-
-
-def _parameter_value(text: str) -> Any:
-    from rclpy.parameter import get_parameter_value
-
-    try:
-        return get_parameter_value(text)
-    except yaml.YAMLError:
-        from rcl_interfaces.msg import ParameterType, ParameterValue
-
-        # Not YAML, so a text, as the real command takes it.
-        return ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=text)
-
-
-def _value(value: Any) -> Any:
-    """The value of a rcl_interfaces/msg/ParameterValue as the message has it; None if it is not set."""
-    return getattr(value, _VALUE_FIELDS[value.type]) if 0 < value.type < len(_VALUE_FIELDS) else None
 
 
 def _plain(value: Any) -> Any:
