@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import secrets
 from collections import Counter
 from typing import Any, Literal
+
+from std_msgs.msg import Empty
 
 from grader.recording import EndPoint
 
@@ -17,10 +20,15 @@ OWN_TO_ROS = ("/rosout", "/parameter_events")
 class Graph:
     """Sees the graph through `node`, and tells the student's part of it from the rig's."""
 
-    def __init__(self, node: Any, own_nodes: list[str], own_publisher_topic: str) -> None:
+    def __init__(self, node: Any, own_nodes: list[str]) -> None:
         self._node = node
         self._own_nodes = Counter(own_nodes)
-        mine = node.get_publishers_info_by_topic(own_publisher_topic)
+        # On a topic that nobody can know beforehand, the only publisher is the rig's own.
+        topic = f"/rig_{secrets.token_hex(16)}"
+        publisher = node.create_publisher(Empty, topic, 1)
+        mine = node.get_publishers_info_by_topic(topic)
+        node.destroy_publisher(publisher)
+        assert len(mine) == 1, "the rig does not find its own publisher"
         self._participant = bytes(mine[0].endpoint_gid[:PARTICIPANT])
 
     def nodes(self) -> list[str]:

@@ -64,7 +64,7 @@ class Rig:
         self._publishers = ReferencePublishers(ros.node("joint_command_publisher"), what.scenario)
         self._recorder = Recorder(node, what.exercise.outputs, self._moment)
         ros.executor.add_node(node)
-        self._graph = Graph(node, ros.names, "/clock")
+        self._graph = Graph(node, ros.names)
         self._fence = Fence(ros, node, student)
         self._nodes: list[str] = []
         self._sim_time = False

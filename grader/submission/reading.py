@@ -67,11 +67,13 @@ def _content(path: Path) -> bytes:
         if error.errno == errno.ELOOP:
             raise _Unusable("It is a symbolic link. Hand in the file itself.") from None
         raise _Unusable(f"It can't be read: {error.strerror}.") from None
-    with os.fdopen(descriptor, "rb") as file:
-        status = os.fstat(descriptor)
-        if not stat.S_ISREG(status.st_mode):
+    try:
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
             raise _Unusable("It is no regular file. Hand in a file.")
-        content = file.read(most + 1)
+        with os.fdopen(descriptor, "rb", closefd=False) as file:
+            content = file.read(most + 1)
+    finally:
+        os.close(descriptor)
     if len(content) > most:
         raise _Unusable(f"It is larger than {most // 1_000_000} MB. Hand in your code only, with outputs cleared.")
     return content

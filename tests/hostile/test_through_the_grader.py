@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
+from odd_files import ODD_FILES, OddFile
 
 from grader.crew import Crew
 from grader.exercise import load
@@ -64,6 +66,27 @@ def test_the_grade_is_the_expected_one(grading: Grading, name: str) -> None:
         assert word not in logs
     if not grade.full_marks:
         assert told(grade).strip(), "the student has to be told something"
+
+
+@pytest.mark.parametrize("odd", [pytest.param(odd, id=odd.name) for odd in ODD_FILES])
+def test_an_odd_file_is_graded_or_refused_without_harm(
+    grading: Grading, odd: OddFile, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "handed in"
+    folder.mkdir()
+    path = odd.make(folder)
+    monkeypatch.chdir(folder)
+    submission = read(str(path), grading.spinner.exercise)
+    assert "secret" not in submission.source
+    alone = replace(grading, spinner=grading.spinner.only("chapter"))
+    recordings = alone.spinner.spin(submission) if submission.program else None
+    if recordings is None:
+        assert "did-not-start" in odd.outcome
+        assert submission.problem
+        assert grading.grade(submission).score == 0
+    else:
+        assert "graded" in odd.outcome
+        assert recordings["chapter"].ending.outcome == "completed"
 
 
 def test_afterwards_an_honest_submission_still_gets_full_marks(grading: Grading) -> None:
