@@ -8,15 +8,13 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
-import rclpy
 from geometry_msgs.msg import Twist
-from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
-from rclpy.utilities import try_shutdown
 from std_srvs.srv import Empty
 
 from spinbook.turtlesim.geometry import DT, normalized
 from spinbook.turtlesim.listening import pose_types
+from spinbook.turtlesim.spinning import spin_until_told
 
 #: Side of the square (units), speeds (units/s and rad/s), and how near is near enough (units, rad; units/s, rad/s).
 SIDE, SPEED, TURN = 2.0, 1.0, 0.4
@@ -130,14 +128,7 @@ def _ahead(pose: Any) -> tuple[float, float]:
 
 def main() -> int:
     """Run the node until it is told to stop; the exit code."""
-    try:
-        rclpy.init()
-        rclpy.spin(DrawSquare().node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        try_shutdown()
-    return 0
+    return spin_until_told(lambda: DrawSquare().node)
 
 
 if __name__ == "__main__":

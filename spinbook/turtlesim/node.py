@@ -5,21 +5,19 @@ from __future__ import annotations
 import importlib
 import sys
 
-import rclpy
 from geometry_msgs.msg import Twist
 from rcl_interfaces.msg import IntegerRange, ParameterDescriptor
 from rclpy.clock import ROSClock
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
-from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.subscription import Subscription
-from rclpy.utilities import try_shutdown
 from std_srvs.srv import Empty, Trigger
 
 from spinbook.turtlesim.events import Event, Killed, LogLine, Severity, Spawned
 from spinbook.turtlesim.geometry import TICK_NS
 from spinbook.turtlesim.interface import Interface
 from spinbook.turtlesim.pacing import Pacing
+from spinbook.turtlesim.spinning import spin_until_told
 from spinbook.turtlesim.standin import DEPTH, StandIn
 from spinbook.turtlesim.world import World
 from spinbook.turtlesim.world_picture import BLUE, picture_of
@@ -119,16 +117,10 @@ class Turtlesim:
 def main() -> int:
     """Run the node until it is told to stop; the exit code."""
     try:
-        rclpy.init()
-        rclpy.spin(Turtlesim().node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
+        return spin_until_told(lambda: Turtlesim().node)
     except (InvalidParameterTypeException, InvalidParameterValueException) as error:
         print(f"turtlesim: a parameter can't be used: {error}", file=sys.stderr)
         return 1
-    finally:
-        try_shutdown()
-    return 0
 
 
 if __name__ == "__main__":

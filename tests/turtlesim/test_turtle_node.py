@@ -167,6 +167,37 @@ def test_the_node_ends_in_order_when_told_to(turtlesim: Running, outside: Outsid
     assert len(turtlesim.log) == 3, turtlesim.log
 
 
+ENDS_WHILE_PUBLISHING = """
+import os, signal, sys, time
+from rclpy.node import Node
+from std_msgs.msg import String
+from spinbook.turtlesim.spinning import spin_until_told
+
+def make():
+    node = Node("ending")
+    publisher = node.create_publisher(String, "last_words", 1)
+
+    def work():
+        os.kill(os.getpid(), signal.{how})
+        # Long enough for any other thread to shut the context down, were there one that does.
+        time.sleep(0.3)
+        publisher.publish(String(data="done"))
+        print("published")
+
+    node.create_timer(0.01, work)
+    return node
+
+sys.exit(spin_until_told(make))
+"""
+
+
+@pytest.mark.parametrize("how", ["SIGINT", "SIGTERM"])
+def test_a_signal_lets_the_callback_at_hand_finish(ros_domain: int, how: str) -> None:
+    script = ENDS_WHILE_PUBLISHING.replace("{how}", how)
+    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=DEADLINE_S)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "published\n", "")
+
+
 def test_one_command_drives_an_arc_of_62_or_63_ticks(turtlesim: Running, outside: Outside) -> None:
     poses = outside.hear(Pose2D, "/turtle1/pose")
     outside.until(lambda: len(poses) > 0, "a pose")
@@ -235,8 +266,9 @@ def test_turtles_are_spawned_with_a_pen_and_killed(turtlesim: Running, outside: 
 
 def test_a_wrong_request_is_told_in_the_log_and_changes_nothing(turtlesim: Running, outside: Outside) -> None:
     outside.say("/spawn", String(data="{x: two}"))
+    outside.until(lambda: len(turtlesim.log) >= 4, "a line about the spawn")
     outside.say("/turtle1/set_pen", String(data="red"))
-    outside.until(lambda: len(turtlesim.log) >= 5, "two more lines of log")
+    outside.until(lambda: len(turtlesim.log) >= 5, "a line about the pen")
     assert turtlesim.log[3] == "[ERROR] [turtlesim]: spawn: x must be a number, not 'two'"
     assert turtlesim.log[4].startswith("[ERROR] [turtlesim]: turtle1/set_pen: expected fields of {r, g, b, width")
 
