@@ -39,7 +39,8 @@ class Grading:
             job = JudgeJob(exercise, recordings, self.references, titles)
             verdicts: tuple[Verdict, ...] = self.spinner.crew.do(job)
         except HostFault as fault:
-            return self._grade(submission, {}, (), "host-error", f"This is not your fault: {fault}", began)
+            told = str(fault).strip().splitlines()[-1]
+            return self._grade(submission, {}, (), "host-error", f"This is not your fault: {told}", began)
         broken = [verdict for verdict in verdicts if verdict.status == "error"]
         if broken:
             told = f"This is not your fault: the check {broken[0].name} broke: {broken[0].error}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
@@ -32,18 +33,23 @@ def reference(spinner: Spinner) -> dict[str, Recording]:
         pass
     recordings = _made(spinner)
     _prove(spinner, recordings)
-    kept.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=kept.parent, delete=False) as file:
-        file.write(to_json(recordings))
-    Path(file.name).replace(kept)
+    with contextlib.suppress(OSError):  # where nothing can be kept, it is made anew each time
+        _keep(recordings, kept)
     return recordings
+
+
+def _keep(recordings: dict[str, Recording], file: Path) -> None:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=file.parent, delete=False) as temporary:
+        temporary.write(to_json(recordings))
+    Path(temporary.name).replace(file)
 
 
 def cache_folder() -> Path:
     """Where the solution's recordings are kept: `SPINBOOK_CACHE`, else the user's cache folder."""
     if given := os.environ.get("SPINBOOK_CACHE"):
         return Path(given) / "reference"
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    base = os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()
     return Path(base) / "spinbook" / "reference"
 
 
