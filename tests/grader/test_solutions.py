@@ -15,16 +15,19 @@ from grader.submission.reading import of_source
 
 SOLUTIONS = Path(__file__).parents[2] / "solutions" / "joint_velocity"
 
-#: The mistakes that every `make test` goes through; `make soak` goes through all.
+#: The usual mistakes, which have to be there.
 USUAL = {
     *("fixed_dt", "wall_clock", "position_for_velocity", "sign_turned_round", "joints_by_index", "no_guard_for_dt_0"),
     *("publishes_on_the_first_message", "forgets_the_stamp", "republishes_the_input", "averaged_over_two"),
     *("wrong_topic", "wrong_type", "integer_division", "forgets_nanosec", "degrees"),
 }
 
-
-def name_of(file: Path) -> str:
-    return file.stem
+#: What every `make test` goes through: one of each kind. `make soak` goes through all.
+ALWAYS = {
+    *("fixed_dt", "wall_clock", "position_for_velocity", "joints_by_index", "no_guard_for_dt_0", "forgets_nanosec"),
+    *("publishes_on_the_first_message", "forgets_the_stamp", "averaged_over_two", "wrong_topic", "traceback_on_ctrl_c"),
+    *("numpy_arrays", "without_main", "several_threads", "no_parameter_services", "asyncio_loop"),
+}
 
 
 def caught_by(file: Path) -> set[str]:
@@ -33,9 +36,9 @@ def caught_by(file: Path) -> set[str]:
     return set(re.findall(r"^- (test_\w+)$", header, re.MULTILINE))
 
 
-def mistakes() -> list[object]:
-    files = sorted((SOLUTIONS / "mistakes").glob("*.py"))
-    return [pytest.param(f, id=f.stem, marks=() if f.stem in USUAL else pytest.mark.soak) for f in files]
+def every(folder: str) -> list[object]:
+    files = sorted((SOLUTIONS / folder).glob("*.py"))
+    return [pytest.param(f, id=f.stem, marks=() if f.stem in ALWAYS else pytest.mark.soak) for f in files]
 
 
 def test_the_solution_gets_full_marks(grading: Grading) -> None:
@@ -44,13 +47,13 @@ def test_the_solution_gets_full_marks(grading: Grading) -> None:
     assert grade.score == 100
 
 
-@pytest.mark.parametrize("file", sorted((SOLUTIONS / "right").glob("*.py")), ids=name_of)
+@pytest.mark.parametrize("file", every("right"))
 def test_a_right_solution_in_another_style_gets_full_marks(grading: Grading, file: Path) -> None:
     grade = grading.grade(read(str(file), grading.spinner.exercise))
     assert grade.full_marks, [v for v in grade.verdicts if v.status != "passed"]
 
 
-@pytest.mark.parametrize("file", mistakes())
+@pytest.mark.parametrize("file", every("mistakes"))
 def test_a_mistake_loses_exactly_the_checks_that_it_names(grading: Grading, file: Path) -> None:
     grade = grading.grade(read(str(file), grading.spinner.exercise))
     assert grade.outcome == "graded"
