@@ -38,19 +38,20 @@ def build(plan: Sequence[Step], user_namespace: int) -> Room:
         raise OSError("bubblewrap (bwrap) is not installed")
     texts = {step.path: _memory_file(step.content.encode()) for step in plan if step.action == "text"}
     filters = [_memory_file(seccomp.program())] if seccomp.supported() else []
+    # Not on the command line, which the student can read and which would tell it what is hidden from it.
+    arguments = _memory_file(b"".join(os.fsencode(option) + b"\0" for option in _options(plan, texts)))
     information, information_end = os.pipe()
     process = subprocess.Popen(
         [
             *(program, "--userns", str(user_namespace), "--unshare-pid", "--unshare-ipc", "--unshare-uts"),
             *("--hostname", "student", "--cap-drop", "ALL", "--die-with-parent", "--info-fd", str(information_end)),
             *(option for number in filters for option in ("--seccomp", str(number))),
-            *_options(plan, texts),
-            *("--", "cat"),
+            *("--args", str(arguments), "--", "cat"),
         ],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-        pass_fds=[user_namespace, information_end, *texts.values(), *filters],
+        pass_fds=[user_namespace, information_end, arguments, *texts.values(), *filters],
         env={"PATH": "/usr/bin:/bin"},
         bufsize=0,
     )

@@ -45,6 +45,7 @@ def keep(start: Start, control: int, output: int, rig_namespaces: Sequence[int])
     reported = False
     try:
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        kernel.prctl(kernel.PR_SET_CHILD_SUBREAPER, 1)  # what the student or bubblewrap orphans is buried here
         os.chdir("/")
         beside = _tasks_beside(start)
         users, *rig = rig_namespaces or (-1,)
@@ -62,7 +63,8 @@ def keep(start: Start, control: int, output: int, rig_namespaces: Sequence[int])
         _tell(control, {"event": "dead"})
     except BaseException as fault:
         if not reported:
-            _tell(control, {"event": "failed", "reason": f"{type(fault).__name__}: {fault}"})
+            kind = "" if isinstance(fault, OSError) else f"{type(fault).__name__}: "
+            _tell(control, {"event": "failed", "reason": f"{kind}{fault}"})
     os._exit(0)
 
 
@@ -74,7 +76,6 @@ def _build(start: Start, users: int) -> tuple[room.Room | open_room.OpenRoom, Pl
         room.place(program.files)
         return house, Place(SUBMISSION, view.HOME, "/tmp")
     place = open_room.make_place(program.files, _owner(start.isolation))
-    kernel.prctl(kernel.PR_SET_CHILD_SUBREAPER, 1)
     return open_room.OpenRoom(Path(place.folder).parent), place
 
 
@@ -90,7 +91,7 @@ def _fork_student(
                 house.forget()
             confine(start, place, beside, output, keep_open=fault_to)
         except BaseException as fault:
-            os.write(fault_to, f"{type(fault).__name__}: {fault}".encode())
+            os.write(fault_to, str(fault).encode() or repr(fault).encode())
             os._exit(1)
         os.close(fault_to)
         return Job(start.program, place)

@@ -30,10 +30,12 @@ def enter(isolation: Isolation) -> None:
         return
     flags = kernel.CLONE_NEWNET | kernel.CLONE_NEWNS | kernel.CLONE_NEWIPC
     user, group = os.geteuid(), os.getegid()
-    if user == 0:
-        kernel.unshare(flags)
-    else:
-        kernel.unshare(flags | kernel.CLONE_NEWUSER)
+    try:
+        kernel.unshare(flags if user == 0 else flags | kernel.CLONE_NEWUSER)
+    except OSError as fault:
+        which = "network or mount" if user == 0 else "user"
+        raise OSError(f"this machine allows no {which} namespaces: {fault}") from fault
+    if user != 0:
         Path("/proc/self/setgroups").write_text("deny")
         Path("/proc/self/uid_map").write_text(f"{user} {user} 1\n")
         Path("/proc/self/gid_map").write_text(f"{group} {group} 1\n")

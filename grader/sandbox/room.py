@@ -41,9 +41,9 @@ class Room:
         """
         if self.builder is not None:
             self.builder.wait()
-        else:
-            with contextlib.suppress(ChildProcessError):
-                os.waitpid(self.init, 0)
+        # bubblewrap may end without having waited for it: then it has become a child of this process.
+        with contextlib.suppress(ChildProcessError):
+            os.waitpid(self.init, 0)
 
     def forget(self) -> None:
         """Closes, in a fork of the process that made the room, what keeps it open."""

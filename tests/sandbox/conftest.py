@@ -2,39 +2,15 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from collections.abc import Iterator
-from functools import cache
-from pathlib import Path
 
 import pytest
-from sandbox_rig import Rig
+from sandbox_rig import Rig, reason_against
 
-from grader.sandbox import Isolation, available, choose
+from grader.sandbox import Isolation, choose
 
 APART = (Isolation.BUBBLEWRAP, Isolation.NAMESPACES)
 CONFINED = (*APART, Isolation.LANDLOCK)
-_ROOT = Path(__file__).parents[2]
-
-
-@cache
-def reason_against(level: Isolation, rootless: bool) -> str | None:
-    """Why a level cannot be tested here; None if it can."""
-    if not rootless:
-        return available()[level]
-    if os.geteuid() != 0:
-        return "the tests are not run as root: what is tested without root is the same as the case above"
-    code = (
-        f"import sys; sys.path[:0] = [{str(Path(__file__).parent)!r}, {str(_ROOT)!r}]\n"
-        "from sandbox_rig import become_nobody\n"
-        "become_nobody()\n"
-        "from grader.sandbox import Isolation, available, choose\n"
-        f"print(available()[Isolation({level.value!r})] or '')"
-    )
-    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    return said.stdout.strip() or said.stderr.strip() or None
 
 
 def _rigs(levels: tuple[Isolation, ...]) -> list[object]:

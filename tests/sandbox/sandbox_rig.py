@@ -7,15 +7,17 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
-from grader.sandbox import Exit, Isolation, Limits, Nursery, Program, enter, kernel
+from grader.sandbox import Exit, Isolation, Limits, Nursery, Program, available, enter, kernel
 
 NOBODY = 65534
 
@@ -128,3 +130,21 @@ def become_nobody() -> None:
     kernel.prctl(kernel.PR_SET_DUMPABLE, 1)  # lost with the change of user; a user who has logged in has it
     os.environ.update(HOME=home, TMPDIR=tempfile.gettempdir())
     os.chdir("/")
+
+
+@cache
+def reason_against(level: Isolation, rootless: bool) -> str | None:
+    """Why a level cannot be tested here; None if it can."""
+    if not rootless:
+        return available()[level]
+    if os.geteuid() != 0:
+        return "the tests are not run as root: what is tested without root is the same as the case above"
+    code = (
+        f"import sys; sys.path[:0] = [{str(Path(__file__).parent)!r}, {str(Path(__file__).parents[2])!r}]\n"
+        "from sandbox_rig import become_nobody\n"
+        "become_nobody()\n"
+        "from grader.sandbox import Isolation, available, choose\n"
+        f"print(available()[Isolation({level.value!r})] or '')"
+    )
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    return said.stdout.strip() or said.stderr.strip() or None

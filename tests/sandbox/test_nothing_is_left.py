@@ -8,7 +8,7 @@ from pathlib import Path
 
 import psutil
 import pytest
-from sandbox_rig import Rig
+from sandbox_rig import Rig, reason_against
 
 from grader.sandbox import Exit, Isolation, Nursery, Program
 
@@ -106,8 +106,6 @@ def test_when_the_rig_is_killed_its_student_dies_with_it(level: Isolation, any_l
 @pytest.fixture
 def any_level_works(level: Isolation) -> None:
     """Skips a level that this machine does not allow."""
-    from conftest import reason_against
-
     reason = reason_against(level, False)
     if reason is not None:
         pytest.skip(f"{level}: {reason}")

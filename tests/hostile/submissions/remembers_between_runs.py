@@ -8,7 +8,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
-for folder in (os.path.expanduser('~'), os.environ.get('TMPDIR', '/tmp'), '/tmp', '/dev/shm'):
+for folder in {os.path.expanduser('~'), os.environ.get('TMPDIR', '/tmp'), '/tmp', '/dev/shm'}:
     try:
         if os.path.exists(f'{folder}/note-of-an-earlier-run'):
             print('FOUND a note')
