@@ -32,8 +32,11 @@ def for_domain(domain: int, environment: Mapping[str, str]) -> dict[str, str]:
     if is_fast_dds:
         settings["FASTRTPS_DEFAULT_PROFILES_FILE"] = os.fspath(LOOPBACK_PROFILE)
         settings["FASTDDS_DEFAULT_PROFILES_FILE"] = os.fspath(LOOPBACK_PROFILE)
+    if "HOME" not in environment:
+        # rclpy.init raises without one, even where ROS_LOG_DIR is set.
+        settings["HOME"] = tempfile.gettempdir()
     if "ROS_LOG_DIR" not in environment and not _home_is_writable(environment):
-        # rclpy.init raises where it can't write its log files.
+        # It raises too where it can't write its log files.
         settings["ROS_LOG_DIR"] = os.fspath(Path(tempfile.gettempdir()) / f"spinbook-ros-log-{os.getuid()}")
     return settings
 

@@ -200,8 +200,9 @@ def test_an_absent_middleware_does_not_kill_the_kernel(new_kernel: Callable[...,
     assert "talking" in kernel.run(f"%%node talker --seconds 60 --until talking\n{TALKER}").text
 
 
-def test_nodes_run_where_there_is_no_home(new_kernel: Callable[..., Kernel]) -> None:
-    kernel = new_kernel(HOME="/nonexistent")
+@pytest.mark.parametrize("home", ["/nonexistent", ""])
+def test_nodes_run_where_there_is_no_home(new_kernel: Callable[..., Kernel], home: str) -> None:
+    kernel = new_kernel(HOME=home)
 
     assert "talking" in kernel.run(f"%%node talker --seconds 60 --until talking\n{TALKER}").text
 
