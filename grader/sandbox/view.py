@@ -167,7 +167,7 @@ def ros_prefixes() -> tuple[Path, ...]:
 def system() -> tuple[Path, ...]:
     """The system's libraries and programs, and its symlinks such as /lib -> usr/lib."""
     top = [Path("/", name) for name in ("bin", "sbin", "lib", "lib32", "lib64", "libx32")]
-    user = [Path("/usr", name) for name in _PARTS]
+    user = [Path(folder, name) for folder in ("/usr", "/usr/local") for name in _PARTS]
     etc = [Path("/etc", name) for name in _ETC]
     return tuple(path for path in (*top, *user, *etc) if path.exists() and _readable_kind(path))
 

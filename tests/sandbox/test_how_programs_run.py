@@ -86,7 +86,7 @@ def test_the_nursery_is_not_to_be_seen_in_the_program(either_rig: Rig) -> None:
 
 
 def interrupt_a_spinning_node(nursery: Nursery, level: Isolation) -> tuple[Exit | None, str]:
-    code = "import signal\nprint('ready')\ntry:\n    signal.pause()\nfinally:\n    print('finally')\n"
+    code = "import time\ntry:\n    print('ready')\n    while True: time.sleep(0.01)\nfinally:\n    print('finally')\n"
     with nursery.start(Program("n.py", {"n.py": code.encode()}), level) as student:
         while "ready" not in student.output().text:
             assert student.wait(0.001) is None
