@@ -122,7 +122,9 @@ def paused(stream: Stream, before: int, seconds: float) -> Stream:
     """Nothing is published for `seconds` before message number `before`; the joints stay where they are."""
     wait = round(seconds * SECOND)
     return changed(
-        stream, range(before, len(stream)), lambda sample: replace(sample, at=sample.at + wait, stamp=sample.stamp + wait)
+        stream,
+        range(before, len(stream)),
+        lambda sample: replace(sample, at=sample.at + wait, stamp=sample.stamp + wait),
     )
 
 

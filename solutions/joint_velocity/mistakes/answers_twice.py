@@ -2,7 +2,6 @@
 
 Caught by:
 - test_answers_each_message_once
-- test_speed_that_never_changes
 """
 
 import math
