@@ -97,8 +97,8 @@ def _execute_one(job: Job, on_progress: Callable[[Progress], None], again: bool,
     started = time.monotonic()
     raw = job.folder.with_suffix(".ipynb")
     ended = _run(job, raw, on_progress, given_up)
-    failures = find_failures(job.chapter, notebook, _read(raw), ended)
     ran = _read(raw) or notebook
+    failures = find_failures(job.chapter, ran, ended)
     outputs = {cell["id"]: _tidy(cell, job) for cell in ran["cells"] if cell["cell_type"] == "code"}
     write_if_changed(job.executed, _with_outputs(notebook, outputs))
     raw.unlink(missing_ok=True)

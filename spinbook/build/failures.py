@@ -31,15 +31,13 @@ class CellFailure:
         return text + "".join(f"\n    | {line}" for line in self.log.splitlines())
 
 
-def find_failures(
-    chapter: Path, notebook: dict[str, Any], ran: dict[str, Any] | None, ended: dict[str, Any]
-) -> list[CellFailure]:
-    """The failures of one run.
+def find_failures(chapter: Path, ran: dict[str, Any], ended: dict[str, Any]) -> list[CellFailure]:
+    """The failures of one run. A cell in which the run broke off is told so among its outputs in `ran`.
 
     `ended` is what the run's process said of its end: {"finished": …}, {"timed_out": INDEX}, {"died": INDEX} or
-    {"crashed": words}; `ran` the notebook with outputs, if it was written.
+    {"crashed": words}; `ran` the notebook with the outputs that were written.
     """
-    cells = (ran or notebook)["cells"]
+    cells = ran["cells"]
     failures = list(_failed_cells(chapter, cells))
     if "timed_out" in ended or "died" in ended:
         index = ended.get("timed_out", ended.get("died"))

@@ -62,9 +62,6 @@ class KeptProcess:
     def read_all(self) -> tuple[bytes, int]:
         """(all that is kept of what it printed, how many bytes are missing in the middle)."""
         head, _, offset = self._read_from(0)
-        return (head, 0) if not offset else self._join(head, offset)
-
-    def _join(self, head: bytes, offset: int) -> tuple[bytes, int]:
         tail, dropped, _ = self._read_from(offset)
         return head + tail, dropped
 

@@ -201,6 +201,7 @@ def test_the_deadline_ends_a_notebook_and_its_nodes_and_says_where(
     assert said.returncode == 1
     assert "chapters/one.md:20: the notebook's deadline passed in this cell" in said.stdout
     assert "talking" in course.outputs("one")["node-talker"], "what ran before is kept"
+    assert "deadline passed in this cell" in course.outputs("one")["code-one"], "told in the cell as well"
     process_mark.wait_until_none()
 
 
