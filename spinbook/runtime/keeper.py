@@ -7,7 +7,6 @@ The kernel holds the other end of a stream socket and writes one JSON object a l
 
     {"start": {"argv": […], "env": {…}, "cwd": "…"}}    first, once
     {"read": OFFSET}          what was printed from that byte on
-    {"interrupt": true}       as Ctrl-C in a terminal does
     {"stop": [S, S]}          SIGINT; after S seconds SIGTERM; after S more SIGKILL to all that is left
 
 Each `read` is answered by one JSON line, and as many bytes as its "length" says:
@@ -140,8 +139,6 @@ class Keeper:
             self._start(**request["start"])
         elif "read" in request:
             self._answer(request["read"])
-        elif "interrupt" in request:
-            self._signal(signal.SIGINT)
         elif "stop" in request:
             self._stop(*request["stop"])
 

@@ -77,10 +77,6 @@ class KeptProcess:
         self.status = Status(answer["exit"], answer["ended_by"], answer["lines"])
         return data, answer["dropped"], answer["offset"] + len(data)
 
-    def interrupt(self) -> None:
-        """Send what Ctrl-C in a terminal sends."""
-        self._ask({"interrupt": True})
-
     def stop(self, grace: tuple[float, float] = STOP_GRACE) -> None:
         """Begin to end it: SIGINT, then SIGTERM, then SIGKILL, `grace` seconds apart. Does not wait."""
         self._ask({"stop": list(grace)})
