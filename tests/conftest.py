@@ -1,4 +1,4 @@
-"""What every test may use: a ROS domain of its own, a small course, a mark on the processes it starts."""
+"""What every test may use: a ROS domain of its own, a small course, a mark on its processes, a browser."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from browser import chromium
 from course_folder import CourseFolder
+from playwright.sync_api import Browser
 from process_mark import ProcessMark
 
 LOOPBACK = Path(__file__).parents[1] / "spinbook" / "runtime" / "loopback.xml"
@@ -48,3 +50,10 @@ def course(tmp_path: Path) -> CourseFolder:
 def process_mark(monkeypatch: pytest.MonkeyPatch) -> ProcessMark:
     """Marks every process that the test starts."""
     return ProcessMark(monkeypatch)
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """A running Chromium; see browser.py for what to do with it."""
+    with chromium() as running:
+        yield running
