@@ -74,7 +74,7 @@ class Grading:
             submission=submission.name,
             digest=submission.digest,
             outcome=outcome,
-            message=message,
+            message=" ".join(filter(None, (submission.warning, message))),
             score=0.0 if host else sum(verdict.earned for verdict in verdicts),
             points=sum(verdict.points for verdict in verdicts) or self.spinner.exercise.points,
             verdicts=verdicts,
