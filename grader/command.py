@@ -10,6 +10,7 @@ from rich.console import Console
 
 from grader.crew import Crew, HostFault
 from grader.exercise import Exercise, ExerciseError, load
+from grader.exercise.finding import NoExercise, find
 from grader.grading import Grade, Options, grading_of
 from grader.report.as_json import as_json
 from grader.report.terminal import show
@@ -55,6 +56,7 @@ def grade(
     \b
       spinbook grade joint_velocity joint_velocity.py         a file
       spinbook grade joint_velocity week3.ipynb               the exercise's cell in a notebook
+      spinbook grade joint_velocity upload.zip                what `spinbook submit` has written
       spinbook grade joint_velocity my_package/joint_velocity an installed package's executable
       spinbook grade joint_velocity mine.py --plot mine.svg   see where it first goes wrong
       spinbook grade joint_velocity mine.py --verbose         see what the node logged
@@ -110,17 +112,10 @@ def _write(result: Grade, exercise: Exercise, plot: Path | None, bag: Path | Non
 
 
 def _folder(exercise: str) -> Path:
-    """The folder that EXERCISE means: a path, or a name in the exercises/ of this folder or of one above it."""
-    if Path(exercise, "exercise.toml").exists():
-        return Path(exercise)
-    known: list[str] = []
-    for course in (Path.cwd(), *Path.cwd().parents):
-        exercises = course / "exercises"
-        if (exercises / exercise / "exercise.toml").exists():
-            return exercises / exercise
-        known += sorted(file.parent.name for file in exercises.glob("*/exercise.toml"))
-    told = f"There are: {', '.join(known)}." if known else "Start in a course's folder, the one with exercises/ in it."
-    raise click.UsageError(f"There is no exercise {exercise!r} here. {told}")
+    try:
+        return find(exercise, Path.cwd())
+    except NoExercise as error:
+        raise click.UsageError(str(error)) from None
 
 
 def _stop(message: str) -> None:
