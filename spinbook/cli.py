@@ -18,6 +18,7 @@ VERBS = {
     "ros2": "spinbook.ros2.command:ros2",
     "turtle": "spinbook.turtlesim.command:turtle",
     "grade": "grader.command:grade",
+    "submit": "spinbook.submit.command:submit",
     "doctor": "spinbook.doctor.command:doctor",
 }
 

@@ -1,0 +1,44 @@
+"""Finds the file in a student's folder that holds an exercise."""
+
+from __future__ import annotations
+
+import contextlib
+from dataclasses import dataclass
+from pathlib import Path
+
+from grader.exercise import Exercise, starter
+from grader.submission import Submission, read
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A file that may be what the student wants to hand in, and the exercise's code in it."""
+
+    file: Path
+    submission: Submission
+
+
+def candidates(exercise: Exercise, folder: Path) -> list[Candidate]:
+    """The files directly in `folder` that hold the exercise: the .py of its name, and notebooks with its cell.
+
+    Where there are several, those with the untouched starter don't count beside one with more in it, and two with the
+    same code count once.
+    """
+    files = [folder / exercise.file_name, *sorted(folder.glob("*.ipynb"))]
+    found = [Candidate(file, read(str(file), exercise)) for file in files if file.is_file()]
+    found = [candidate for candidate in found if candidate.submission.program]
+    begun = [candidate for candidate in found if _bare(candidate.submission.source) != _starter(exercise)]
+    by_code = {_bare(candidate.submission.source): candidate for candidate in reversed(begun or found)}
+    return [candidate for candidate in found if candidate in by_code.values()]
+
+
+def _starter(exercise: Exercise) -> str:
+    with contextlib.suppress(OSError, ValueError):
+        if exercise.solution_file:
+            return _bare(starter(exercise.solution_file.read_text(encoding="utf-8")))
+    return ""
+
+
+def _bare(code: str) -> str:
+    """Code as it counts for a comparison: a cell ends without a line end, and begins with an emptied line of magic."""
+    return code.replace("\r\n", "\n").strip()
