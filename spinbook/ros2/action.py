@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import uuid
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -135,27 +136,64 @@ def send_goal(
         message = kind.Goal()
         fill(message, read_values(goal, "goal"))
         name = absolute(action_name, "action")
+        news = _News()
+        if feedback:
+            # The client's own call-back for feedback is dropped as soon as the result has come, with what is under way.
+            graph.node.create_subscription(kind.Impl.FeedbackMessage, f"{name}/_action/feedback", news.hear, 10)
         client = ActionClient(graph.node, kind, name)
         print("Waiting for an action server to become available...", flush=True)
         _wait_for_server(graph, client, name, interfaces.full_name(action_type, "action"))
         print(f"Sending goal:\n     {to_yaml(message)}", flush=True)
 
-        def tell(told: Any) -> None:
-            print(f"Feedback:\n    {to_yaml(told.feedback)}", flush=True)
-
-        sent = client.send_goal_async(message, tell if feedback else None)
+        sent = client.send_goal_async(message, goal_uuid=news.goal_id)
         try:
             handle = _done(graph, sent, "sending goal")
             if not handle.accepted:
                 print("Goal was rejected.", flush=True)
                 return
             print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n", flush=True)
+            news.print_from_now_on()
             answer = _done(graph, handle.get_result_async(), "getting result")
+            graph.spin_arrived()
         except Stopped:
             _cancel(graph, sent)
             raise
         print(f"Result:\n    {to_yaml(answer.result)}", flush=True)
         print(f"Goal finished with status: {_status(answer.status)}", flush=True)
+
+
+class _News:
+    """The feedback on a goal, printed in its place: after the goal's acceptance and before its result.
+
+    Feedback comes by a topic, acceptance and result by services, and what arrives together is handled in no order.
+    """
+
+    def __init__(self) -> None:
+        from unique_identifier_msgs.msg import UUID
+
+        self.goal_id = UUID(uuid=list(uuid.uuid4().bytes))
+        self._held: list[Any] | None = []
+
+    def hear(self, message: Any) -> None:
+        """Called with each feedback message of the action's, on whatever goal."""
+        if message.goal_id != self.goal_id:
+            return
+        if self._held is None:
+            _print_feedback(message)
+        else:
+            self._held.append(message)
+
+    def print_from_now_on(self) -> None:
+        """To be called once the acceptance has been printed."""
+        held, self._held = self._held or [], None
+        for message in held:
+            _print_feedback(message)
+
+
+def _print_feedback(message: Any) -> None:
+    from spinbook.ros2.message_text import to_yaml
+
+    print(f"Feedback:\n    {to_yaml(message.feedback)}", flush=True)
 
 
 def _wait_for_server(graph: Graph, client: Any, name: str, wanted: str) -> None:

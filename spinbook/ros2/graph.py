@@ -15,7 +15,7 @@ from typing import Any
 
 import rclpy
 from rclpy.context import Context
-from rclpy.executors import SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor, TimeoutException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
@@ -25,6 +25,7 @@ from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 from spinbook.ros2 import census
 from spinbook.ros2.middleware import domain_id
 from spinbook.ros2.refusal import Refusal
+from spinbook.ros2.stopping import held_back
 
 #: Seconds between two looks at the graph, and at most between a signal and its being noticed.
 LOOK, NAP = 0.02, 0.1
@@ -207,8 +208,28 @@ class Graph:
     # Working
 
     def spin_once(self) -> None:
-        """Handle what came, waiting a moment for it."""
-        self.executor.spin_once(timeout_sec=NAP)
+        """Handle what came, waiting a moment for it. A signal is raised when that has been done: see stopping.py."""
+        with held_back():
+            self.executor.spin_once(timeout_sec=NAP)
+
+    def spin_arrived(self) -> None:
+        """Handle all that has arrived already, and wait for nothing."""
+        with held_back():
+            while self._handle_ready():
+                pass
+
+    def _handle_ready(self) -> bool:
+        """Handle one message of each end point that has some; whether there were any."""
+        some = False
+        while True:
+            try:
+                handler, _, _ = self.executor.wait_for_ready_callbacks(timeout_sec=0)
+            except TimeoutException:
+                return some
+            some = True
+            handler()
+            if handler.exception() is not None:
+                raise handler.exception()
 
     def wait_until_known(self, node_name: str) -> None:
         """Return when a node has heard of every client that was created here before; or after a while.

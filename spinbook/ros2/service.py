@@ -154,9 +154,8 @@ def _ask(graph: Graph, client: Any, request: Any, period: float | None) -> None:
 
 def _wait_until_ready(graph: Graph, client: Any, name: str, wanted: str) -> None:
     """Wait without end for the service. Raises `Refusal` when it turns out to be of another type."""
-    if client.service_is_ready():
-        return
-    print("waiting for service to become available...", flush=True)
+    if not client.service_is_ready():
+        print("waiting for service to become available...", flush=True)
 
     def ready_or_never() -> bool:
         types = next((found.types for found in graph.services() if found.name == name), (wanted,))

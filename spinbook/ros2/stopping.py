@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import signal
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import FrameType
+from typing import NoReturn
 
 #: What the real command exits with after Ctrl-C (it passes on the number of the signal).
 EXIT_AFTER_SIGINT = int(signal.SIGINT)
@@ -32,7 +35,33 @@ def listen() -> None:
     signal.signal(signal.SIGTERM, _stop)
 
 
+@contextmanager
+def held_back() -> Iterator[None]:
+    """Let the first signal that comes meanwhile raise `Stopped` only at the end of the block; a second ends it at once.
+
+    For work inside rclpy: raised while its C++ makes a message, an exception comes out as a TypeError or not at all.
+    """
+    _held.append(None)
+    try:
+        yield
+    finally:
+        number = _held.pop()
+    if number is not None:
+        _raise(number)
+
+
+# For each block that holds signals back, the number of the one that has come.
+_held: list[int | None] = []
+
+
 def _stop(number: int, frame: FrameType | None) -> None:
+    if _held and _held[-1] is None:
+        _held[-1] = number
+    else:
+        _raise(number)
+
+
+def _raise(number: int) -> NoReturn:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     raise Stopped(number)

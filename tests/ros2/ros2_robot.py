@@ -8,12 +8,13 @@ import time
 from typing import Any
 
 import rclpy
+from action_msgs.msg import GoalStatus
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_action_status_default
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Int32, String
 from std_srvs.srv import SetBool
@@ -104,6 +105,35 @@ def action() -> Node:
         cancel_callback=lambda goal: CancelResponse.ACCEPT,
         callback_group=ReentrantCallbackGroup(),
     )
+    return node
+
+
+def hasty_action() -> Node:
+    """`/fibonacci` from an action's bare services and topics: it tells how far it is before it accepts the goal, and
+    much at once with the result."""
+    node = Node("fibonacci_server")
+    services, prefix = Fibonacci.Impl, "/fibonacci/_action"
+    feedback = node.create_publisher(services.FeedbackMessage, f"{prefix}/feedback", 10)
+    node.create_publisher(services.GoalStatusMessage, f"{prefix}/status", qos_profile_action_status_default)
+
+    def tell(goal_id: Any, number: int) -> None:
+        feedback.publish(services.FeedbackMessage(goal_id=goal_id, feedback=Fibonacci.Feedback(sequence=[number])))
+
+    def accept(request: Any, response: Any) -> Any:
+        tell(request.goal_id, 1)
+        time.sleep(0.3)  # the client handles this before it hears of being accepted
+        response.accepted = True
+        return response
+
+    def finish(request: Any, response: Any) -> Any:
+        for number in (2, 3, 4, 5):
+            tell(request.goal_id, number)
+        response.status, response.result.sequence = GoalStatus.STATUS_SUCCEEDED, [5]
+        return response
+
+    node.create_service(services.SendGoalService, f"{prefix}/send_goal", accept)
+    node.create_service(services.GetResultService, f"{prefix}/get_result", finish)
+    node.create_service(services.CancelGoalService, f"{prefix}/cancel_goal", lambda request, response: response)
     return node
 
 

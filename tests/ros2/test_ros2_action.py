@@ -35,6 +35,19 @@ def test_send_goal_prints_feedback_and_result(robot: Robot, terminal: Terminal) 
     )
 
 
+def test_feedback_stands_between_acceptance_and_result_whatever_overtakes_what(
+    robot: Robot, terminal: Terminal
+) -> None:
+    robot("hasty_action")
+    out = terminal.ros2("action", "send_goal", "-f", "/fibonacci", FIBONACCI).out
+    heads = [line.split(":")[0] if line[:1].isupper() else line for line in out.splitlines() if line.strip()]
+    told = [line for number in range(1, 6) for line in ("Feedback", "    sequence:", f"- {number}")]
+    assert heads[heads.index("Goal accepted with ID") :] == [
+        *("Goal accepted with ID", *told),
+        *("Result", "    sequence:", "- 5", "Goal finished with status"),
+    ]
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_cancels_the_goal(robot: Robot, terminal: Terminal, number: int) -> None:
     robot("action")
