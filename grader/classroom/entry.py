@@ -37,7 +37,8 @@ class Entry:
     """One student's submission, its grade, and what became of the score.
 
     `file` is what was graded, relative to the class's folder. `submitted` is when it was handed in, with a time zone,
-    where that is known. A grade that was read back from results holds no recordings.
+    where that is known, and `submitted_from` is what told it: "timestamp.txt", "the CSV file", "the zip file" or "the
+    file's date". A grade that was read back from results holds no recordings.
     """
 
     student: Student
@@ -45,6 +46,7 @@ class Entry:
     grade: Grade
     submitted: datetime | None = None
     adjustments: tuple[Adjustment, ...] = ()
+    submitted_from: str = ""
 
     @property
     def final(self) -> float | None:
