@@ -19,6 +19,7 @@ VERBS = {
     "turtle": "spinbook.turtlesim.command:turtle",
     "grade": "grader.command:grade",
     "submit": "spinbook.submit.command:submit",
+    "new": "spinbook.new.command:new",
     "doctor": "spinbook.doctor.command:doctor",
 }
 
