@@ -31,6 +31,8 @@ class Session:
     domain: Domain
     package: Package = field(default_factory=lambda: Package(name="notebook_nodes", workspace="notebook_ws"))
     nodes: NodeRegistry = field(default_factory=NodeRegistry)
+    ran: dict[str, str] = field(default_factory=dict)
+    """The code of each node's cell as it was run last, by the node's name."""
 
     def __post_init__(self) -> None:
         self.use_domain(self.domain)
@@ -39,6 +41,8 @@ class Session:
         """Let everything that starts from now on talk in this domain, snippets in the kernel too."""
         self.domain = domain
         os.environ.update(environment.for_domain(domain.number, os.environ))
+        if note := os.environ.get(environment.DOMAIN_NOTE):
+            Path(note).write_text(str(domain.number), encoding="utf-8")
 
     @property
     def workspace(self) -> Path:
@@ -49,6 +53,7 @@ class Session:
         """Write a node's code as a module of the package, start it and show its log for a while."""
         if self.package.name == name:
             raise CellFailed(f"A node can't have the package's name, {name}.")
+        self.ran[name] = code
         module = add_module(self.workspace, self.package, Module(name, code.rstrip("\n") + "\n"))
         if spin_class:
             argv = [sys.executable, "-u", "-m", "spinbook.runtime.spin_class", os.fspath(module), spin_class]
