@@ -12,10 +12,14 @@ from grader.submission import Submission, read
 
 @dataclass(frozen=True)
 class Candidate:
-    """A file that may be what the student wants to hand in, and the exercise's code in it."""
+    """What the student may want to hand in: the exercise's code, and the file it is from, if there is one.
 
-    file: Path
+    `origin` tells where the code is from, in words or by the file's name.
+    """
+
+    file: Path | None
     submission: Submission
+    origin: str
 
 
 def candidates(exercise: Exercise, folder: Path) -> list[Candidate]:
@@ -25,7 +29,7 @@ def candidates(exercise: Exercise, folder: Path) -> list[Candidate]:
     same code count once.
     """
     files = [folder / exercise.file_name, *sorted(folder.glob("*.ipynb"))]
-    found = [Candidate(file, read(str(file), exercise)) for file in files if file.is_file()]
+    found = [Candidate(file, read(str(file), exercise), file.name) for file in files if file.is_file()]
     found = [candidate for candidate in found if candidate.submission.program]
     begun = [candidate for candidate in found if _bare(candidate.submission.source) != _starter(exercise)]
     by_code = {_bare(candidate.submission.source): candidate for candidate in reversed(begun or found)}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -24,8 +25,11 @@ from spinbook.submit.self_check import SelfCheck, self_check
 @click.argument("file", required=False, type=click.Path(path_type=Path))
 @click.option("--student", help="Your name or number, as your course wants it; kept in this folder for the next time.")
 @click.option("--output", type=click.Path(path_type=Path), help="Where to write.  [default: EXERCISE-submission.zip]")
+@click.option("--code", type=click.Path(path_type=Path), hidden=True, help="The code, as a kernel ran it last.")
 @click.option("--no-check", is_flag=True, help="Write the file without running the checks first.")
-def submit(exercise: str, file: Path | None, student: str | None, output: Path | None, no_check: bool) -> None:
+def submit(
+    exercise: str, file: Path | None, student: str | None, output: Path | None, code: Path | None, no_check: bool
+) -> None:
     """Write ONE file to upload: your code for EXERCISE, and what the public checks say of it.
 
     \b
@@ -33,27 +37,31 @@ def submit(exercise: str, file: Path | None, student: str | None, output: Path |
       spinbook submit joint_velocity week3.ipynb        takes the exercise's cell in this notebook
       spinbook submit joint_velocity --student "Ada L"  puts your name into the file
 
-    Save your notebook first. The file, such as joint_velocity-submission.zip, is what you upload to your course's
-    platform. Do not unpack or change it. You may hand in whatever the checks say: they are there to help you, and
-    their result decides nothing. The grade comes from grading.
+    Save your notebook first. In the notebook itself, %submit joint_velocity does the same.
+
+    The file, such as joint_velocity-submission.zip, is what you upload to your course's platform. Do not unpack or
+    change it. You may hand in whatever the checks say: they are there to help you, and their result decides nothing.
+    The grade comes from grading.
 
     Exit codes: 0 the file is written, 1 it could not be written, 2 wrong usage.
     """
     folder = Path.cwd()
     wanted = _exercise(exercise)
-    chosen = _given(file, wanted) if file else _found(wanted, folder)
+    chosen = _ran(code, file, wanted) if code else _given(file, wanted) if file else _found(wanted, folder)
     name = _student(student, folder)
     checked = SelfCheck(None, "It was left out.") if no_check else self_check(wanted, chosen.submission)
     console = Console(soft_wrap=False, highlight=False)
     tell(checked, wanted, console)
     target = output or default_target(wanted, folder)
     try:
-        write_upload(HandIn(wanted, chosen.submission, chosen.file, name, checked), target)
+        write_upload(HandIn(wanted, chosen, name, checked), target)
     except OSError as error:
         raise SpinbookError(
             Problem(target, None, f"it can't be written: {error.strerror}.", "Name another place: --output FILE")
         ) from None
-    console.print(f"Your code is from {chosen.file.name}.", markup=False)
+    console.print(f"Your code is from {chosen.origin}.", markup=False)
+    if not name:
+        console.print("Your name is not in it. If your course wants it there: --student NAME", markup=False)
     console.print(f"Upload this file: {_shown(target)}", style="bold", markup=False, soft_wrap=True)
 
 
@@ -61,9 +69,8 @@ def tell(checked: SelfCheck, exercise: Exercise, console: Console) -> None:
     """Print what the self-check found, or why there was none."""
     if checked.grade:
         show(checked.grade, exercise, console)
-        console.print("These are the public checks. The grade comes later, from grading.")
     else:
-        console.print(f"No self-check: {checked.why} You can hand in all the same.", markup=False)
+        console.print(f"No self-check: {checked.why} You can hand in all the same.", markup=False, soft_wrap=True)
 
 
 def _exercise(name: str) -> Exercise:
@@ -84,7 +91,12 @@ def _given(file: Path, exercise: Exercise) -> Candidate:
         raise click.UsageError(str(error)) from None
     if submission.program is None:
         raise SpinbookError(Problem(file, None, submission.problem, "There is nothing in it to hand in yet."))
-    return Candidate(file, submission)
+    return Candidate(file, submission, file.name)
+
+
+def _ran(code: Path, notebook: Path | None, exercise: Exercise) -> Candidate:
+    """The code that a notebook's kernel ran last, which may not have been saved yet."""
+    return replace(_given(code, exercise), file=notebook, origin="the cell as you ran it last")
 
 
 def _found(exercise: Exercise, folder: Path) -> Candidate:
@@ -100,7 +112,7 @@ def _found(exercise: Exercise, folder: Path) -> Candidate:
         )
     if len(found) == 1:
         return found[0]
-    listed = [candidate.file.name for candidate in found]
+    listed = [candidate.origin for candidate in found]
     if not sys.stdin.isatty():
         raise click.UsageError(f"Which file? {', '.join(listed)}. Name it: spinbook submit {exercise.name} FILE")
     click.echo("More than one file here holds this exercise:")

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from grader.exercise import Exercise
 from grader.grading.versions import versions
-from grader.submission import Submission
 from grader.submission.upload import pack
 from spinbook import __version__
+from spinbook.submit.candidates import Candidate
 from spinbook.submit.self_check import SelfCheck
 from spinbook.written import write_if_changed
 
@@ -21,26 +21,25 @@ LARGEST_NOTEBOOK = 2_500_000
 
 @dataclass(frozen=True)
 class HandIn:
-    """What is handed in: the exercise's code, the file it was found in (None: a notebook's kernel), and by whom."""
+    """What is handed in, by whom, and what the public checks say of it."""
 
     exercise: Exercise
-    submission: Submission
-    file: Path | None
+    work: Candidate
     student: str
     check: SelfCheck
 
 
 def write_upload(hand_in: HandIn, target: Path) -> None:
     """Write the upload to `target`, whole or not at all. Raises `OSError`."""
-    exercise, file = hand_in.exercise, hand_in.file
-    assert hand_in.submission.program
-    files = {exercise.file_name: hand_in.submission.program.files[exercise.file_name]}
+    exercise, file, program = hand_in.exercise, hand_in.work.file, hand_in.work.submission.program
+    assert program
+    files = {exercise.file_name: program.files[exercise.file_name]}
     if file is not None and file.suffix == ".ipynb" and file.stat().st_size <= LARGEST_NOTEBOOK:
         files[file.name] = file.read_bytes()
     record = {
         "exercise": exercise.name,
         "student": hand_in.student,
-        "from": file.name if file else "the notebook's last run",
+        "from": hand_in.work.origin,
         "time": _now().isoformat(),
         "versions": {**versions(), "spinbook": __version__},
         "self_check": hand_in.check.record,
