@@ -78,11 +78,11 @@ class Sight(Graph):
 
     # Counting
 
-    def count(self, unheard: bool = False) -> None:
+    def count(self, unheard: bool = False) -> bool:
         """Listen a moment to the topics whose rate is not known, those to which nobody listens only if `unheard`.
 
         To be called again and again, and `stop_counting` at the end. While it counts, a publisher sees one
-        subscription more.
+        subscription more. False when there is nothing left to count.
         """
         self.spin_once()
         for name, (_, counted, until) in list(self._counting.items()):
@@ -91,6 +91,7 @@ class Sight(Graph):
         for topic in self.topics():
             if _is_shown(topic.name) and topic.name not in self._counting:
                 self._begin(topic.name, unheard)
+        return bool(self._counting)
 
     def _begin(self, name: str, unheard: bool) -> None:
         publishers = _shown(self.publishers(name))
@@ -116,11 +117,6 @@ class Sight(Graph):
         """Listen to nothing any more; what was heard for long enough counts."""
         for name, (_, counted, _) in list(self._counting.items()):
             self._conclude(name, counted)
-
-    @property
-    def counted_all(self) -> bool:
-        """Whether nothing is being counted."""
-        return not self._counting
 
 
 def _ear(counted: Counted) -> Any:

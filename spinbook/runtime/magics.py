@@ -1,4 +1,4 @@
-"""The notebook's commands: `%%node`, `%nodes`, `%stop`, `%log`, `%ros2`, `%colcon`, `%plot`, `%turtle` and others.
+"""The notebook's commands: `%%node`, `%nodes`, `%stop`, `%log`, `%ros2`, `%colcon`, `%plot`, `%graph`, `%turtle` …
 
 Thin: each reads its line and calls the session.
 """
@@ -14,9 +14,9 @@ from typing import Any, NoReturn
 from IPython.core.magic import Magics, cell_magic, line_magic, magics_class, no_var_expand
 
 from spinbook.course.course import Package
-from spinbook.runtime import colcon_cell, domain, plot_cell, ros2_cell, turtle_cell
+from spinbook.runtime import colcon_cell, domain, graph_cell, plot_cell, ros2_cell, turtle_cell
 from spinbook.runtime.failure import CellFailed
-from spinbook.runtime.session import COMMAND_SECONDS, NODE_SECONDS, Session
+from spinbook.runtime.session import COMMAND_SECONDS, GRAPH_SECONDS, NODE_SECONDS, Session
 from spinbook.runtime.showing import Bound
 
 _OWN_OPTION = re.compile(r"""\s*--(seconds|until)\s+("[^"]*"|'[^']*'|\S+)\s*""")
@@ -179,6 +179,15 @@ class SpinbookMagics(Magics):
         reader = LineReader("%turtle", "Show turtlesim's window as it is now.")
         if reader.read(line) is not None:
             turtle_cell.run()
+
+    @no_var_expand
+    @line_magic
+    def graph(self, line: str) -> None:
+        """%graph: nodes and topics as they are now, drawn as rqt_graph would."""
+        reader = LineReader("%graph", "Draw who publishes what, who subscribes, and how many messages a second come.")
+        reader.add_argument("--seconds", type=float, default=GRAPH_SECONDS, help="how long messages are counted")
+        if given := reader.read(line):
+            graph_cell.run(given.seconds)
 
     @no_var_expand
     @line_magic

@@ -20,6 +20,8 @@ from spinbook.runtime.showing import Bound, in_short, show_for
 #: How long a node's log is shown, and how long a command that does not end may run (s).
 NODE_SECONDS = 3.0
 COMMAND_SECONDS = 5.0
+#: How long messages are counted for the graph (s).
+GRAPH_SECONDS = 2.5
 #: How long a bounded command may take to end by itself when it is told to (s): its last lines are wanted.
 COMMAND_GRACE = (3.0, 1.0)
 
