@@ -30,6 +30,7 @@ course: setup   ## Build, run and package the real course, and grade a submissio
 	@echo "Open a notebook in any editor, with $(BIN)/python as its Python."
 
 test: setup   ## Check types and style, then run every test.
+	@sh test-programs.sh
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
