@@ -28,7 +28,7 @@ def test_a_mistake_is_told_with_when_and_where_drawn_and_recorded(tmp_path: Path
     )  # fmt: skip
     assert done.returncode == 1, done.stderr
     text = " ".join(done.stdout.split())
-    for told in ("91 of 100 points", "Message 2 of 20 (0.10 s", "left_shoulder_roll", "expected velocity", "Hint:"):
+    for told in ("90 of 100 points", "Message 2 of 20 (0.10 s", "left_shoulder_roll", "expected velocity", "Hint:"):
         assert told in text
     svg = (tmp_path / "out.svg").read_text()
     assert "first wrong" in svg
