@@ -15,7 +15,7 @@ WIDTH, LEFT, RIGHT, HEIGHT, GAP, TOP, BOTTOM = 500, 52, 8, 80, 34, 52, 12
 
 @dataclass(frozen=True)
 class Panel:
-    """One joint's panel: where it begins, its polylines, marks on its axis, and the first wrong point if there is one."""
+    """One joint: where its panel begins, its two lines, the ends of its axis, and the first wrong point, if any."""
 
     joint: str
     top: float

@@ -1,7 +1,7 @@
 """What of a check's verdict may be told to a student.
 
-Of a public check everything. Of a hidden one its title, its points, whether it was passed, and its hint, which its author
-wrote for students; never its name, its scenario, or a number that was expected: those would give the check away.
+Of a public check everything. Of a hidden one its title, its points, whether it was passed, and its hint, which its
+author wrote for students; never its name, its scenario, or a number that was expected: those would give it away.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ SIGNS: dict[Status, tuple[str, str]] = {
 
 @dataclass(frozen=True)
 class Told:
-    """One check as a student sees it. `finding` is None for hidden checks; `needs` are titles of checks to mend first."""
+    """One check as a student sees it; hidden ones without `finding`. `needs` are titles of checks to mend first."""
 
     title: str
     status: Status

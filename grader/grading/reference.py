@@ -62,7 +62,8 @@ def solution_file(exercise: Exercise) -> Path:
     return file
 
 
-def _kept_in(spinner: Spinner) -> Path:
+def key_of(spinner: Spinner) -> str:
+    """A digest of everything that gradings by `spinner` depend on, but for the submissions."""
     exercise = spinner.exercise
     key = {
         "solution": digest_of([solution_file(exercise)]),
@@ -71,8 +72,11 @@ def _kept_in(spinner: Spinner) -> Path:
         "versions": versions(),
         "pace": spinner.options.pace,
     }
-    digest = hashlib.sha256(json.dumps(key, sort_keys=True).encode()).hexdigest()
-    return cache_folder() / f"{exercise.name}-{digest[:24]}.json"
+    return hashlib.sha256(json.dumps(key, sort_keys=True).encode()).hexdigest()
+
+
+def _kept_in(spinner: Spinner) -> Path:
+    return cache_folder() / f"{spinner.exercise.name}-{key_of(spinner)[:24]}.json"
 
 
 def _made(spinner: Spinner) -> dict[str, Recording]:
