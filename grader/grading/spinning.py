@@ -76,7 +76,7 @@ class Spinner:
             limits=self.options.limits,
             source=submission.source,
             file_name=submission.file_name,
-            core=cores[number % len(cores)],
+            core=cores[number % len(cores)] if self.options.core is None else self.options.core,
             pace=self.options.pace,
         )
 
