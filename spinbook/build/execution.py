@@ -14,7 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from spinbook.build.digest import code_digest, digest, versions
+import grader
+from spinbook.build.digest import code_digest, digest, files_digest, versions
 from spinbook.build.failures import CellFailure, find_failures
 from spinbook.runtime.process import KeptProcess
 from spinbook.written import write_if_changed
@@ -22,6 +23,8 @@ from spinbook.written import write_if_changed
 #: How long a notebook may take (s), and how much longer its process may take to say so.
 DEADLINE_S = 300.0
 _TO_SAY_SO_S = 20.0
+#: What of Spinbook a notebook's cells use.
+_USED_BY_CELLS = ("check", "graph", "runtime", "ros2", "turtlesim", "package")
 
 
 @dataclass(frozen=True)
@@ -95,7 +98,7 @@ def execute(
 
 def _execute_one(job: Job, on_progress: Callable[[Progress], None], again: bool, given_up: threading.Event) -> Executed:
     notebook = json.loads(job.notebook.read_text(encoding="utf-8"))
-    key = _key(notebook)
+    key = _key(notebook, job)
     if not again and (remembered := _remembered(job, key)) is not None:
         write_if_changed(job.executed, _with_outputs(notebook, remembered["outputs"]))
         _write_graph(job, remembered["graph"])
@@ -153,10 +156,15 @@ def _run(job: Job, raw: Path, on_progress: Callable[[Progress], None], given_up:
         process.close()
 
 
-def _key(notebook: dict[str, Any]) -> str:
-    """What the outputs depend on: the code, not the prose around it."""
+def _key(notebook: dict[str, Any], job: Job) -> str:
+    """What the outputs depend on: the code, not the prose around it, and what `%check` judges by."""
     code = [(c["id"], c["source"], c["metadata"].get("tags")) for c in notebook["cells"] if c["cell_type"] == "code"]
-    return digest(repr(code), code_digest("graph", "runtime", "ros2", "turtlesim", "package"), versions())
+    judged_by = ""
+    if any(source.startswith("%check ") for _, source, _ in code):
+        course = job.build_folder.parent
+        folders = (course / "exercises", course / "solutions", Path(grader.__file__).parent)
+        judged_by = files_digest(file for folder in folders for file in folder.rglob("*.*") if file.suffix != ".pyc")
+    return digest(repr(code), judged_by, code_digest(*_USED_BY_CELLS), versions())
 
 
 def _remembered(job: Job, key: str) -> dict[str, Any] | None:

@@ -191,6 +191,20 @@ class SpinbookMagics(Magics):
 
     @no_var_expand
     @line_magic
+    def check(self, line: str) -> None:
+        """%check EXERCISE: what the public checks say of the exercise's cell."""
+        reader = LineReader("%check", "Check the cell of an exercise, as you ran it last. This is not your grade.")
+        reader.add_argument("exercise")
+        reader.add_argument("--course", default="", help="the folder of the handout, if it is not this one")
+        reader.add_argument("--seconds", type=float, default=60.0, help="how long it may take")
+        if given := reader.read(line):
+            # Loaded when it is used: most cells are no exercise.
+            from spinbook.check import cell
+
+            cell.run(self.session, self.shell, given.exercise, given.course, given.seconds)
+
+    @no_var_expand
+    @line_magic
     def domain(self, line: str) -> None:
         """%domain [N]: the ROS domain in which this notebook's nodes talk."""
         reader = LineReader("%domain", "Tell this notebook's ROS domain, or share another one with other programs.")
