@@ -18,6 +18,7 @@ VERBS = {
     "ros2": "spinbook.ros2.command:ros2",
     "turtle": "spinbook.turtlesim.command:turtle",
     "grade": "grader.command:grade",
+    "audit": "grader.audit.command:audit",
     "submit": "spinbook.submit.command:submit",
     "new": "spinbook.new.command:new",
     "doctor": "spinbook.doctor.command:doctor",
@@ -51,6 +52,7 @@ def spinbook() -> None:
       spinbook build --execute    chapters -> notebooks, run with real nodes
       spinbook package            the chapters' nodes as a ROS 2 package
       spinbook grade EXERCISE F   what is right and wrong in a student's node
+      spinbook audit              whether the exercises' checks catch what is wrong
     """
 
 
