@@ -24,10 +24,18 @@ PROVED, TO_MEND, USAGE, OUR_FAULT = 0, 1, 2, 3
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("exercises", nargs=-1, metavar="[EXERCISE]…")
 @click.option("--quick", is_flag=True, help="Only the mistakes, and a sample of the mutants: for every change.")
+@click.option("--mutants", type=click.IntRange(0), help="Try at most so many mutants, of all kinds.")
 @click.option("--json", "json_", type=click.Path(path_type=Path), help="Write the report as JSON, for programs.")
 @click.option("--html", type=click.Path(path_type=Path), help="Write the report as a page.")
 @click.option("--parallel", type=click.IntRange(1, 64), help="How many spins run at once.  [default: twice the cores]")
-def audit(exercises: tuple[str, ...], quick: bool, json_: Path | None, html: Path | None, parallel: int | None) -> None:
+def audit(
+    exercises: tuple[str, ...],
+    quick: bool,
+    mutants: int | None,
+    json_: Path | None,
+    html: Path | None,
+    parallel: int | None,
+) -> None:
     """Show that the checks of each EXERCISE catch what is wrong and pass what is right.
 
     Right solutions must get full marks, whatever the numbers of a scenario are; the starter, an empty file and an idle
@@ -53,7 +61,7 @@ def audit(exercises: tuple[str, ...], quick: bool, json_: Path | None, html: Pat
         with Crew() as crew:
             for folder in [_folder(name) for name in exercises] or _all_here():
                 try:
-                    audits.append(_audited(load(folder), options, crew, quick, console))
+                    audits.append(_audited(load(folder), options, crew, quick, mutants, console))
                 except ExerciseError as error:
                     faulty.append(error)
                     click.echo(f"{error}\n    The rest of this exercise was not audited.", err=True)
@@ -72,11 +80,13 @@ def audit(exercises: tuple[str, ...], quick: bool, json_: Path | None, html: Pat
     sys.exit(TO_MEND if faulty or any(result.problems for result in audits) else PROVED)
 
 
-def _audited(exercise: Exercise, options: Options, crew: Crew, quick: bool, console: Console) -> Audit:
+def _audited(
+    exercise: Exercise, options: Options, crew: Crew, quick: bool, mutants: int | None, console: Console
+) -> Audit:
     from grader.audit.audit import audit as audit_one
 
     with on(Console(stderr=True)) as progress:
-        result = audit_one(exercise, options, crew, quick, progress)
+        result = audit_one(exercise, options, crew, progress, quick, mutants)
     show(result, console)
     return result
 

@@ -90,11 +90,16 @@ class ScenarioResult:
 
 @dataclass(frozen=True)
 class Audit:
-    """The audit of one exercise. `seeds` is over how many seeds the randomised scenarios were spun."""
+    """The audit of one exercise.
+
+    `sampled` is whether not all mutants were tried, `seeds` is over how many seeds the randomised scenarios were spun,
+    `spun` and `kept` are how many programs were tried now and were known from before.
+    """
 
     exercise: str
     title: str
     quick: bool
+    sampled: bool
     seeds: int
     randomised: tuple[str, ...]
     problems: tuple[Problem, ...]
@@ -113,9 +118,20 @@ class Audit:
     @property
     def different(self) -> int:
         """How many mutants can be told from the solution."""
-        return len(self.mutants) - self.count("equivalent")
+        return different(self.mutants)
 
     @property
     def score(self) -> float:
         """The part of those that is caught, between 0 and 1."""
-        return self.count("caught") / self.different if self.different else 1.0
+        return score_of(self.mutants)
+
+
+def different(mutants: tuple[MutantResult, ...]) -> int:
+    """How many of the mutants can be told from the solution."""
+    return sum(result.fate != "equivalent" for result in mutants)
+
+
+def score_of(mutants: tuple[MutantResult, ...]) -> float:
+    """The part of those that is caught, between 0 and 1; 1 where there are none."""
+    many = different(mutants)
+    return sum(result.fate == "caught" for result in mutants) / many if many else 1.0

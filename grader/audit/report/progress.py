@@ -24,11 +24,11 @@ class Bar:
         if self._console.is_terminal:
             self._task = self._bar.add_task(exercise, total=total)
 
-    def done(self, what: str) -> None:
+    def done(self) -> None:
         """One of them is tried."""
         self._done += 1
         if self._task is not None:
-            self._bar.update(self._task, advance=1, description=f"{self._exercise}: {what}")
+            self._bar.update(self._task, advance=1)
         elif self._done * 10 // self._total > (self._done - 1) * 10 // self._total:
             self._console.print(f"{self._exercise}: {self._done} of {self._total}")
 

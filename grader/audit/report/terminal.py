@@ -31,15 +31,15 @@ def _show_programs(audit: Audit, console: Console) -> None:
     if audit.seeds:
         tried += f" (with {audit.seeds} seeds)"
     tried += f", {counts['mistake']} mistakes, {counts['nothing']} that do nothing, {len(audit.mutants)} mutants"
-    console.print(Text(tried + (", a sample" if audit.quick else ""), style="dim"))
+    console.print(Text(tried + (", a sample" if audit.sampled else ""), style="dim"))
 
 
 def _show_problem(problem: Problem, console: Console) -> None:
     console.print(Text.assemble((" ✗ ", "red"), printable(problem.found)), soft_wrap=True)
-    console.print(Padding(Text(printable(_short(problem.place)), style="dim"), (0, 0, 0, 3)), soft_wrap=True)
+    console.print(Padding(Text(printable(_short(problem.place)), style="dim"), (0, 0, 0, 3)))
     if problem.diff:
         console.print(Padding(Syntax(problem.diff, "diff", background_color="default", word_wrap=True), (0, 0, 0, 3)))
-    console.print(Padding(Text(printable(problem.mend), style="cyan"), (0, 0, 0, 3)), soft_wrap=True)
+    console.print(Padding(Text(printable(problem.mend), style="cyan"), (0, 0, 0, 3)))
 
 
 def _short(place: str) -> str:
