@@ -19,6 +19,7 @@ VERBS = {
     "ros2": "spinbook.ros2.command:ros2",
     "turtle": "spinbook.turtlesim.command:turtle",
     "grade": "grader.command:grade",
+    "gradescope": "grader.gradescope.command:gradescope",
     "audit": "grader.audit.command:audit",
     "handout": "spinbook.handout.command:command",
     "submit": "spinbook.submit.command:submit",
@@ -56,6 +57,7 @@ def spinbook() -> None:
       spinbook site               the course's website, from the notebooks as they ran
       spinbook package            the chapters' nodes as a ROS 2 package
       spinbook grade EXERCISE F   what is right and wrong in a student's node
+      spinbook gradescope E       an autograder to upload to Gradescope
       spinbook audit              whether the exercises' checks catch what is wrong
     """
 
