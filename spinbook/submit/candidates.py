@@ -8,6 +8,7 @@ from pathlib import Path
 
 from grader.exercise import Exercise, starter
 from grader.submission import Submission, read
+from spinbook.update.base import BASE
 
 
 @dataclass(frozen=True)
@@ -23,24 +24,33 @@ class Candidate:
 
 
 def candidates(exercise: Exercise, folder: Path) -> list[Candidate]:
-    """The files directly in `folder` that hold the exercise: the .py of its name, and notebooks with its cell.
+    """The files that hold the exercise: notebooks in `folder`, and the .py of its name there or in the exercise's own.
 
     Where there are several, those with the untouched starter don't count beside one with more in it, and two with the
     same code count once.
     """
-    files = [folder / exercise.file_name, *sorted(folder.glob("*.ipynb"))]
-    found = [Candidate(file, read(str(file), exercise), file.name) for file in files if file.is_file()]
+    files = [folder / exercise.file_name, *sorted(folder.glob("*.ipynb")), exercise.folder / exercise.file_name]
+    found = [Candidate(file, read(str(file), exercise), _name(file, folder)) for file in files if file.is_file()]
     found = [candidate for candidate in found if candidate.submission.program]
-    begun = [candidate for candidate in found if _bare(candidate.submission.source) != _starter(exercise)]
+    begun = [candidate for candidate in found if _bare(candidate.submission.source) not in _starters(exercise)]
     by_code = {_bare(candidate.submission.source): candidate for candidate in reversed(begun or found)}
     return [candidate for candidate in found if candidate in by_code.values()]
 
 
-def _starter(exercise: Exercise) -> str:
+def _name(file: Path, folder: Path) -> str:
+    return file.relative_to(folder).as_posix() if file.is_relative_to(folder) else str(file)
+
+
+def _starters(exercise: Exercise) -> set[str]:
+    """The starter as it was handed out, where that is known."""
+    handed_out = exercise.folder.parent.parent / BASE / "exercises" / exercise.name / exercise.file_name
+    found = set()
+    with contextlib.suppress(OSError, ValueError):
+        found.add(_bare(handed_out.read_text(encoding="utf-8")))
     with contextlib.suppress(OSError, ValueError):
         if exercise.solution_file:
-            return _bare(starter(exercise.solution_file.read_text(encoding="utf-8")))
-    return ""
+            found.add(_bare(starter(exercise.solution_file.read_text(encoding="utf-8"))))
+    return found
 
 
 def _bare(code: str) -> str:
