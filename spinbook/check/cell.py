@@ -23,14 +23,15 @@ def run(session: Session, shell: Any, name: str, course: str, seconds: float) ->
     `course` is the folder that has the exercises, where it is neither this one nor one above it or the notebook's.
     """
     notebook = notebook_file(shell.user_ns, os.environ)
-    exercise = _exercise(name, course, notebook)
+    exercise = exercise_of(name, course, notebook)
     code = code_of(exercise, session.ran, notebook)
     if code.note:
         print(code.note)
     display(checked(exercise.folder, code.text, seconds), raw=True)
 
 
-def _exercise(name: str, course: str, notebook: Path | None) -> Exercise:
+def exercise_of(name: str, course: str, notebook: Path | None) -> Exercise:
+    """The exercise `name`, in the folder `course`, else in this one, the notebook's, or above. Raises CellFailed."""
     places = [Path(course)] if course else [Path.cwd(), *([notebook.parent] if notebook else [])]
     told = ""
     for place in places:

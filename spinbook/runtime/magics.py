@@ -205,6 +205,20 @@ class SpinbookMagics(Magics):
 
     @no_var_expand
     @line_magic
+    def submit(self, line: str) -> None:
+        """%submit EXERCISE: write one file to upload, with the exercise's cell as it was run last."""
+        reader = LineReader("%submit", "Write one file to upload: the exercise's cell, as you ran it last.")
+        reader.add_argument("exercise")
+        reader.add_argument("--student", help="your name or number, as your course wants it; kept for the next time")
+        reader.add_argument("--course", default="", help="the folder of the handout, if it is not this one")
+        reader.add_argument("--seconds", type=float, default=120.0, help="how long it may take")
+        if given := reader.read(line):
+            from spinbook.submit import cell
+
+            cell.run(self.session, self.shell, given.exercise, given.course, given.student, given.seconds)
+
+    @no_var_expand
+    @line_magic
     def domain(self, line: str) -> None:
         """%domain [N]: the ROS domain in which this notebook's nodes talk."""
         reader = LineReader("%domain", "Tell this notebook's ROS domain, or share another one with other programs.")
