@@ -17,6 +17,7 @@ from spinbook.handout.leaks import leaks, secrets
 from spinbook.handout.notebook import for_students
 from spinbook.handout.wheel import wheel
 from spinbook.problem import Problem, SpinbookError
+from spinbook.update.base import base_files
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,8 @@ def handout(course: Course) -> Handout:
     files[f"wheels/{name}"] = content
     slug = re.sub(r"[^a-z0-9]+", "-", course.title.lower()).strip("-") or "course"
     files |= guide_files(course.title, slug, course.ros_distro, name, sorted(notebooks), listings)
+    files |= base_files(files)
+    files |= base_files(files)
     _prove(course, files)
     return Handout(slug, files, tuple(listings))
 
