@@ -9,6 +9,7 @@ import click
 from rich.console import Console
 
 from grader.crew import Crew, HostFault
+from grader.deadline import OverridesError
 from grader.exercise import Exercise, ExerciseError, load
 from grader.exercise.finding import NoExercise, find
 from grader.grading import Grade, Options, grading_of
@@ -108,7 +109,7 @@ def grade(
             raise click.UsageError(f"{submission}: to grade a class, say with --out where the results go.")
         handed_in = read(submission, found)
         result = _graded(found, handed_in, options)
-    except (NoSubmission, IntakeError, Busy) as error:
+    except (NoSubmission, IntakeError, OverridesError, Busy) as error:
         raise click.UsageError(str(error)) from None
     except ExerciseError as error:
         _stop(f"The exercise is at fault, not the submission.\n{error}")

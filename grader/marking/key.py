@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from grader.grading.grading import Grading
@@ -19,11 +19,12 @@ def key_of(grading: Grading) -> str:
     """
     spinner = grading.spinner
     exercise = spinner.exercise
-    files: list[Path] = [exercise.folder / "exercise.toml", exercise.folder / "task.md", *exercise.check_files]
+    files: list[Path] = [exercise.folder / "task.md", *exercise.check_files]
     if exercise.solution_file:
         files.append(exercise.solution_file)
     depends = {
-        "exercise": exercise.name,
+        # The exercise as it was read: a due date, which is not in it, can be changed after grading.
+        "exercise": repr(replace(exercise, folder=Path(), solution_folder=None)),
         "files": digest_of([file for file in files if file.exists()]),
         "scenarios": [scenario.digest for scenario in spinner.scenarios],
         "versions": versions(),
