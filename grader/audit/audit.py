@@ -9,6 +9,7 @@ from grader.audit.listing import Check, ChecksJob
 from grader.audit.plan import planned
 from grader.audit.programs import judged, problems_of
 from grader.audit.result import LEAST_SCORE, Audit, MutantResult, Problem, score_of
+from grader.audit.spins import Spins, tidy
 from grader.audit.store import Store
 from grader.audit.surviving import problems_of_survivors, result_of
 from grader.audit.survivors import listed, stale
@@ -33,12 +34,12 @@ def audit(
     began = time.monotonic()
     grading = grading_of(exercise, options, crew)
     checks: tuple[Check, ...] = crew.do(ChecksJob(exercise, grading.references))
-    trials = Trials(grading, checks)
+    trials = Trials(grading, checks, Spins(grading))
     store = Store(trials)
     reasons = listed(exercise)
     plan = planned(trials, quick, most)
     tried = try_all(plan, trials, store, progress)
-    store.tidy()
+    tidy(exercise.name)
 
     mutants = tuple(result_of(mutant, tried.mutants[mutant.id], reasons) for mutant in plan.mutants)
     different = {r.mutant.id: tried.mutants[r.mutant.id] for r in mutants if r.fate != "equivalent"}
@@ -69,7 +70,7 @@ def audit(
         checks=check_results(checks, scenarios, different, mistakes),
         scenarios=scenarios,
         seconds=time.monotonic() - began,
-        spun=store.spun,
+        made=store.made,
         kept=store.kept,
     )
 

@@ -93,7 +93,7 @@ class Audit:
     """The audit of one exercise.
 
     `sampled` is whether not all mutants were tried, `seeds` is over how many seeds the randomised scenarios were spun,
-    `spun` and `kept` are how many programs were tried now and were known from before.
+    `made` and `kept` are how many programs were tried now and were known from before.
     """
 
     exercise: str
@@ -108,7 +108,7 @@ class Audit:
     checks: tuple[CheckResult, ...]
     scenarios: tuple[ScenarioResult, ...]
     seconds: float
-    spun: int
+    made: int
     kept: int
 
     def count(self, fate: Fate) -> int:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from grader.audit.comparing import Difference, differences
 from grader.audit.listing import Check
+from grader.audit.spins import Spins
 from grader.checking.verdict import Status, Verdict
 from grader.checking.wrong import Finding
 from grader.crew import HostFault
@@ -51,6 +52,7 @@ class Trials:
 
     grading: Grading
     checks: tuple[Check, ...]
+    spins: Spins
     _turn: itertools.count[int] = field(default_factory=itertools.count, compare=False)
 
     def try_(self, submission: Submission, only: tuple[str, ...] = (), enough: bool = False) -> Trial:
@@ -98,11 +100,9 @@ class Trials:
         return self._trial("", recordings, self._judged(recordings), self.checks)
 
     def spin(self, submission: Submission, scenario: Scenario) -> Recording:
-        """The recording of one scenario."""
-        spinner = self.grading.spinner
+        """The recording of one scenario. Raises `HostFault` where the machine or we are at fault."""
         # Turn by turn on each core: a program stays on the one it is given.
-        recording: Recording = spinner.crew.do(spinner.job(submission, scenario, next(self._turn)))
-        return recording
+        return self.spins.spin(submission, scenario, next(self._turn))
 
     def _nothing(self, problem: str) -> Trial:
         scenarios = self.grading.spinner.scenarios

@@ -74,4 +74,4 @@ def _show_score(audit: Audit, console: Console) -> None:
     many = len(audit.problems)
     verdict = "nothing to mend" if not many else f"{many} thing{'s' if many > 1 else ''} to mend"
     console.print(Text(verdict, style="bold red" if many else "bold green"))
-    console.print(Text(f"{audit.seconds:.0f} s; {audit.spun} tried, {audit.kept} known from before", style="dim"))
+    console.print(Text(f"{audit.seconds:.0f} s; {audit.made} tried, {audit.kept} known from before", style="dim"))
