@@ -26,6 +26,7 @@ from spinbook.site.glossary import Term, terms_of
 from spinbook.site.home_page import home_chapters, home_drawing, home_log, home_pictures
 from spinbook.site.launch import branch_files, launch_notebook, openers, requirement
 from spinbook.site.mermaid import CanNotDrawError, Picture, draw
+from spinbook.site.node_graph import node_graph_html, read_node_graph
 from spinbook.site.page import Page
 from spinbook.site.prose import Links, rich
 from spinbook.site.public_checks import public_checks
@@ -180,8 +181,15 @@ def _ran(course: Course, chapter: Chapter) -> Ran:
 
 
 def _graph(course: Course, chapter: Chapter) -> str:
-    """The picture of the nodes that were seen while the chapter ran, where they were."""
-    return ""
+    """The picture of the nodes that were seen while the chapter ran, in one line of HTML; "" where none were."""
+    graph = read_node_graph(course.build_folder / "executed" / f"{chapter.name}.graph.json")
+    if graph is None or not graph.nodes:
+        return ""
+    picture = node_graph_html(graph)
+    return (
+        '<details class="nodes-as-seen"><summary>The nodes of this chapter, as they were seen while it ran</summary>'
+        f"{picture}</details>"
+    )
 
 
 def _exercise(exercise: Exercise, chapter: Chapter, links: Links, drawings: _Drawings, contents: Contents) -> Page:

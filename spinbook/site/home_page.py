@@ -9,12 +9,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from PIL import Image
+from pygments import highlight
+from pygments.formatters.html import HtmlFormatter
 
 from grader.exercise import Exercise
 from spinbook.build.digest import digest
 from spinbook.chapter.chapter import Cell, CellKind, Chapter
 from spinbook.site.chapter_page import Ran, alternative, is_picture
 from spinbook.site.drawing import drawing_html
+from spinbook.site.log_lexer import LogLexer
 from spinbook.site.mermaid import Picture
 from spinbook.site.names import chapter_page, exercise_page
 from spinbook.site.picture import smaller
@@ -76,10 +79,15 @@ def home_log(runs: list[tuple[Chapter, Ran]]) -> dict[str, str]:
             text = "".join("".join(o.get("text", "")) for o in ran.outputs(cell.id) if o["output_type"] == "stream")
             lines = [line for line in text.splitlines() if line.startswith("[")][:_LOG_LINES]
             warnings = sum("[WARN]" in line for line in lines)
-            if lines and not cell.raises and warnings > best[0]:
+            if lines and not cell.raises and warnings >= best[0]:
                 page = f"{chapter_page(chapter.file)}.html"
-                best = warnings, {"text": "\n".join(lines), "file": cell.module, "page": page}
+                best = warnings, {"html": _coloured("\n".join(lines)), "file": cell.module, "page": page}
     return best[1]
+
+
+def _coloured(log: str) -> str:
+    """A log as HTML, coloured as on the chapters' pages."""
+    return str(highlight(log, LogLexer(), HtmlFormatter(nowrap=True)))
 
 
 def _pictures(chapter: Chapter, ran: Ran) -> Iterator[tuple[Cell, dict[str, Any]]]:

@@ -9,6 +9,9 @@ GLOSSARY = "glossary"
 ABOUT = "about"
 SEARCH = "search"
 
+#: Ends the name of the file that stands beside a staged page, with what the theme shows around it.
+FRAME_SUFFIX = ".frame.json"
+
 
 def chapter_page(chapter: Path | str) -> str:
     """The page of a chapter, named by its file or its stem."""

@@ -5,11 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from spinbook.site.contents import Contents
-from spinbook.site.names import HOME
+from spinbook.site.names import FRAME_SUFFIX, HOME
 from spinbook.written import write_if_changed
-
-#: What stands beside a page for the theme.
-FRAME_SUFFIX = ".frame.json"
 
 
 def stage(contents: Contents, folder: Path) -> None:

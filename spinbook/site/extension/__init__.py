@@ -7,7 +7,7 @@ from typing import Any
 from sphinx.application import Sphinx
 
 from spinbook.site.extension import body, cells, maths, sections, terms
-from spinbook.site.extension.log_lexer import LogLexer
+from spinbook.site.log_lexer import LogLexer
 
 NAME = "spinbook.site.extension"
 

@@ -11,7 +11,7 @@ from docutils import nodes
 from PIL import Image
 from sphinx.application import Sphinx
 
-from spinbook.site.staging import FRAME_SUFFIX
+from spinbook.site.names import FRAME_SUFFIX
 
 _IMAGE = re.compile(r"<img\b[^>]*>")
 _SOURCE = re.compile(r'\bsrc="([^"]+)"')

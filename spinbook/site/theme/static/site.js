@@ -63,7 +63,7 @@ async function toClipboard(text) {
 
 function copying() {
   for (const code of document.querySelectorAll("main .highlight > pre")) {
-    if (code.closest(".cell_output")) continue;
+    if (code.closest(".cell_output, .shown")) continue;
     const button = document.createElement("button");
     button.type = "button";
     button.className = "copy";
