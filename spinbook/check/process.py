@@ -29,8 +29,9 @@ def checked(exercise: Path, code: str, seconds: float) -> dict[str, str]:
             status = process.wait(seconds)
             if status.running:
                 raise CellFailed(
-                    f"The check was not done after {seconds:g} s and has been stopped. The machine may be very busy: "
-                    f"try again, or allow it more time, as in %check --seconds {2 * seconds:g} {exercise.name}"
+                    f"The check was not done after {seconds:g} s and has been stopped. Does your program do something "
+                    "for a long time before it spins its node? If not, this machine may be very busy: try again, or "
+                    f"allow more time, as in %check {exercise.name} --seconds {2 * seconds:g}"
                 )
             said = process.read_all()[0].decode(errors="replace")
         except KeyboardInterrupt:

@@ -17,9 +17,9 @@ def without_comments(markdown: str) -> str:
     for line in markdown.split("\n"):
         if inside:
             _, ended, line = line.partition("-->")
-            if not ended:
+            inside = not ended
+            if not line.strip():
                 continue
-            inside = False
         elif match := _FENCE.match(line):
             mark, info = match.groups()
             if not fence:

@@ -82,9 +82,14 @@ class Kernel:
 
         return look
 
+    @property
+    def process_id(self) -> int:
+        """The kernel's."""
+        return int(self._manager.provisioner.pid)
+
     def kill(self) -> None:
         """kill -9."""
-        os.kill(self._manager.provisioner.pid, signal.SIGKILL)
+        os.kill(self.process_id, signal.SIGKILL)
 
     def shut_down(self) -> None:
         """What closing the notebook does."""
