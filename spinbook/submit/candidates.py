@@ -32,9 +32,14 @@ def candidates(exercise: Exercise, folder: Path) -> list[Candidate]:
     files = [folder / exercise.file_name, *sorted(folder.glob("*.ipynb")), exercise.folder / exercise.file_name]
     found = [Candidate(file, read(str(file), exercise), _name(file, folder)) for file in files if file.is_file()]
     found = [candidate for candidate in found if candidate.submission.program]
-    begun = [candidate for candidate in found if _bare(candidate.submission.source) not in _starters(exercise)]
+    begun = [candidate for candidate in found if not is_starter(candidate, exercise)]
     by_code = {_bare(candidate.submission.source): candidate for candidate in reversed(begun or found)}
     return [candidate for candidate in found if candidate in by_code.values()]
+
+
+def is_starter(candidate: Candidate, exercise: Exercise) -> bool:
+    """Whether this is the starter still, as it was handed out."""
+    return _bare(candidate.submission.source) in _starters(exercise)
 
 
 def _name(file: Path, folder: Path) -> str:

@@ -15,7 +15,7 @@ from grader.report.terminal import show
 from grader.submission import NoSubmission, read
 from spinbook.problem import Problem, SpinbookError
 from spinbook.submit import student as names
-from spinbook.submit.candidates import Candidate, candidates
+from spinbook.submit.candidates import Candidate, candidates, is_starter
 from spinbook.submit.hand_in import HandIn, default_target, write_upload
 from spinbook.submit.self_check import SelfCheck, self_check
 
@@ -60,6 +60,8 @@ def submit(
             Problem(target, None, f"it can't be written: {error.strerror}.", "Name another place: --output FILE")
         ) from None
     console.print(f"Your code is from {chosen.origin}.", markup=False)
+    if is_starter(chosen, wanted):
+        console.print("It is still the starter, as it was handed out. Was your work saved?", style="bold yellow")
     if not name:
         console.print("Your name is not in it. If your course wants it there: --student NAME", markup=False)
     console.print(f"Upload this file: {_shown(target)}", style="bold", markup=False, soft_wrap=True)

@@ -101,6 +101,25 @@ def test_an_untouched_starter_does_not_count_beside_the_students_work(folder: Pa
     assert upload().record["from"] == "week3.ipynb"
 
 
+def test_a_starter_that_nobody_touched_is_handed_in_with_a_word(folder: Path) -> None:
+    write_notebook("week3.ipynb", STARTER)
+    done = submitted("--no-check")
+    assert done.exit_code == 0
+    assert "still the starter" in done.output
+
+
+def test_the_file_beside_the_task_is_found_and_its_starter_known(folder: Path) -> None:
+    own = Path("exercises/joint_velocity/joint_velocity.py")
+    kept = Path(".spinbook/base") / own
+    shutil.rmtree("solutions")
+    kept.parent.mkdir(parents=True)
+    kept.write_text(STARTER)
+    write_notebook("week3.ipynb", STARTER)
+    own.write_text(SOLUTION)
+    assert submitted("--no-check").exit_code == 0
+    assert upload().record["from"] == str(own)
+
+
 def test_the_same_code_twice_is_no_question(folder: Path) -> None:
     Path("joint_velocity.py").write_text(SOLUTION)
     write_notebook("week3.ipynb", SOLUTION)
