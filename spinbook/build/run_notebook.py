@@ -68,6 +68,7 @@ async def run(notebook: Any, folder: Path, deadline_s: float, watch: GraphWatch)
         on_cell_executed=on_executed,
     )
     _tell(cells=len(notebook.cells))
+    await watch.start()
     running = asyncio.ensure_future(client.async_execute())
     done, _ = await asyncio.wait([running], timeout=deadline_s)
     await watch.close()

@@ -1,14 +1,16 @@
-"""Watches the node graph of ROS_DOMAIN_ID on behalf of another process: `python -m spinbook.graph.observer`.
+"""Watches the node graph on behalf of another process: `python -m spinbook.graph.observer`.
 
 Reads words from standard input, a line each, and ends with it:
 
-    count    listen to topics that have a listener anyway, to know their rates, until the next word
-    look     stop that, wait until the graph is known, and print it as one line of JSON
+    domain N    look at this ROS domain from now on
+    count       listen to topics that have a listener anyway, to know their rates, until the next word
+    look        stop that, wait until the graph is known, and print it as one line of JSON
 """
 
 from __future__ import annotations
 
 import json
+import os
 import queue
 import sys
 import threading
@@ -25,14 +27,23 @@ def _listen(words: queue.SimpleQueue[str]) -> None:
 
 def observe(words: queue.SimpleQueue[str]) -> None:
     """Do what the words say, until "end"."""
-    with Sight() as sight:
-        while (word := words.get()) != "end":
-            while word == "count" and words.empty():
-                sight.count()
-            sight.stop_counting()
-            if word == "look":
-                sight.come_to_rest()
-                print(json.dumps(json.loads(sight.graph().to_json())), flush=True)
+    word = words.get()
+    while word != "end":
+        os.environ["ROS_DOMAIN_ID"] = word.removeprefix("domain ")
+        with Sight() as sight:
+            word = _look_at(sight, words)
+
+
+def _look_at(sight: Sight, words: queue.SimpleQueue[str]) -> str:
+    """Do what is asked of one domain; the word that ends it."""
+    while (word := words.get()) != "end" and not word.startswith("domain "):
+        while word == "count" and words.empty():
+            sight.count()
+        sight.stop_counting()
+        if word == "look":
+            sight.come_to_rest()
+            print(json.dumps(json.loads(sight.graph().to_json())), flush=True)
+    return word
 
 
 def main() -> None:

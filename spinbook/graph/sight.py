@@ -23,7 +23,7 @@ from spinbook.ros2.refusal import Refusal
 #: Every node has these, and they tell nothing of what it is for.
 INTERNAL = ("/rosout", "/parameter_events")
 #: Seconds without a change after which the graph is taken for known, and after which it is so in any case.
-_QUIET_S, _DEADLINE_S = 0.15, 3.0
+_QUIET_S, _DEADLINE_S = 0.15, 8.0
 #: A topic is counted for so long at a time (s).
 _COUNTING_S = 2.5
 #: Hears publishers of every reliability and durability, and asks nothing of them.

@@ -18,12 +18,12 @@ from spinbook.runtime.environment import for_domain
 #: Cells during which messages may be counted: no command and no snippet looks at the graph meanwhile.
 COUNTED_CELLS = ("%%node", "%plot")
 #: An observer that has not answered for so long (s) is given up: the notebook matters more than its picture.
-_PATIENCE_S = 15.0
+_PATIENCE_S = 60.0
 _PR_SET_PDEATHSIG = 1
 
 
 class GraphWatch:
-    """Follows the notebook whose kernel writes its ROS domain into the file `note`; a context manager.
+    """Follows the notebook whose kernel writes its ROS domain into the file `note`.
 
     Where the graph can't be watched, nothing is seen and nothing fails.
     """
@@ -34,16 +34,22 @@ class GraphWatch:
         self._domain = ""
         self._observer: Process | None = None
 
+    async def start(self) -> None:
+        """Start the observer, which gets ready while the kernel does."""
+        environment = {**os.environ, **for_domain(0, os.environ)}
+        argv = (sys.executable, "-m", "spinbook.graph.observer")
+        self._observer = await asyncio.create_subprocess_exec(
+            *argv, env=environment, stdin=PIPE, stdout=PIPE, stderr=DEVNULL, limit=1 << 24, preexec_fn=_die_with_parent
+        )
+
     async def cell_begins(self, source: str) -> None:
         """A cell is about to run."""
-        if source.startswith(COUNTED_CELLS):
+        if self._domain and source.startswith(COUNTED_CELLS):
             self._tell("count")
 
     async def cell_ends(self, cell: str) -> None:
-        """The cell with this id has run."""
-        with contextlib.suppress(OSError):
-            await self._follow(self._note.read_text(encoding="utf-8"))
-        if self._observer is None or self._observer.stdout is None:
+        """The cell with this id has run: what is there now belongs to it."""
+        if not self._follow() or self._observer is None or self._observer.stdout is None:
             return
         try:
             self._tell("look")
@@ -52,17 +58,14 @@ class GraphWatch:
         except (ValueError, OSError, asyncio.TimeoutError):
             await self.close()
 
-    async def _follow(self, domain: str) -> None:
-        """Observe that domain from now on."""
-        if domain == self._domain:
-            return
-        await self.close()
-        self._domain = domain
-        environment = {**os.environ, **for_domain(int(domain), os.environ)}
-        argv = (sys.executable, "-m", "spinbook.graph.observer")
-        self._observer = await asyncio.create_subprocess_exec(
-            *argv, env=environment, stdin=PIPE, stdout=PIPE, stderr=DEVNULL, limit=1 << 24, preexec_fn=_die_with_parent
-        )
+    def _follow(self) -> bool:
+        """Let the domain be observed in which the notebook's nodes talk; whether they talk in any yet."""
+        with contextlib.suppress(OSError):
+            domain = self._note.read_text(encoding="utf-8")
+            if domain != self._domain:
+                self._domain = domain
+                self._tell(f"domain {domain}")
+        return bool(self._domain)
 
     def _tell(self, word: str) -> None:
         if self._observer is not None and self._observer.stdin is not None:
