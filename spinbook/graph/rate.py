@@ -23,20 +23,23 @@ class _Stream:
 
 @dataclass
 class Counted:
-    """The messages of a topic that were heard, told apart by publisher.
+    """The messages of a topic with so many publishers that were heard, told apart by publisher.
 
     Each publisher numbers its messages, so that what was missed in between is counted too (RTPS 2.5, 8.3.5.4), and
     stamps them when it sends them, so that the time that they took to come does not matter.
     """
 
+    publishers: int = 1
     _streams: list[_Stream] = field(default_factory=list)
 
     def heard(self, number: int, sent_ns: int) -> None:
         """Take in a message by its sequence number and source time stamp."""
         following = [stream for stream in self._streams if stream.last[0] < number and stream.last[1] <= sent_ns]
-        # The next number goes on with a stream; a gap is loss, in the stream that it leaves the fewest out of.
+        # The next number goes on with a stream. A gap is another publisher while some have not been heard, then loss,
+        # in the stream out of which it leaves the fewest.
         nearest = max(following, key=lambda stream: stream.last[0], default=None)
-        if nearest is None or number - nearest.last[0] > 20:
+        unheard = len(self._streams) < self.publishers
+        if nearest is None or (unheard and number - nearest.last[0] > 1):
             self._streams.append(_Stream((number, sent_ns), (number, sent_ns)))
         else:
             nearest.last = (number, sent_ns)

@@ -98,7 +98,7 @@ class Sight(Graph):
         heard = unheard or _shown(self.subscriptions(name))
         if not publishers or not heard or self._rates.get(name, (0, 0))[0] >= len(publishers):
             return
-        counted = Counted()
+        counted = Counted(len(publishers))
         try:
             kind = message_class(publishers[0].topic_type)
         except Refusal:
