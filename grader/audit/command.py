@@ -83,8 +83,13 @@ def audit(
 def _audited(
     exercise: Exercise, options: Options, crew: Crew, quick: bool, mutants: int | None, console: Console
 ) -> Audit:
-    from grader.audit.audit import audit as audit_one
-
+    try:
+        from grader.audit.audit import audit as audit_one
+    except ModuleNotFoundError as error:
+        if error.name != "libcst":
+            raise
+        told = "Mutants are made with libcst, which is not installed: pip install 'spinbook[audit]'"
+        raise click.UsageError(told) from None
     with on(Console(stderr=True)) as progress:
         result = audit_one(exercise, options, crew, progress, quick, mutants)
     show(result, console)

@@ -147,8 +147,8 @@ if __name__ == '__main__':
 MISTAKES = {
     "says_nothing": ("Publishes nothing.", "self.publisher.publish(", "(", ["test_publishes"]),
     "adds_two": ("Adds two.", "2 * message.data", "2 + message.data", ["test_twice_the_number"]),
-    "twice": ("Says it twice.", "        # END", "            self.publisher.publish(Float64(data=2 * message.data))\n        # END",
-              ["test_once"]),
+    "twice": ("Says it twice.", "        # END",
+              "            self.publisher.publish(Float64(data=2 * message.data))\n        # END", ["test_once"]),
     "another_name": ("Is called otherwise.", "__init__('doubler')", "__init__('dubler')", ["test_is_called_doubler"]),
     "no_end": ("Does not catch Ctrl-C.", "KeyboardInterrupt, ", "", ["test_ends_on_ctrl_c"]),
     "any_number": ("Doubles negative numbers, too.", ">= 0", "> -100", ["test_nothing_below_zero"]),
