@@ -57,8 +57,15 @@ def spinbook() -> None:
       spinbook site               the course's website, from the notebooks as they ran
       spinbook package            the chapters' nodes as a ROS 2 package
       spinbook grade EXERCISE F   what is right and wrong in a student's node
+      spinbook new COURSE         a small course of your own that works at once, to go on from
       spinbook gradescope E       an autograder to upload to Gradescope
       spinbook audit              whether the exercises' checks catch what is wrong
+
+    In a student's folder of a course:
+
+    \b
+      spinbook submit EXERCISE    one file to upload, with what the public checks say
+      spinbook update NEW.zip     a newer handout, with your work kept
     """
 
 
