@@ -62,6 +62,8 @@ def update(new_handout: Path | None, dry_run: bool) -> None:
         click.echo(f"What was there before is in {backup.relative_to(folder)}/.")
     if _INSTALLS & {place.name for place in made.writes}:
         click.echo("What to install has changed, too: follow the first step of README.md again.")
+    for wheel in (place for place in made.writes if place.suffix == ".whl"):
+        click.echo(f"Spinbook itself has changed, too: pip install --force-reinstall --no-deps {wheel}")
 
 
 def _folder(start: Path) -> Path:
