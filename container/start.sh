@@ -4,4 +4,4 @@
 set -eu
 cd "$(dirname "$0")/.."
 spinbook build || echo "Not every chapter could be built: see above." >&2
-exec jupyter lab --ip=0.0.0.0 --port=8888 --no-browser --ServerApp.root_dir="$PWD/build/notebooks" "$@"
+exec jupyter lab --ip=0.0.0.0 --no-browser --ServerApp.root_dir="$PWD/build/notebooks" "$@"
