@@ -59,6 +59,7 @@ def spinbook() -> None:
       spinbook grade EXERCISE F   what is right and wrong in a student's node
       spinbook new COURSE         a small course of your own that works at once, to go on from
       spinbook gradescope E       an autograder to upload to Gradescope
+      spinbook handout            what students get: no solutions, no hidden checks
       spinbook audit              whether the exercises' checks catch what is wrong
 
     In a student's folder of a course:

@@ -60,7 +60,10 @@ def close(got: Any, expected: Any, tolerance: float) -> bool:
 
 def _answer(run: Run, exchange: Exchange) -> Message:
     if not exchange.answers:
-        run.wrong(exchange, "an answer was expected, none came.", "", "a message", "nothing")
+        told = "an answer was expected, none came."
+        if not exchange.sent.heard and run.subscriptions(exchange.sent.topic):
+            told += f" Your node did not subscribe to {exchange.sent.topic} yet: create the subscription in __init__."
+        run.wrong(exchange, told, "", "a message", "nothing")
     return exchange.answers[0]
 
 

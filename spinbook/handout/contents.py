@@ -13,7 +13,7 @@ from spinbook.build.notebooks import build_notebooks
 from spinbook.course.course import Course
 from spinbook.handout.exercise import exercise_files
 from spinbook.handout.guide import Listing, guide_files
-from spinbook.handout.leaks import leaks, secrets
+from spinbook.handout.leaks import Secret, leaks, secrets
 from spinbook.handout.notebook import for_students
 from spinbook.handout.wheel import wheel
 from spinbook.problem import Problem, SpinbookError
@@ -46,13 +46,14 @@ def handout(course: Course) -> Handout:
             except ExerciseError as error:
                 raise SpinbookError(Problem(error.file, error.line, error.found, error.mend)) from None
             files |= {f"exercises/{exercise.name}/{name}": content for name, content in copy.items()}
+    known = [secret for name in sorted(course.exercises) for secret in secrets(_load(course, name))]
+    _prove(files, known)
     name, content = wheel()
     files[f"wheels/{name}"] = content
     slug = re.sub(r"[^a-z0-9]+", "-", course.title.lower()).strip("-") or "course"
     files |= guide_files(course.title, slug, course.ros_distro, name, sorted(notebooks), listings)
     files |= base_files(files)
-    files |= base_files(files)
-    _prove(course, files)
+    _prove(files, known)
     return Handout(slug, files, tuple(listings))
 
 
@@ -86,9 +87,8 @@ def _listing(exercise: Exercise, crew: Crew) -> Listing:
     return Listing(exercise.name, exercise.title, exercise.file_name, len(checks) - hidden, hidden)
 
 
-def _prove(course: Course, files: dict[str, bytes]) -> None:
-    """See to it that no secret of any exercise, set or not, is in any file."""
-    known = [secret for name in sorted(course.exercises) for secret in secrets(_load(course, name))]
+def _prove(files: dict[str, bytes], known: list[Secret]) -> None:
+    """See to it that no secret is in any file."""
     mend = "Students must not see it. Take it out of the chapter, the task or the public checks."
     if found := list(leaks(files, known)):
         folder = Path("build", "handout")

@@ -30,17 +30,28 @@ class Site:
     """False where nothing that the site depends on has changed since it was built."""
 
 
-def build_site(course: Course, on_page: Callable[[str], None]) -> Site:
+#: What Spinbook's own code makes of a course, down to the outputs of its notebooks.
+_CODE = ("site", "chapter", "build", "course", "runtime", "ros2", "turtlesim", "package", "graph", "animation")
+
+
+def unchanged_site(course: Course, *, as_it_ran: bool) -> Site | None:
+    """The site as it was built before, if nothing that it depends on has changed since, else None."""
+    before = _read(_record(course))
+    folder = course.build_folder / "site"
+    if before.get("key") != _key(course, as_it_ran=as_it_ran) or not (folder / f"{names.HOME}.html").exists():
+        return None
+    return Site(folder, int(before["pages"]), (), (), 0.0, fresh=False)
+
+
+def build_site(course: Course, on_page: Callable[[str], None], *, as_it_ran: bool) -> Site:
     """Build `build/site` from the chapters, the executed notebooks and the exercises; `on_page` hears of each page.
 
-    Raises SpinbookError with what an author has to mend. The site of the last good build then stays as it was.
+    `as_it_ran` says that the outputs may be older than the chapters. Raises SpinbookError with what an author has to
+    mend; the site of the last good build then stays as it was.
     """
     started = time.monotonic()
-    folder = course.build_folder / "site"
-    record = course.build_folder / ".cache" / "site" / "site.json"
-    key = _key(course)
-    if (before := _read(record)).get("key") == key and (folder / f"{names.HOME}.html").exists():
-        return Site(folder, int(before.get("pages", 0)), (), (), time.monotonic() - started, fresh=False)
+    record, folder = _record(course), course.build_folder / "site"
+    before, key = _read(record), _key(course, as_it_ran=as_it_ran)
     # Sphinx takes a second to import: only where it is needed.
     from spinbook.site.contents import read_contents
     from spinbook.site.publish import publish
@@ -69,7 +80,11 @@ def build_site(course: Course, on_page: Callable[[str], None]) -> Site:
     return Site(folder, len(pages), tuple(made), tuple(problems), time.monotonic() - started, fresh=True)
 
 
-def _key(course: Course) -> str:
+def _record(course: Course) -> Path:
+    return course.build_folder / ".cache" / "site" / "site.json"
+
+
+def _key(course: Course, *, as_it_ran: bool) -> str:
     """All that the site depends on."""
     inputs = [course.root / FILE, *(course.root / chapter for chapter in course.chapters)]
     inputs += [course.root / course.glossary] if course.glossary else []
@@ -78,7 +93,7 @@ def _key(course: Course) -> str:
     for made in ("executed", "notebooks"):
         inputs += (course.build_folder / made).glob("*.*")
     repository = repository_of(course.root, course.repository)
-    return digest(files_digest(inputs), code_digest("site", "chapter", "build", "course"), versions(), repr(repository))
+    return digest(files_digest(inputs), code_digest(*_CODE), versions(), repr(repository), str(as_it_ran))
 
 
 def _read(record: Path) -> dict[str, str]:

@@ -32,7 +32,7 @@ def without(small: SmallExercise, file: str, check: str) -> None:
 def test_a_sound_exercise_has_nothing_to_mend(small: SmallExercise, audited: Auditing) -> None:
     result = audited(small, most=6)
     assert result.problems == ()
-    assert result.count("caught") >= 4
+    assert result.count("caught") >= 3
     assert {program.name: program.score for program in result.programs if program.kind != "mistake"} == {
         "solution.py": 10, "the starter": 0, "an empty file": 0, "a node that does nothing": 0,
     }  # fmt: skip

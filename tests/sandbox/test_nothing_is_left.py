@@ -120,10 +120,11 @@ def test_no_temporary_folder_is_left(any_rig: Rig) -> None:
     assert Path(told).name not in folders() or told == "/"
 
 
-def test_two_hundred_programs_leave_nothing(any_rig: Rig) -> None:
+@pytest.mark.parametrize("times", [10, pytest.param(200, marks=pytest.mark.soak)])
+def test_many_programs_leave_nothing(any_rig: Rig, times: int) -> None:
     name = f"m{uuid.uuid4().hex[:12]}"
     before = any_rig.do(resources)
-    for _ in range(200 if any_rig.level is Isolation.NAMESPACES and not any_rig.rootless else 10):
+    for _ in range(times):
         any_rig.do(start_and_kill, name)
 
     # A thread that has been joined is listed until the kernel has cleared it away; a leak is there for good.
