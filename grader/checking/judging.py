@@ -26,18 +26,13 @@ def judge(
     files of checks are unusable. Runs pytest in this process, with none of the plugins installed on this machine.
     """
     runs = {name: Run(exercise, recordings[name], references[name], titles.get(name, "")) for name in recordings}
-    checks = Checks()
-    run_pytest(exercise, runs, checks)
-    return tuple(checks.verdicts.values())
+    return _pytest(exercise, runs)
 
 
-def run_pytest(exercise: Exercise, runs: dict[str, Run], checks: Checks) -> None:
-    """Run the exercise's checks on `runs` with pytest in this process; `checks` keeps what comes of them.
-
-    Raises `ExerciseError` where the files of checks are unusable.
-    """
+def _pytest(exercise: Exercise, runs: dict[str, Run]) -> tuple[Verdict, ...]:
     if not exercise.check_files:
         raise ExerciseError(exercise.folder / "checks.py", "there is no such file", "Write at least one check.")
+    checks = Checks()
     arguments = [
         *("--assert=plain", "--import-mode=importlib", "-p", "no:cacheprovider", "-p", "no:terminal"),
         *("-c", os.devnull, "--rootdir", str(exercise.folder), "-o", "python_files=*.py", "--capture=fd"),
@@ -50,6 +45,7 @@ def run_pytest(exercise: Exercise, runs: dict[str, Run], checks: Checks) -> None
     if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
         file: Path = exercise.check_files[0]
         raise ExerciseError(file, f"pytest ended with {pytest.ExitCode(code).name}", "Are there any checks in it?")
+    return tuple(checks.verdicts.values())
 
 
 @contextlib.contextmanager

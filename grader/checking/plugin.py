@@ -35,14 +35,10 @@ def _giving(run: Run) -> Any:
 
 
 class Checks:
-    """Collects an exercise's checks and keeps their verdicts. With `run` False none is run: each counts as blocked.
-
-    `fixtures` are the names that each check asks for, also by way of another fixture.
-    """
+    """Collects an exercise's checks and keeps their verdicts."""
 
     def __init__(self, run: bool = True) -> None:
         self._run = run
-        self.fixtures: dict[str, tuple[str, ...]] = {}
         self._marks: dict[str, Mark] = {}
         self.verdicts: dict[str, Verdict] = {}
         self.problem: ExerciseError | None = None
@@ -53,10 +49,9 @@ class Checks:
         for item in items:
             try:
                 self._marks[item.name] = self._mark(item)
-                self.fixtures[item.name] = tuple(getattr(item, "fixturenames", ()))
             except ExerciseError as error:
                 self.problem = self.problem or error
-        if self.problem:
+        if self.problem or not self._run:
             items.clear()
 
     def _mark(self, item: pytest.Item) -> Mark:

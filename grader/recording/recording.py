@@ -14,16 +14,12 @@ Fields = dict[str, Any]
 
 @dataclass(frozen=True)
 class Sent:
-    """A message that a reference publisher published at `at` ns of simulated time.
-
-    `heard` is whether the student's node subscribed to its topic then.
-    """
+    """A message that a reference publisher published at `at` ns of simulated time."""
 
     at: int
     topic: str
     type: str
     fields: Fields
-    heard: bool = True
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,6 @@ from std_srvs.srv import Trigger
 
 from spinbook.turtlesim.drawing import save
 from spinbook.turtlesim.listening import Heard
-from spinbook.turtlesim.moving import moving_svg
 from spinbook.turtlesim.world_picture import WorldPicture
 
 #: The node's full name where nobody has put it elsewhere.
@@ -113,8 +112,8 @@ def _heard(heard: Heard, node: str, seconds: float) -> WorldPicture:
     )
 
 
-def write(file: Path, timeout_s: float, listen_s: float, node: str, moving: Path | None = None) -> WorldPicture:
-    """Fetch the world and write its picture to `file`, and the moving one to `moving` if a turtle has moved.
+def write(file: Path, timeout_s: float, listen_s: float, node: str) -> WorldPicture:
+    """Fetch the world and write its picture to `file`.
 
     Raises:
         NoPictureError: if there is none, or it can't be written there.
@@ -124,10 +123,8 @@ def write(file: Path, timeout_s: float, listen_s: float, node: str, moving: Path
     world = fetch(timeout_s, listen_s, node)
     try:
         save(world, file)
-        if moving is not None and (svg := moving_svg(world)) is not None:
-            moving.write_text(svg, encoding="utf-8")
     except OSError as error:
-        raise NoPictureError(f"{error.filename or file} can't be written: {error.strerror}") from error
+        raise NoPictureError(f"{file} can't be written: {error.strerror}") from error
     return world
 
 

@@ -69,12 +69,7 @@ def main() -> None:
     """Record until told to stop."""
     rclpy.init()
     try:
-        recorder: Node = Recorder(sys.argv[1:])
-        try:
-            rclpy.spin(recorder)
-        finally:
-            # Without this its end is not announced, and others see it for another minute.
-            recorder.destroy_node()
+        rclpy.spin(Recorder(sys.argv[1:]))
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     except (LookupError, ValueError) as error:

@@ -1,1 +1,0 @@
-"""Shows that an exercise's checks catch what is wrong and pass what is right."""

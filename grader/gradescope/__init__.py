@@ -1,1 +1,0 @@
-"""Grading on Gradescope: what it is told of a grade, and the autograder that is uploaded there."""

@@ -1,1 +1,0 @@
-"""`spinbook handout`: what students get, as a folder and as one zip."""

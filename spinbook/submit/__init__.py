@@ -1,1 +1,0 @@
-"""`spinbook submit`: one file to upload, with the student's code and what the public checks say of it."""

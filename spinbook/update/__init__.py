@@ -1,1 +1,0 @@
-"""`spinbook update`: a newer handout, with the student's work kept."""
