@@ -13,7 +13,7 @@ unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 # A sourced ROS 2 brings pytest plugins that do not load with a current pytest: only those named here are.
 PYTEST := PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(BIN)/pytest -p pytest_timeout -p xdist.plugin -p _hypothesis_pytestplugin
 
-.PHONY: help setup course test soak doctor lock clean
+.PHONY: help setup course test soak audit doctor lock clean
 
 help:    ## List what can be made.
 	@sed -nE 's/^([a-z]+):.*##/\1\t/p' Makefile | expand -t 10
@@ -30,6 +30,7 @@ course: setup   ## Build, run and package the real course, and grade a submissio
 	@echo "Open a notebook in any editor, with $(BIN)/python as its Python."
 
 test: setup   ## Check types and style, then run every test.
+	@sh test-programs.sh
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -37,6 +38,10 @@ test: setup   ## Check types and style, then run every test.
 
 soak: setup   ## The long suites in their full size.
 	$(PYTEST) -m soak
+
+audit: setup   ## Show what every exercise's checks are worth; the report lies in build/audit.html.
+	@mkdir -p build
+	$(BIN)/spinbook audit --html build/audit.html --json build/audit.json
 
 doctor: setup   ## Say what works on this machine, and how to mend what does not.
 	$(BIN)/spinbook doctor

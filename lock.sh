@@ -23,13 +23,15 @@ compile() {
 # A sourced ROS 2 leaves lark, with which it reads interface files, to the system's Python: see rosidl_parser.
 echo "lark-parser" >"$new/sourced.in"
 echo "Pinning what Spinbook needs ..." >&2
-compile pyproject.toml "$new/sourced.in" --extra colcon --extra bag --extra dev --output-file "$new/constraints.txt"
+compile pyproject.toml "$new/sourced.in" --extra colcon --extra bag --extra site --extra audit --extra cluster \
+    --extra lab --extra dev --output-file "$new/constraints.txt"
 echo "Pinning ROS 2 ..." >&2
 compile pyproject.toml --extra ros --constraints "$new/constraints.txt" --output-file "$new/everything.txt"
 
-# What is in the first file is left out of the second. A pin is a line at the margin and the indented ones below it.
+# What is in the first file is left out of the second. A pin is a line at the margin and the indented ones below it;
+# the same version under other conditions is the same pin, for the first file's conditions are the wider ones.
 awk '
-    /^[^ #]/ { pin = $0; sub(/ *\\$/, "", pin); known = (pin in base) }
+    /^[^ #]/ { pin = $1; known = (pin in base) }
     NR == FNR { if (pin) base[pin]; next }
     /^#/ { next }
     !known

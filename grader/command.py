@@ -9,8 +9,13 @@ import click
 from rich.console import Console
 
 from grader.crew import Crew, HostFault
+from grader.deadline import OverridesError
 from grader.exercise import Exercise, ExerciseError, load
+from grader.exercise.finding import NoExercise, find
 from grader.grading import Grade, Options, grading_of
+from grader.intake import IntakeError
+from grader.marking.order import Order
+from grader.marking.results import Busy
 from grader.report.as_json import as_json
 from grader.report.terminal import show
 from grader.sandbox import Isolation, SandboxUnavailable
@@ -36,6 +41,22 @@ FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
     type=click.Choice([level.value for level in Isolation]),
     help="How the node is kept apart from this machine.  [default: the strongest that works here]",
 )
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="A class: the folder of the results.")
+@click.option("--jobs", type=click.IntRange(1, 64), help="A class: how many submissions to grade at once.")
+@click.option(
+    "--regrade",
+    multiple=True,
+    is_flag=False,
+    flag_value="*",
+    metavar="[STUDENT]",
+    help="A class: grade again what has not changed, all or one student's, and say what is different.",
+)
+@click.option(
+    "--overrides",
+    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    help="A class: a CSV file with the columns student, points or due, reason.",
+)
+@click.option("--scheduler", metavar="ADDRESS", default="", help="A class: let this Dask cluster do the work.")
 def grade(
     exercise: str,
     submission: str,
@@ -46,8 +67,13 @@ def grade(
     real_time: bool,
     seed: int,
     isolation: str | None,
+    out: Path | None,
+    jobs: int | None,
+    regrade: tuple[str, ...],
+    overrides: Path | None,
+    scheduler: str,
 ) -> None:
-    """Grade one SUBMISSION for an EXERCISE: spin the node, and say what is right and wrong.
+    """Grade one SUBMISSION for an EXERCISE, or a whole class: spin the node, and say what is right and wrong.
 
     The node is started as its own process, in a sandbox, and not changed. Reference publishers send it messages
     under a simulated clock; what it publishes is compared with what the solution publishes.
@@ -55,6 +81,7 @@ def grade(
     \b
       spinbook grade joint_velocity joint_velocity.py         a file
       spinbook grade joint_velocity week3.ipynb               the exercise's cell in a notebook
+      spinbook grade joint_velocity upload.zip                what `spinbook submit` has written
       spinbook grade joint_velocity my_package/joint_velocity an installed package's executable
       spinbook grade joint_velocity mine.py --plot mine.svg   see where it first goes wrong
       spinbook grade joint_velocity mine.py --verbose         see what the node logged
@@ -63,13 +90,26 @@ def grade(
     judged because another failed is marked as blocked.
 
     Exit codes: 0 full marks, 1 not, 2 wrong usage, 3 a fault of the course's or the machine's.
+
+    A class is a folder with a file or a folder a student, nbgrader's folder, a zip from Moodle or Canvas, or a CSV file
+    with the columns file and student. What is unchanged since it was graded is not graded again; a run that was stopped
+    goes on. Exit codes then: 0 all graded, 1 there are questions to settle, 2 wrong usage, 3 a fault of ours.
+
+    \b
+      spinbook grade joint_velocity submissions/ --out results/
+      spinbook grade joint_velocity moodle.zip --out results/ --overrides extensions.csv
+      spinbook grade joint_velocity submissions/ --out results/ --regrade anna
     """
+    options = Options(Isolation(isolation) if isolation else None, seed, 1.0 if real_time else None)
     try:
         found = load(_folder(exercise))
+        if out:
+            sys.exit(_class(found, Order(Path(submission), out, options, jobs, regrade, overrides, scheduler)))
+        if Path(submission).is_dir() or submission.endswith(".csv"):
+            raise click.UsageError(f"{submission}: to grade a class, say with --out where the results go.")
         handed_in = read(submission, found)
-        options = Options(Isolation(isolation) if isolation else None, seed, 1.0 if real_time else None)
         result = _graded(found, handed_in, options)
-    except NoSubmission as error:
+    except (NoSubmission, IntakeError, OverridesError, Busy) as error:
         raise click.UsageError(str(error)) from None
     except ExerciseError as error:
         _stop(f"The exercise is at fault, not the submission.\n{error}")
@@ -83,6 +123,12 @@ def grade(
         show(result, found, Console(soft_wrap=False, highlight=False), verbose)
     _write(result, found, plot, bag)
     sys.exit(OUR_FAULT if result.outcome == "host-error" else NOT_FULL_MARKS if not result.full_marks else FULL_MARKS)
+
+
+def _class(exercise: Exercise, order: Order) -> int:
+    from grader.marking.class_run import grade_class
+
+    return grade_class(exercise, order, Console(soft_wrap=False, highlight=False))
 
 
 def _graded(exercise: Exercise, submission: Submission, options: Options) -> Grade:
@@ -110,17 +156,10 @@ def _write(result: Grade, exercise: Exercise, plot: Path | None, bag: Path | Non
 
 
 def _folder(exercise: str) -> Path:
-    """The folder that EXERCISE means: a path, or a name in the exercises/ of this folder or of one above it."""
-    if Path(exercise, "exercise.toml").exists():
-        return Path(exercise)
-    known: list[str] = []
-    for course in (Path.cwd(), *Path.cwd().parents):
-        exercises = course / "exercises"
-        if (exercises / exercise / "exercise.toml").exists():
-            return exercises / exercise
-        known += sorted(file.parent.name for file in exercises.glob("*/exercise.toml"))
-    told = f"There are: {', '.join(known)}." if known else "Start in a course's folder, the one with exercises/ in it."
-    raise click.UsageError(f"There is no exercise {exercise!r} here. {told}")
+    try:
+        return find(exercise, Path.cwd())
+    except NoExercise as error:
+        raise click.UsageError(str(error)) from None
 
 
 def _stop(message: str) -> None:

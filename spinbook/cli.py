@@ -15,9 +15,16 @@ VERBS = {
     "build": "spinbook.build.command:build",
     "lint": "spinbook.lint.command:lint",
     "package": "spinbook.package.command:package",
+    "site": "spinbook.site.command:site",
     "ros2": "spinbook.ros2.command:ros2",
     "turtle": "spinbook.turtlesim.command:turtle",
     "grade": "grader.command:grade",
+    "gradescope": "grader.gradescope.command:gradescope",
+    "audit": "grader.audit.command:audit",
+    "handout": "spinbook.handout.command:command",
+    "submit": "spinbook.submit.command:submit",
+    "update": "spinbook.update.command:update",
+    "new": "spinbook.new.command:new",
     "doctor": "spinbook.doctor.command:doctor",
 }
 
@@ -47,8 +54,19 @@ def spinbook() -> None:
     \b
       spinbook lint               what will not run in the chapters, and why
       spinbook build --execute    chapters -> notebooks, run with real nodes
+      spinbook site               the course's website, from the notebooks as they ran
       spinbook package            the chapters' nodes as a ROS 2 package
       spinbook grade EXERCISE F   what is right and wrong in a student's node
+      spinbook new COURSE         a small course of your own that works at once, to go on from
+      spinbook gradescope E       an autograder to upload to Gradescope
+      spinbook handout            what students get: no solutions, no hidden checks
+      spinbook audit              whether the exercises' checks catch what is wrong
+
+    In a student's folder of a course:
+
+    \b
+      spinbook submit EXERCISE    one file to upload, with what the public checks say
+      spinbook update NEW.zip     a newer handout, with your work kept
     """
 
 

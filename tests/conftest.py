@@ -1,18 +1,16 @@
-"""What every test may use: a ROS domain of its own, a small course, a mark on the processes it starts."""
+"""What every test may use: a ROS domain of its own, a small course, a mark on its processes, a browser."""
 
 from __future__ import annotations
 
-import fcntl
-import os
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import ros_domains
+from browser import chromium
 from course_folder import CourseFolder
+from playwright.sync_api import Browser
 from process_mark import ProcessMark
-
-LOOPBACK = Path(__file__).parents[1] / "spinbook" / "runtime" / "loopback.xml"
 
 
 @pytest.fixture
@@ -21,21 +19,10 @@ def ros_domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
 
     The environment is set up for it, so that rclpy in this process and in every child uses it, on loopback only.
     """
-    # Domains above 60 are the tests'; notebooks take theirs from below.
-    locks = Path(tempfile.gettempdir()) / "spinbook-test-domains"
-    locks.mkdir(exist_ok=True)
-    for domain in range(61, 100):
-        with (locks / str(domain)).open("w") as lock:
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                continue
-            monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
-            monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SYSTEM_DEFAULT")
-            monkeypatch.setenv("FASTRTPS_DEFAULT_PROFILES_FILE", os.fspath(LOOPBACK))
-            yield domain
-            return
-    raise RuntimeError("every ROS domain from 61 to 99 is in use by another test")
+    with ros_domains.reserved() as domain:
+        for name, value in ros_domains.environment(domain).items():
+            monkeypatch.setenv(name, value)
+        yield domain
 
 
 @pytest.fixture
@@ -48,3 +35,10 @@ def course(tmp_path: Path) -> CourseFolder:
 def process_mark(monkeypatch: pytest.MonkeyPatch) -> ProcessMark:
     """Marks every process that the test starts."""
     return ProcessMark(monkeypatch)
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """A running Chromium; see browser.py for what to do with it."""
+    with chromium() as running:
+        yield running

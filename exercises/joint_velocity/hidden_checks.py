@@ -10,7 +10,13 @@ PUBLISHES = ["test_publishes_velocities"]
 VELOCITY = ["test_velocity_of_each_joint"]
 
 
-@check(points=3, hint="dt is not always 0.1 s. Take it from the stamps.", depends=VELOCITY, misconception="fixed dt")
+@check(
+    points=5,
+    hint="dt is not always 0.1 s. Take it from the stamps.",
+    depends=VELOCITY,
+    misconception="fixed dt",
+    rule="dt is the time between the two stamps, in seconds.",
+)
 def test_speed_that_never_changes(steady: Run) -> None:
     """A joint that moves at one speed has that velocity, at whatever times the messages come."""
     speeds = {"left_elbow": 0.25, "right_elbow": -1.5, "left_shoulder_pitch": 0.0}
@@ -23,34 +29,47 @@ def test_speed_that_never_changes(steady: Run) -> None:
     steady.must_match("velocity", per="name")
 
 
-@check(points=3, hint="dt is not always 0.1 s. Take it from the stamps.", depends=VELOCITY, misconception="fixed dt")
+@check(
+    points=5,
+    hint="dt is not always 0.1 s. Take it from the stamps.",
+    depends=VELOCITY,
+    misconception="fixed dt",
+    rule="Only the stamps tell the time.",
+)
 def test_uneven_times(irregular: Run) -> None:
     """Velocities are right when the messages come at uneven times."""
     irregular.must_match("velocity", per="name")
 
 
 @check(
-    points=3,
+    points=8,
     hint="A message may arrive late. Its stamp says when it was true, the clock only when it arrived.",
     depends=VELOCITY,
     misconception="time of arrival for the stamp",
+    rule="dt is the time between the two stamps, in seconds.",
 )
 def test_late_messages(delayed: Run) -> None:
     """Velocities are right when messages arrive later than their stamps say."""
     delayed.must_match("velocity", per="name")
 
 
-@check(points=2, hint="answer.header = message.header copies both.", depends=PUBLISHES)
+@check(
+    points=2,
+    hint="Copy the header as a whole: it holds the stamp and the frame.",
+    depends=PUBLISHES,
+    rule="Copy both stamp and frame_id.",
+)
 def test_frame_is_copied(delayed: Run) -> None:
     """The frame is that of the message that arrived, also when it changes."""
     delayed.must_match("header.frame_id", missing_ok=True)
 
 
 @check(
-    points=3,
+    points=4,
     hint="Neither time.time() nor the node's clock: only the stamps tell the time.",
     depends=PUBLISHES,
     misconception="wall clock",
+    rule="Never read the computer's clock (time.time()).",
 )
 def test_same_messages_same_answers(irregular: Run, irregular_again: Run) -> None:
     """The same messages get the same answers: it does not read the computer's clock."""
@@ -63,89 +82,148 @@ def test_same_messages_same_answers(irregular: Run, irregular_again: Run) -> Non
                     irregular.wrong(once, told, joint, "the same velocity twice", "two velocities")
 
 
-@check(points=3, hint="The stamps tell the time since the last message that arrived.", depends=VELOCITY)
+@check(
+    points=6,
+    hint="The stamps tell the time since the last message that arrived.",
+    depends=VELOCITY,
+    rule="The message just before is the last one that arrived.",
+)
 def test_lost_messages(lossy: Run) -> None:
     """Velocities are right when messages are lost."""
     lossy.must_match("velocity", per="name")
 
 
 @check(
-    points=3,
+    points=6,
     hint="Remember positions by name, not by place in the list.",
     depends=VELOCITY,
     misconception="joints by index",
+    rule="The order of the joints may change from message to message.",
 )
 def test_joints_in_another_order(reordered: Run) -> None:
     """Velocities are right when the joints stand in another order in each message."""
     reordered.must_match("velocity", per="name")
 
 
-@check(points=3, hint="Leave out a joint that the message just before did not have.", depends=VELOCITY)
+@check(
+    points=2,
+    hint="Leave out a joint that the message just before did not have.",
+    depends=VELOCITY,
+    rule="It was not in the message just before. Leave it out this time.",
+)
 def test_new_joint(new_joint: Run) -> None:
     """A joint that is new is left out once."""
     new_joint.must_match("velocity", per="name")
 
 
 @check(
-    points=3,
+    points=2,
     hint="Compare with the message just before, and with no older one.",
     depends=VELOCITY,
     misconception="remembers joints that were missing",
+    rule="When it comes back, it counts as new.",
 )
 def test_joint_that_comes_back(missing_joint: Run) -> None:
     """A joint that was missing counts as new when it comes back."""
     missing_joint.must_match("velocity", per="name")
 
 
-@check(points=3, hint="Publish nothing when dt is 0.", depends=VELOCITY, misconception="divides by dt = 0")
+@check(
+    points=4,
+    hint="Publish nothing when dt is 0.",
+    depends=VELOCITY,
+    misconception="divides by dt = 0",
+    rule="The stamp is the same as before, or earlier. Then dt is zero or negative. Publish nothing.",
+)
 def test_repeated_stamp(repeated_stamp: Run) -> None:
     """Nothing is published when the stamp is the one before; then it goes on as usual."""
     _silent_and_right(repeated_stamp)
 
 
-@check(points=3, hint="Publish nothing when dt is negative.", depends=VELOCITY, misconception="negative dt")
+@check(
+    points=3,
+    hint="Publish nothing when dt is negative.",
+    depends=VELOCITY,
+    misconception="negative dt",
+    rule="The stamp is the same as before, or earlier. Then dt is zero or negative. Publish nothing.",
+)
 def test_backward_stamp(backward_stamp: Run) -> None:
     """Nothing is published when the stamp goes back; then it goes on as usual."""
     _silent_and_right(backward_stamp)
 
 
-@check(points=2, hint="Divide by the whole time, however long.", depends=VELOCITY)
+@check(
+    points=4,
+    hint="Divide by the whole time, however long.",
+    depends=VELOCITY,
+    rule="Divide by the whole time between the stamps, even if it is 30 s.",
+)
 def test_long_gap(gap: Run) -> None:
     """Velocities are right after 30 s without a message."""
     gap.must_match("velocity", per="name")
 
 
-@check(points=3, hint="math.isfinite(position) tells. Leave such a joint out, now and the next time.", depends=VELOCITY)
+@check(
+    points=3,
+    hint="math.isfinite(position) tells. Leave such a joint out, now and the next time.",
+    depends=VELOCITY,
+    rule="This counts as if the joint were missing from that message. All other joints go on as usual.",
+)
 def test_not_finite(not_finite: Run) -> None:
     """A joint whose position is not a number or infinite is left out; the others go on."""
     not_finite.must_match("velocity", per="name")
 
 
-@check(points=2, hint="After an empty message every joint is new.", depends=VELOCITY)
+@check(
+    points=1,
+    hint="After an empty message every joint is new.",
+    depends=VELOCITY,
+    rule="Then every joint is missing from it.",
+)
 def test_empty_message(empty: Run) -> None:
     """Nothing is published for an empty message, nor for the one after it."""
     _silent_and_right(empty)
 
 
-@check(points=2, hint="zip() ends with the shorter list.", depends=VELOCITY)
+@check(
+    points=1,
+    hint="zip() ends with the shorter list.",
+    depends=VELOCITY,
+    rule="Names without a position count as missing from that message.",
+)
 def test_fewer_positions_than_names(short: Run) -> None:
     """Joints without a position are left out; the others go on."""
     short.must_match("velocity", per="name")
 
 
-@check(points=2, hint="Keep the callback short; never sleep in it.", depends=VELOCITY)
+@check(
+    points=3,
+    hint="Keep the callback short; never sleep in it.",
+    depends=VELOCITY,
+    rule="Answer each of them.",
+)
 def test_burst(burst: Run) -> None:
     """Each of 200 messages in 0.2 s gets its answer."""
     burst.must_match("velocity", per="name")
 
 
-@check(points=2, hint="Nothing is special about it: the position jumps.", depends=VELOCITY)
+@check(
+    points=1,
+    hint="Nothing is special about it: the position jumps.",
+    depends=VELOCITY,
+    rule="Publish the velocity of the jump.",
+)
 def test_publisher_restarts(restarted: Run) -> None:
     """When another publisher starts from zero, the jump is answered like any change."""
     restarted.must_match("velocity", per="name")
 
 
-@check(points=2, hint="Create the publisher once, in __init__.", depends=PUBLISHES)
+@check(
+    points=1,
+    hint="Create the publisher once, in __init__.",
+    depends=PUBLISHES,
+    rule="Create exactly one publisher on /joint_velocities.",
+)
 def test_one_publisher(chapter: Run) -> None:
     """There is exactly one publisher on /joint_velocities."""
     count = len(chapter.publishers(VELOCITIES))
@@ -153,12 +231,31 @@ def test_one_publisher(chapter: Run) -> None:
         fail(f"Publishers on {VELOCITIES}.", expected=1, got=count)
 
 
-@check(points=3, hint="Publish only on /joint_velocities.", depends=PUBLISHES)
+@check(
+    points=2,
+    hint="Publish only on /joint_velocities.",
+    depends=PUBLISHES,
+    rule="Publish nothing on /joint_commands and nothing on /clock.",
+)
 def test_leaves_other_topics_alone(chapter: Run) -> None:
     """It publishes nothing on /joint_commands and nothing on /clock."""
     for topic in (COMMANDS, CLOCK):
         if chapter.publishers(topic):
             fail(f"Your node has a publisher on {topic}.", expected="none", got=len(chapter.publishers(topic)))
+
+
+@check(
+    points=1,
+    hint="Give create_publisher and create_subscription a plain 10.",
+    depends=PUBLISHES,
+    rule="A number alone makes both ends reliable and volatile, as the chapter's are.",
+)
+def test_quality_of_service(chapter: Run) -> None:
+    """Both ends are reliable and volatile, as a queue depth alone makes them."""
+    for end in (*chapter.subscriptions(COMMANDS), *chapter.publishers(VELOCITIES)):
+        if (end.reliability, end.durability) != ("reliable", "volatile"):
+            got = f"{end.reliability} and {end.durability}"
+            fail(f"The {end.kind} on {end.topic} has another QoS.", expected="reliable and volatile", got=got)
 
 
 def _silent_and_right(run: Run) -> None:

@@ -9,7 +9,6 @@ from grader.scenario.joint_states import ARM_SWING as ARMS
 from grader.scenario.joint_states import (
     arm_swing,
     emptied,
-    every,
     framed,
     late,
     lost,
@@ -22,9 +21,9 @@ from grader.scenario.joint_states import (
     shuffled,
     stamped,
     stamps_moved,
-    uneven,
     without,
 )
+from grader.scenario.times import every, uneven
 
 #: Joints that move at one speed each (rad/s): whatever the stamps, that is their velocity.
 STEADY = {"left_elbow": 0.25, "right_elbow": -1.5, "left_shoulder_pitch": 0.0}

@@ -26,13 +26,18 @@ def judge(
     files of checks are unusable. Runs pytest in this process, with none of the plugins installed on this machine.
     """
     runs = {name: Run(exercise, recordings[name], references[name], titles.get(name, "")) for name in recordings}
-    return _pytest(exercise, runs)
+    checks = Checks()
+    run_pytest(exercise, runs, checks)
+    return tuple(checks.verdicts.values())
 
 
-def _pytest(exercise: Exercise, runs: dict[str, Run]) -> tuple[Verdict, ...]:
+def run_pytest(exercise: Exercise, runs: dict[str, Run], checks: Checks) -> None:
+    """Run the exercise's checks on `runs` with pytest in this process; `checks` keeps what comes of them.
+
+    Raises `ExerciseError` where the files of checks are unusable.
+    """
     if not exercise.check_files:
         raise ExerciseError(exercise.folder / "checks.py", "there is no such file", "Write at least one check.")
-    checks = Checks()
     arguments = [
         *("--assert=plain", "--import-mode=importlib", "-p", "no:cacheprovider", "-p", "no:terminal"),
         *("-c", os.devnull, "--rootdir", str(exercise.folder), "-o", "python_files=*.py", "--capture=fd"),
@@ -45,7 +50,6 @@ def _pytest(exercise: Exercise, runs: dict[str, Run]) -> tuple[Verdict, ...]:
     if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
         file: Path = exercise.check_files[0]
         raise ExerciseError(file, f"pytest ended with {pytest.ExitCode(code).name}", "Are there any checks in it?")
-    return tuple(checks.verdicts.values())
 
 
 @contextlib.contextmanager

@@ -20,7 +20,7 @@ def must_match(run: Run, field: str, per: str, tolerance: float, missing_ok: boo
             if per:
                 _compare_each(run, exchange, got, field, per, unit, tolerance)
             elif not close(got.value(field), exchange.expected[0].value(field), tolerance):
-                _differs(run, exchange, field, exchange.expected[0].value(field), got.value(field))
+                _differs(run, exchange, field, exchange.expected[0].value(field), got.value(field), unit)
 
 
 def must_answer(run: Run) -> None:
@@ -60,7 +60,10 @@ def close(got: Any, expected: Any, tolerance: float) -> bool:
 
 def _answer(run: Run, exchange: Exchange) -> Message:
     if not exchange.answers:
-        run.wrong(exchange, "an answer was expected, none came.", "", "a message", "nothing")
+        told = "an answer was expected, none came."
+        if not exchange.sent.heard and run.subscriptions(exchange.sent.topic):
+            told += f" Your node did not subscribe to {exchange.sent.topic} yet: create the subscription in __init__."
+        run.wrong(exchange, told, "", "a message", "nothing")
     return exchange.answers[0]
 
 
@@ -84,8 +87,9 @@ def _compare_each(
             run.wrong(exchange, told, str(name), "nothing", _shown(value, unit))
 
 
-def _differs(run: Run, exchange: Exchange, field: str, expected: Any, got: Any) -> None:
-    run.wrong(exchange, f"expected {field} {_shown(expected)}, got {_shown(got)}.", "", _shown(expected), _shown(got))
+def _differs(run: Run, exchange: Exchange, field: str, expected: Any, got: Any, unit: str) -> None:
+    wanted, came = _shown(expected, unit), _shown(got, unit)
+    run.wrong(exchange, f"expected {field} {wanted}, got {came}.", "", wanted, came)
 
 
 def _shown(value: Any, unit: str = "") -> str:

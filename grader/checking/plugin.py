@@ -35,10 +35,14 @@ def _giving(run: Run) -> Any:
 
 
 class Checks:
-    """Collects an exercise's checks and keeps their verdicts."""
+    """Collects an exercise's checks and keeps their verdicts. With `run` False none is run: each counts as blocked.
+
+    `fixtures` are the names that each check asks for, also by way of another fixture.
+    """
 
     def __init__(self, run: bool = True) -> None:
         self._run = run
+        self.fixtures: dict[str, tuple[str, ...]] = {}
         self._marks: dict[str, Mark] = {}
         self.verdicts: dict[str, Verdict] = {}
         self.problem: ExerciseError | None = None
@@ -49,9 +53,10 @@ class Checks:
         for item in items:
             try:
                 self._marks[item.name] = self._mark(item)
+                self.fixtures[item.name] = tuple(getattr(item, "fixturenames", ()))
             except ExerciseError as error:
                 self.problem = self.problem or error
-        if self.problem or not self._run:
+        if self.problem:
             items.clear()
 
     def _mark(self, item: pytest.Item) -> Mark:

@@ -31,10 +31,14 @@ class Part:
 
 
 class Message(Part):
-    """A message that was sent or received: its fields by name, its `stamp` (s), its topic, and when it came (s)."""
+    """A message that was sent or received: its fields by name, its `stamp` (s), its topic, and when it came (s).
+
+    Of a message sent, `heard` tells whether the student's node subscribed to its topic then.
+    """
 
     def __init__(self, kept: Sent | Received) -> None:
         super().__init__(kept.fields)
+        self.heard = not isinstance(kept, Sent) or kept.heard
         self.at = (kept.at - START) / SECOND
         self.topic = kept.topic
 

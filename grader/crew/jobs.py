@@ -61,3 +61,17 @@ class JudgeJob:
 
         ready()
         return judge(self.exercise, self.recordings, self.references, self.titles)
+
+
+@dataclass(frozen=True)
+class ListJob:
+    """List the exercise's checks."""
+
+    exercise: Exercise
+
+    def run(self, nursery: Nursery, ready: Callable[[], None]) -> Any:
+        """The checks, as `Listed`."""
+        from grader.checking.listing import listed
+
+        ready()
+        return listed(self.exercise)

@@ -20,11 +20,11 @@ def main() -> None:
     """Serve jobs until the other end of the control socket is closed."""
     control = socket.socket(fileno=int(sys.argv[1]))
     with Nursery() as nursery:
-        import sensor_msgs.msg  # noqa: F401
-
         import grader.crew.jobs
         import grader.rig.spin
+        from grader.crew.warmth import warm
 
+        warm()
         working: set[int] = set()
         while True:
             command, descriptors, _, _ = socket.recv_fds(control, 16, 1)

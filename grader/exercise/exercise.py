@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from grader.exercise.interface import Topic
@@ -13,7 +13,8 @@ class Exercise:
     """One folder of `exercises/`, read.
 
     `task` is the text for the student, in Markdown. `points` is what all checks give together.
-    `solution_folder` holds the author's solution, and is None in a student's copy of the course.
+    `solution_folder` holds the author's solution, and is None in a student's copy of the course. With `public_only` the
+    hidden checks are left out, as in a student's copy.
     """
 
     name: str
@@ -26,6 +27,7 @@ class Exercise:
     task: str
     topics: tuple[Topic, ...]
     solution_folder: Path | None
+    public_only: bool = False
 
     @property
     def scenarios_file(self) -> Path:
@@ -34,9 +36,18 @@ class Exercise:
 
     @property
     def check_files(self) -> tuple[Path, ...]:
-        """The public checks, then the hidden ones where they are present."""
-        files = (self.folder / "checks.py", self.folder / "hidden_checks.py")
-        return tuple(file for file in files if file.exists())
+        """The public checks, then the hidden ones where they are present and count."""
+        names = ("checks.py",) if self.public_only else ("checks.py", "hidden_checks.py")
+        return tuple(file for file in (self.folder / name for name in names) if file.exists())
+
+    @property
+    def public_file(self) -> Path:
+        """What a student's copy has in place of scenarios and a solution: see `grader.grading.public`."""
+        return self.folder / "public.json"
+
+    def public(self) -> Exercise:
+        """The same exercise with the public checks only."""
+        return replace(self, public_only=True)
 
     @property
     def solution_file(self) -> Path | None:

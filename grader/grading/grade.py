@@ -19,6 +19,9 @@ class Grade:
     `message` tells the student, or for a host error the instructor, what happened; `line` is the line of the student's
     file that is to blame, where known. `hold` is how the rig knew that the node had handled a message. `recordings` and
     `references` are what the node and the solution published, by scenario.
+
+    A `self_check` judges by the public checks only, and is no grade of record; `hidden_checks` and `hidden_points` are
+    how many more checks there are, and what they give together.
     """
 
     exercise: str
@@ -32,6 +35,9 @@ class Grade:
     isolation: str
     seed: int
     versions: dict[str, str]
+    self_check: bool = False
+    hidden_checks: int = 0
+    hidden_points: float = 0.0
     hold: str = "none"
     line: int | None = None
     log: str = field(default="", compare=False, repr=False)

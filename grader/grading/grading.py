@@ -12,11 +12,12 @@ from grader.exercise import Exercise
 from grader.grading.grade import Grade, Outcome
 from grader.grading.message import message_of
 from grader.grading.options import Options
+from grader.grading.public import PublicPart, public_part
 from grader.grading.reference import reference, solution_file
 from grader.grading.spinning import Spinner
 from grader.grading.versions import versions
 from grader.recording import Ending, Recording
-from grader.sandbox import choose
+from grader.sandbox import Isolation, SandboxUnavailable, choose
 from grader.scenario import Scenario
 from grader.scenario.declared import declared
 from grader.submission import Submission
@@ -28,6 +29,8 @@ class Grading:
 
     spinner: Spinner
     references: dict[str, Recording]
+    public: PublicPart | None = None
+    """Set where only the public checks judge."""
 
     def grade(self, submission: Submission) -> Grade:
         """The grade of one submission; a fault of the machine's or ours becomes a `host-error`, never a score."""
@@ -74,13 +77,16 @@ class Grading:
             submission=submission.name,
             digest=submission.digest,
             outcome=outcome,
-            message=message,
+            message=" ".join(filter(None, (submission.warning, message))),
             score=0.0 if host else sum(verdict.earned for verdict in verdicts),
             points=sum(verdict.points for verdict in verdicts) or self.spinner.exercise.points,
             verdicts=verdicts,
             isolation=str(self.spinner.isolation),
             seed=self.spinner.options.seed,
             versions=versions(),
+            self_check=self.public is not None,
+            hidden_checks=self.public.hidden_checks if self.public else 0,
+            hidden_points=self.public.hidden_points if self.public else 0.0,
             hold=first.hold if first else "none",
             line=first.ending.line if first else None,
             log=first.log if first else "",
@@ -95,11 +101,28 @@ def grading_of(exercise: Exercise, options: Options, crew: Crew) -> Grading:
 
     Raises `ExerciseError` when its author has something to mend, `SandboxUnavailable` when students' code can't be
     kept apart here, and `HostFault` when the solution can't be spun by a fault of the machine's or ours.
+
+    In a student's copy, or with `exercise.public()`, only the public checks judge: a self-check. The code that runs is
+    one's own then, so that it may run where nothing can be kept apart, too; the grade's `isolation` says so.
     """
+    if exercise.public_only or (exercise.solution_folder is None and exercise.public_file.exists()):
+        isolation = _isolation_of_ones_own(options)
+        public = public_part(exercise.public(), options, isolation, crew)
+        spinner = Spinner(exercise.public(), public.scenarios, isolation, options, crew)
+        return Grading(spinner, public.references, public)
     solution_file(exercise)
     scenarios: tuple[Scenario, ...] = declared(exercise, options.seed)
     spinner = Spinner(exercise, scenarios, choose(options.isolation), options, crew)
     return Grading(spinner, reference(spinner))
+
+
+def _isolation_of_ones_own(options: Options) -> Isolation:
+    try:
+        return choose(options.isolation)
+    except SandboxUnavailable:
+        if options.isolation is not None:
+            raise
+        return Isolation.NONE
 
 
 def grade_submission(exercise: Exercise, submission: Submission, options: Options | None = None) -> Grade:

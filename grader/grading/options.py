@@ -16,6 +16,7 @@ class Options:
     as fast as it goes.
 
     `parallel` is how many spins run at once: more than there are cores, for much of a spin is waiting.
+    `core` is the CPU to keep the program on; None lets its spins take turns on all of them.
     """
 
     isolation: Isolation | None = None
@@ -23,3 +24,4 @@ class Options:
     pace: float | None = None
     parallel: int = field(default_factory=lambda: max(2, min(8, 2 * len(os.sched_getaffinity(0)))))
     limits: Limits = field(default_factory=Limits)
+    core: int | None = None

@@ -37,7 +37,7 @@ class Spinner:
         recording ends as that one does.
         """
         gave_up = threading.Event()
-        jobs = [self._job(submission, scenario, i) for i, scenario in enumerate(self.scenarios)]
+        jobs = [self.job(submission, scenario, i) for i, scenario in enumerate(self.scenarios)]
         # The longest first, so that none is left over at the end; the very first is needed at once.
         rest = sorted(jobs[1:], key=lambda job: -len(job.scenario.messages))
         with ThreadPoolExecutor(self.options.parallel) as pool:
@@ -57,7 +57,8 @@ class Spinner:
         """The same, with one scenario alone."""
         return replace(self, scenarios=tuple(s for s in self.scenarios if s.name == scenario))
 
-    def _job(self, submission: Submission, scenario: Scenario, number: int) -> SpinJob:
+    def job(self, submission: Submission, scenario: Scenario, number: int) -> SpinJob:
+        """The spin of a program through one scenario; `number` chooses the core that it is kept on, turn by turn."""
         assert submission.program
         program = replace(
             submission.program,
@@ -75,7 +76,7 @@ class Spinner:
             limits=self.options.limits,
             source=submission.source,
             file_name=submission.file_name,
-            core=cores[number % len(cores)],
+            core=cores[number % len(cores)] if self.options.core is None else self.options.core,
             pace=self.options.pace,
         )
 

@@ -14,12 +14,16 @@ Fields = dict[str, Any]
 
 @dataclass(frozen=True)
 class Sent:
-    """A message that a reference publisher published at `at` ns of simulated time."""
+    """A message that a reference publisher published at `at` ns of simulated time.
+
+    `heard` is whether the student's node subscribed to its topic then.
+    """
 
     at: int
     topic: str
     type: str
     fields: Fields
+    heard: bool = True
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,22 @@ from grader.recording.recording import Ending, EndPoint, Received, Recording, Se
 
 def to_json(recordings: dict[str, Recording]) -> str:
     """`recordings` as a text from which `from_json` makes equal ones."""
-    return json.dumps({name: dataclasses.asdict(recording) for name, recording in recordings.items()})
+    return json.dumps(plain(recordings))
 
 
 def from_json(text: str) -> dict[str, Recording]:
     """The recordings that `to_json` wrote. Raises ValueError, KeyError or TypeError where it did not write them."""
-    return {name: _recording(entries) for name, entries in json.loads(text).items()}
+    return from_plain(json.loads(text))
+
+
+def plain(recordings: dict[str, Recording]) -> dict[str, Any]:
+    """`recordings` as dictionaries, lists, texts and numbers."""
+    return {name: dataclasses.asdict(recording) for name, recording in recordings.items()}
+
+
+def from_plain(entries: dict[str, Any]) -> dict[str, Recording]:
+    """The recordings that `plain` made such. Raises ValueError, KeyError or TypeError where it did not."""
+    return {name: _recording(recording) for name, recording in entries.items()}
 
 
 def _recording(entries: dict[str, Any]) -> Recording:

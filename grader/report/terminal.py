@@ -9,6 +9,7 @@ from rich.text import Text
 from grader.checking.verdict import Status, Verdict
 from grader.exercise import Exercise
 from grader.grading import Grade
+from grader.report import self_check
 from grader.report.printable import printable
 
 SIGNS: dict[Status, tuple[str, str]] = {
@@ -28,7 +29,11 @@ def show(grade: Grade, exercise: Exercise, console: Console, verbose: bool = Fal
         _show_verdict(verdict, grade, console)
     if grade.outcome != "host-error":
         style = "bold green" if grade.full_marks else "bold"
-        console.print(Text(f"{grade.score:g} of {grade.points:g} points", style=style))
+        if grade.self_check:
+            first, *rest = self_check.lines(grade)
+            console.print(Text(first, style=style), *(Text(line) for line in rest), sep="\n", soft_wrap=True)
+        else:
+            console.print(Text(f"{grade.score:g} of {grade.points:g} points", style=style))
     console.print(Text(f"isolation: {grade.isolation}", style="dim"))
     if verbose:
         console.print(Text("the node's log:", style="bold"))

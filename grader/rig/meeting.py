@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import time
+
 from grader.rig.clock import Clock
 from grader.rig.fence import Fence
 from grader.rig.graph import Graph
 from grader.rig.patience import Patience
 from grader.rig.publishers import ReferencePublishers
+from grader.rig.quiet import others_at_work
 from grader.rig.recorder import Recorder
 from grader.rig.ros import Ros
 from grader.rig.stopped import Stopped
@@ -47,3 +50,26 @@ def wait_until_connected(
         if patience.ended():
             return
         ros.executor.spin_once(timeout_sec=0.004)
+        recorder.adapt()
+
+
+#: What was published before its two ends knew one another is sent again within this time, in which neither the rig nor
+#: the program has anything to do but wait. A look counts for this much of it at most, however late it came.
+SENT_AGAIN_S, LOOK_S = 0.4, 0.01
+
+
+def let_in(ros: Ros, student: Student, fence: Fence, recorder: Recorder) -> None:
+    """Wait until a publisher that the student's node has made only now has found the recorder, if it ever will, and
+    has sent again what it has already published."""
+    came = len(recorder.received)
+    for done in (lambda: recorder.hears, lambda: len(recorder.received) > came):
+        patience = Patience(student, cpu_s=5.0, blocked_s=5.0)
+        quiet, looked = 0.0, time.monotonic()
+        while not done() and quiet < SENT_AGAIN_S and not patience.ended():
+            fence.alive()
+            ros.executor.spin_once(timeout_sec=0.004)
+            recorder.adapt()
+            now = time.monotonic()
+            if not student.runnable_threads() and not others_at_work():
+                quiet += min(now - looked, LOOK_S)
+            looked = now

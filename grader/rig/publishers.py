@@ -35,8 +35,10 @@ class ReferencePublishers:
             self._node.destroy_publisher(self._ready.pop((message.topic, former)))
             self._speaking[message.topic] = message.publisher
         ros_message = to_message(message.type, message.fields)
-        self._ready[message.topic, message.publisher].publish(ros_message)
-        self.sent.append(Sent(message.at, message.topic, message.type, message.fields))
+        publisher = self._ready[message.topic, message.publisher]
+        heard = publisher.get_subscription_count() > 0
+        publisher.publish(ros_message)
+        self.sent.append(Sent(message.at, message.topic, message.type, message.fields, heard))
 
     @property
     def heard(self) -> bool:

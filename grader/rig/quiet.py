@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import threading
 import time
 
 #: Thread -> what its schedstat says: ns on a CPU, ns waiting for one, times it got one.
@@ -11,6 +12,24 @@ Activity = dict[str, bytes]
 
 #: How often a program's child processes are looked for.
 CHILDREN_EVERY_S = 0.05
+
+
+def others_at_work() -> bool:
+    """Whether a thread of this process other than the one that asks runs, or waits for a CPU to run on."""
+    for thread in os.listdir("/proc/self/task"):  # noqa: PTH208
+        if int(thread) != threading.get_native_id():
+            with contextlib.suppress(OSError), open(f"/proc/self/task/{thread}/stat", "rb") as file:  # noqa: PTH123
+                if file.read().rpartition(b") ")[2][:1] == b"R":
+                    return True
+    return False
+
+
+def wait_for_others(deadline_s: float = 5.0) -> None:
+    """Wait until what has reached this process is handled by its threads: what it knows of the graph is then complete
+    up to all that was sent before."""
+    deadline = time.monotonic() + deadline_s
+    while others_at_work() and time.monotonic() < deadline:
+        time.sleep(0.0005)
 
 
 class Threads:

@@ -6,12 +6,13 @@ from collections.abc import Callable
 from typing import Any
 
 from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 
 from grader.exercise.interface import Topic
 from grader.recording import Received
 from grader.rig.message import message_class, to_fields
-from grader.rig.ros import ACCEPT
+from grader.rig.ros import ACCEPT, ACCEPT_ANY
 from grader.rig.stopped import Stopped
 
 #: No exercise needs more than this from a node in one scenario.
@@ -20,22 +21,39 @@ MOST_BYTES = 1_000_000
 
 
 class Recorder:
-    """Subscribes to the topics that the exercise's node is to publish."""
+    """Subscribes to the topics that the exercise's node is to publish.
+
+    Reliably, and as best effort goes where a publisher of the student's offers no more: see `adapt`.
+    """
 
     def __init__(self, node: Any, topics: tuple[Topic, ...], moment: Callable[[], tuple[int, int]]) -> None:
+        self._node = node
         self._moment = moment
         self.received: list[Received] = []
         self.too_much: Stopped | None = None
         self._matched: dict[str, int] = {}
+        self._subscriptions: dict[str, Any] = {}
+        self._refused: list[Topic] = []
         for topic in topics:
-            self._subscribe(node, topic)
+            self._subscribe(topic, ACCEPT)
 
-    def _subscribe(self, node: Any, topic: Topic) -> None:
+    def adapt(self) -> None:
+        """Ask for less where what was asked for is not offered. Not to be called in a callback."""
+        while self._refused:
+            topic = self._refused.pop()
+            self._node.destroy_subscription(self._subscriptions[topic.name])
+            self._subscribe(topic, ACCEPT_ANY)
+
+    def _subscribe(self, topic: Topic, quality: QoSProfile) -> None:
         kind = message_class(topic.type)
         self._matched[topic.name] = 0
 
         def matched(status: Any) -> None:
             self._matched[topic.name] = status.current_count
+
+        def refused(status: Any) -> None:
+            if quality is ACCEPT and topic not in self._refused:
+                self._refused.append(topic)
 
         def keep(data: bytes) -> None:
             if len(data) > MOST_BYTES:
@@ -51,13 +69,20 @@ class Recorder:
                 else:
                     self.received.append(Received(at, after, topic.name, topic.type, fields))
 
-        events = SubscriptionEventCallbacks(matched=matched, use_default_callbacks=False)
-        node.create_subscription(kind, topic.name, keep, ACCEPT, raw=True, event_callbacks=events)
+        events = SubscriptionEventCallbacks(matched=matched, incompatible_qos=refused, use_default_callbacks=False)
+        self._subscriptions[topic.name] = self._node.create_subscription(
+            kind, topic.name, keep, quality, raw=True, event_callbacks=events
+        )
 
     @property
     def hears(self) -> bool:
         """Whether the student's node publishes every topic, in a way that reaches this recorder."""
         return all(self._matched.values())
+
+    @property
+    def publishers(self) -> int:
+        """How many publishers its topics have, those included that do not reach this recorder."""
+        return sum(self._node.count_publishers(topic) for topic in self._matched)
 
     def check(self) -> None:
         """Raise `Stopped` when the node has published too much."""

@@ -21,8 +21,16 @@ OFFER = QoSProfile(
     durability=DurabilityPolicy.TRANSIENT_LOCAL,
 )
 
-#: Compatible with whatever a student's publisher offers.
+#: Loses nothing of what a student publishes, not even what is published before the two ends know one another.
 ACCEPT = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=10_000,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.VOLATILE,
+)
+
+#: Compatible with whatever a student's publisher offers.
+ACCEPT_ANY = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=10_000,
     reliability=ReliabilityPolicy.BEST_EFFORT,
@@ -65,11 +73,18 @@ class Ros:
 
     def turn(self) -> None:
         """Handle everything that has arrived already."""
+        while self._pass():
+            pass
+
+    def _pass(self) -> bool:
+        """Handle one message of each end point that has any; whether there were any."""
+        some = False
         while True:
             try:
                 handler, _, _ = self.executor.wait_for_ready_callbacks(timeout_sec=0)
             except TimeoutException:
-                return
+                return some
+            some = True
             handler()
             if handler.exception() is not None:
                 raise handler.exception()

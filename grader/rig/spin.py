@@ -12,8 +12,9 @@ from grader.rig.clock import Clock
 from grader.rig.ending import cut_short, interrupted
 from grader.rig.fence import AFTER_CLOCK, AFTER_MESSAGES, Fence, Gone
 from grader.rig.graph import Graph
-from grader.rig.meeting import wait_for_nodes, wait_until_connected
+from grader.rig.meeting import let_in, wait_for_nodes, wait_until_connected
 from grader.rig.publishers import ReferencePublishers
+from grader.rig.quiet import wait_for_others
 from grader.rig.recorder import Recorder
 from grader.rig.ros import Ros
 from grader.rig.stopped import Stopped
@@ -71,6 +72,7 @@ class Rig:
         self._met = False
         self._lockstep_seconds = 0.0
         self._end_points: tuple[EndPoint, ...] = ()
+        self._publishers_known = 0
 
     def _moment(self) -> tuple[int, int]:
         return self._clock.now, len(self._publishers.sent)
@@ -110,6 +112,7 @@ class Rig:
         if self._fence.hold == "parameters":
             self._sim_time = all(self._fence.use_sim_time(node) for node in self._nodes)
         wait_until_connected(self._ros, self._student, self._fence, self._clock, self._publishers, self._recorder)
+        self._publishers_known = self._recorder.publishers
         self._clock.set(START)
         self._fence.wait(AFTER_CLOCK)
         self._met = True
@@ -123,9 +126,20 @@ class Rig:
                 self._fence.wait(AFTER_CLOCK)
             self._publishers.publish(message)
             self._fence.wait(AFTER_MESSAGES)
+            self._let_late_publishers_in()
             self._recorder.check()
         self._drain()
         self._lockstep_seconds = time.monotonic() - began
+
+    def _let_late_publishers_in(self) -> None:
+        """A node may make its publisher only when it has something to publish."""
+        if self._recorder.hears:
+            return
+        wait_for_others()
+        publishers = self._recorder.publishers
+        if publishers > self._publishers_known:
+            let_in(self._ros, self._student, self._fence, self._recorder)
+        self._publishers_known = publishers
 
     def _keep_pace(self, began: float, at: int) -> None:
         if self._what.pace:
@@ -140,6 +154,7 @@ class Rig:
         while True:
             before = len(self._recorder.received)
             self._fence.wait(AFTER_MESSAGES)
+            self._let_late_publishers_in()
             self._recorder.check()
             if len(self._recorder.received) == before:
                 return

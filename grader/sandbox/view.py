@@ -104,16 +104,17 @@ class _Plan:
     def __init__(self) -> None:
         self.steps: list[Step] = []
         self._made: set[str] = {"/"}
-        self._bound: list[str] = []
+        self._bound: set[str] = set()
 
     def add(self, action: Action, path: str, content: str = "", size: int = 0) -> None:
-        for parent in reversed(Path(path).parents):
-            inside = any(parent.is_relative_to(bound) for bound in self._bound)
-            if str(parent) not in self._made and not inside:
-                self._made.add(str(parent))
-                self.steps.append(Step("folder", str(parent)))
+        for parent in map(str, reversed(Path(path).parents)):
+            if parent in self._bound:
+                break
+            if parent not in self._made:
+                self._made.add(parent)
+                self.steps.append(Step("folder", parent))
         if action == "bind":
-            self._bound.append(path)
+            self._bound.add(path)
         self._made.add(path)
         self.steps.append(Step(action, path, content, size))
 

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 from grader.scenario.scenario import SECOND, START, Message
+from grader.scenario.times import every
 
 #: The chapter's six joints and their positions (rad) `t` seconds after the start.
 ARM_SWING: dict[str, Callable[[float], float]] = {
@@ -49,20 +50,6 @@ def moving(joints: dict[str, Callable[[float], float]], times: Iterable[float], 
         at = START + round(t * SECOND)
         stream.append(Sample(at, at, tuple(joints), tuple(where(t) for where in joints.values()), frame_id))
     return tuple(stream)
-
-
-def every(period: float, seconds: float) -> tuple[float, ...]:
-    """Instants `period` s apart, for `seconds`."""
-    return tuple(k * period for k in range(round(seconds / period)))
-
-
-def uneven(shortest: float, longest: float, count: int, seed: int) -> tuple[float, ...]:
-    """`count` instants that lie between `shortest` and `longest` s apart, the same for each `seed`."""
-    chance = random.Random(f"uneven {seed}")
-    times = [0.0]
-    while len(times) < count:
-        times.append(times[-1] + chance.uniform(shortest, longest))
-    return tuple(times)
 
 
 def arm_swing(seconds: float, period: float = 0.1) -> Stream:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import hashlib
 import os
 import stat
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from grader.exercise import Exercise
@@ -13,8 +16,9 @@ from grader.sandbox import Program
 from grader.submission.executable import find
 from grader.submission.notebook import NoCell, cell_of
 from grader.submission.submission import Submission
+from grader.submission.upload import NoUpload, Upload, unpack
 
-MOST_BYTES = {".py": 1_000_000, ".ipynb": 30_000_000}
+MOST_BYTES = {".py": 1_000_000, ".ipynb": 30_000_000, ".zip": 5_000_000}
 
 
 class NoSubmission(Exception):
@@ -26,20 +30,25 @@ class _Unusable(Exception):
 
 
 def read(given: str, exercise: Exercise) -> Submission:
-    """The submission that `given` names: a .py or .ipynb file, or `package/executable` of an installed package."""
+    """The submission that `given` names: a file, or `package/executable` of an installed package.
+
+    A file is a .py, a notebook, or the .zip that `spinbook submit` writes. Raises `NoSubmission` where there is none.
+    """
     path = Path(given)
     if path.suffix not in MOST_BYTES and not os.path.lexists(path):
         if given.count("/") == 1:
             return _executable(given, exercise)
-        raise NoSubmission(f"{given}: there is no such file. Give a .py or .ipynb file, or package/executable.")
+        raise NoSubmission(f"{given}: there is no such file. Give a .py, .ipynb or .zip file, or package/executable.")
     if path.suffix not in MOST_BYTES:
-        raise NoSubmission(f"{given}: give a .py or .ipynb file, or package/executable of an installed package.")
+        raise NoSubmission(f"{given}: give a .py, .ipynb or .zip file, or package/executable of an installed package.")
     if not os.path.lexists(path):
         raise NoSubmission(f"{given}: there is no such file.")
     try:
         content = _content(path)
     except _Unusable as error:
         return Submission(given, _digest(str(error).encode()), exercise.file_name, "", None, str(error))
+    if path.suffix == ".zip":
+        return of_upload(given, content, exercise)
     if path.suffix == ".ipynb":
         try:
             code = cell_of(content, exercise).encode()
@@ -56,6 +65,37 @@ def of_source(name: str, code: bytes, exercise: Exercise, digest: str = "") -> S
     program = Program(exercise.file_name, {exercise.file_name: code})
     problem = "" if code.strip() else "Your file is empty."
     return Submission(name, digest or _digest(code), exercise.file_name, source, None if problem else program, problem)
+
+
+def of_upload(name: str, content: bytes, exercise: Exercise) -> Submission:
+    """The submission in an upload. What in it does not match is told in `warning`; it is graded all the same."""
+    try:
+        upload = unpack(content)
+    except NoUpload as error:
+        return Submission(name, _digest(content), exercise.file_name, "", None, str(error))
+    faults = list(upload.faults)
+    if upload.record and upload.record.get("exercise") != exercise.name:
+        faults.append(f"it was handed in for the exercise {upload.record.get('exercise')!r}")
+    told = "; ".join(faults)
+    warning = f"Not as it was handed in: {told[:500]}." if told else ""
+    code = next(_codes(upload, exercise), None)
+    if code is None:
+        problem = f"There is no code for {exercise.name} in it. Hand in the file that `spinbook submit` writes."
+        return Submission(name, _digest(content), exercise.file_name, "", None, problem, warning)
+    return replace(of_source(name, code, exercise, _digest(content)), warning=warning)
+
+
+def _codes(upload: Upload, exercise: Exercise) -> Iterator[bytes]:
+    """What in an upload may be the exercise's code, the likeliest first."""
+    if exercise.file_name in upload.files:
+        yield upload.files[exercise.file_name]
+    for name in sorted(upload.files):
+        if name.endswith(".ipynb"):
+            with contextlib.suppress(NoCell):
+                yield cell_of(upload.files[name], exercise).encode()
+    programs = [name for name in upload.files if name.endswith(".py")]
+    if len(programs) == 1:
+        yield upload.files[programs[0]]
 
 
 def _content(path: Path) -> bytes:

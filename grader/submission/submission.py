@@ -12,7 +12,8 @@ class Submission:
     """One submission, read.
 
     `digest` is the SHA-256 of what was handed in. `program` says how it is started, and is None where it can't be;
-    then `problem` tells the student why. `source` is its text, to quote lines from.
+    then `problem` tells the student why. `source` is its text, to quote lines from. `warning` tells the instructor what
+    is odd about it, such as an upload that was changed; it costs no points.
     """
 
     name: str
@@ -21,3 +22,4 @@ class Submission:
     source: str
     program: Program | None
     problem: str = ""
+    warning: str = ""

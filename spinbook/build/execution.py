@@ -14,7 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from spinbook.build.digest import code_digest, digest, versions
+import grader
+from spinbook.build.digest import code_digest, digest, files_digest, versions
 from spinbook.build.failures import CellFailure, find_failures
 from spinbook.runtime.process import KeptProcess
 from spinbook.written import write_if_changed
@@ -22,6 +23,8 @@ from spinbook.written import write_if_changed
 #: How long a notebook may take (s), and how much longer its process may take to say so.
 DEADLINE_S = 300.0
 _TO_SAY_SO_S = 20.0
+#: What of Spinbook a notebook's cells use.
+_USED_BY_CELLS = ("check", "graph", "runtime", "ros2", "turtlesim", "package")
 
 
 @dataclass(frozen=True)
@@ -59,6 +62,11 @@ class Job:
         return self.build_folder / "executed" / self.notebook.name
 
     @property
+    def graph(self) -> Path:
+        """Where the node graph goes that was seen while it ran (spinbook.graph.model)."""
+        return self.executed.with_suffix(".graph.json")
+
+    @property
     def record(self) -> Path:
         """What is remembered of the last good run."""
         return self.build_folder / ".cache" / "executed" / f"{self.notebook.stem}.json"
@@ -90,9 +98,10 @@ def execute(
 
 def _execute_one(job: Job, on_progress: Callable[[Progress], None], again: bool, given_up: threading.Event) -> Executed:
     notebook = json.loads(job.notebook.read_text(encoding="utf-8"))
-    key = _key(notebook)
-    if not again and (outputs := _remembered(job, key)) is not None:
-        write_if_changed(job.executed, _with_outputs(notebook, outputs))
+    key = _key(notebook, job)
+    if not again and (remembered := _remembered(job, key)) is not None:
+        write_if_changed(job.executed, _with_outputs(notebook, remembered["outputs"]))
+        _write_graph(job, remembered["graph"])
         return Executed(job.chapter, job.executed, (), 0.0, cached=True)
     started = time.monotonic()
     raw = job.folder.with_suffix(".ipynb")
@@ -101,10 +110,13 @@ def _execute_one(job: Job, on_progress: Callable[[Progress], None], again: bool,
     failures = find_failures(job.chapter, ran, ended)
     outputs = {cell["id"]: _tidy(cell, job) for cell in ran["cells"] if cell["cell_type"] == "code"}
     write_if_changed(job.executed, _with_outputs(notebook, outputs))
-    raw.unlink(missing_ok=True)
+    graph = _text(raw.with_suffix(".graph.json"))
+    _write_graph(job, graph)
+    for file in (raw, raw.with_suffix(".graph.json")):
+        file.unlink(missing_ok=True)
     job.record.unlink(missing_ok=True)
     if not failures:
-        write_if_changed(job.record, json.dumps({"key": key, "outputs": outputs}))
+        write_if_changed(job.record, json.dumps({"key": key, "outputs": outputs, "graph": graph}))
     return Executed(job.chapter, job.executed, tuple(failures), time.monotonic() - started, cached=False)
 
 
@@ -112,7 +124,8 @@ def _run(job: Job, raw: Path, on_progress: Callable[[Progress], None], given_up:
     """Run the notebook's process. Returns what it said last of how it ended, {} if it ended well."""
     shutil.rmtree(job.folder, ignore_errors=True)
     job.folder.mkdir(parents=True)
-    raw.unlink(missing_ok=True)
+    for file in (raw, raw.with_suffix(".graph.json")):
+        file.unlink(missing_ok=True)
     private = {"IPYTHONDIR": str(job.folder / ".ipython"), "ROS_LOG_DIR": str(job.folder / ".ros-log")}
     argv = [sys.executable, "-m", "spinbook.build.run_notebook", str(job.notebook), str(raw), str(job.deadline_s)]
     process = KeptProcess(argv, {**os.environ, **private}, job.folder)
@@ -143,10 +156,15 @@ def _run(job: Job, raw: Path, on_progress: Callable[[Progress], None], given_up:
         process.close()
 
 
-def _key(notebook: dict[str, Any]) -> str:
-    """What the outputs depend on: the code, not the prose around it."""
+def _key(notebook: dict[str, Any], job: Job) -> str:
+    """What the outputs depend on: the code, not the prose around it, and what `%check` judges by."""
     code = [(c["id"], c["source"], c["metadata"].get("tags")) for c in notebook["cells"] if c["cell_type"] == "code"]
-    return digest(repr(code), code_digest("runtime", "ros2", "turtlesim", "package"), versions())
+    judged_by = ""
+    if any(source.startswith("%check ") for _, source, _ in code):
+        course = job.build_folder.parent
+        folders = (course / "exercises", course / "solutions", Path(grader.__file__).parent)
+        judged_by = files_digest(file for folder in folders for file in folder.rglob("*.*") if file.suffix != ".pyc")
+    return digest(repr(code), judged_by, code_digest(*_USED_BY_CELLS), versions())
 
 
 def _remembered(job: Job, key: str) -> dict[str, Any] | None:
@@ -154,7 +172,18 @@ def _remembered(job: Job, key: str) -> dict[str, Any] | None:
         record = json.loads(job.record.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-    return record["outputs"] if record.get("key") == key else None
+    return record if record.get("key") == key else None
+
+
+def _text(file: Path) -> str | None:
+    return file.read_text(encoding="utf-8") if file.exists() else None
+
+
+def _write_graph(job: Job, graph: str | None) -> None:
+    if graph is None:
+        job.graph.unlink(missing_ok=True)
+    else:
+        write_if_changed(job.graph, graph)
 
 
 def _with_outputs(notebook: dict[str, Any], outputs: dict[str, Any]) -> str:

@@ -105,6 +105,8 @@ def _exercise(cell: Cell, course: Course) -> Iterator[dict[str, Any]]:
         source = f"%%node {module}\n{starter(exercise.solution_file.read_text(encoding='utf-8'))}"
         metadata = {"kind": "exercise", "line": cell.line, "node": module, "exercise": exercise.name}
         yield _code(f"{cell.id}-starter", source, metadata)
+        # Not marked as the exercise's: its code is in the cell above.
+        yield _code(f"{cell.id}-check", f"%check {exercise.name}", {"kind": "check", "line": cell.line})
 
 
 def _one_level_down(task: str) -> str:

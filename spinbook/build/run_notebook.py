@@ -2,7 +2,7 @@
 
 Prints one JSON object a line: {"cells": N} at first, {"done": K} after each cell, and at the end {"finished": true},
 {"timed_out": INDEX} where the deadline (s) passed in that cell, or {"died": INDEX} where the kernel ended in it.
-What had run by then is written to OUT all the same.
+What had run by then is written to OUT all the same, and the node graph that was seen to OUT's name with .graph.json.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ from jupyter_client.manager import AsyncKernelManager
 from nbclient import NotebookClient
 from nbclient.exceptions import DeadKernelError
 
-from spinbook.runtime.environment import EXECUTING
+from spinbook.graph.watch import GraphWatch
+from spinbook.runtime.environment import DOMAIN_NOTE, EXECUTING
 from spinbook.written import write_if_changed
 
 #: How long a cancelled notebook's kernel may take to end (s); the keeper ends it otherwise.
@@ -42,13 +43,18 @@ def _tell(**what: Any) -> None:
     print(json.dumps(what), flush=True)
 
 
-async def run(notebook: Any, folder: Path, deadline_s: float) -> None:
+async def run(notebook: Any, folder: Path, deadline_s: float, watch: GraphWatch) -> None:
     """Run the cells of `notebook` in place, in `folder`, failing ones too, and tell how it ended."""
     current = 0
 
-    def on_start(cell: Any, cell_index: int) -> None:
+    async def on_start(cell: Any, cell_index: int) -> None:
         nonlocal current
         current = cell_index
+        await watch.cell_begins(cell.source)
+
+    async def on_executed(cell: Any, cell_index: int, execute_reply: Any) -> None:
+        _tell(done=cell_index + 1)
+        await watch.cell_ends(cell.id)
 
     client = NotebookClient(
         notebook,
@@ -59,11 +65,13 @@ async def run(notebook: Any, folder: Path, deadline_s: float) -> None:
         coalesce_streams=True,
         resources={"metadata": {"path": str(folder)}},
         on_cell_execute=on_start,
-        on_cell_executed=lambda cell, cell_index, execute_reply: _tell(done=cell_index + 1),
+        on_cell_executed=on_executed,
     )
     _tell(cells=len(notebook.cells))
+    await watch.start()
     running = asyncio.ensure_future(client.async_execute())
     done, _ = await asyncio.wait([running], timeout=deadline_s)
+    await watch.close()
     if not done:
         _tell(timed_out=current)
         running.cancel()
@@ -90,8 +98,14 @@ def main() -> None:
     source, out, deadline_s = Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3])
     os.environ[EXECUTING] = "1"
     notebook = nbformat.reads(source.read_text(encoding="utf-8"), as_version=4)
-    with contextlib.suppress(KeyboardInterrupt):
-        asyncio.run(run(notebook, Path.cwd(), deadline_s))
+    with tempfile.TemporaryDirectory(prefix="sb-") as folder:
+        note = Path(folder) / "domain"
+        os.environ[DOMAIN_NOTE] = os.fspath(note)
+        watch = GraphWatch(note)
+        with contextlib.suppress(KeyboardInterrupt):
+            asyncio.run(run(notebook, Path.cwd(), deadline_s, watch))
+    if watch.graph is not None:
+        write_if_changed(out.with_suffix(".graph.json"), watch.graph.to_json())
     write_if_changed(out, json.dumps(notebook, ensure_ascii=False, indent=1, sort_keys=True) + "\n")
 
 

@@ -41,6 +41,8 @@ class Course:
     package: Package
     repository: str = ""
     ros_distro: str = "jazzy"
+    glossary: Path | None = None
+    """The file whose headings are the course's terms."""
 
     @property
     def build_folder(self) -> Path:
@@ -105,6 +107,7 @@ def read_course(root: Path) -> Course:
         package=package,
         repository=str(data.get("repository", "")).rstrip("/"),
         ros_distro=str(data.get("ros_distro", "jazzy")),
+        glossary=Path(str(data["glossary"])) if data.get("glossary") else None,
     )
 
 

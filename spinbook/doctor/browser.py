@@ -1,4 +1,4 @@
-"""Whether there is a browser, with which the tests of the course's site look at its pages."""
+"""Whether there is a browser, with which the tests look at the pages that Spinbook makes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ import tempfile
 from spinbook.doctor.finding import Finding, ok, warning
 
 _NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
-_ONLY_TESTS = "Only the tests of the site need one; they are skipped without. sudo apt-get install chromium"
+_ONLY_TESTS = (
+    "Only the tests need one; those of pages fail without. `make test` installs it: sudo apt-get install chromium"
+)
 _PAGE = "data:text/html,<title>spinbook</title>"
 _DEADLINE_S = 30.0
 

@@ -14,6 +14,8 @@ LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
 LOG_FORMAT = "[{severity}] [{name}]: {message}"
 #: Set while a notebook is executed by `spinbook build`: nobody watches, so plots are drawn once.
 EXECUTING = "SPINBOOK_EXECUTING"
+#: Names a file into which a notebook writes its ROS domain, for whoever watches it.
+DOMAIN_NOTE = "SPINBOOK_DOMAIN_NOTE"
 
 
 def for_domain(domain: int, environment: Mapping[str, str]) -> dict[str, str]:

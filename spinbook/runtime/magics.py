@@ -1,4 +1,4 @@
-"""The notebook's commands: `%%node`, `%nodes`, `%stop`, `%log`, `%ros2`, `%colcon`, `%plot`, `%turtle` and others.
+"""The notebook's commands: `%%node`, `%nodes`, `%stop`, `%log`, `%ros2`, `%colcon`, `%plot`, `%graph`, `%turtle` …
 
 Thin: each reads its line and calls the session.
 """
@@ -14,9 +14,9 @@ from typing import Any, NoReturn
 from IPython.core.magic import Magics, cell_magic, line_magic, magics_class, no_var_expand
 
 from spinbook.course.course import Package
-from spinbook.runtime import colcon_cell, domain, plot_cell, ros2_cell, turtle_cell
+from spinbook.runtime import colcon_cell, domain, graph_cell, plot_cell, ros2_cell, turtle_cell
 from spinbook.runtime.failure import CellFailed
-from spinbook.runtime.session import COMMAND_SECONDS, NODE_SECONDS, Session
+from spinbook.runtime.session import COMMAND_SECONDS, GRAPH_SECONDS, NODE_SECONDS, Session
 from spinbook.runtime.showing import Bound
 
 _OWN_OPTION = re.compile(r"""\s*--(seconds|until)\s+("[^"]*"|'[^']*'|\S+)\s*""")
@@ -179,6 +179,43 @@ class SpinbookMagics(Magics):
         reader = LineReader("%turtle", "Show turtlesim's window as it is now.")
         if reader.read(line) is not None:
             turtle_cell.run()
+
+    @no_var_expand
+    @line_magic
+    def graph(self, line: str) -> None:
+        """%graph: nodes and topics as they are now, drawn as rqt_graph would."""
+        reader = LineReader("%graph", "Draw who publishes what, who subscribes, and how many messages a second come.")
+        reader.add_argument("--seconds", type=float, default=GRAPH_SECONDS, help="how long messages are counted")
+        if given := reader.read(line):
+            graph_cell.run(given.seconds)
+
+    @no_var_expand
+    @line_magic
+    def check(self, line: str) -> None:
+        """%check EXERCISE: what the public checks say of the exercise's cell."""
+        reader = LineReader("%check", "Check the cell of an exercise, as you ran it last. This is not your grade.")
+        reader.add_argument("exercise")
+        reader.add_argument("--course", default="", help="the folder of the handout, if it is not this one")
+        reader.add_argument("--seconds", type=float, default=60.0, help="how long it may take")
+        if given := reader.read(line):
+            # Loaded when it is used: most cells are no exercise.
+            from spinbook.check import cell
+
+            cell.run(self.session, self.shell, given.exercise, given.course, given.seconds)
+
+    @no_var_expand
+    @line_magic
+    def submit(self, line: str) -> None:
+        """%submit EXERCISE: write one file to upload, with the exercise's cell as it was run last."""
+        reader = LineReader("%submit", "Write one file to upload: the exercise's cell, as you ran it last.")
+        reader.add_argument("exercise")
+        reader.add_argument("--student", help="your name or number, as your course wants it; kept for the next time")
+        reader.add_argument("--course", default="", help="the folder of the handout, if it is not this one")
+        reader.add_argument("--seconds", type=float, default=120.0, help="how long it may take")
+        if given := reader.read(line):
+            from spinbook.submit import cell
+
+            cell.run(self.session, self.shell, given.exercise, given.course, given.student, given.seconds)
 
     @no_var_expand
     @line_magic

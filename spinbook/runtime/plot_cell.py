@@ -13,6 +13,7 @@ from IPython.display import display
 from spinbook.runtime.environment import EXECUTING
 from spinbook.runtime.failure import CellFailed
 from spinbook.runtime.plot.figure import as_png, draw, in_words
+from spinbook.runtime.plot.moving import moving_plot
 from spinbook.runtime.plot.recording import Recording
 from spinbook.runtime.process import KeptProcess
 
@@ -68,8 +69,12 @@ def _record(process: KeptProcess, recording: Recording, seconds: float, title: s
 
 
 def _show(recording: Recording, title: str, handle: Any) -> Any:
-    bundle = {"image/png": as_png(draw(recording, title)), "text/plain": in_words(recording)}
-    metadata = {"image/png": {"alt": in_words(recording)}}
+    """Show what has been recorded so far. Where nobody has watched it come, it comes again, as a moving picture."""
+    words = in_words(recording)
+    bundle = {"image/png": as_png(draw(recording, title)), "text/plain": words}
+    if EXECUTING in os.environ and (moving := moving_plot(recording, title)) is not None:
+        bundle["image/svg+xml"] = moving
+    metadata = {kind: {"alt": words} for kind in bundle if kind != "text/plain"}
     if handle is None:
         return display(bundle, raw=True, metadata=metadata, display_id=True)
     handle.update(bundle, raw=True, metadata=metadata)

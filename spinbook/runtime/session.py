@@ -20,6 +20,8 @@ from spinbook.runtime.showing import Bound, in_short, show_for
 #: How long a node's log is shown, and how long a command that does not end may run (s).
 NODE_SECONDS = 3.0
 COMMAND_SECONDS = 5.0
+#: How long messages are counted for the graph (s).
+GRAPH_SECONDS = 2.5
 #: How long a bounded command may take to end by itself when it is told to (s): its last lines are wanted.
 COMMAND_GRACE = (3.0, 1.0)
 
@@ -31,6 +33,8 @@ class Session:
     domain: Domain
     package: Package = field(default_factory=lambda: Package(name="notebook_nodes", workspace="notebook_ws"))
     nodes: NodeRegistry = field(default_factory=NodeRegistry)
+    ran: dict[str, str] = field(default_factory=dict)
+    """The code of each node's cell as it was run last, by the node's name."""
 
     def __post_init__(self) -> None:
         self.use_domain(self.domain)
@@ -39,6 +43,8 @@ class Session:
         """Let everything that starts from now on talk in this domain, snippets in the kernel too."""
         self.domain = domain
         os.environ.update(environment.for_domain(domain.number, os.environ))
+        if note := os.environ.get(environment.DOMAIN_NOTE):
+            Path(note).write_text(str(domain.number), encoding="utf-8")
 
     @property
     def workspace(self) -> Path:
@@ -49,6 +55,7 @@ class Session:
         """Write a node's code as a module of the package, start it and show its log for a while."""
         if self.package.name == name:
             raise CellFailed(f"A node can't have the package's name, {name}.")
+        self.ran[name] = code
         module = add_module(self.workspace, self.package, Module(name, code.rstrip("\n") + "\n"))
         if spin_class:
             argv = [sys.executable, "-u", "-m", "spinbook.runtime.spin_class", os.fspath(module), spin_class]

@@ -14,6 +14,12 @@ _SECONDS = click.FloatRange(min=0)
 @click.argument(
     "out", type=click.Path(dir_okay=False, path_type=Path), default="turtle.png", metavar="[OUT.png|OUT.svg]"
 )
+@click.option(
+    "--moving",
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="OUT.svg",
+    help="Also an SVG in which the turtles drive again, if they have moved.",
+)
 @click.option("--timeout", default=5.0, show_default=True, type=_SECONDS, help="Seconds to look for the node.")
 @click.option(
     "--listen",
@@ -23,13 +29,13 @@ _SECONDS = click.FloatRange(min=0)
     help="Seconds, all in all, to listen to a turtlesim that can't give a picture.",
 )
 @click.option("--node", default="/turtlesim", show_default=True, help="The node's full name.")
-def turtle(out: Path, timeout: float, listen: float, node: str) -> None:
+def turtle(out: Path, moving: Path | None, timeout: float, listen: float, node: str) -> None:
     """Draw the turtles of the running turtlesim and what they have drawn."""
     # rclpy and matplotlib take long to import, and --help needs neither.
     from spinbook.turtlesim.picture import NoPictureError, write
 
     try:
-        world = write(out, timeout, listen, node)
+        world = write(out, timeout, listen, node, moving)
     except NoPictureError as error:
         click.echo(str(error), err=True)
         sys.exit(1)

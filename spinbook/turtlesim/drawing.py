@@ -17,7 +17,7 @@ from matplotlib.transforms import Affine2D
 
 from spinbook.turtlesim.geometry import PIXELS_PER_UNIT
 from spinbook.turtlesim.turtle_shape import turtle_shapes
-from spinbook.turtlesim.world_picture import Color, TurtlePicture, WorldPicture
+from spinbook.turtlesim.world_picture import Color, TurtlePicture, WorldPicture, caption
 
 #: The world's side on paper, and the room around it, in inches.
 _SIDE_IN, _LEFT, _RIGHT, _BOTTOM, _TOP = 4.4, 0.42, 0.12, 0.36, 0.34
@@ -25,8 +25,6 @@ _SIDE_IN, _LEFT, _RIGHT, _BOTTOM, _TOP = 4.4, 0.42, 0.12, 0.36, 0.34
 _DPI = 120
 _INK = "#3a3f4b"
 _POINTS_PER_INCH = 72
-#: More turtles than this are not told one by one above the picture.
-_TOLD = 2
 
 
 def draw(world: WorldPicture) -> Figure:
@@ -90,22 +88,7 @@ def _prepare(axes: Axes, world: WorldPicture) -> None:
     look: dict[str, Any] = {"fontsize": 8.5, "color": _INK}
     axes.text(1.0, -0.052, "x", transform=axes.transAxes, ha="right", va="center", style="italic", **look)
     axes.text(-0.046, 1.0, "y", transform=axes.transAxes, ha="center", va="top", style="italic", **look)
-    axes.set_title(_caption(world), loc="left", pad=6, parse_math=False, **look)
-
-
-def _caption(world: WorldPicture) -> str:
-    """Where the turtles are, in words; and what the picture lacks."""
-    if not world.turtles:
-        told = "no turtle"
-    elif len(world.turtles) > _TOLD:
-        told = f"{len(world.turtles)} turtles"
-    else:
-        told = "     ".join(_told(turtle) for turtle in world.turtles)
-    return f"{told}   ({world.incomplete})" if world.incomplete else told
-
-
-def _told(turtle: TurtlePicture) -> str:
-    return f"{turtle.name}:  x {turtle.x:.2f}   y {turtle.y:.2f}   heading {math.degrees(turtle.theta):.0f}°"
+    axes.set_title(caption(world), loc="left", pad=6, parse_math=False, **look)
 
 
 def _draw_turtle(axes: Axes, turtle: TurtlePicture, coat: int) -> None:

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import importlib
+import time
 from typing import Any
 
 from geometry_msgs.msg import Pose2D
 from rclpy.node import Node
 
-from spinbook.turtlesim.geometry import SIDE
+from spinbook.turtlesim.geometry import DT, SIDE
 from spinbook.turtlesim.pen import Pen
+from spinbook.turtlesim.track import Track
 from spinbook.turtlesim.trail import Point, Trail
-from spinbook.turtlesim.world_picture import BLUE, TurtlePicture, WorldPicture, strokes
+from spinbook.turtlesim.world_picture import BLUE, TurtlePicture, WorldPicture, strokes, tracks
 
 
 class Heard:
@@ -24,7 +26,9 @@ class Heard:
         self._node = node
         self._types = pose_types()
         self._trail = Trail()
+        self._track = Track()
         self._last: Any = None
+        self._last_tick = -1
         self._listening = False
 
     def look(self) -> None:
@@ -44,13 +48,17 @@ class Heard:
         if here != before:
             self._trail.line(self._turtle, Pen(), before, here)
         self._last = pose
+        # Poses do not tell their time; two that come together are a tick apart.
+        self._last_tick = max(self._last_tick + 1, round(time.monotonic() / DT))
+        self._track.add(self._last_tick, pose.x, pose.y, pose.theta, Pen())
 
     def picture(self, incomplete: str) -> WorldPicture | None:
         """The path heard so far in turtlesim's usual colours, which poses don't tell; None if nothing came."""
         if self._last is None:
             return None
         turtle = TurtlePicture(self._turtle, self._last.x, self._last.y, self._last.theta, Pen())
-        return WorldPicture(SIDE, BLUE, (turtle,), strokes(self._trail.strokes), incomplete)
+        trails, moved = strokes(self._trail.strokes), tracks({self._turtle: self._track})
+        return WorldPicture(SIDE, BLUE, (turtle,), trails, incomplete, moved)
 
     def unreadable_types(self) -> list[str]:
         """What is published on the topic though this Python has no such message."""

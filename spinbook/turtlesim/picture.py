@@ -21,6 +21,7 @@ from std_srvs.srv import Trigger
 
 from spinbook.turtlesim.drawing import save
 from spinbook.turtlesim.listening import Heard
+from spinbook.turtlesim.moving import moving_svg
 from spinbook.turtlesim.world_picture import WorldPicture
 
 #: The node's full name where nobody has put it elsewhere.
@@ -112,8 +113,8 @@ def _heard(heard: Heard, node: str, seconds: float) -> WorldPicture:
     )
 
 
-def write(file: Path, timeout_s: float, listen_s: float, node: str) -> WorldPicture:
-    """Fetch the world and write its picture to `file`.
+def write(file: Path, timeout_s: float, listen_s: float, node: str, moving: Path | None = None) -> WorldPicture:
+    """Fetch the world and write its picture to `file`, and the moving one to `moving` if a turtle has moved.
 
     Raises:
         NoPictureError: if there is none, or it can't be written there.
@@ -123,8 +124,10 @@ def write(file: Path, timeout_s: float, listen_s: float, node: str) -> WorldPict
     world = fetch(timeout_s, listen_s, node)
     try:
         save(world, file)
+        if moving is not None and (svg := moving_svg(world)) is not None:
+            moving.write_text(svg, encoding="utf-8")
     except OSError as error:
-        raise NoPictureError(f"{file} can't be written: {error.strerror}") from error
+        raise NoPictureError(f"{error.filename or file} can't be written: {error.strerror}") from error
     return world
 
 

@@ -8,6 +8,7 @@ import re
 from spinbook.turtlesim.canvas import Canvas
 from spinbook.turtlesim.events import Event, Killed, LogLine, Severity, Spawned
 from spinbook.turtlesim.geometry import CENTRE, single
+from spinbook.turtlesim.track import Track
 from spinbook.turtlesim.trail import Trail
 from spinbook.turtlesim.turtle import AbsoluteTeleport, RelativeTeleport, Turtle
 
@@ -27,8 +28,11 @@ class World:
         self.turtles: dict[str, Turtle] = {}
         self.canvas = Canvas()
         self.trail = Trail()
+        #: The turtles' tracks since the last wipe, by name; one that is gone keeps its track.
+        self.tracks: dict[str, Track] = {}
         self._spawned = 0
         self._ticking = False
+        self._ticks = 0
 
     def start(self) -> list[Event]:
         """Put turtle1 into the middle."""
@@ -46,6 +50,7 @@ class World:
             return [LogLine(Severity.ERROR, f"A turtle named [{name}] already exists")]
         name = name or self._free_name()
         self.turtles[name] = Turtle(name, x, y, theta)
+        self.tracks.pop(name, None)
         text = f"Spawning turtle [{name}] at x=[{x:f}], y=[{y:f}], theta=[{theta:f}]"
         return [Spawned(name), LogLine(Severity.INFO, text)]
 
@@ -80,6 +85,7 @@ class World:
     def _wipe(self) -> None:
         self.canvas.clear()
         self.trail = Trail()
+        self.tracks = {}
 
     def command(self, turtle: str, forward: float, left: float | None, turn: float, now_ns: int) -> list[Event]:
         """A turtle's velocities (units/s, rad/s) from now on; a `left` of None leaves the old one as it was."""
@@ -128,7 +134,18 @@ class World:
             self._ticking = True
             return []
         turtles = [self.turtles[name] for name in sorted(self.turtles)]
-        return [event for turtle in turtles for event in turtle.tick(now_ns, self.canvas, self.trail)]
+        for turtle in turtles:
+            if turtle.name not in self.tracks:
+                self._track(turtle)
+        self._ticks += 1
+        events = [event for turtle in turtles for event in turtle.tick(now_ns, self.canvas, self.trail)]
+        for turtle in turtles:
+            self._track(turtle)
+        return events
+
+    def _track(self, turtle: Turtle) -> None:
+        track = self.tracks.setdefault(turtle.name, Track())
+        track.add(self._ticks, turtle.x, turtle.y, turtle.theta, turtle.pen)
 
 
 def _refusal(what: str, *numbers: float) -> list[Event]:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from spinbook.turtlesim.geometry import SIDE
 from spinbook.turtlesim.pen import Pen
+from spinbook.turtlesim.track import Sample, Track, moves
 from spinbook.turtlesim.trail import Point, Stroke
 from spinbook.turtlesim.world import World
 
@@ -17,8 +18,12 @@ Color = tuple[int, int, int]
 
 #: The window's colour where no parameter says otherwise.
 BLUE: Color = (69, 86, 255)
+#: More turtles than this are not told one by one.
+_TOLD = 2
 #: Digits after the point in what the node tells: 1/200 of a pixel.
 _DIGITS = 4
+#: In tracks: half a tenth of a pixel.
+_TRACK_DIGITS = 3
 
 
 @dataclass(frozen=True)
@@ -43,9 +48,19 @@ class StrokePicture:
 
 
 @dataclass(frozen=True)
+class TrackPicture:
+    """Where `turtle` was when. `whole` is False where what it did first has been forgotten."""
+
+    turtle: str
+    samples: tuple[Sample, ...]
+    whole: bool
+
+
+@dataclass(frozen=True)
 class WorldPicture:
     """The whole world: `size` units wide and high, the turtles, and the strokes in the order to draw them.
 
+    `tracks` tell how the turtles that have moved came there.
     `incomplete` says, where anything of the trail is missing, what and why.
     """
 
@@ -54,6 +69,7 @@ class WorldPicture:
     turtles: tuple[TurtlePicture, ...]
     trails: tuple[StrokePicture, ...]
     incomplete: str = ""
+    tracks: tuple[TrackPicture, ...] = ()
 
     def to_json(self) -> str:
         """As JSON in one line; the same for the same world."""
@@ -80,6 +96,7 @@ class WorldPicture:
                 for stroke in self.trails
             ],
             "incomplete": self.incomplete,
+            "tracks": [_told_track(track) for track in self.tracks],
         }
         return json.dumps(told, separators=(",", ":"))
 
@@ -98,6 +115,7 @@ class WorldPicture:
                 turtles=tuple(_turtle(turtle) for turtle in told["turtles"]),
                 trails=tuple(_stroke(stroke) for stroke in told["trails"]),
                 incomplete=str(told.get("incomplete", "")),
+                tracks=tuple(_track(track) for track in told.get("tracks", ())),
             )
         except (KeyError, TypeError, AttributeError, RecursionError) as error:
             raise ValueError(f"not a picture of a turtles' world: {error!r}") from error
@@ -112,7 +130,32 @@ def picture_of(world: World, background: Color) -> WorldPicture:
         turtles=tuple(TurtlePicture(each.name, each.x, each.y, each.theta, each.pen) for each in turtles),
         trails=strokes(world.trail.strokes),
         incomplete="the oldest part of the trail is left out" if world.trail.forgotten else "",
+        tracks=tracks(world.tracks),
     )
+
+
+def tracks(by_turtle: Mapping[str, Track]) -> tuple[TrackPicture, ...]:
+    """The tracks of those that have moved, as a picture shows them."""
+    return tuple(
+        TrackPicture(name, tuple(track.samples), not track.forgotten)
+        for name, track in sorted(by_turtle.items())
+        if moves(track.samples)
+    )
+
+
+def caption(world: WorldPicture) -> str:
+    """Where the turtles are, in words; and what the picture lacks."""
+    if not world.turtles:
+        told = "no turtle"
+    elif len(world.turtles) > _TOLD:
+        told = f"{len(world.turtles)} turtles"
+    else:
+        told = "     ".join(_told(turtle) for turtle in world.turtles)
+    return f"{told}   ({world.incomplete})" if world.incomplete else told
+
+
+def _told(turtle: TurtlePicture) -> str:
+    return f"{turtle.name}:  x {turtle.x:.2f}   y {turtle.y:.2f}   heading {math.degrees(turtle.theta):.0f}°"
 
 
 def strokes(drawn: Iterable[Stroke]) -> tuple[StrokePicture, ...]:
@@ -125,14 +168,44 @@ def strokes(drawn: Iterable[Stroke]) -> tuple[StrokePicture, ...]:
 
 def _turtle(told: dict[str, Any]) -> TurtlePicture:
     x, y, theta = (_number(told[key]) for key in ("x", "y", "theta"))
-    pen = told["pen"]
-    r, g, b = _color([pen["r"], pen["g"], pen["b"]])
-    return TurtlePicture(str(told["name"]), x, y, theta, Pen(r, g, b, _byte(pen["width"]), bool(pen["off"])))
+    return TurtlePicture(str(told["name"]), x, y, theta, _pen(told["pen"]))
 
 
 def _stroke(told: dict[str, Any]) -> StrokePicture:
     points = tuple((_number(x), _number(y)) for x, y in told["points"])
     return StrokePicture(str(told["turtle"]), _color(told["color"]), _byte(told["width"]), points)
+
+
+def _told_track(track: TrackPicture) -> dict[str, Any]:
+    """A track as plain data; its pens stand by themselves, and samples name them by number."""
+    pens = list(dict.fromkeys(sample.pen for sample in track.samples if sample.pen is not None))
+    samples = [
+        [
+            sample.tick,
+            round(sample.x, _TRACK_DIGITS),
+            round(sample.y, _TRACK_DIGITS),
+            round(sample.theta, _TRACK_DIGITS),
+            None if sample.pen is None else pens.index(sample.pen),
+        ]
+        for sample in track.samples
+    ]
+    return {"turtle": track.turtle, "pens": [vars(pen) for pen in pens], "samples": samples, "whole": track.whole}
+
+
+def _track(told: dict[str, Any]) -> TrackPicture:
+    pens = [_pen(pen) for pen in told["pens"]]
+    samples = []
+    for tick, x, y, theta, pen in told["samples"]:
+        if not isinstance(tick, int) or not (pen is None or (isinstance(pen, int) and 0 <= pen < len(pens))):
+            raise ValueError(f"not a picture of a turtles' world: {[tick, x, y, theta, pen]!r} is no sample of a track")
+        drawn = None if pen is None else pens[pen]
+        samples.append(Sample(tick, _number(x), _number(y), _number(theta), drawn))
+    return TrackPicture(str(told["turtle"]), tuple(samples), bool(told["whole"]))
+
+
+def _pen(told: dict[str, Any]) -> Pen:
+    r, g, b = _color([told["r"], told["g"], told["b"]])
+    return Pen(r, g, b, _byte(told["width"]), bool(told["off"]))
 
 
 def _number(told: object) -> float:

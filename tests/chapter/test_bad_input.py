@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import dataclass
+
 import pytest
 from course_folder import CourseFolder
+
+from spinbook.cli import main
 
 GOOD = "# Good\n\n```python\nx = 1\n```\n"
 
@@ -66,20 +71,49 @@ FAULTS: dict[str, tuple[bytes, int, list[str], bool]] = {
 }
 
 
-@pytest.mark.parametrize("fault", FAULTS)
-def test_a_fault_is_told_with_file_and_line_and_what_to_do(course: CourseFolder, fault: str) -> None:
-    text, line, words, stops = FAULTS[fault]
-    course.write(bad=text, good=GOOD)
+@dataclass(frozen=True)
+class Built:
+    """A course with every fault in a chapter of its own, and a good one among them, built once."""
 
-    said = course.spinbook("build")
+    course: CourseFolder
+    said: str
 
-    assert f"chapters/bad.md:{line}: {'error' if stops else 'warning'}:" in said.stdout
-    for word in words:
-        assert word in said.stdout
+
+@pytest.fixture(scope="module")
+def faulty(tmp_path_factory: pytest.TempPathFactory) -> Built:
+    """That course."""
+    course = CourseFolder(tmp_path_factory.mktemp("faulty"))
+    said = course.write(good=GOOD, **{name_of(fault): FAULTS[fault][0] for fault in FAULTS}).spinbook("build")
+    assert said.returncode == 1
     assert "Traceback" not in said.stdout + said.stderr
-    assert said.returncode == (1 if stops else 0)
-    assert course.notebook("good").cells, "the other chapter is built all the same"
-    assert (course.root / "build/notebooks/bad.ipynb").exists() is not stops
+    return Built(course, said.stdout)
+
+
+def name_of(fault: str) -> str:
+    """The name of the chapter with a fault."""
+    return fault.lower().replace(" ", "_").replace("-", "_")
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_fault_is_told_with_file_and_line_and_what_to_do(faulty: Built, fault: str) -> None:
+    _, line, words, stops = FAULTS[fault]
+    name = name_of(fault)
+
+    # What is told of this chapter: from its name to the name of the next.
+    told = [part for part in re.split(r"^(?=chapters/)", faulty.said, flags=re.MULTILINE) if f"/{name}.md:" in part]
+
+    assert any(part.startswith(f"chapters/{name}.md:{line}: {'error' if stops else 'warning'}:") for part in told)
+    for word in words:
+        assert word in "".join(told)
+    assert (faulty.course.root / f"build/notebooks/{name}.ipynb").exists() is not stops
+
+
+def test_chapters_beside_a_faulty_one_are_built_all_the_same(faulty: Built) -> None:
+    assert faulty.course.notebook("good").cells
+
+
+def test_a_warning_stops_nothing(course: CourseFolder) -> None:
+    assert course.write(linked=b"# T\n\nsee [there](nowhere.md)\n").spinbook("build").returncode == 0
 
 
 def test_a_chapter_that_breaks_keeps_its_last_good_notebook(course: CourseFolder) -> None:
@@ -116,15 +150,24 @@ def test_a_missing_chapter_is_told(course: CourseFolder) -> None:
         ('title = "x"\nchapters = ["a.md"]\n[package]\nname = "robot"\nnmae = "y"', ["unknown keys: nmae"]),
     ],
 )
-def test_a_faulty_course_toml_is_told(course: CourseFolder, toml: str, words: list[str]) -> None:
+def test_a_faulty_course_toml_is_told(
+    course: CourseFolder,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    toml: str,
+    words: list[str],
+) -> None:
     (course.root / "course.toml").write_text(toml)
+    monkeypatch.chdir(course.root)
+    monkeypatch.setattr("sys.argv", ["spinbook", "build"])
 
-    said = course.spinbook("build")
+    with pytest.raises(SystemExit) as ended:
+        main()
 
+    said = capsys.readouterr().err
     for word in words:
-        assert word in said.stderr
-    assert "Traceback" not in said.stderr
-    assert said.returncode == 1
+        assert word in said
+    assert ended.value.code == 1
 
 
 def test_outside_a_course_it_says_where_to_go(course: CourseFolder) -> None:

@@ -26,7 +26,7 @@ def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     scenarios = (exercise / "scenarios.py").read_text(encoding="utf-8")
     (exercise / "scenarios.py").write_text(scenarios.replace("in streams.items()", "in list(streams.items())[:1]"))
     toml = (exercise / "exercise.toml").read_text(encoding="utf-8")
-    (exercise / "exercise.toml").write_text(toml.replace("points = 100", "points = 50"))
+    (exercise / "exercise.toml").write_text(toml.replace("points = 100", "points = 36"))
     return tmp_path
 
 
@@ -54,7 +54,7 @@ def test_a_missing_solution(course: Path, crew: Crew) -> None:
 @pytest.mark.parametrize(
     ("file", "old", "new", "told"),
     [
-        ("exercise.toml", "points = 50", "points = 49", "give 50 points together, but points = 49"),
+        ("exercise.toml", "points = 36", "points = 35", "give 36 points together, but points = 35"),
         ("checks.py", "chapter.must_answer()", "assert False, 'never right'", "solution does not pass.*never right"),
         ("checks.py", "chapter.must_answer()", "chapter.no_such_thing", r"breaks.*checks\.py:\d+: AttributeError"),
         ("checks.py", "def test_answers_each_message_once(chapter", "def test_a(no_scenario", "no_scenario"),

@@ -5,9 +5,11 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from contextlib import ExitStack
 
 import pytest
+import ros_domains
 from ros2_terminal import PATIENCE, ROBOT, Robot, Terminal
 
 
@@ -27,21 +29,58 @@ def terminal() -> Iterator[Terminal]:
             process.communicate()
 
 
-@pytest.fixture
-def robot(ros_domain: int) -> Iterator[Robot]:
-    """Start parts of robot.py as a process: `robot("publisher", "action")`; they are ready when it returns."""
-    started: list[subprocess.Popen[str]] = []
+def start(*parts: str) -> subprocess.Popen[str]:
+    """A process with parts of ros2_robot.py, ready."""
+    process = subprocess.Popen(
+        [sys.executable, os.fspath(ROBOT), *parts], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "ready\n"
+    return process
 
-    def start(*parts: str) -> subprocess.Popen[str]:
-        process = subprocess.Popen(
-            [sys.executable, os.fspath(ROBOT), *parts], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
-        )
-        started.append(process)
-        assert process.stdout is not None
-        assert process.stdout.readline() == "ready\n"
-        return process
 
-    yield start
-    for process in started:
+def end(robots: Iterable[subprocess.Popen[str]]) -> None:
+    for process in robots:
         process.kill()
         process.communicate(timeout=PATIENCE)
+
+
+@pytest.fixture
+def robot(ros_domain: int) -> Iterator[Robot]:
+    """Starts parts of ros2_robot.py as a process: `robot("publisher", "action")`; they are ready when it returns."""
+    started: list[subprocess.Popen[str]] = []
+
+    def start_one(*parts: str) -> subprocess.Popen[str]:
+        started.append(start(*parts))
+        return started[-1]
+
+    yield start_one
+    end(started)
+
+
+@pytest.fixture(scope="session")
+def standing_robots() -> Iterator[tuple[dict[tuple[str, ...], tuple[int, subprocess.Popen[str]]], ExitStack]]:
+    """Robots that go on from test to test, by their parts, each with a domain of its own."""
+    robots: dict[tuple[str, ...], tuple[int, subprocess.Popen[str]]] = {}
+    with ExitStack() as domains:
+        yield robots, domains
+        end(process for _, process in robots.values())
+
+
+@pytest.fixture
+def standing(
+    standing_robots: tuple[dict[tuple[str, ...], tuple[int, subprocess.Popen[str]]], ExitStack],
+    monkeypatch: pytest.MonkeyPatch,
+) -> Robot:
+    """As `robot`, for a test that only looks at it: the same process serves all such tests. Call it first of all."""
+    robots, domains = standing_robots
+
+    def stand(*parts: str) -> subprocess.Popen[str]:
+        domain = robots[parts][0] if parts in robots else domains.enter_context(ros_domains.reserved())
+        for name, value in ros_domains.environment(domain).items():
+            monkeypatch.setenv(name, value)
+        if parts not in robots:
+            robots[parts] = (domain, start(*parts))
+        return robots[parts][1]
+
+    return stand

@@ -13,8 +13,8 @@ pytestmark = pytest.mark.usefixtures("ros_domain")
 FIBONACCI = "test_msgs/action/Fibonacci"
 
 
-def test_list_info_and_type(robot: Robot, terminal: Terminal) -> None:
-    robot("action")
+def test_list_info_and_type(standing: Robot, terminal: Terminal) -> None:
+    standing("action")
     assert terminal.ros2("action", "list", "-t").out == f"/fibonacci [{FIBONACCI}]\n"
     assert terminal.ros2("action", "type", "/fibonacci").out == f"{FIBONACCI}\n"
     assert terminal.ros2("action", "info", "-t", "/fibonacci").out == (
@@ -22,8 +22,8 @@ def test_list_info_and_type(robot: Robot, terminal: Terminal) -> None:
     )
 
 
-def test_send_goal_prints_feedback_and_result(robot: Robot, terminal: Terminal) -> None:
-    robot("action")
+def test_send_goal_prints_feedback_and_result(standing: Robot, terminal: Terminal) -> None:
+    standing("action")
     out = terminal.ros2("action", "send_goal", "-f", "/fibonacci", FIBONACCI, "{order: 2}").out
     assert re.sub(r"ID: [0-9a-f]{32}", "ID: …", out) == (
         "Waiting for an action server to become available...\n"
@@ -36,9 +36,9 @@ def test_send_goal_prints_feedback_and_result(robot: Robot, terminal: Terminal) 
 
 
 def test_feedback_stands_between_acceptance_and_result_whatever_overtakes_what(
-    robot: Robot, terminal: Terminal
+    standing: Robot, terminal: Terminal
 ) -> None:
-    robot("hasty_action")
+    standing("hasty_action")
     out = terminal.ros2("action", "send_goal", "-f", "/fibonacci", FIBONACCI).out
     heads = [line.split(":")[0] if line[:1].isupper() else line for line in out.splitlines() if line.strip()]
     told = [line for number in range(1, 6) for line in ("Feedback", "    sequence:", f"- {number}")]
@@ -49,8 +49,8 @@ def test_feedback_stands_between_acceptance_and_result_whatever_overtakes_what(
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_cancels_the_goal(robot: Robot, terminal: Terminal, number: int) -> None:
-    robot("action")
+def test_a_signal_cancels_the_goal(standing: Robot, terminal: Terminal, number: int) -> None:
+    standing("action")
     goal = terminal.start("action", "send_goal", "/fibonacci", FIBONACCI, "{order: 10000}")
     goal.lines(5)
     answer = goal.stop(number)
@@ -58,8 +58,8 @@ def test_a_signal_cancels_the_goal(robot: Robot, terminal: Terminal, number: int
     assert answer.err == ""
 
 
-def test_the_wrong_type_is_refused(robot: Robot, terminal: Terminal) -> None:
-    robot("action")
+def test_the_wrong_type_is_refused(standing: Robot, terminal: Terminal) -> None:
+    standing("action")
     other = terminal.ros2("action", "send_goal", "/fibonacci", "test_msgs/action/NestedMessage")
     assert other.code == 1
     assert f"is of type {FIBONACCI}" in other.err

@@ -147,9 +147,9 @@ def test_turtlesim_stays_ours_where_the_installation_has_none(
 )
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 2), (signal.SIGTERM, 0)])
 def test_a_signal_ends_what_goes_on_without_a_word(
-    robot: Robot, terminal: Terminal, arguments: list[str], number: int, code: int
+    standing: Robot, terminal: Terminal, arguments: list[str], number: int, code: int
 ) -> None:
-    robot("counter")
+    standing("counter")
     running = terminal.start(*arguments)
     running.lines(1)
     answer = running.stop(number)
@@ -163,8 +163,8 @@ def test_a_signal_ends_what_waits_in_vain(ros_domain: int, terminal: Terminal) -
     assert (answer.code, answer.out, answer.err) == (2, "", "")
 
 
-def test_sigint_is_heard_even_where_it_was_ignored(robot: Robot, terminal: Terminal) -> None:
-    robot("counter")
+def test_sigint_is_heard_even_where_it_was_ignored(standing: Robot, terminal: Terminal) -> None:
+    standing("counter")
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         running = terminal.start("topic", "echo", "/count")
@@ -174,8 +174,8 @@ def test_sigint_is_heard_even_where_it_was_ignored(robot: Robot, terminal: Termi
     assert running.stop().code == 2
 
 
-def test_a_reader_that_goes_away_ends_the_command_quietly(robot: Robot, terminal: Terminal) -> None:
-    robot("counter")
+def test_a_reader_that_goes_away_ends_the_command_quietly(standing: Robot, terminal: Terminal) -> None:
+    standing("counter")
     running = terminal.start("topic", "echo", "/count")
     running.lines(1)
     assert running.process.stdout is not None

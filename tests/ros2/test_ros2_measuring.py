@@ -73,8 +73,8 @@ def test_bandwidth_needs_two_messages() -> None:
     assert bandwidth.report(1.0) is None
 
 
-def test_hz(robot: Robot, terminal: Terminal) -> None:
-    robot("publisher")
+def test_hz(standing: Robot, terminal: Terminal) -> None:
+    standing("publisher")
     hz = terminal.start("topic", "hz", "/joint_commands")
     average, spread = hz.lines(2)
     assert re.fullmatch(r"average rate: \d+\.\d{3}", average)
@@ -90,8 +90,8 @@ def test_hz_waits_for_a_topic_with_a_warning(robot: Robot, terminal: Terminal) -
     assert hz.lines(2)[1].endswith("window: 5")
 
 
-def test_bw(robot: Robot, terminal: Terminal) -> None:
-    robot("publisher")
+def test_bw(standing: Robot, terminal: Terminal) -> None:
+    standing("publisher")
     bw = terminal.start("topic", "bw", "/joint_commands")
     subscribed, rate, sizes = bw.lines(3)
     assert subscribed == "Subscribed to [/joint_commands]"
@@ -99,15 +99,15 @@ def test_bw(robot: Robot, terminal: Terminal) -> None:
     assert sizes == "\tMessage size mean: 0.09 KB min: 0.09 KB max: 0.09 KB"
 
 
-def test_delay(robot: Robot, terminal: Terminal) -> None:
-    robot("publisher")
+def test_delay(standing: Robot, terminal: Terminal) -> None:
+    standing("publisher")
     delay = terminal.start("topic", "delay", "/joint_commands")
     average, spread = delay.lines(2)
     assert re.fullmatch(r"average delay: \d+\.\d{3}", average)
     assert spread.startswith("\tmin: ")
 
 
-def test_delay_needs_a_header(robot: Robot, terminal: Terminal) -> None:
-    robot("counter")
+def test_delay_needs_a_header(standing: Robot, terminal: Terminal) -> None:
+    standing("counter")
     answer = terminal.ros2("topic", "delay", "/count")
     assert (answer.code, answer.err.splitlines()[0]) == (1, "msg does not have header")

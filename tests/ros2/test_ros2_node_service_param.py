@@ -18,8 +18,8 @@ SERVICES = """\
 """
 
 
-def test_node_info_has_the_sections_of_the_real_command(robot: Robot, terminal: Terminal) -> None:
-    robot("publisher")
+def test_node_info_has_the_sections_of_the_real_command(standing: Robot, terminal: Terminal) -> None:
+    standing("publisher")
     assert terminal.ros2("node", "list").out == "/joint_publisher\n"
     assert terminal.ros2("node", "info", "/joint_publisher").out == (
         "/joint_publisher\n"
@@ -38,23 +38,23 @@ def test_node_info_has_the_sections_of_the_real_command(robot: Robot, terminal: 
     )
 
 
-def test_an_unknown_node_is_refused(robot: Robot, terminal: Terminal) -> None:
-    robot("publisher")
+def test_an_unknown_node_is_refused(standing: Robot, terminal: Terminal) -> None:
+    standing("publisher")
     answer = terminal.ros2("node", "info", "/jointpublisher")
     assert answer.code == 1
     assert answer.err.startswith("Unable to find node '/jointpublisher'\nNodes seen: /joint_publisher.")
 
 
-def test_service_list_has_types(robot: Robot, terminal: Terminal) -> None:
-    robot("publisher")
+def test_service_list_has_types(standing: Robot, terminal: Terminal) -> None:
+    standing("publisher")
     expected = "".join(
         f"{name} [{kind}]\n" for name, kind in (line.strip().split(": ") for line in SERVICES.splitlines())
     )
     assert terminal.ros2("service", "list", "-t").out == expected
 
 
-def test_service_call_prints_request_and_response(robot: Robot, terminal: Terminal) -> None:
-    robot("service")
+def test_service_call_prints_request_and_response(standing: Robot, terminal: Terminal) -> None:
+    standing("service")
     answer = terminal.ros2("service", "call", "/stand_up", "std_srvs/srv/SetBool", "{data: true}")
     assert answer.out.removeprefix("waiting for service to become available...\n") == (
         "requester: making request: std_srvs.srv.SetBool_Request(data=True)\n"
@@ -67,8 +67,8 @@ def test_service_call_prints_request_and_response(robot: Robot, terminal: Termin
     assert terminal.ros2("service", "find", "std_srvs/srv/SetBool").out == "/stand_up\n"
 
 
-def test_a_service_of_another_type_is_not_waited_for(robot: Robot, terminal: Terminal) -> None:
-    robot("service")
+def test_a_service_of_another_type_is_not_waited_for(standing: Robot, terminal: Terminal) -> None:
+    standing("service")
     answer = terminal.ros2("service", "call", "/stand_up", "std_srvs/srv/Trigger")
     assert answer.code == 1
     assert "is of type std_srvs/srv/SetBool, not std_srvs/srv/Trigger" in answer.err
@@ -80,8 +80,8 @@ def test_a_wrong_field_of_a_request(terminal: Terminal) -> None:
     assert "data (boolean)" in answer.err
 
 
-def test_param_list_of_all_and_of_one(robot: Robot, terminal: Terminal) -> None:
-    robot("publisher")
+def test_param_list_of_all_and_of_one(standing: Robot, terminal: Terminal) -> None:
+    standing("publisher")
     params = "  gains.left\n  rate\n  start_type_description_service\n  use_sim_time\n"
     assert terminal.ros2("param", "list").out == "/joint_publisher:\n" + params
     assert terminal.ros2("param", "list", "joint_publisher").out == params
@@ -105,8 +105,8 @@ def test_param_get_set_and_dump(robot: Robot, terminal: Terminal) -> None:
     )
 
 
-def test_param_describe(robot: Robot, terminal: Terminal) -> None:
-    robot("publisher")
+def test_param_describe(standing: Robot, terminal: Terminal) -> None:
+    standing("publisher")
     assert terminal.ros2("param", "describe", "/joint_publisher", "rate").out == (
         "Parameter name: rate\n"
         "  Type: double\n"
@@ -117,8 +117,8 @@ def test_param_describe(robot: Robot, terminal: Terminal) -> None:
     )
 
 
-def test_param_refusals(robot: Robot, terminal: Terminal) -> None:
-    robot("publisher")
+def test_param_refusals(standing: Robot, terminal: Terminal) -> None:
+    standing("publisher")
     unknown = terminal.ros2("param", "get", "/joint_publisher", "rat")
     assert (unknown.code, unknown.err.splitlines()[0]) == (1, "Parameter not set")
     assert "rate" in unknown.err.splitlines()[1]

@@ -10,13 +10,13 @@ from ros2_terminal import Robot, Terminal
 pytestmark = pytest.mark.usefixtures("ros_domain")
 
 
-def test_list_names_the_topics(robot: Robot, terminal: Terminal) -> None:
-    robot("publisher")
+def test_list_names_the_topics(standing: Robot, terminal: Terminal) -> None:
+    standing("publisher")
     assert terminal.ros2("topic", "list").out == "/joint_commands\n/parameter_events\n/rosout\n"
 
 
-def test_list_shows_types(robot: Robot, terminal: Terminal) -> None:
-    robot("publisher")
+def test_list_shows_types(standing: Robot, terminal: Terminal) -> None:
+    standing("publisher")
     assert terminal.ros2("topic", "list", "-t").out == (
         "/joint_commands [sensor_msgs/msg/JointState]\n"
         "/parameter_events [rcl_interfaces/msg/ParameterEvent]\n"
@@ -24,8 +24,8 @@ def test_list_shows_types(robot: Robot, terminal: Terminal) -> None:
     )
 
 
-def test_list_counts_ends(robot: Robot, terminal: Terminal) -> None:
-    robot("counter", "latched")
+def test_list_counts_ends(standing: Robot, terminal: Terminal) -> None:
+    standing("counter", "latched")
     assert terminal.ros2("topic", "list", "-v").out == (
         "Published topics:\n"
         " * /count [std_msgs/msg/Int32] 1 publisher\n"
@@ -39,8 +39,8 @@ def test_list_counts_ends(robot: Robot, terminal: Terminal) -> None:
     )
 
 
-def test_list_leaves_out_hidden_topics_unless_asked(robot: Robot, terminal: Terminal) -> None:
-    robot("counter")
+def test_list_leaves_out_hidden_topics_unless_asked(standing: Robot, terminal: Terminal) -> None:
+    standing("counter")
     assert terminal.ros2("topic", "list", "-c").out == "4\n"
     assert "/_hidden\n" in terminal.ros2("topic", "list", "--include-hidden-topics").out
 
@@ -51,8 +51,8 @@ def test_the_command_does_not_list_itself(terminal: Terminal) -> None:
     assert terminal.ros2("service", "list", "-a").out == ""
 
 
-def test_info_tells_of_every_end(robot: Robot, terminal: Terminal) -> None:
-    robot("publisher")
+def test_info_tells_of_every_end(standing: Robot, terminal: Terminal) -> None:
+    standing("publisher")
     out = terminal.ros2("topic", "info", "-v", "/joint_commands").out
     assert re.sub(r"GID: [0-9a-f.]+", "GID: …", out) == (
         "Type: sensor_msgs/msg/JointState\n"
@@ -79,22 +79,22 @@ def test_info_tells_of_every_end(robot: Robot, terminal: Terminal) -> None:
     )
 
 
-def test_info_in_short(robot: Robot, terminal: Terminal) -> None:
-    robot("publisher")
+def test_info_in_short(standing: Robot, terminal: Terminal) -> None:
+    standing("publisher")
     assert terminal.ros2("topic", "info", "/joint_commands").out == (
         "Type: sensor_msgs/msg/JointState\nPublisher count: 1\nSubscription count: 0\n"
     )
     assert terminal.ros2("topic", "info", "/parameter_events").out.splitlines()[1] == "Publisher count: 1"
 
 
-def test_type_and_find(robot: Robot, terminal: Terminal) -> None:
-    robot("publisher")
+def test_type_and_find(standing: Robot, terminal: Terminal) -> None:
+    standing("publisher")
     assert terminal.ros2("topic", "type", "/joint_commands").out == "sensor_msgs/msg/JointState\n"
     assert terminal.ros2("topic", "find", "sensor_msgs/msg/JointState").out == "/joint_commands\n"
 
 
-def test_an_unknown_topic_is_refused_with_those_that_are_there(robot: Robot, terminal: Terminal) -> None:
-    robot("publisher")
+def test_an_unknown_topic_is_refused_with_those_that_are_there(standing: Robot, terminal: Terminal) -> None:
+    standing("publisher")
     for verb in ("info", "type"):
         answer = terminal.ros2("topic", verb, "/joint_comands")
         assert answer.code == 1

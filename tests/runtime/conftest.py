@@ -25,7 +25,16 @@ def new_kernel(tmp_path: Path) -> Iterator[Callable[..., Kernel]]:
         kernel.shut_down()
 
 
+@pytest.fixture(scope="module")
+def module_kernel(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Kernel]:
+    """One kernel for a module's tests: starting one takes seconds."""
+    kernel = Kernel(tmp_path_factory.mktemp("notebook"))
+    yield kernel
+    kernel.shut_down()
+
+
 @pytest.fixture
-def kernel(new_kernel: Callable[..., Kernel]) -> Kernel:
-    """One kernel."""
-    return new_kernel()
+def kernel(module_kernel: Kernel) -> Iterator[Kernel]:
+    """A kernel in which no node runs; other tests may have run cells in it before."""
+    yield module_kernel
+    module_kernel.run("%stop --all")

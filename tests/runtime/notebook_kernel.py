@@ -50,15 +50,14 @@ class Kernel:
         self.folder = folder
         self.loaded = self.run("%load_ext spinbook\n%chapter test --package robot --workspace robot_ws")
 
-    def run(self, code: str, on_text: Callable[[str], None] = lambda text: None) -> Shown:
-        """Run a cell to its end. `on_text` is called with all the text so far whenever more comes."""
+    def run(self, code: str, on_more: Callable[[Shown], None] = lambda shown: None) -> Shown:
+        """Run a cell to its end. `on_more` is called with what has been shown so far whenever more comes."""
         shown = Shown()
 
         def take(message: dict[str, Any]) -> None:
             kind, content = message["msg_type"], message["content"]
             if kind == "stream":
                 shown.text += content["text"]
-                on_text(shown.text)
             elif kind == "error":
                 shown.error = "\n".join(content["traceback"])
             elif kind == "display_data":
@@ -66,17 +65,31 @@ class Kernel:
             elif kind == "update_display_data":
                 shown.updates += 1
                 shown.pictures[-1] = content["data"]
+            on_more(shown)
 
         self._client.execute_interactive(code, output_hook=take, timeout=CELL_LIMIT_S, allow_stdin=False)
         return shown
 
-    def interrupt(self) -> None:
-        """What the Stop button does."""
-        self._manager.interrupt_kernel()
+    def pressing_stop(self, when: Callable[[Shown], bool]) -> Callable[[Shown], None]:
+        """For `run`: presses the Stop button, once, when that is so of what has been shown."""
+        pressed = False
+
+        def look(shown: Shown) -> None:
+            nonlocal pressed
+            if not pressed and when(shown):
+                pressed = True  # a second time, between two cells, would lose the kernel's answer
+                self._manager.interrupt_kernel()
+
+        return look
+
+    @property
+    def process_id(self) -> int:
+        """The kernel's."""
+        return int(self._manager.provisioner.pid)
 
     def kill(self) -> None:
         """kill -9."""
-        os.kill(self._manager.provisioner.pid, signal.SIGKILL)
+        os.kill(self.process_id, signal.SIGKILL)
 
     def shut_down(self) -> None:
         """What closing the notebook does."""

@@ -44,7 +44,7 @@ ALWAYS = {
     *("kills_everything", "log_1_gb", "looks_for_solutions", "memory_10_gb", "network_access"),
     *("outlives_by_double_fork", "random_packets", "remembers_between_runs", "writes_everywhere"),
 }
-ALWAYS_EVERYWHERE = {"kills_everything", "looks_for_solutions"}
+ALWAYS_EVERYWHERE = {"kills_everything"}
 
 
 def size(names: Iterable[str], always: set[str]) -> list[Any]:

@@ -61,6 +61,7 @@ def test_the_picture_of_a_new_world_shows_turtle1_in_the_middle() -> None:
         ],
         "trails": [],
         "incomplete": "",
+        "tracks": [],
     }
 
 

@@ -15,11 +15,11 @@ _DASHES = ["-", "--", "-.", ":"]
 
 def draw(recording: Recording, title: str = "") -> Figure:
     """A figure of what was recorded. Time counts from the first sample."""
-    panels = _panels(recording)
-    figure = Figure(figsize=(8, 1.2 + 2.6 * len(panels)), layout="constrained")
-    axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
+    shown = panels(recording)
+    figure = Figure(figsize=(8, 1.2 + 2.6 * len(shown)), layout="constrained")
+    axes = figure.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]
     several_topics = len({curve.quantity.topic for curve in recording.curves.values()}) > 1
-    for axis, ((kind, unit), curves) in zip(axes, panels.items(), strict=True):
+    for axis, ((kind, unit), curves) in zip(axes, shown.items(), strict=True):
         for number, curve in enumerate(curves):
             label = f"{curve.quantity.topic} {curve.quantity.label}" if several_topics else curve.quantity.label
             axis.plot(
@@ -42,7 +42,8 @@ def draw(recording: Recording, title: str = "") -> Figure:
     return figure
 
 
-def _panels(recording: Recording) -> dict[tuple[str, str], list[Curve]]:
+def panels(recording: Recording) -> dict[tuple[str, str], list[Curve]]:
+    """(kind, unit) -> the curves that share an axis, in the order in which they first appeared."""
     panels: dict[tuple[str, str], list[Curve]] = {}
     for quantity, curve in recording.curves.items():
         panels.setdefault((quantity.kind, quantity.unit), []).append(curve)
@@ -52,7 +53,7 @@ def _panels(recording: Recording) -> dict[tuple[str, str], list[Curve]]:
 def in_words(recording: Recording) -> str:
     """What the figure shows, for those who can't see it and for front ends without pictures."""
     lines = []
-    for (kind, unit), curves in _panels(recording).items():
+    for (kind, unit), curves in panels(recording).items():
         for curve in curves:
             low, high = min(curve.values), max(curve.values)
             span = f"{low:.3f} … {high:.3f} {unit}".rstrip()

@@ -69,7 +69,12 @@ def main() -> None:
     """Record until told to stop."""
     rclpy.init()
     try:
-        rclpy.spin(Recorder(sys.argv[1:]))
+        recorder: Node = Recorder(sys.argv[1:])
+        try:
+            rclpy.spin(recorder)
+        finally:
+            # Without this its end is not announced, and others see it for another minute.
+            recorder.destroy_node()
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     except (LookupError, ValueError) as error:

@@ -1,0 +1,1 @@
+"""Shows that an exercise's checks catch what is wrong and pass what is right."""

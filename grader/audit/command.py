@@ -1,0 +1,126 @@
+"""The command `spinbook audit`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+from rich.console import Console
+
+from grader.audit.report.as_json import write_json
+from grader.audit.report.progress import on
+from grader.audit.report.terminal import show
+from grader.audit.result import Audit, Problem
+from grader.crew import Crew, HostFault
+from grader.exercise import Exercise, ExerciseError, load
+from grader.grading import Options
+from grader.sandbox import SandboxUnavailable
+
+#: Exit codes. 2 is click's own, for usage.
+PROVED, TO_MEND, USAGE, OUR_FAULT = 0, 1, 2, 3
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("exercises", nargs=-1, metavar="[EXERCISE]…")
+@click.option("--quick", is_flag=True, help="Only the mistakes, and a sample of the mutants: for every change.")
+@click.option("--mutants", type=click.IntRange(0), help="Try at most so many mutants, of all kinds.")
+@click.option("--json", "json_", type=click.Path(path_type=Path), help="Write the report as JSON, for programs.")
+@click.option("--html", type=click.Path(path_type=Path), help="Write the report as a page.")
+@click.option("--parallel", type=click.IntRange(1, 64), help="How many spins run at once.  [default: twice the cores]")
+def audit(
+    exercises: tuple[str, ...],
+    quick: bool,
+    mutants: int | None,
+    json_: Path | None,
+    html: Path | None,
+    parallel: int | None,
+) -> None:
+    """Show that the checks of each EXERCISE catch what is wrong and pass what is right.
+
+    Right solutions must get full marks, whatever the numbers of a scenario are; the starter, an empty file and an idle
+    node must get nothing; each usual mistake must lose the checks that it names. Then the solution is changed in one
+    place after another, and every such mutant whose messages differ must be caught. Those that are not are shown.
+
+    \b
+      spinbook audit                              every exercise of the course
+      spinbook audit joint_velocity               one
+      spinbook audit --quick                      a sample, in seconds
+      spinbook audit joint_velocity --html a.html how much each check catches, and what it costs
+
+    EXERCISE is a name in the course's folder exercises/, or the path of an exercise's folder. What has been tried
+    before is not tried again while nothing that it depends on has changed.
+
+    Exit codes: 0 all is proved, 1 there is something to mend, 2 wrong usage, 3 a fault of the machine's or ours.
+    """
+    options = Options(parallel=parallel) if parallel else Options()
+    audits: list[Audit] = []
+    faulty: list[ExerciseError] = []
+    console = Console(highlight=False)
+    try:
+        with Crew() as crew:
+            for folder in [_folder(name) for name in exercises] or _all_here():
+                try:
+                    audits.append(_audited(load(folder), options, crew, quick, mutants, console))
+                except ExerciseError as error:
+                    faulty.append(error)
+                    click.echo(f"{error}\n    The rest of this exercise was not audited.", err=True)
+        if json_:
+            write_json(audits, [_problem(error) for error in faulty], json_)
+        if html:
+            from grader.audit.report.html import write_html
+
+            write_html(audits, [_problem(error) for error in faulty], html)
+    except (SandboxUnavailable, HostFault) as error:
+        click.echo(f"The machine or the grader is at fault, not the exercise: {error}", err=True)
+        sys.exit(OUR_FAULT)
+    except OSError as error:
+        click.echo(f"{error.filename}: {error.strerror}", err=True)
+        sys.exit(OUR_FAULT)
+    sys.exit(TO_MEND if faulty or any(result.problems for result in audits) else PROVED)
+
+
+def _audited(
+    exercise: Exercise, options: Options, crew: Crew, quick: bool, mutants: int | None, console: Console
+) -> Audit:
+    try:
+        from grader.audit.audit import audit as audit_one
+    except ModuleNotFoundError as error:
+        if error.name != "libcst":
+            raise
+        told = "Mutants are made with libcst, which is not installed: pip install 'spinbook[audit]'"
+        raise click.UsageError(told) from None
+    with on(Console(stderr=True)) as progress:
+        result = audit_one(exercise, options, crew, progress, quick, mutants)
+    show(result, console)
+    return result
+
+
+def _problem(error: ExerciseError) -> Problem:
+    place = f"{error.file}:{error.line}" if error.line else f"{error.file}"
+    return Problem(place, error.file.parent.name, error.found, error.mend)
+
+
+def _folder(exercise: str) -> Path:
+    if Path(exercise, "exercise.toml").exists():
+        return Path(exercise)
+    here = _exercises()
+    if here and (here / exercise / "exercise.toml").exists():
+        return here / exercise
+    known = ", ".join(folder.name for folder in _all_here())
+    raise click.UsageError(f"There is no exercise {exercise!r} here. There are: {known}.")
+
+
+def _all_here() -> list[Path]:
+    here = _exercises()
+    found = sorted(file.parent for file in here.glob("*/exercise.toml")) if here else []
+    if not found:
+        raise click.UsageError(
+            "There are no exercises here. Start in a course's folder, the one with exercises/ in it."
+        )
+    return found
+
+
+def _exercises() -> Path | None:
+    """The exercises/ of this folder, or of the nearest one above it."""
+    return next((c / "exercises" for c in (Path.cwd(), *Path.cwd().parents) if (c / "exercises").is_dir()), None)

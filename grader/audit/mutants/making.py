@@ -1,0 +1,72 @@
+"""Makes all mutants of a program."""
+
+from __future__ import annotations
+
+import ast
+import difflib
+import hashlib
+import warnings
+from collections.abc import Callable, Iterator
+from types import ModuleType
+
+import libcst as cst
+
+from grader.audit.mutants import conditions, ends, history, loops, messages, numbers, statements
+from grader.audit.mutants.mutant import Mutant
+from grader.audit.mutants.program import Change, Program
+from grader.exercise import Exercise
+
+Operator = Callable[[cst.CSTNode, Program], Iterator[Change]]
+
+#: Each of these modules names its operators in OPERATORS.
+FAMILIES: tuple[ModuleType, ...] = (conditions, numbers, statements, loops, ends, messages, history)
+
+
+def mutants_of(source: str, exercise: Exercise) -> tuple[Mutant, ...]:
+    """Every mutant of a program, in the order of its lines; none twice, and none that means the same to Python.
+
+    Only what compiles counts: Python itself tells a student of the rest.
+    """
+    program = Program(source, exercise)
+    seen = {_meaning(source)}
+    ids: dict[str, int] = {}
+    mutants: list[Mutant] = []
+    for node in program.nodes():
+        for operator in OPERATORS:
+            for change in operator(node, program):
+                changed = program.changed(change)
+                meaning = _meaning(changed)
+                if meaning and meaning not in seen:
+                    seen.add(meaning)
+                    mutants.append(_mutant(program, operator.__name__, change, changed, ids))
+    return tuple(sorted(mutants, key=lambda mutant: mutant.line))
+
+
+def _mutant(program: Program, operator: str, change: Change, changed: str, ids: dict[str, int]) -> Mutant:
+    old, new = program.source.splitlines(), changed.splitlines()
+    file = program.exercise.file_name
+    diff = list(difflib.unified_diff(old, new, file, file, lineterm=""))
+    lines = [line[0] + line[1:].strip() for line in diff[2:] if line[0] in "+-"]
+    text = "\n".join([program.place(change.where), change.what, *lines])
+    id_ = hashlib.sha256(text.encode()).hexdigest()[:10]
+    # The same change may be possible in two places of one function.
+    ids[id_] = ids.get(id_, 0) + 1
+    if ids[id_] > 1:
+        id_ += f"-{ids[id_]}"
+    name = operator.replace("_", " ")
+    return Mutant(id_, name, change.what, program.line(change.where), changed, "\n".join(diff))
+
+
+def _meaning(source: str) -> str:
+    """What Python makes of a program, whatever it looks like; empty where it does not compile."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            tree = ast.parse(source)
+            compile(tree, "mutant", "exec")
+    except (SyntaxError, ValueError):
+        return ""
+    return ast.dump(tree)
+
+
+OPERATORS: tuple[Operator, ...] = tuple(operator for family in FAMILIES for operator in family.OPERATORS)

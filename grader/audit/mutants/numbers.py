@@ -1,0 +1,94 @@
+"""Operators for arithmetic and constants."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import libcst as cst
+
+from grader.audit.mutants.program import Change, Program, called, expression
+
+ARITHMETIC = {
+    "+": ("-",),
+    "-": ("+",),
+    "*": ("/", "+"),
+    "/": ("*", "//"),
+    "//": ("/",),
+    "%": ("*",),
+    "**": ("*",),
+}
+
+#: How many nanoseconds a second has, and what it is mistaken for.
+NANOSECONDS, MISTAKEN = 10**9, (10**6, 10**3)
+
+
+def arithmetic(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+    """`a + b` becomes `a - b`, `a / b` becomes `a * b` and `a // b`, and so on."""
+    if isinstance(node, cst.BinaryOperation):
+        sign = program.text(node.operator).strip()
+        for other in ARITHMETIC.get(sign, ()):
+            template = expression(f"a {other} b")
+            assert isinstance(template, cst.BinaryOperation)
+            yield Change(node, node, node.with_changes(operator=template.operator), f"takes {other} for {sign}")
+
+
+def operand(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+    """`a - b` becomes `b - a`, `a` alone, `b` alone."""
+    if isinstance(node, cst.BinaryOperation):
+        if program.text(node.operator).strip() in ("-", "/", "//", "%", "**"):
+            yield Change(node, node, node.with_changes(left=node.right, right=node.left), "swaps the two sides")
+        for kept, left_out in ((node.left, node.right), (node.right, node.left)):
+            yield Change(node, node, kept, f"leaves out {program.text(left_out)}")
+
+
+def divisor(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+    """`a / b` becomes `a / round(b, 1)`, and `b` is kept from becoming small or large."""
+    if isinstance(node, cst.BinaryOperation) and isinstance(node.operator, cst.Divide):
+        if isinstance(node.right, (cst.Integer, cst.Float)) or program.text(node.right).isupper():
+            return  # a constant
+        text = program.text(node.right)
+        for new, what in (
+            (f"round({text}, 1)", f"rounds {text} to tenths"),
+            (f"max({text}, 0.01)", f"takes 0.01 for a smaller {text}"),
+            (f"min({text}, 1.0)", f"takes 1.0 for a larger {text}"),
+        ):
+            yield Change(node, node.right, expression(new), what)
+
+
+def constant(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+    """A number is one more, one less, nothing, twice as large; a text has more in it; None is 0; True is False."""
+    if isinstance(node, cst.Integer):
+        value = node.evaluated_value
+        for other in (value + 1, value - 1, 0):
+            yield Change(node, node, expression(f"{other}"), f"{node.value} is {other}")
+    elif isinstance(node, cst.Float):
+        for new in (f"{node.value} * 2", f"{node.value} / 2", "0.0"):
+            yield Change(node, node, expression(f"({new})"), f"{node.value} is {new}")
+    elif isinstance(node, cst.SimpleString) and node.raw_value != "__main__":
+        changed = node.with_changes(value=f"{node.value[:-1]}_x{node.value[-1]}")
+        yield Change(node, node, changed, f"{node.value} is another text")
+    elif isinstance(node, cst.Name) and not isinstance(program.parent(node), cst.Attribute):
+        for old, new in (("True", "False"), ("False", "True"), ("None", "0")):
+            if node.value == old:
+                yield Change(node, node, expression(new), f"{old} is {new}")
+
+
+def time_unit(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+    """A second has a million nanoseconds, or a thousand."""
+    is_it = isinstance(node, (cst.Integer, cst.Float)) and node.evaluated_value == NANOSECONDS
+    is_power = isinstance(node, cst.BinaryOperation) and program.text(node).replace(" ", "") == "10**9"
+    if is_it or is_power:
+        for other in MISTAKEN:
+            yield Change(node, node, expression(f"{other:_}"), f"takes {other:,} for the nanoseconds of a second")
+
+
+def without_call(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+    """`f(a)` becomes `a`, where what is called is a plain function of one value."""
+    if isinstance(node, cst.Call) and len(node.args) == 1 and not node.args[0].keyword and called(node).islower():
+        modules = ("math", "np", "numpy")
+        is_method = isinstance(node.func, cst.Attribute) and program.text(node.func.value) not in modules
+        if not is_method and not isinstance(program.parent(node), cst.Expr):
+            yield Change(node, node, node.args[0].value, f"leaves out {called(node)}()")
+
+
+OPERATORS = (arithmetic, operand, divisor, constant, time_unit, without_call)

@@ -1,0 +1,165 @@
+"""A program in a form in which parts of it can be found and changed, with everything else kept to the last space."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TypeVar, cast
+
+import libcst as cst
+from libcst.metadata import MetadataWrapper, ParentNodeProvider, PositionProvider
+
+from grader.exercise import Exercise
+
+Kind = TypeVar("Kind", bound=cst.CSTNode)
+
+
+@dataclass(frozen=True)
+class Change:
+    """Put `new` in the place of `old`, which is at `where`. `imports` are modules that `new` needs."""
+
+    where: cst.CSTNode
+    old: cst.CSTNode
+    new: cst.CSTNode
+    what: str
+    imports: tuple[str, ...] = ()
+
+
+class Program:
+    """A parsed program of an exercise. Raises `libcst.ParserSyntaxError` where the source is no Python."""
+
+    def __init__(self, source: str, exercise: Exercise) -> None:
+        self.source = source
+        self.exercise = exercise
+        wrapper = MetadataWrapper(cst.parse_module(source))
+        self.module = wrapper.module
+        self._parents = wrapper.resolve(ParentNodeProvider)
+        self._positions = wrapper.resolve(PositionProvider)
+
+    def nodes(self) -> Iterator[cst.CSTNode]:
+        """Every part of the program that does something: no docstrings, imports, annotations or log lines."""
+        waiting: list[cst.CSTNode] = [self.module]
+        while waiting:
+            node = waiting.pop()
+            if not self._says_nothing(node):
+                yield node
+                waiting += reversed(node.children)
+
+    def _says_nothing(self, node: cst.CSTNode) -> bool:
+        if isinstance(node, (cst.Import, cst.ImportFrom, cst.Annotation, cst.Decorator)):
+            return True
+        if isinstance(node, cst.Expr):
+            return isinstance(node.value, (cst.SimpleString, cst.ConcatenatedString)) or "get_logger" in self.text(node)
+        return False
+
+    def text(self, node: cst.CSTNode) -> str:
+        """The node's source."""
+        return self.module.code_for_node(node)
+
+    def line(self, node: cst.CSTNode) -> int:
+        """The node's line, counted from 1."""
+        return int(self._positions[node].start.line)
+
+    def parent(self, node: cst.CSTNode) -> cst.CSTNode | None:
+        """What the node is a part of."""
+        return self._parents.get(node)
+
+    def around(self, node: cst.CSTNode, kind: type[Kind]) -> Kind | None:
+        """The innermost part of this kind that the node lies in."""
+        above = self.parent(node)
+        while above is not None and not isinstance(above, kind):
+            above = self.parent(above)
+        return above
+
+    def function(self, node: cst.CSTNode) -> cst.FunctionDef | None:
+        """The function or method that the node lies in."""
+        return self.around(node, cst.FunctionDef)
+
+    def has_self(self, node: cst.CSTNode) -> bool:
+        """Whether `self` is at hand where the node is."""
+        function = self.function(node)
+        return bool(function and function.params.params and function.params.params[0].name.value == "self")
+
+    def place(self, node: cst.CSTNode) -> str:
+        """The names of the classes and functions that the node lies in, such as `JointVelocity.on_joints`."""
+        names: list[str] = []
+        above: cst.CSTNode | None = node
+        while above is not None:
+            if isinstance(above, (cst.FunctionDef, cst.ClassDef)):
+                names.insert(0, above.name.value)
+            above = self.parent(above)
+        return ".".join(names)
+
+    def callbacks(self) -> list[cst.FunctionDef]:
+        """The functions that the program names where it subscribes."""
+        named = {
+            text.rpartition(".")[2]
+            for node in self.nodes()
+            if isinstance(node, cst.Call) and called(node) == "create_subscription"
+            for text in [self.text(argument.value) for argument in node.args]
+        }
+        return [node for node in self.nodes() if isinstance(node, cst.FunctionDef) and node.name.value in named]
+
+    def instead(
+        self, statement: cst.CSTNode, what: str, *new: cst.CSTNode | str, imports: tuple[str, ...] = ()
+    ) -> Change:
+        """The change that puts `new` statements where `statement` stands; none at all where `new` is empty."""
+        block = self.parent(statement)
+        assert isinstance(block, (cst.IndentedBlock, cst.Module))
+        body: list[cst.CSTNode] = []
+        for other in block.body:
+            body += [parsed(item) for item in new] if other is statement else [other]
+        return Change(statement, block, with_body(block, body), what, imports)
+
+    def changed(self, change: Change) -> str:
+        """The source with one change made."""
+        if change.old is self.module:
+            result = cast(cst.Module, change.new).code
+        else:
+            result = cast(cst.Module, self.module.deep_replace(change.old, change.new)).code
+        missing = [name for name in change.imports if f"import {name}\n" not in result]
+        lines = result.splitlines(keepends=True)
+        first = next((i for i, line in enumerate(lines) if line.startswith(("import ", "from "))), 0)
+        return "".join([*lines[:first], *(f"import {name}\n" for name in missing), *lines[first:]])
+
+
+def parsed(statement: cst.CSTNode | str) -> cst.CSTNode:
+    """A statement, from its source where it is given as that."""
+    return cst.parse_statement(statement) if isinstance(statement, str) else statement
+
+
+def expression(source: str) -> cst.BaseExpression:
+    """An expression, in parentheses of its own where it needs some."""
+    return cst.parse_expression(source)
+
+
+def with_body(block: cst.IndentedBlock | cst.Module, body: Sequence[cst.CSTNode]) -> cst.CSTNode:
+    """The block with other statements in it; a `pass` where there would be none."""
+    return block.with_changes(body=list(body) or [cst.parse_statement("pass")])
+
+
+def called(node: cst.CSTNode) -> str:
+    """The last name of what a call calls: `publish` for `self.publisher.publish(…)`; empty for anything else."""
+    if not isinstance(node, cst.Call):
+        return ""
+    if isinstance(node.func, cst.Attribute):
+        return node.func.attr.value
+    return node.func.value if isinstance(node.func, cst.Name) else ""
+
+
+def only_call(statement: cst.CSTNode, name: str) -> cst.Call | None:
+    """The call, where a statement is nothing but a call of something with this name."""
+    if isinstance(statement, cst.SimpleStatementLine) and len(statement.body) == 1:
+        inner = statement.body[0]
+        if isinstance(inner, cst.Expr) and isinstance(inner.value, cst.Call) and called(inner.value) == name:
+            return inner.value
+    return None
+
+
+def only_assignment(statement: cst.CSTNode) -> cst.Assign | None:
+    """The assignment, where a statement is nothing but one with one target."""
+    if isinstance(statement, cst.SimpleStatementLine) and len(statement.body) == 1:
+        inner = statement.body[0]
+        if isinstance(inner, cst.Assign) and len(inner.targets) == 1:
+            return inner
+    return None

@@ -1,0 +1,65 @@
+"""Right solutions are right whatever the numbers of the randomised scenarios are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from grader.audit.candidates import Candidate
+from grader.audit.store import Store
+from grader.audit.trial import Trial, Trials
+from grader.recording import Recording
+from grader.scenario import Scenario
+from grader.scenario.declared import declared
+
+
+@dataclass(frozen=True)
+class Seed:
+    """One seed, with the scenarios that are not as with the audit's own."""
+
+    number: int
+    scenarios: tuple[Scenario, ...]
+    randomised: tuple[Scenario, ...]
+
+
+def seeds_of(trials: Trials, count: int) -> list[Seed]:
+    """The seeds beside the audit's own that make `count` with it; none where no scenario has chance in it."""
+    spinner = trials.grading.spinner
+    usual = {scenario.digest for scenario in spinner.scenarios}
+    found = []
+    for number in range(1, count + 1):
+        if number != spinner.options.seed:
+            scenarios = declared(spinner.exercise, number)
+            changed = tuple(scenario for scenario in scenarios if scenario.digest not in usual)
+            if changed:
+                found.append(Seed(number, scenarios, changed))
+    return found
+
+
+def over_seed(trials: Trials, store: Store, seed: Seed, candidates: list[Candidate]) -> dict[str, Trial]:
+    """The trial of each candidate (the solution is the first) with this seed, by name."""
+    made: dict[str, Recording] = {}
+
+    def references() -> dict[str, Recording]:
+        if not made:
+            solution = candidates[0].submission
+            made.update(trials.grading.references)
+            made.update({scenario.name: trials.spin(solution, scenario) for scenario in seed.randomised})
+        return made
+
+    def trial_of(candidate: Candidate) -> Trial:
+        grading = trials.grading
+        spinner = replace(grading.spinner, scenarios=seed.scenarios)
+        with_seed = replace(trials, grading=replace(grading, spinner=spinner, references=references()))
+        if candidate is candidates[0]:
+            return with_seed.trial_of_recordings(references())
+        spun = {scenario.name: trials.spin(candidate.submission, scenario) for scenario in seed.randomised}
+        return with_seed.trial_of_recordings({**references(), **spun})
+
+    digests = [scenario.digest for scenario in seed.randomised]
+    return {
+        candidate.name: store.trial(
+            {"code": candidate.submission.digest, "seed": seed.number, "randomised": digests},
+            lambda candidate=candidate: trial_of(candidate),  # type: ignore[misc]
+        )
+        for candidate in candidates
+    }

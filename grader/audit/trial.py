@@ -1,0 +1,186 @@
+"""A trial: one program spun through the scenarios and judged, as far as its verdict needs."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, field, replace
+
+from grader.audit.comparing import Difference, differences
+from grader.audit.listing import Check
+from grader.audit.spins import Spins
+from grader.checking.verdict import Status, Verdict
+from grader.checking.wrong import Finding
+from grader.crew import HostFault
+from grader.crew.jobs import JudgeJob
+from grader.grading.grading import Grading
+from grader.recording import Ending, Recording
+from grader.scenario import Scenario
+from grader.submission import Submission
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What became of one program.
+
+    `statuses` is how each check that could be judged ended, `findings` what those that failed tell. `spun` are the
+    scenarios that were needed; in `differences` stands what differs from the solution there, and `messages` is how many
+    messages came. `seconds` is how long each spin took.
+    """
+
+    story: str
+    statuses: dict[str, Status]
+    findings: dict[str, Finding]
+    spun: tuple[str, ...]
+    messages: int
+    differences: tuple[Difference, ...]
+    seconds: dict[str, float] = field(default_factory=dict, compare=False)
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """The checks that failed, in their order."""
+        return tuple(name for name, status in self.statuses.items() if status == "failed")
+
+    @property
+    def caught(self) -> bool:
+        """Whether any check failed."""
+        return bool(self.failed)
+
+
+@dataclass(frozen=True)
+class Trials:
+    """Everything that trials of one exercise's programs need."""
+
+    grading: Grading
+    checks: tuple[Check, ...]
+    spins: Spins
+    _turn: itertools.count[int] = field(default_factory=itertools.count, compare=False)
+
+    def try_(self, submission: Submission, only: tuple[str, ...] = (), enough: bool = False) -> Trial:
+        """Spin and judge a program.
+
+        The first scenario comes first. Then a scenario is spun only where a check wants it that is not blocked, which
+        changes no verdict: a blocked check never looks at its recording. With `only`, nothing but these checks counts.
+        With `enough`, the first check that fails ends the trial. A program that no check fails is spun through every
+        scenario. Raises `HostFault` where the machine or we are at fault.
+        """
+        if not submission.program:
+            return self._nothing(submission.problem)
+        wanted_checks = self._with_what_they_depend_on(only)
+        scenarios = list(self.grading.spinner.scenarios)
+        recordings = {scenarios[0].name: self.spin(submission, scenarios[0])}
+        first = recordings[scenarios[0].name]
+        if first.ending.outcome != "completed":
+            story = Ending(first.ending.outcome, first.ending.story)
+            rest = {s.name: Recording(s.name, (), (), (), (), "none", False, story) for s in scenarios[1:]}
+            return self._trial(first.ending.story, recordings, self._judged({**recordings, **rest}), self.checks)
+        while True:
+            verdicts = self._judged_where_different(recordings)
+            decided = [check for check in self.checks if set(check.scenarios) <= set(recordings)]
+            failed = any(verdicts[check.name].status == "failed" for check in decided)
+            wanted = [] if enough and failed else self._wanted(wanted_checks, verdicts, recordings)
+            if not wanted and not failed and not only:
+                wanted = [scenario for scenario in scenarios if scenario.name not in recordings]
+            if not wanted:
+                return self._trial("", recordings, verdicts, tuple(decided))
+            for scenario in wanted[: 3 if enough else None]:
+                recordings[scenario.name] = self.spin(submission, scenario)
+
+    def judge(self, recordings: dict[str, Recording], references: dict[str, Recording]) -> dict[str, Verdict]:
+        """The verdicts on these recordings, by check."""
+        spinner = self.grading.spinner
+        titles = {scenario.name: scenario.title for scenario in spinner.scenarios}
+        verdicts: tuple[Verdict, ...] = spinner.crew.do(JudgeJob(spinner.exercise, recordings, references, titles))
+        broken = [verdict for verdict in verdicts if verdict.status == "error"]
+        if broken:
+            raise HostFault(f"the check {broken[0].name} broke: {broken[0].error}")
+        return {verdict.name: verdict for verdict in verdicts}
+
+    def trial_of_recordings(self, recordings: dict[str, Recording]) -> Trial:
+        """The trial that these recordings of every scenario make."""
+        return self._trial("", recordings, self._judged(recordings), self.checks)
+
+    def spin(self, submission: Submission, scenario: Scenario) -> Recording:
+        """The recording of one scenario. Raises `HostFault` where the machine or we are at fault."""
+        # Turn by turn on each core: a program stays on the one it is given.
+        return self.spins.spin(submission, scenario, next(self._turn))
+
+    def _nothing(self, problem: str) -> Trial:
+        scenarios = self.grading.spinner.scenarios
+        story = Ending("did-not-start", problem)
+        recordings = {s.name: Recording(s.name, (), (), (), (), "none", False, story) for s in scenarios}
+        return self._trial(problem, {}, self._judged(recordings), self.checks)
+
+    def _judged(self, recordings: dict[str, Recording]) -> dict[str, Verdict]:
+        return self.judge(recordings, self.grading.references)
+
+    def _judged_where_different(self, recordings: dict[str, Recording]) -> dict[str, Verdict]:
+        """The verdicts, of which only those count whose scenarios were spun.
+
+        Where nothing differs from the solution every check passes, as it does for the solution.
+        """
+        references = self.grading.references
+        if not any(differences(recording, references[name]) for name, recording in recordings.items()):
+            return {c.name: Verdict(c.name, c.title, "passed", c.points, c.hint) for c in self.checks}
+        missing = Ending("did-not-start", "not spun")
+        places = {
+            name: Recording(name, (), (), (), (), "none", False, missing)
+            for name in references
+            if name not in recordings
+        }
+        return self._judged({**recordings, **places})
+
+    def _wanted(
+        self, names: set[str], verdicts: dict[str, Verdict], recordings: dict[str, Recording]
+    ) -> list[Scenario]:
+        """The scenarios that are needed to judge what is not blocked."""
+        spun = set(recordings)
+        passed = {c.name for c in self.checks if set(c.scenarios) <= spun and verdicts[c.name].status == "passed"}
+        asked = {
+            scenario
+            for check in self.checks
+            if check.name in names and set(check.depends) <= passed
+            for scenario in check.scenarios
+        }
+        return [s for s in self.grading.spinner.scenarios if s.name in asked - spun]
+
+    def _with_what_they_depend_on(self, only: tuple[str, ...]) -> set[str]:
+        if not only:
+            return {check.name for check in self.checks}
+        by_name = {check.name: check for check in self.checks}
+        names, waiting = set(), list(only)
+        while waiting:
+            name = waiting.pop()
+            if name in by_name and name not in names:
+                names.add(name)
+                waiting += by_name[name].depends
+        return names
+
+    def _trial(
+        self,
+        story: str,
+        recordings: dict[str, Recording],
+        verdicts: dict[str, Verdict],
+        decided: tuple[Check, ...],
+    ) -> Trial:
+        statuses: dict[str, Status] = {}
+        for check in self.checks:
+            # A check that was not spun is blocked, or was not asked for.
+            if check in decided:
+                statuses[check.name] = verdicts[check.name].status
+            elif any(statuses.get(name, "passed") != "passed" for name in check.depends):
+                statuses[check.name] = "blocked"
+        findings = {
+            name: replace(finding)
+            for name in statuses
+            if (finding := verdicts[name].finding) and statuses[name] == "failed"
+        }
+        references = self.grading.references
+        return Trial(
+            story=story,
+            statuses=statuses,
+            findings=findings,
+            spun=tuple(recordings),
+            messages=sum(len(recording.received) for recording in recordings.values()),
+            differences=tuple(d for name, r in recordings.items() for d in differences(r, references[name])),
+            seconds={name: recording.seconds for name, recording in recordings.items()},
+        )

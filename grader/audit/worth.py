@@ -1,0 +1,63 @@
+"""What the checks are worth: that each can fail, for something of its own, and says what was expected."""
+
+from __future__ import annotations
+
+import re
+from itertools import combinations
+
+from grader.audit.listing import Check
+from grader.audit.result import Problem
+from grader.audit.trial import Trial
+from grader.checking.wrong import Finding
+
+#: A message that names no expected value has to say in words what was to be.
+WORDS = re.compile(r"expect|must|should|has to|have to|was to|were to|instead of|may not", re.IGNORECASE)
+
+
+def problems_of_checks(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Problem]:
+    """`trials` are those of mistakes and of mutants that can be told from the solution, by name."""
+    return [*_that_never_fail(checks, trials), *_that_fail_together(checks, trials), *messages(checks, trials)]
+
+
+def _that_never_fail(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Problem]:
+    failed = {name for trial in trials.values() for name in trial.failed}
+    return [
+        Problem(
+            f"{check.file}:{check.line}",
+            check.name,
+            f"no mutant and no mistake fails {check.name}: can it fail at all?",
+            "Write a mistake that it must catch, or remove it.",
+        )
+        for check in checks
+        if check.name not in failed
+    ]
+
+
+def _that_fail_together(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Problem]:
+    failed_by = {c.name: frozenset(name for name, trial in trials.items() if c.name in trial.failed) for c in checks}
+    found = []
+    for one, other in combinations(checks, 2):
+        together = failed_by[one.name]
+        if together and together == failed_by[other.name]:
+            told = f"{one.name} and {other.name} always fail together ({len(together)} times): do both judge the same?"
+            mend = "Write a mistake that fails only one, let one depend on the other, or make them one check."
+            found.append(Problem(f"{other.file}:{other.line}", other.name, told, mend))
+    return found
+
+
+def _broke_off(finding: Finding) -> bool:
+    """Whether the program did not come through the scenario: then its story is told, and not what a check wanted."""
+    return bool(finding.scenario) and finding.message is None
+
+
+def messages(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Problem]:
+    """Checks that failed and did not say what they expected."""
+    found = []
+    for check in checks:
+        for name, trial in trials.items():
+            finding = trial.findings.get(check.name)
+            if finding and not _broke_off(finding) and not finding.expected and not WORDS.search(finding.text):
+                told = f"{check.name} fails for {name} and does not say what was expected: “{finding.text}”"
+                found.append(Problem(f"{check.file}:{check.line}", check.name, told, "Name it in the message."))
+                break
+    return found

@@ -1,0 +1,56 @@
+"""An entry as JSON: `results/STUDENT/grade.json`. docs/grade.schema.json tells its form to other programs."""
+
+from __future__ import annotations
+
+import json
+from datetime import datetime
+from typing import Any
+
+from grader.checking.verdict import Verdict
+from grader.checking.wrong import Finding
+from grader.classroom.entry import Adjustment, Entry, Student
+from grader.grading import Grade
+from grader.report.as_json import as_json
+
+
+def to_json(entry: Entry, key: str = "") -> str:
+    """`entry` as a text from which `from_json` makes an equal one, but for recordings.
+
+    `key` tells what the grade depends on, so that it is not made again while that is the same.
+    """
+    entries: dict[str, Any] = {
+        "student": vars(entry.student),
+        "file": entry.file,
+        "submitted": entry.submitted.isoformat() if entry.submitted else None,
+        "submitted_from": entry.submitted_from,
+        "final": entry.final,
+        "adjustments": [vars(adjustment) for adjustment in entry.adjustments],
+        "grade": json.loads(as_json(entry.grade)),
+        "key": key,
+    }
+    return json.dumps(entries, indent=2, ensure_ascii=False) + "\n"
+
+
+def from_json(text: str) -> tuple[Entry, str]:
+    """The entry and the key that `to_json` wrote. Raises ValueError, KeyError or TypeError where it did not."""
+    entries = json.loads(text)
+    submitted = entries["submitted"]
+    entry = Entry(
+        student=Student(**entries["student"]),
+        file=entries["file"],
+        grade=_grade(entries["grade"]),
+        submitted=datetime.fromisoformat(submitted) if submitted else None,
+        adjustments=tuple(Adjustment(**adjustment) for adjustment in entries["adjustments"]),
+        submitted_from=entries["submitted_from"],
+    )
+    return entry, str(entries["key"])
+
+
+def _grade(entries: dict[str, Any]) -> Grade:
+    return Grade(**{**entries, "verdicts": tuple(_verdict(verdict) for verdict in entries["verdicts"])})
+
+
+def _verdict(entries: dict[str, Any]) -> Verdict:
+    kept = {name: value for name, value in entries.items() if name != "earned"}
+    finding = Finding(**entries["finding"]) if entries["finding"] else None
+    return Verdict(**{**kept, "finding": finding, "blocked_by": tuple(entries["blocked_by"])})

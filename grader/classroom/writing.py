@@ -1,0 +1,29 @@
+"""Results are written whole or not at all, whenever the machine stops."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+
+def write(file: Path, content: str) -> None:
+    """Make `file` hold `content`, unless it does already. Whoever reads meanwhile sees the old or the new."""
+    data = content.encode("utf-8", errors="backslashreplace")
+    try:
+        if file.read_bytes() == data:
+            return
+    except OSError:
+        pass
+    file.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
+    try:
+        with os.fdopen(handle, "wb") as out:
+            out.write(data)
+            out.flush()
+            os.fsync(out.fileno())  # else a loss of power could leave the new name with nothing in it
+        os.chmod(temporary, 0o644)  # noqa: PTH101
+        os.replace(temporary, file)  # noqa: PTH105
+    except BaseException:
+        os.unlink(temporary)  # noqa: PTH108
+        raise

@@ -1,0 +1,31 @@
+"""What every spin needs is found and loaded once in the worker, not again in each process that it forks."""
+
+from __future__ import annotations
+
+import gc
+import importlib
+import inspect
+from contextlib import suppress
+
+from grader.crew.environment import PROFILE
+from grader.sandbox import view
+
+#: Whose compiled support the rig uses in every spin; loading it takes half as long as a short scenario.
+PACKAGES = (
+    *("rcl_interfaces.msg", "rcl_interfaces.srv", "type_description_interfaces.srv", "builtin_interfaces.msg"),
+    *("rosgraph_msgs.msg", "std_msgs.msg", "sensor_msgs.msg", "geometry_msgs.msg"),
+)
+
+
+def warm() -> None:
+    """Load message types, look at the file system, and leave the memory as it is shared best with forks."""
+    for package in PACKAGES:
+        with suppress(ImportError):
+            for _, kind in inspect.getmembers(importlib.import_module(package), inspect.isclass):
+                load = getattr(kind, "__import_type_support__", None)
+                if load:
+                    load()
+    view.steps((PROFILE,), (), 0)
+    # Collected later, in each fork, it would be copied there.
+    gc.collect()
+    gc.freeze()

@@ -1,0 +1,125 @@
+"""The plot on a student's page: a panel a joint, the student's curve over the solution's, as a small SVG."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from grader.exercise import Exercise
+from grader.feedback.curves import Curve, Point, curves
+from grader.grading import Grade
+from grader.pages.rendering import template
+
+#: In units of the picture, which is drawn as wide as its page allows.
+WIDTH, LEFT, RIGHT, HEIGHT, GAP, TOP, BOTTOM = 500, 52, 8, 80, 34, 52, 12
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One joint: where its panel begins, its two lines, the ends of its axis, and the first wrong point, if any."""
+
+    joint: str
+    top: float
+    expected: str
+    got: str
+    lowest: str
+    highest: str
+    wrong: Point | None
+    wrong_at: str
+
+
+def feedback_plot(grade: Grade, exercise: Exercise) -> str | None:
+    """The plot as SVG text; None where the node published nothing that can be drawn, or nothing was recorded.
+
+    Drawn is the scenario of the first public check that failed, or else the first scenario, which all public checks
+    may show. A hidden check's scenario is never drawn.
+    """
+    scenario = _scenario(grade)
+    if grade.outcome != "graded" or scenario is None:
+        return None
+    field, unit = _field(exercise)
+    try:
+        drawn = curves(grade, exercise, scenario, field)
+    except (KeyError, TypeError):  # messages of this exercise have no names to part them by
+        return None
+    if not any(curve.got for curve in drawn):
+        return None
+    times = [at for curve in drawn for line in (curve.expected, curve.got) for at, _ in line]
+    start, end = min(times), max(times)
+    panels = [_panel(i, curve, start, end) for i, curve in enumerate(drawn)]
+    return template("feedback/plot.svg.j2").render(
+        title=field,
+        unit=unit,
+        said=_said(drawn, field, end),
+        panels=panels,
+        width=WIDTH,
+        left=LEFT,
+        right=WIDTH - RIGHT,
+        panel_height=HEIGHT,
+        height=TOP + len(panels) * (HEIGHT + GAP) + BOTTOM,
+        bottom=TOP + len(panels) * (HEIGHT + GAP) - GAP,
+        marks=[(_x(at, start, end), f"{at:g}") for at in _marks(start, end)],
+    )
+
+
+def _scenario(grade: Grade) -> str | None:
+    public = [v for v in grade.verdicts if not v.hidden and v.status == "failed" and v.finding]
+    failed = [v.finding.scenario for v in public if v.finding and v.finding.scenario in grade.recordings]
+    return next(iter([*failed, *grade.recordings]), None)
+
+
+def _field(exercise: Exercise) -> tuple[str, str]:
+    units = [pair for topic in exercise.outputs for pair in topic.units.items()]
+    return units[0] if units else ("velocity", "")
+
+
+def _panel(number: int, curve: Curve, start: float, end: float) -> Panel:
+    top = float(TOP + number * (HEIGHT + GAP))
+    values = [value for line in (curve.expected, curve.got) for _, value in line] or [0.0]
+    low, high = min(values), max(values)
+    margin = 0.08 * (high - low) or 0.5 * abs(high) or 1.0
+
+    def place(point: Point) -> Point:
+        share = (point[1] - low + margin) / (high - low + 2 * margin)
+        return _x(point[0], start, end), round(top + HEIGHT * (1 - share), 1)
+
+    return Panel(
+        joint=curve.joint,
+        top=top,
+        expected=_line([place(point) for point in curve.expected]),
+        got=_line([place(point) for point in curve.got]),
+        lowest=f"{low:.3g}",
+        highest=f"{high:.3g}" if high != low else "",
+        wrong=place(curve.first_wrong) if curve.first_wrong else None,
+        wrong_at=f"{curve.first_wrong[0]:.2f} s" if curve.first_wrong else "",
+    )
+
+
+def _x(at: float, start: float, end: float) -> float:
+    return round(LEFT + (WIDTH - LEFT - RIGHT) * (at - start) / ((end - start) or 1.0), 1)
+
+
+def _line(points: list[Point]) -> str:
+    return " ".join(f"{x:g},{y:g}" for x, y in points)
+
+
+def _marks(start: float, end: float) -> list[float]:
+    """About five round times from `start` to `end`."""
+    rough = (end - start) / 5 or 1.0
+    power = 10.0 ** (len(f"{rough:.0f}") - 1) if rough >= 1 else 0.1
+    step = next((step * power for step in (1, 2, 5, 10) if step * power >= rough), 10 * power)
+    first = -(-start // step)
+    return [round((first + i) * step, 6) for i in range(int((end - first * step) / step + 1e-9) + 1)]
+
+
+def _said(drawn: tuple[Curve, ...], field: str, end: float) -> str:
+    """The plot in words."""
+    wrong = [curve for curve in drawn if curve.first_wrong]
+    names = "joint" if len(drawn) == 1 else "joints"
+    begin = f"The {field} of {len(drawn)} {names} over {end:.3g} s, yours drawn over the solution's. "
+    if not wrong:
+        return begin + "They agree everywhere."
+    times = [(curve.first_wrong[0], curve.joint) for curve in wrong if curve.first_wrong]
+    at, joint = min(times)
+    return (
+        begin + f"{len(wrong)} of them differ; the first that is wrong is {joint} at {at:.2f} s, marked with a cross."
+    )

@@ -1,0 +1,36 @@
+"""Writes the gradebook's files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from grader.classroom.entry import Entry
+from grader.classroom.writing import write
+from grader.exercise import Exercise
+from grader.gradebook.junit import junit
+from grader.gradebook.tables import canvas, grades, moodle, nbgrader
+from grader.gradescope.results import results_json
+
+#: Excel takes a CSV file for UTF-8 only if it begins with this. Only in the file that is for people.
+BYTE_ORDER_MARK = "\ufeff"
+
+
+def write_gradebook(results: Path, exercise: Exercise, entries: Sequence[Entry]) -> tuple[Path, ...]:
+    """Write a class's grades into the folder `results`, and return the files, in order of students' ids.
+
+    `grades.csv`, `nbgrader.csv`, `canvas.csv`, `moodle.csv`, `junit.xml`, and in each student's folder `results.json`
+    for Gradescope. Each is written whole or not at all. Raises OSError when the folder can't be written.
+    """
+    ordered = sorted(entries, key=lambda entry: entry.student.id)
+    contents = {
+        results / "grades.csv": BYTE_ORDER_MARK + grades(exercise, ordered),
+        results / "nbgrader.csv": nbgrader(exercise, ordered),
+        results / "canvas.csv": canvas(exercise, ordered),
+        results / "moodle.csv": moodle(exercise, ordered),
+        results / "junit.xml": junit(exercise, ordered),
+        **{results / entry.student.id / "results.json": results_json(entry) for entry in ordered},
+    }
+    for file, content in contents.items():
+        write(file, content)
+    return tuple(contents)

@@ -1,0 +1,1 @@
+"""Grading on Gradescope: what it is told of a grade, and the autograder that is uploaded there."""

@@ -1,0 +1,79 @@
+"""Grades one submission in Gradescope's container: `python -m grader.gradescope.run EXERCISE_FOLDER ROOT [ISOLATION]`.
+
+ROOT is `/autograder` there: it holds `submission/` and `submission_metadata.json`, and gets `results/results.json`.
+What is printed Gradescope shows to instructors alone.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import sys
+import traceback
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from grader.classroom.entry import Entry, Student
+from grader.classroom.writing import write
+from grader.crew import Crew, HostFault
+from grader.exercise import Exercise, ExerciseError, load
+from grader.gradescope.kept import keep_beside
+from grader.gradescope.results import no_score, results
+from grader.grading import Options, grading_of
+from grader.sandbox import Isolation, SandboxUnavailable
+from grader.submission import Submission, read
+
+
+def main(folder: Path, root: Path, isolation: str = "") -> None:
+    """Grade what is in `root/submission`. Whatever goes wrong on our side is told, without a score."""
+    keep_beside(folder)
+    try:
+        told = results(_entry(load(folder), root, isolation))
+    except (ExerciseError, SandboxUnavailable, HostFault) as error:
+        print(error)
+        told = no_score("The autograder is not set up right; its output says more.")
+    except Exception:
+        traceback.print_exc(file=sys.stdout)
+        told = no_score("The autograder broke; its output says more.")
+    write(root / "results" / "results.json", json.dumps(told, indent=2, ensure_ascii=False) + "\n")
+
+
+def _entry(exercise: Exercise, root: Path, isolation: str) -> Entry:
+    handed_in = submission(root / "submission", exercise)
+    with Crew() as crew:
+        options = Options(Isolation(isolation) if isolation else None)
+        grade = grading_of(exercise, options, crew).grade(handed_in)
+    if grade.outcome == "host-error":
+        print(grade.message)
+    student, submitted = _metadata(root / "submission_metadata.json")
+    return Entry(student, Path(handed_in.name).name, grade, submitted, submitted_from="Gradescope")
+
+
+def submission(folder: Path, exercise: Exercise) -> Submission:
+    """What a student has uploaded: the file called as the exercise says, else the only one of its kind."""
+    files = sorted(file for file in folder.rglob("*") if file.is_file() and file.suffix in (".py", ".ipynb", ".zip"))
+    named = [file for file in files if file.name == exercise.file_name]
+    for found in (named, files):
+        if len(found) == 1:
+            return read(str(found[0]), exercise)
+    names = ", ".join(file.name for file in files[:5])
+    problem = f"Upload one file, called {exercise.file_name}. " + (f"There are {names}." if files else "There is none.")
+    digest = hashlib.sha256(problem.encode()).hexdigest()
+    return Submission(exercise.file_name, digest, exercise.file_name, "", None, problem)
+
+
+def _metadata(file: Path) -> tuple[Student, datetime | None]:
+    """Who handed in, and when, as far as Gradescope tells."""
+    student, submitted = Student("student"), None
+    with contextlib.suppress(OSError, ValueError, KeyError, TypeError, IndexError, AttributeError):
+        told: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        user = told["users"][0]
+        student = Student(str(user["id"]), str(user.get("name", "")), str(user.get("email", "")))
+        submitted = datetime.fromisoformat(told["created_at"])
+    return student, submitted
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), Path(sys.argv[2]), *sys.argv[3:4])

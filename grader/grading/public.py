@@ -1,0 +1,101 @@
+"""What of an exercise a student may have: public scenarios, and what the solution published in them.
+
+A student's copy of an exercise has neither solution nor scenarios.py nor hidden checks. Its public checks compare with
+the recordings in `public.json`, which is made from the author's folders by `public_part` and `to_json`.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+from grader.checking.listing import Listed
+from grader.crew import Crew
+from grader.crew.jobs import ListJob
+from grader.exercise import Exercise, ExerciseError
+from grader.grading.options import Options
+from grader.grading.reference import reference
+from grader.grading.spinning import Spinner
+from grader.recording import Recording
+from grader.recording.store import from_plain, plain
+from grader.sandbox import Isolation
+from grader.scenario import Message, Scenario
+from grader.scenario.declared import declared
+
+#: Changes when older versions can't read the file any more.
+FORMAT = 1
+
+
+@dataclass(frozen=True)
+class PublicPart:
+    """Public scenarios, the solution's recordings of them by name, and how many checks and points stay hidden."""
+
+    scenarios: tuple[Scenario, ...]
+    references: dict[str, Recording]
+    hidden_checks: int
+    hidden_points: float
+
+
+def public_part(exercise: Exercise, options: Options, isolation: Isolation, crew: Crew) -> PublicPart:
+    """The public part of an exercise: read in a student's copy, made from the solution where there is one.
+
+    Raises `ExerciseError` where the author, or in a student's copy whoever changed it, has something to mend.
+    """
+    if exercise.solution_folder is None:
+        return _read(exercise)
+    checks: tuple[Listed, ...] = crew.do(ListJob(replace(exercise, public_only=False)))
+    used = {name for check in checks if not check.hidden for name in check.fixtures}
+    scenarios = tuple(scenario for scenario in declared(exercise, options.seed) if scenario.name in used)
+    if not scenarios:
+        found = "there is no check that students may read and that spins a scenario"
+        raise ExerciseError(exercise.folder / "checks.py", found, "Write one: students check their own work with it.")
+    references = reference(Spinner(exercise.public(), scenarios, isolation, options, crew))
+    hidden = [check for check in checks if check.hidden]
+    return PublicPart(scenarios, references, len(hidden), sum(check.points for check in hidden))
+
+
+def to_json(exercise: Exercise, public: PublicPart) -> str:
+    """The text of public.json: the same for the same scenarios and solution, whenever it is made."""
+    expected = {name: _timeless(recording) for name, recording in public.references.items()}
+    entries = {
+        "format": FORMAT,
+        "exercise": exercise.name,
+        "hidden": {"checks": public.hidden_checks, "points": public.hidden_points},
+        "scenarios": [asdict(scenario) for scenario in public.scenarios],
+        "expected": plain(expected),
+    }
+    return json.dumps(entries, ensure_ascii=False, separators=(",", ":")) + "\n"
+
+
+def _timeless(recording: Recording) -> Recording:
+    """Without what the solution logged, and how long it took."""
+    return replace(recording, log="", seconds=0.0, lockstep_seconds=0.0)
+
+
+def _read(exercise: Exercise) -> PublicPart:
+    file = exercise.public_file
+    mend = "Take it from the course's handout again."
+    try:
+        entries: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        if entries["format"] != FORMAT:
+            mend = "Install the spinbook that came with the handout: pip install -r requirements.txt"
+            raise ExerciseError(file, f"it has the format {entries['format']}, not {FORMAT}", mend)
+        public = PublicPart(
+            tuple(_scenario(scenario) for scenario in entries["scenarios"]),
+            from_plain(entries["expected"]),
+            int(entries["hidden"]["checks"]),
+            float(entries["hidden"]["points"]),
+        )
+    except FileNotFoundError:
+        raise ExerciseError(file, "there is no such file", mend) from None
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise ExerciseError(file, f"it can't be read: {type(error).__name__}: {error}", mend) from None
+    if not public.scenarios or any(scenario.name not in public.references for scenario in public.scenarios):
+        raise ExerciseError(file, "a scenario or its recording is missing", mend)
+    return public
+
+
+def _scenario(entries: dict[str, Any]) -> Scenario:
+    messages = tuple(Message(**message) for message in entries["messages"])
+    return Scenario(entries["name"], entries["title"], messages, entries["interrupt"])

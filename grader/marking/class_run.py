@@ -1,0 +1,127 @@
+"""`spinbook grade EXERCISE FOLDER`, from the folder to the gradebook."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from types import FrameType
+
+from rich.console import Console
+
+from grader.classroom import Entry, Skipped
+from grader.classroom.writing import write
+from grader.crew import Crew
+from grader.deadline import Adjusting, deadline_of, overrides_in
+from grader.exercise import Exercise
+from grader.gradebook.files import write_gradebook
+from grader.grading import grading_of
+from grader.grading.grading import Grading
+from grader.intake import Intake, IntakeError, take_in
+from grader.marking.difference import difference
+from grader.marking.here import Here, at_once
+from grader.marking.marking import Marking, Plan
+from grader.marking.marks import Markers
+from grader.marking.order import Order
+from grader.marking.progress import Progressing
+from grader.marking.results import Results
+from grader.marking.summary import tell_end, tell_intake
+from grader.misconception.grouping import grouped
+from grader.misconception.known import signatures
+from grader.misconception.signature import Signature
+from grader.overview.page import overview_page
+from grader.submission import Submission, read
+
+#: Exit codes, beside click's 2 for usage and a shell's 130 for Ctrl-C.
+DONE, QUESTIONS, FAULTS, STOPPED = 0, 1, 3, 130
+
+
+def grade_class(exercise: Exercise, order: Order, console: Console) -> int:
+    """Grade a class, and say how it went; returns the exit code.
+
+    Raises `IntakeError` where there is nothing to grade, `OverridesError` for a mistake in the overrides, `Busy` when
+    another run is at work on the same results, and what `grading_of` raises.
+    """
+    with tempfile.TemporaryDirectory(prefix="spinbook-class-") as unpacked, _ended_by_signals():
+        intake = take_in(order.source, exercise.name, Path(unpacked))
+        tell_intake(console, intake.kind, len(intake.handed_in), intake.skipped)
+        submissions = {one.student.id: read(str(one.file.path), exercise) for one in intake.handed_in}
+        adjusting = _adjusting(exercise, order, set(submissions))
+        with Results(order.out) as results, Crew() as crew:
+            grading = grading_of(exercise, order.options, crew)
+            with _markers(grading, order) as markers:
+                marking = Marking(exercise, markers, results, adjusting)
+                plan = marking.plan(intake, submissions, lambda who: "*" in order.regrade or who in order.regrade)
+                try:
+                    _grade(marking, plan, submissions, console)
+                    return _finish(marking, grading, intake, console)
+                except KeyboardInterrupt:
+                    kept, wanted = len(marking.entries), len(intake.handed_in)
+                    told = f"Stopped. {kept} of {wanted} are graded and kept; the same command goes on from there."
+                    console.print(told)
+                    return STOPPED
+
+
+def _adjusting(exercise: Exercise, order: Order, students: set[str]) -> Adjusting:
+    overrides = overrides_in(order.overrides, students) if order.overrides else {}
+    for student in order.regrade:
+        if student not in (*students, "*"):
+            raise IntakeError(f"--regrade {student}: nobody is called so who handed something in.")
+    return Adjusting(deadline_of(exercise), overrides)
+
+
+def _grade(marking: Marking, plan: Plan, submissions: Mapping[str, Submission], console: Console) -> None:
+    if plan.unchanged:
+        console.print(f"{len(plan.unchanged)} unchanged since they were graded.")
+    if not plan.to_grade:
+        return
+    with Progressing(console, len(plan.to_grade)) as progress:
+        for entry in marking.run(plan, submissions):
+            former = plan.former.get(entry.student.id)
+            progress.done(entry, difference(former.grade, entry.grade) if former else "")
+
+
+def _finish(marking: Marking, grading: Grading, intake: Intake, console: Console) -> int:
+    every = sorted(marking.entries.values(), key=lambda entry: entry.student.id)
+    faults = [entry for entry in every if entry.final is None]
+    entries = [entry for entry in every if entry.final is not None]
+    folder = marking.results.folder
+    write_gradebook(folder, marking.exercise, entries)
+    asked = [Skipped(", ".join(question.files), str(question)) for question in intake.questions]
+    misconceptions = grouped(entries, _signatures(grading, entries, console))
+    skipped = [*asked, *intake.skipped]
+    write(folder / "index.html", overview_page(marking.exercise, entries, skipped, faults, misconceptions))
+    others = marking.results.others({entry.student.id for entry in every})
+    if others:
+        console.print(f"of an earlier run, left as they are: {', '.join(others)}", style="yellow")
+    tell_end(console, entries, faults, intake.questions)
+    console.print(f"Open {folder / 'index.html'}.", soft_wrap=True)
+    return FAULTS if faults else QUESTIONS if intake.questions else DONE
+
+
+def _signatures(grading: Grading, entries: Sequence[Entry], console: Console) -> tuple[Signature, ...]:
+    if all(entry.grade.full_marks or entry.grade.outcome != "graded" for entry in entries):
+        return ()
+    with console.status("finding out how the usual mistakes fail"):
+        return signatures(grading)
+
+
+@contextlib.contextmanager
+def _markers(grading: Grading, order: Order) -> Iterator[Markers]:
+    yield Here(grading, order.jobs or at_once())
+
+
+@contextlib.contextmanager
+def _ended_by_signals() -> Iterator[None]:
+    """SIGTERM, which a machine sends that shuts down, ends a run as cleanly as Ctrl-C."""
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    former = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, former)

@@ -1,0 +1,77 @@
+"""Grades many submissions on this machine."""
+
+from __future__ import annotations
+
+import os
+import queue
+import threading
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from grader.grading.grading import Grading
+from grader.marking.key import key_of
+from grader.marking.marks import Marked
+from grader.marking.picture import picture
+from grader.submission import Submission
+
+
+def at_once() -> int:
+    """How many submissions to grade at once: more than there are cores, for discovery is waiting."""
+    return 2 * len(os.sched_getaffinity(0)) + 1
+
+
+@dataclass(frozen=True)
+class Here:
+    """One crew on this machine. Each submission goes through its scenarios one after the other, on one core."""
+
+    grading: Grading
+    jobs: int
+
+    @property
+    def key(self) -> str:
+        """See `Markers`."""
+        return key_of(self.grading)
+
+    def mark(self, submissions: Mapping[str, Submission]) -> Iterator[Marked]:
+        """See `Markers`."""
+        waiting: queue.SimpleQueue[tuple[str, Submission]] = queue.SimpleQueue()
+        done: queue.SimpleQueue[Marked | BaseException] = queue.SimpleQueue()
+        for item in submissions.items():
+            waiting.put(item)
+        given_up = threading.Event()
+        hands = [
+            threading.Thread(target=self._work, args=(number, waiting, done, given_up), daemon=True)
+            for number in range(min(self.jobs, len(submissions)))
+        ]
+        for hand in hands:
+            hand.start()
+        try:
+            for _ in submissions:
+                marked = done.get()
+                if isinstance(marked, BaseException):
+                    raise marked
+                yield marked
+        finally:
+            given_up.set()
+
+    def _work(
+        self,
+        number: int,
+        waiting: queue.SimpleQueue[tuple[str, Submission]],
+        done: queue.SimpleQueue[Marked | BaseException],
+        given_up: threading.Event,
+    ) -> None:
+        cores = sorted(os.sched_getaffinity(0))
+        options = replace(self.grading.spinner.options, parallel=1, core=cores[number % len(cores)])
+        grading = replace(self.grading, spinner=replace(self.grading.spinner, options=options))
+        while not given_up.is_set():
+            try:
+                who, submission = waiting.get_nowait()
+            except queue.Empty:
+                return
+            try:
+                grade = grading.grade(submission)
+                done.put(Marked(who, grade, picture(grade, grading.spinner.exercise)))
+            except BaseException as fault:  # the exercise's author's, or ours: it must not be waited for
+                done.put(fault)
+                return

@@ -1,0 +1,104 @@
+"""The run of a class: what has to be graded, what has not, and what is kept when."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+from grader.classroom import Adjustment, Entry
+from grader.exercise import Exercise
+from grader.feedback.page import feedback_page
+from grader.intake import HandedIn, Intake
+from grader.marking.key import with_submission
+from grader.marking.marks import Marked, Markers
+from grader.marking.results import Results
+from grader.submission import Submission
+
+#: What late work and the instructor's own wishes make of a score.
+Adjust = Callable[[Entry], tuple[Adjustment, ...]]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a run is going to do. `former` are the entries of an earlier run, by student."""
+
+    to_grade: tuple[HandedIn, ...]
+    unchanged: tuple[Entry, ...]
+    former: Mapping[str, Entry]
+
+
+@dataclass
+class Marking:
+    """One class, graded into one folder of results by `markers`."""
+
+    exercise: Exercise
+    markers: Markers
+    results: Results
+    adjust: Adjust
+    entries: dict[str, Entry] = field(default_factory=dict)
+
+    def plan(self, intake: Intake, submissions: Mapping[str, Submission], regrade: Callable[[str], bool]) -> Plan:
+        """What has to be graded: what has no grade yet, what has changed, and what `regrade` asks for.
+
+        `submissions` are those of `intake`, read, by student.
+        """
+        to_grade, unchanged, former = [], [], {}
+        for handed_in in intake.handed_in:
+            who = handed_in.student.id
+            kept = self.results.entry(who)
+            if kept:
+                former[who] = kept[0]
+            if kept and kept[1] == self._key(submissions[who]) and not regrade(who):
+                unchanged.append(self._unchanged(handed_in, kept[0], kept[1]))
+            else:
+                to_grade.append(handed_in)
+        return Plan(tuple(to_grade), tuple(unchanged), former)
+
+    def run(self, plan: Plan, submissions: Mapping[str, Submission]) -> Iterator[Entry]:
+        """Grade what has to be, and give each entry once it is kept.
+
+        Where a machine or we were at fault, it is tried once more after all others; if that is in vain, the
+        entry tells of it, has no score, and is graded again by the next run.
+        """
+        handed_in = {one.student.id: one for one in plan.to_grade}
+        again: list[str] = []
+        for marked in self.markers.mark({who: submissions[who] for who in handed_in}):
+            if marked.grade.outcome == "host-error":
+                again.append(marked.who)
+            else:
+                yield self._keep(handed_in[marked.who], marked, submissions[marked.who])
+        for marked in self.markers.mark({who: submissions[who] for who in sorted(again)}):
+            yield self._keep(handed_in[marked.who], marked, submissions[marked.who])
+
+    def _keep(self, handed_in: HandedIn, marked: Marked, submission: Submission) -> Entry:
+        # Who grades may see the file under another name.
+        grade = replace(marked.grade, submission=handed_in.file.name)
+        entry = self._entry(handed_in, Entry(handed_in.student, handed_in.file.name, grade))
+        key = "" if grade.outcome == "host-error" else self._key(submission)
+        self.results.write(entry, key, feedback_page(entry, self.exercise, marked.plot), marked.plot)
+        return entry
+
+    def _unchanged(self, handed_in: HandedIn, kept: Entry, key: str) -> Entry:
+        """The entry of a submission that needs no grading: who handed it in and when may have changed all the same."""
+        entry = self._entry(handed_in, kept)
+        plot = self.results.plot(entry.student.id)
+        self.results.write(entry, key, feedback_page(entry, self.exercise, plot), plot)
+        return entry
+
+    def _entry(self, handed_in: HandedIn, of: Entry) -> Entry:
+        file = handed_in.file
+        entry = replace(
+            of,
+            student=handed_in.student,
+            file=file.name,
+            grade=replace(of.grade, submission=file.name),
+            submitted=file.submitted,
+            submitted_from=file.submitted_from if file.submitted else "",
+            adjustments=(),
+        )
+        entry = replace(entry, adjustments=self.adjust(entry))
+        self.entries[entry.student.id] = entry
+        return entry
+
+    def _key(self, submission: Submission) -> str:
+        return with_submission(self.markers.key, f"{submission.digest} {submission.warning}")

@@ -1,0 +1,76 @@
+"""The folder with a class's results: a folder a student, whose grade.json is written last."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+from pathlib import Path
+from types import TracebackType
+
+from grader.classroom import Entry
+from grader.classroom.store import from_json, to_json
+from grader.classroom.writing import write
+
+
+class Busy(Exception):
+    """Raised when another grading is writing into the same folder."""
+
+
+class Results:
+    """One folder of results. Use it as a context manager: nobody else writes into it meanwhile."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._lock = -1
+
+    def entry(self, student: str) -> tuple[Entry, str] | None:
+        """What is kept of a student, and the key of the grade; None where nothing is, or nothing that can be read."""
+        try:
+            return from_json((self.folder / student / "grade.json").read_text(encoding="utf-8"))
+        except (OSError, ValueError, KeyError, TypeError, AttributeError):
+            return None
+
+    def plot(self, student: str) -> str | None:
+        """The picture that is kept of a student's run."""
+        try:
+            return (self.folder / student / "plot.svg").read_text(encoding="utf-8")
+        except (OSError, ValueError):
+            return None
+
+    def write(self, entry: Entry, key: str, page: str, plot: str | None) -> None:
+        """Keep a student's entry. Whenever this is broken off, what is there is whole, or is made again."""
+        folder = self.folder / entry.student.id
+        text = to_json(entry, key)
+        try:
+            if (folder / "grade.json").read_text(encoding="utf-8") != text:
+                # What it vouches for is about to change.
+                (folder / "grade.json").unlink()
+        except (OSError, ValueError):
+            pass
+        write(folder / "feedback.html", page)
+        if plot is not None:
+            write(folder / "plot.svg", plot)
+        else:
+            (folder / "plot.svg").unlink(missing_ok=True)
+        write(folder / "grade.json", text)
+
+    def others(self, students: set[str]) -> tuple[str, ...]:
+        """Whose results are here beside those of `students`."""
+        return tuple(
+            sorted(file.parent.name for file in self.folder.glob("*/grade.json") if file.parent.name not in students)
+        )
+
+    def __enter__(self) -> Results:
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self._lock = os.open(self.folder / ".lock", os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, 0o644)
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            os.close(self._lock)
+            raise Busy(f"{self.folder}: another grading is at work in this folder. Wait for its end.") from None
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        os.close(self._lock)

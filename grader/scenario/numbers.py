@@ -1,0 +1,115 @@
+"""Streams of messages that each carry a number, of any message type, and what can go wrong with them.
+
+`numbers` makes a stream; every fault takes a stream and returns another, so that a scenario reads as what happens:
+`lost(numbers("/distance", wave(2.0, every(0.1, 5))), one_in=4, seed=1)`. A stream is a tuple of messages, which is what
+`Scenario` takes. Instants come from `times`; joints have streams of their own, in `joint_states`.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import Any
+
+from grader.recording.recording import Fields
+from grader.scenario.scenario import SECOND, START, Message
+
+Stream = tuple[Message, ...]
+
+
+def numbers(
+    topic: str,
+    values: Iterable[tuple[float, float]],
+    type: str = "std_msgs/msg/Float64",
+    field: str = "data",
+    stamped: bool = False,
+    **others: Any,
+) -> Stream:
+    """A message for each of `values`, which are pairs of an instant (s after the start) and a number.
+
+    The number goes into `field`, in which dots lead inwards, such as `linear.x` of a Twist. With `stamped` each message
+    has the instant in its `header.stamp`. `others` are fields that are the same in each message.
+    """
+    stream = []
+    for t, value in values:
+        at = START + round(t * SECOND)
+        fields: Fields = dict(others)
+        if stamped:
+            fields["header"] = {"stamp": {"sec": at // SECOND, "nanosec": at % SECOND}}
+        stream.append(Message(at, topic, type, _set(fields, field, value)))
+    return tuple(stream)
+
+
+def wave(height: float, times: Iterable[float], period: float = 2 * math.pi) -> list[tuple[float, float]]:
+    """Values of a sine that swings between `-height` and `height` once in `period` s."""
+    return [(t, height * math.sin(2 * math.pi * t / period)) for t in times]
+
+
+def chosen(lowest: float, highest: float, times: Iterable[float], seed: int) -> list[tuple[float, float]]:
+    """Values between `lowest` and `highest` by chance, the same for each `seed`."""
+    chance = random.Random(f"chosen {lowest} {highest} {seed}")
+    return [(t, chance.uniform(lowest, highest)) for t in times]
+
+
+def placed(stream: Stream, number: int, value: float, field: str = "data") -> Stream:
+    """Message `number`, counted from 0, has this value, such as `math.nan`."""
+    return _changed(stream, [number], lambda message: replace(message, fields=_set(message.fields, field, value)))
+
+
+def lost(stream: Stream, one_in: int, seed: int) -> Stream:
+    """About one in `one_in` messages is lost, never the first or the last."""
+    chance = random.Random(f"lost {seed}")
+    last = len(stream) - 1
+    return tuple(message for i, message in enumerate(stream) if i in (0, last) or chance.randrange(one_in))
+
+
+def late(stream: Stream, most: float, seed: int) -> Stream:
+    """Each message comes up to `most` s later, none before one that was sent earlier; stamps stay as they are."""
+    chance = random.Random(f"late {seed}")
+    result, at = [], 0
+    for message in stream:
+        at = max(at, message.at + round(chance.uniform(0.1, 1.0) * most * SECOND))
+        result.append(replace(message, at=at))
+    return tuple(result)
+
+
+def twice(stream: Stream, number: int) -> Stream:
+    """Message `number` is published twice, at one instant."""
+    return (*stream[: number + 1], *stream[number:])
+
+
+def paused(stream: Stream, before: int, seconds: float) -> Stream:
+    """Nothing is published for `seconds` before message `before`; where messages have stamps, these move along."""
+    wait = round(seconds * SECOND)
+    return _changed(stream, range(before, len(stream)), lambda message: _later(message, wait))
+
+
+def restarted(stream: Stream, after: int) -> Stream:
+    """After message `after` the publisher is gone, and another one takes over."""
+    return _changed(stream, range(after + 1, len(stream)), lambda message: replace(message, publisher=2))
+
+
+def together(*streams: Stream) -> Stream:
+    """Several streams at once, such as those of two topics, in the order of their instants."""
+    return tuple(sorted((message for stream in streams for message in stream), key=lambda message: message.at))
+
+
+def _changed(stream: Stream, which: Sequence[int], change: Any) -> Stream:
+    return tuple(change(message) if i in which else message for i, message in enumerate(stream))
+
+
+def _later(message: Message, wait: int) -> Message:
+    fields = message.fields
+    if "header" in fields:
+        stamp = fields["header"]["stamp"]
+        moved = stamp["sec"] * SECOND + stamp["nanosec"] + wait
+        fields = _set(_set(fields, "header.stamp.sec", moved // SECOND), "header.stamp.nanosec", moved % SECOND)
+    return replace(message, at=message.at + wait, fields=fields)
+
+
+def _set(fields: Fields, path: str, value: Any) -> Fields:
+    """A copy of `fields` in which `path` has this value."""
+    name, _, rest = path.partition(".")
+    return {**fields, name: _set(fields.get(name, {}), rest, value) if rest else value}

@@ -1,0 +1,46 @@
+"""Checks one cell's code: `python -m spinbook.check.program EXERCISE CODE RESULT`, the last two being files.
+
+RESULT is JSON: the result by media type, or {"problem": TEXT} where there is none.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import threading
+from pathlib import Path
+
+from grader.crew import HostFault
+from grader.exercise import ExerciseError, load
+from grader.grading import Grade, grade_submission
+from grader.submission.reading import of_source
+from spinbook.written import write_if_changed
+
+
+def main() -> None:
+    """Check the code that the command line names."""
+    folder, code, result = Path(sys.argv[1]), Path(sys.argv[2]), Path(sys.argv[3])
+    # What draws the result takes its time to load: it does so while the node is being spun.
+    threading.Thread(target=_load_drawing, daemon=True).start()
+    write_if_changed(result, json.dumps(_checked(folder, code.read_bytes())))
+
+
+def _checked(folder: Path, code: bytes) -> dict[str, str]:
+    try:
+        exercise = load(folder).public()
+        grade: Grade = grade_submission(exercise, of_source("your cell", code, exercise))
+    except ExerciseError as error:
+        return {"problem": f"The exercise is at fault, not your code.\n{error}"}
+    except HostFault as error:
+        return {"problem": f"The machine or the grader is at fault, not your code: {error}"}
+    from spinbook.check.shown import as_html, as_text
+
+    return {"text/html": as_html(grade, exercise), "text/plain": as_text(grade, exercise)}
+
+
+def _load_drawing() -> None:
+    import spinbook.check.shown  # noqa: F401
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,187 @@
+"""Where boxes stand: nodes in a column on the left, topics in one on the right, the flow of messages downwards.
+
+Two columns fit a phone whatever the graph, and a longer graph grows downwards, where a page has room.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from spinbook.graph.shapes import Arrow, Box, Drawing
+
+#: Widths of one character of a name and of the small print (px): monospaced, 12 and 10.5 px high.
+NAME_CHAR, SMALL_CHAR = 7.25, 6.35
+NAME_LINE, SMALL_LINE = 16, 14
+#: Longest lines of a box (characters).
+_NODE_LINE, _TOPIC_LINE, _SMALL_LINE = 16, 17, 20
+_GAP_X, _GAP_Y, _PAD = 48, 16, 9
+
+#: Kind and name of a box.
+_Key = tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A box: its upper left corner and size (px), and its lines as they are broken."""
+
+    box: Box
+    x: float
+    y: float
+    width: float
+    height: float
+    lines: tuple[str, ...]
+    small: tuple[str, ...]
+
+    @property
+    def middle(self) -> float:
+        """The height of its middle."""
+        return self.y + self.height / 2
+
+
+@dataclass(frozen=True)
+class Line:
+    """An arrow from the right side of a node at (x1, y1) to the left side of a topic at (x2, y2)."""
+
+    arrow: Arrow
+    x1: float
+    y1: float
+    x2: float
+    y2: float
+
+
+@dataclass(frozen=True)
+class Layout:
+    """A drawing with its places; all within `width` and `height` (px)."""
+
+    boxes: tuple[Placed, ...]
+    lines: tuple[Line, ...]
+    width: float
+    height: float
+
+
+def layout(drawings: Sequence[Drawing]) -> list[Layout]:
+    """Place the boxes of each drawing, in columns of the same width; the same for the same drawings."""
+    sizes = {box: _size(box) for drawing in drawings for box in (*drawing.nodes, *drawing.topics)}
+    widths = {
+        kind: max((size.width for box, size in sizes.items() if box.kind == kind), default=0.0)
+        for kind in ("node", "topic")
+    }
+    return [_place(drawing, sizes, widths) for drawing in drawings]
+
+
+def _place(drawing: Drawing, sizes: Mapping[Box, _Size], widths: Mapping[str, float]) -> Layout:
+    layers = _layers(drawing)
+    left = {"node": 0.0, "topic": widths["node"] + _GAP_X}
+    bottom = {"node": 0.0, "topic": 0.0}
+    placed: dict[_Key, Placed] = {}
+    for number in range(max(layers.values()) + 1):
+        here = [box for box in (*drawing.nodes, *drawing.topics) if layers[box.kind, box.name] == number]
+        wanted = {box: _wanted(box, drawing.arrows, placed) for box in here}
+        for box in sorted(here, key=lambda box: (wanted[box], here.index(box))):
+            size = sizes[box]
+            y = max(bottom[box.kind], wanted[box] - size.height / 2)
+            at = Placed(box, left[box.kind], y, widths[box.kind], size.height, size.lines, size.small)
+            placed[box.kind, box.name] = at
+            bottom[box.kind] = y + size.height + _GAP_Y
+    width = max(each.x + each.width for each in placed.values())
+    height = max(each.y + each.height for each in placed.values())
+    return Layout(tuple(placed.values()), tuple(_lines(drawing.arrows, placed)), width, height)
+
+
+def _layers(drawing: Drawing) -> Mapping[_Key, int]:
+    """How many steps after the first each box comes, by the longest way; a way round in a circle counts once.
+
+    A topic that nobody publishes comes after those who would hear it.
+    """
+    published = {arrow.topic for arrow in drawing.arrows if arrow.publishes}
+    after: dict[_Key, list[_Key]] = {(box.kind, box.name): [] for box in (*drawing.nodes, *drawing.topics)}
+    for arrow in drawing.arrows:
+        node, topic = ("node", arrow.node), ("topic", arrow.topic)
+        if arrow.publishes or arrow.topic not in published:
+            after[node].append(topic)
+        else:
+            after[topic].append(node)
+    layers = dict.fromkeys(after, 0)
+
+    def push(box: _Key, way: tuple[_Key, ...]) -> None:
+        for following in after[box]:
+            if following not in way and layers[following] <= layers[box]:
+                layers[following] = layers[box] + 1
+                push(following, (*way, following))
+
+    reached = {end for ends in after.values() for end in ends}
+    for box in [box for box in after if box not in reached] or list(after)[:1]:
+        push(box, (box,))
+    return layers
+
+
+def _wanted(box: Box, arrows: tuple[Arrow, ...], placed: Mapping[_Key, Placed]) -> float:
+    """The height at which a box's middle would best be: that of those it is connected with and that stand already."""
+    heights = []
+    for arrow in arrows:
+        node, topic = ("node", arrow.node), ("topic", arrow.topic)
+        mine, other = (node, topic) if box.kind == "node" else (topic, node)
+        if mine == (box.kind, box.name) and other in placed:
+            heights.append(placed[other].middle)
+    return sum(heights) / len(heights) if heights else 0.0
+
+
+@dataclass(frozen=True)
+class _Size:
+    width: float
+    height: float
+    lines: tuple[str, ...]
+    small: tuple[str, ...]
+
+
+def _size(box: Box) -> _Size:
+    lines = broken(box.label, _NODE_LINE if box.kind == "node" else _TOPIC_LINE)
+    small = tuple(line for text in box.small for line in broken(text, _SMALL_LINE, evenly=False))
+    width = max([len(line) * NAME_CHAR for line in lines] + [len(line) * SMALL_CHAR for line in small])
+    height = 2 * _PAD + NAME_LINE * len(lines) + SMALL_LINE * len(small)
+    return _Size(width + 2 * (_PAD + (4 if box.kind == "node" else 0)), height, lines, small)
+
+
+def broken(text: str, length: int, *, evenly: bool = True) -> tuple[str, ...]:
+    """A name in lines of at most `length` characters, broken after / and _ and between words; `evenly` if it can be."""
+    parts = re.findall(r"[^/_ ]*[/_ ]|[^/_ ]+", text)
+    count = -(-len(text) // length)
+    for limit in range(-(-len(text) // count) if evenly else length, length + 1):
+        lines = _filled(parts, limit)
+        if len(lines) <= count and all(len(line) <= length for line in lines):
+            return tuple(line.strip() for line in lines)
+    return tuple(piece.strip() for line in _filled(parts, length) for piece in _cut(line, length))
+
+
+def _filled(parts: list[str], length: int) -> list[str]:
+    lines = [""]
+    for part in parts:
+        if lines[-1] and len(lines[-1]) + len(part.rstrip()) > length:
+            lines.append("")
+        lines[-1] += part
+    return lines
+
+
+def _cut(line: str, length: int) -> list[str]:
+    return [line[start : start + length] for start in range(0, len(line), length)]
+
+
+def _lines(arrows: tuple[Arrow, ...], placed: Mapping[_Key, Placed]) -> list[Line]:
+    """The arrows, each with a place of its own on the sides of its boxes, in the order that crosses least."""
+
+    def height(kind: str, name: str, arrow: Arrow) -> float:
+        box = placed[kind, name]
+        own = [each for each in arrows if (each.node if kind == "node" else each.topic) == name]
+        other = [("topic", each.topic) if kind == "node" else ("node", each.node) for each in own]
+        order = sorted(zip(own, other, strict=True), key=lambda pair: (placed[pair[1]].middle, not pair[0].publishes))
+        place = [each for each, _ in order].index(arrow)
+        return box.y + box.height * (place + 1) / (len(own) + 1)
+
+    lines = []
+    for arrow in arrows:
+        node, topic = placed["node", arrow.node], placed["topic", arrow.topic]
+        y1, y2 = height("node", arrow.node, arrow), height("topic", arrow.topic, arrow)
+        lines.append(Line(arrow, node.x + node.width, y1, topic.x, y2))
+    return lines

@@ -1,0 +1,79 @@
+"""What a node graph holds, and the JSON in which it is kept: sorted, without times, the same for the same graph."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from typing import Any
+
+
+@dataclass(frozen=True, order=True)
+class End:
+    """A node's publisher or subscription on a topic.
+
+    `type` is "package/msg/Name". `connected` is False where no other end fits: another type, or a QoS that asks for
+    more than any publisher offers, or nobody there.
+    """
+
+    node: str
+    type: str
+    connected: bool
+
+
+@dataclass(frozen=True, order=True)
+class Topic:
+    """A topic with its ends, a node named once a side. `rate_hz` is rounded, None where it was not measured."""
+
+    name: str
+    publishers: tuple[End, ...]
+    subscriptions: tuple[End, ...]
+    rate_hz: float | None = None
+
+    @property
+    def types(self) -> list[str]:
+        """The types of its ends, the publishers' first."""
+        return list(dict.fromkeys(end.type for end in (*self.publishers, *self.subscriptions)))
+
+
+@dataclass(frozen=True, order=True)
+class SeenNode:
+    """A node by its full name, and the first and the last cell (their ids) at whose end it was there, if known."""
+
+    name: str
+    first_cell: str = ""
+    last_cell: str = ""
+
+
+@dataclass(frozen=True)
+class NodeGraph:
+    """Nodes in the order of their first cells, then by name, and topics by name.
+
+    Hidden nodes and what every node has (/rosout …) are left out.
+    """
+
+    nodes: tuple[SeenNode, ...] = ()
+    topics: tuple[Topic, ...] = ()
+
+    def to_json(self) -> str:
+        """As JSON that people can read; the same for the same graph."""
+        return json.dumps(asdict(self), ensure_ascii=False, indent=1, sort_keys=True) + "\n"
+
+    @classmethod
+    def from_json(cls, text: str) -> NodeGraph:
+        """Read what `to_json` wrote.
+
+        Raises:
+            ValueError: if the text is no such graph.
+        """
+        try:
+            told = json.loads(text)
+            return cls(
+                tuple(SeenNode(**node) for node in told["nodes"]), tuple(_topic(topic) for topic in told["topics"])
+            )
+        except (KeyError, TypeError, AttributeError) as error:
+            raise ValueError(f"not a node graph: {error!r}") from error
+
+
+def _topic(told: dict[str, Any]) -> Topic:
+    ends = [tuple(End(**end) for end in told[side]) for side in ("publishers", "subscriptions")]
+    return Topic(told["name"], ends[0], ends[1], told["rate_hz"])

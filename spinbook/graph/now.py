@@ -1,0 +1,36 @@
+"""Prints the node graph of ROS_DOMAIN_ID as it is now, as JSON: `python -m spinbook.graph.now [SECONDS]`.
+
+For so many seconds it listens to every topic that is published, to know the rates.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+
+from spinbook.graph.model import NodeGraph
+from spinbook.graph.sight import Sight
+from spinbook.ros2.refusal import Refusal
+
+
+def graph_now(seconds: float) -> NodeGraph:
+    """The graph, with the rates of what could be counted within `seconds`."""
+    with Sight() as sight:
+        sight.come_to_rest()
+        deadline = time.monotonic() + seconds
+        while time.monotonic() < deadline and sight.count(unheard=True):
+            pass
+        sight.stop_counting()
+        return sight.graph()
+
+
+def main() -> None:
+    """Look once."""
+    try:
+        print(graph_now(float(sys.argv[1]) if len(sys.argv) > 1 else 0.0).to_json())
+    except Refusal as error:
+        sys.exit(error.format_message())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,141 @@
+"""Draws a node graph as SVG: nodes round, topics as boxes, an arrow the way the messages go; no script, no font.
+
+Colours come from where it is shown: text and arrows have the colour of the text around (`currentColor`), nodes and
+topics take `--node-graph-node` and `--node-graph-topic` where a page sets them. So it needs no style of its own, which
+a strict Content-Security-Policy would refuse, and fits light and dark.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable
+from html import escape
+
+from spinbook.graph.layout import NAME_LINE, SMALL_LINE, Layout, Line, Placed, layout
+from spinbook.graph.model import NodeGraph
+from spinbook.graph.shapes import Drawing, drawings
+
+#: Room around a drawing, and between two (px).
+_MARGIN, _BETWEEN = 10, 28
+_NODE, _TOPIC = "var(--node-graph-node,#2f81c9)", "var(--node-graph-topic,#b7791f)"
+_FONT = "ui-monospace,SFMono-Regular,Menlo,Consolas,'DejaVu Sans Mono',monospace"
+_STANDALONE = (
+    "<style>.graph{color:#1f2328}.paper{fill:#fff}"
+    "@media(prefers-color-scheme:dark){.graph{color:#e6edf3}.paper{fill:#161b22}}</style>"
+)
+
+
+def node_graph_svg(graph: NodeGraph, *, standalone: bool = False) -> str:
+    """The whole graph as one SVG element, what is not connected below one another; at most some 340 px wide.
+
+    `standalone` gives it a background and colours of its own, for a file or a notebook's output.
+    """
+    shown = drawings(graph)
+    layouts = layout(shown)
+    y, parts = float(_MARGIN), []
+    for each in layouts:
+        parts.append(f'<g transform="translate({_MARGIN},{_number(y)})">{_drawn(each)}</g>')
+        y += each.height + _BETWEEN
+    width = max((each.width for each in layouts), default=0) + 2 * _MARGIN
+    height = y - _BETWEEN + _MARGIN if layouts else 2 * _MARGIN
+    return _element("".join(parts), width, height, in_words(shown), standalone)
+
+
+def node_graph_svgs(graph: NodeGraph) -> list[str]:
+    """An SVG element for each part of the graph that is connected, to be placed side by side where there is room."""
+    shown = drawings(graph)
+    return [
+        _element(
+            f'<g transform="translate({_MARGIN},{_MARGIN})">{_drawn(each)}</g>',
+            each.width + 2 * _MARGIN,
+            each.height + 2 * _MARGIN,
+            in_words([drawing]),
+            False,
+        )
+        for drawing, each in zip(shown, layout(shown), strict=True)
+    ]
+
+
+def in_words(shown: Iterable[Drawing]) -> str:
+    """What the picture shows, a sentence an arrow, for those who can't see it."""
+    sentences = []
+    for drawing in shown:
+        about = {box.name: box.about or _told(box.label, box.small) for box in drawing.topics}
+        for node in drawing.nodes:
+            own = [arrow for arrow in drawing.arrows if arrow.node == node.name]
+            for publishes, verb in ((True, "publishes"), (False, "subscribes to")):
+                topics = [
+                    about[a.topic] + ("" if a.connected else " (not connected)")
+                    for a in own
+                    if a.publishes is publishes
+                ]
+                if topics:
+                    sentences.append(f"{node.label} {verb} {'; '.join(topics)}.")
+            if not own:
+                sentences.append(f"{node.label} has no topics.")
+    return " ".join(sentences) or "No nodes."
+
+
+def _told(label: str, small: tuple[str, ...]) -> str:
+    return f"{label} ({', '.join(small)})" if small else label
+
+
+def _element(content: str, width: float, height: float, words: str, standalone: bool) -> str:
+    key = "g" + hashlib.sha256((content + words).encode()).hexdigest()[:8]
+    paper = ""
+    if standalone:
+        paper = f'{_STANDALONE}<rect class="paper" width="100%" height="100%" rx="6"/>'
+    w, h = _number(width), _number(height)
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" class="graph" width="{w}" height="{h}" viewBox="0 0 {w} {h}" '
+        f'role="img" aria-labelledby="{key}t {key}d" font-family="{_FONT}">'
+        f'<title id="{key}t">Node graph</title><desc id="{key}d">{escape(words)}</desc>{paper}{content}</svg>'
+    )
+
+
+def _drawn(placed: Layout) -> str:
+    return "".join([*map(_arrow, placed.lines), *map(_box, placed.boxes)])
+
+
+def _arrow(line: Line) -> str:
+    x1, y1, x2, y2 = line.x1, line.y1, line.x2, line.y2
+    bend = (x2 - x1) / 2
+    # The head is at the topic of a publisher, at the node of a subscription.
+    if line.arrow.publishes:
+        path = f"M{_number(x1)} {_number(y1)}C{_number(x1 + bend)} {_number(y1)} {_number(x2 - bend)} {_number(y2)} "
+        path += f"{_number(x2 - 6)} {_number(y2)}"
+        head = f"M{_number(x2)} {_number(y2)}l-8-3.5v7z"
+    else:
+        path = f"M{_number(x2)} {_number(y2)}C{_number(x2 - bend)} {_number(y2)} {_number(x1 + bend)} {_number(y1)} "
+        path += f"{_number(x1 + 6)} {_number(y1)}"
+        head = f"M{_number(x1)} {_number(y1)}l8-3.5v7z"
+    dashes = "" if line.arrow.connected else ' stroke-dasharray="3 4"'
+    return (
+        f'<path d="{path}" fill="none" stroke="currentColor" stroke-opacity=".6" stroke-width="1.4"{dashes}/>'
+        f'<path d="{head}" fill="currentColor" fill-opacity=".75"/>'
+    )
+
+
+def _box(placed: Placed) -> str:
+    node = placed.box.kind == "node"
+    colour, radius = (_NODE, min(placed.height / 2, 17)) if node else (_TOPIC, 3)
+    shape = (
+        f'<rect x="{_number(placed.x)}" y="{_number(placed.y)}" width="{_number(placed.width)}" '
+        f'height="{_number(placed.height)}" rx="{_number(radius)}" fill="{colour}" fill-opacity=".13" '
+        f'stroke="{colour}" stroke-width="1.4"/>'
+    )
+    y = placed.y + (placed.height - NAME_LINE * len(placed.lines) - SMALL_LINE * len(placed.small)) / 2
+    x = _number(placed.x + placed.width / 2)
+    text = []
+    for line in placed.lines:
+        y += NAME_LINE
+        text.append(f'<text x="{x}" y="{_number(y - 4)}" font-size="12" font-weight="600">{escape(line)}</text>')
+    for line in placed.small:
+        y += SMALL_LINE
+        text.append(f'<text x="{x}" y="{_number(y - 3.5)}" font-size="10.5">{escape(line)}</text>')
+    about = f"<title>{escape(placed.box.about)}</title>" if placed.box.about else ""
+    return f'<g text-anchor="middle" fill="currentColor">{about}{shape}{"".join(text)}</g>'
+
+
+def _number(value: float) -> str:
+    return f"{value:.1f}".removesuffix(".0")

@@ -1,0 +1,158 @@
+"""A hidden node that sees the graph of its ROS domain and, where it may, counts messages."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterable
+from typing import Any
+
+from rclpy.qos import DurabilityPolicy, QoSCompatibility, QoSProfile, ReliabilityPolicy, qos_check_compatible
+from rclpy.subscription import Subscription
+from rclpy.topic_endpoint_info import TopicEndpointInfo
+from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
+
+from spinbook.graph.model import End, NodeGraph, SeenNode, Topic
+from spinbook.graph.rate import Counted, rounded
+from spinbook.ros2 import census
+from spinbook.ros2.graph import LOOK, Graph
+from spinbook.ros2.interfaces import message_class
+from spinbook.ros2.middleware import domain_id, prepare
+from spinbook.ros2.refusal import Refusal
+
+#: Every node has these, and they tell nothing of what it is for.
+INTERNAL = ("/rosout", "/parameter_events")
+#: Seconds without a change after which the graph is taken for known, and after which it is so in any case.
+_QUIET_S, _DEADLINE_S = 0.15, 8.0
+#: A topic is counted for so long at a time (s).
+_COUNTING_S = 2.5
+#: Hears publishers of every reliability and durability, and asks nothing of them.
+_HEARS_ALL = QoSProfile(depth=50, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE)
+
+
+class Sight(Graph):
+    """Sees nodes, topics and ends. Its name begins with an underscore, as ros2's own nodes' do, so it is not listed.
+
+    It subscribes only while `count` is called again and again, and only to what is not yet counted.
+    """
+
+    def __init__(self) -> None:
+        prepare()
+        super().__init__(node_name=f"_spinbook_graph_{os.getpid()}", spin_time=None, use_sim_time=False)
+        self._known: tuple[Any, ...] = ()
+        self._counting: dict[str, tuple[Subscription, Counted, float]] = {}
+        #: Topic -> how many publishers it had when it was counted, and its rate.
+        self._rates: dict[str, tuple[int, float]] = {}
+
+    def __enter__(self) -> Sight:
+        return self
+
+    def come_to_rest(self) -> None:
+        """Return when every participant of this host has been heard of and nothing changes; at once if nothing has."""
+        deadline = time.monotonic() + _DEADLINE_S
+        seen, changed = self._look(), time.monotonic()
+        while not (seen == self._known or time.monotonic() - changed >= _QUIET_S) or not self._complete():
+            if time.monotonic() >= deadline:
+                break
+            time.sleep(LOOK)
+            look = self._look()
+            if look != seen:
+                seen, changed = look, time.monotonic()
+        self._known = seen
+
+    def _look(self) -> tuple[Any, ...]:
+        # A node that has started and has not been heard of yet is a change as well.
+        return (*super()._look(), census.participants(domain_id()))
+
+    def graph(self) -> NodeGraph:
+        """What is there now, with the rates that have been counted so far."""
+        nodes = {node.full_name for node in self.nodes() if not node.hidden}
+        topics = (self._topic(name.name) for name in self.topics() if _is_shown(name.name))
+        shown = sorted(topic for topic in topics if topic.publishers or topic.subscriptions)
+        return NodeGraph(tuple(SeenNode(name) for name in sorted(nodes)), tuple(shown))
+
+    def _topic(self, name: str) -> Topic:
+        publishers, subscriptions = (_shown(ends) for ends in (self.publishers(name), self.subscriptions(name)))
+        _, rate = self._rates.get(name, (0, None))
+        return Topic(name, _ends(publishers, subscriptions), _ends(subscriptions, publishers), rate)
+
+    # Counting
+
+    def count(self, unheard: bool = False) -> bool:
+        """Listen a moment to the topics whose rate is not known, those to which nobody listens only if `unheard`.
+
+        To be called again and again, and `stop_counting` at the end. While it counts, a publisher sees one
+        subscription more. False when there is nothing left to count.
+        """
+        self.spin_once()
+        for name, (_, counted, until) in list(self._counting.items()):
+            if time.monotonic() > until:
+                self._conclude(name, counted)
+        for topic in self.topics():
+            if _is_shown(topic.name) and topic.name not in self._counting:
+                self._begin(topic.name, unheard)
+        return bool(self._counting)
+
+    def _begin(self, name: str, unheard: bool) -> None:
+        publishers = _shown(self.publishers(name))
+        heard = unheard or _shown(self.subscriptions(name))
+        if not publishers or not heard or self._rates.get(name, (0, 0))[0] >= len(publishers):
+            return
+        counted = Counted(len(publishers))
+        try:
+            kind = message_class(publishers[0].topic_type)
+        except Refusal:
+            return  # a type that is not installed here
+        subscription = self.node.create_subscription(kind, name, _ear(counted), _HEARS_ALL, raw=True)
+        self._counting[name] = (subscription, counted, time.monotonic() + _COUNTING_S)
+
+    def _conclude(self, name: str, counted: Counted) -> None:
+        subscription, *_ = self._counting.pop(name)
+        self.node.destroy_subscription(subscription)
+        rate = counted.rate_hz()
+        if rate:
+            self._rates[name] = (len(_shown(self.publishers(name))), rounded(rate))
+
+    def stop_counting(self) -> None:
+        """Listen to nothing any more; what was heard for long enough counts."""
+        for name, (_, counted, _) in list(self._counting.items()):
+            self._conclude(name, counted)
+
+
+def _ear(counted: Counted) -> Any:
+    """A callback of the form that rclpy gives the information beside a message to: it looks at the parameters."""
+
+    def hear(data: bytes, information: dict[str, int]) -> None:
+        counted.heard(information["publication_sequence_number"], information["source_timestamp"])
+
+    return hear
+
+
+def _is_shown(topic: str) -> bool:
+    return topic not in INTERNAL and not topic_or_service_is_hidden(topic)
+
+
+def _shown(ends: Iterable[TopicEndpointInfo]) -> list[TopicEndpointInfo]:
+    """Those of nodes that are not hidden."""
+    return [end for end in ends if not topic_or_service_is_hidden(_node(end))]
+
+
+def _node(end: TopicEndpointInfo) -> str:
+    return f"{end.node_namespace.rstrip('/')}/{end.node_name}"
+
+
+def _ends(ends: list[TopicEndpointInfo], others: list[TopicEndpointInfo]) -> tuple[End, ...]:
+    """One end a node and type, by node; it is connected if any of its ends is to any of the others'."""
+    connected: dict[tuple[str, str], bool] = {}
+    for end in ends:
+        key = (_node(end), end.topic_type)
+        connected[key] = connected.get(key, False) or any(_fit(end, other) for other in others)
+    return tuple(sorted(End(node, kind, fits) for (node, kind), fits in connected.items()))
+
+
+def _fit(one: TopicEndpointInfo, other: TopicEndpointInfo) -> bool:
+    if one.topic_type != other.topic_type:
+        return False
+    publisher, subscription = (one, other) if one.endpoint_type.name == "PUBLISHER" else (other, one)
+    compatibility, _ = qos_check_compatible(publisher.qos_profile, subscription.qos_profile)
+    return bool(compatibility != QoSCompatibility.ERROR)

@@ -1,0 +1,1 @@
+"""`spinbook handout`: what students get, as a folder and as one zip."""

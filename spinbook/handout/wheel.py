@@ -1,0 +1,86 @@
+"""Spinbook as a wheel, for students to install: the same bytes each time, and without what is for authors only.
+
+A wheel is a zip whose RECORD lists every file with its hash (PEP 427, and "Recording installed projects").
+"""
+
+from __future__ import annotations
+
+import base64
+import csv
+import hashlib
+import io
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+from importlib import metadata
+from pathlib import Path
+
+import spinbook
+from spinbook.handout.archive import zipped
+from spinbook.problem import Problem, SpinbookError
+
+#: What `spinbook new` starts from has solutions and hidden checks in it; courses may still use them.
+FOR_AUTHORS = ("spinbook/new/template/",)
+
+_BUILD = "import sys; from setuptools.build_meta import build_wheel; print(build_wheel(sys.argv[1]))"
+_SOURCES = ("pyproject.toml", "README.md", "LICENSE", "spinbook", "grader")
+
+
+def wheel() -> tuple[str, bytes]:
+    """The wheel's file name and content. Raises SpinbookError where it can't be made."""
+    source = Path(spinbook.__file__).parents[1]
+    files = _built(source) if (source / "pyproject.toml").is_file() else _installed()
+    kept = {name: content for name, content in files.items() if not name.startswith(FOR_AUTHORS)}
+    record = next(name for name in kept if name.endswith(".dist-info/RECORD"))
+    # Without the project's README below its header, which has examples from a course in it.
+    described = record.replace("RECORD", "METADATA")
+    kept[described] = kept[described].partition(b"\n\n")[0] + b"\n"
+    kept[record] = _record(kept, record)
+    return f"spinbook-{spinbook.__version__}-py3-none-any.whl", zipped(kept, last=record)
+
+
+def _built(source: Path) -> dict[str, bytes]:
+    """What setuptools makes of a checkout, which is left as it is."""
+    with tempfile.TemporaryDirectory(prefix="spinbook-") as temporary:
+        copy, out = Path(temporary) / "source", Path(temporary) / "out"
+        copy.mkdir()
+        for name in _SOURCES:
+            if (source / name).is_dir():
+                shutil.copytree(source / name, copy / name, ignore=shutil.ignore_patterns("__pycache__"))
+            elif (source / name).exists():
+                shutil.copy(source / name, copy)
+        done = subprocess.run(
+            [sys.executable, "-c", _BUILD, str(out)], cwd=copy, capture_output=True, text=True, check=False
+        )
+        wheels = list(out.glob("*.whl"))
+        if done.returncode or not wheels:
+            said = (done.stderr.strip().splitlines() or ["setuptools said nothing"])[-1]
+            mend = 'It is built with setuptools: pip install "setuptools>=77,<80"'
+            raise SpinbookError(Problem(source, None, f"the wheel of Spinbook could not be built: {said}", mend))
+        with zipfile.ZipFile(wheels[0]) as archive:
+            return {name: archive.read(name) for name in archive.namelist() if not name.endswith("/")}
+
+
+def _installed() -> dict[str, bytes]:
+    """The files of the Spinbook that is installed: for a package of pure Python, what was in its wheel."""
+    distribution = metadata.distribution("spinbook")
+    files = {}
+    for file in distribution.files or ():
+        name = file.as_posix()
+        wanted = name.startswith(("spinbook/", "grader/", f"spinbook-{spinbook.__version__}.dist-info/"))
+        own = name.rpartition("/")[2] not in ("INSTALLER", "REQUESTED", "direct_url.json") and "__pycache__" not in name
+        if wanted and own:
+            files[name] = Path(str(distribution.locate_file(file))).read_bytes()
+    return files
+
+
+def _record(files: dict[str, bytes], record: str) -> bytes:
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    for name in sorted(set(files) - {record}):
+        digest = base64.urlsafe_b64encode(hashlib.sha256(files[name]).digest()).rstrip(b"=").decode()
+        writer.writerow((name, f"sha256={digest}", len(files[name])))
+    writer.writerow((record, "", ""))
+    return out.getvalue().encode()

@@ -1,0 +1,146 @@
+"""Makes the notebook from which Sphinx makes a chapter's page: the chapter's own prose, the outputs of its run."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from spinbook.chapter.chapter import Cell, CellKind, Chapter
+from spinbook.site.names import exercise_page
+from spinbook.site.picture import smaller
+from spinbook.site.repository import Repository
+
+_FAILS = "raises-exception"
+
+
+@dataclass(frozen=True)
+class Ran:
+    """An executed notebook: its code cells by id."""
+
+    cells: Mapping[str, Mapping[str, Any]]
+
+    @staticmethod
+    def read(file: Path) -> Ran:
+        """Read the notebook at `file`. Raises OSError or ValueError where it can't be read."""
+        notebook = json.loads(file.read_text(encoding="utf-8"))
+        return Ran({cell["id"]: cell for cell in notebook["cells"] if cell["cell_type"] == "code"})
+
+    def outputs(self, cell_id: str) -> list[dict[str, Any]]:
+        """What a cell showed; nothing, where it has not run."""
+        return list(self.cells.get(cell_id, {}).get("outputs", []))
+
+
+@dataclass(frozen=True)
+class ExerciseCard:
+    """What a chapter's page says of an exercise, whose task stands on a page of its own."""
+
+    name: str
+    title: str
+    points: float
+
+
+def chapter_notebook(
+    chapter: Chapter,
+    ran: Ran,
+    prose: Mapping[str, str],
+    exercises: Mapping[str, ExerciseCard],
+    repository: Repository,
+    graph: str = "",
+) -> dict[str, Any]:
+    """The page's notebook. `prose` holds the text of each prose cell by id, as `rich` made it.
+
+    `graph` is the HTML of the picture of the nodes that ran; it stands below the chapter's first cell.
+    """
+    cells: list[dict[str, Any]] = []
+    for cell in chapter.cells:
+        if cell.kind is CellKind.PROSE:
+            cells.append(_prose(cell, prose[cell.id]))
+        elif cell.kind is CellKind.EXERCISE:
+            cells.append(_prose(cell, _card(exercises[cell.name or ""])))
+        else:
+            cells.append(_code(cell, ran, repository.link(chapter.file, cell.line)))
+        if graph and len(cells) == 1:
+            cells.append({**_prose(cell, graph), "id": "nodes-as-seen"})
+    return {
+        "nbformat": 4,
+        "nbformat_minor": 5,
+        "metadata": {
+            "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
+            "language_info": {"name": "python", "pygments_lexer": "ipython3"},
+        },
+        "cells": cells,
+    }
+
+
+def _prose(cell: Cell, text: str) -> dict[str, Any]:
+    return {"cell_type": "markdown", "id": cell.id, "metadata": {"spinbook": {"line": cell.line}}, "source": text}
+
+
+def _card(exercise: ExerciseCard) -> str:
+    target = f"../{exercise_page(exercise.name)}.html"
+    return (
+        f'<div class="exercise-card"><p class="exercise-card-kind">Exercise · {exercise.points:g} points</p>'
+        f'<p><a href="{target}">{exercise.title}</a></p>'
+        "<p>The task, the interface, and a starter to download are on a page of their own.</p></div>"
+    )
+
+
+def _code(cell: Cell, ran: Ran, source_link: str) -> dict[str, Any]:
+    outputs = [_published(output) for output in ran.outputs(cell.id)]
+    about: dict[str, Any] = {
+        "kind": cell.kind.value,
+        "line": cell.line,
+        "source": source_link,
+        "alts": [alternative(output, cell) for output in outputs if is_picture(output)],
+        "fails": cell.raises,
+    }
+    if cell.kind is CellKind.NODE:
+        about["file"] = cell.module
+    return {
+        "cell_type": "code",
+        "id": cell.id,
+        "metadata": {"spinbook": about},
+        "source": cell.source.rstrip("\n"),
+        "outputs": outputs,
+        "execution_count": None,
+    }
+
+
+def _published(output: dict[str, Any]) -> dict[str, Any]:
+    """An output as the page shows it: pictures as small as they can be, and only what a page can show."""
+    if "data" not in output:
+        return output
+    data = dict(output["data"])
+    for kind in [kind for kind in data if kind not in _SHOWN]:
+        del data[kind]
+    if "image/png" in data:
+        data["image/png"] = smaller(data["image/png"])
+    return {**output, "data": data}
+
+
+_SHOWN = ("image/svg+xml", "image/png", "text/plain")
+
+
+def is_picture(output: Mapping[str, Any]) -> bool:
+    """Whether an output has a picture in it."""
+    return any(kind.startswith("image/") for kind in output.get("data", {}))
+
+
+def alternative(output: Mapping[str, Any], cell: Cell) -> str:
+    """What a picture says in words: what its maker says, else what a terminal would show, else where it is from."""
+    for about in output.get("metadata", {}).values():
+        if isinstance(about, dict) and about.get("alt"):
+            return str(about["alt"])
+    plain = output["data"].get("text/plain", "")
+    plain = "".join(plain)
+    if plain and not plain.startswith("<"):
+        return plain
+    return f"What {cell.source.strip().splitlines()[0]} draws"
+
+
+def as_text(notebook: Mapping[str, Any]) -> str:
+    """The notebook as a file holds it."""
+    return json.dumps(notebook, ensure_ascii=False, indent=1, sort_keys=True) + "\n"

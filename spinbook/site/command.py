@@ -1,0 +1,75 @@
+"""`spinbook site`: the course's website."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import click
+from rich.console import Console
+
+from spinbook.course.course import Course, find_course
+from spinbook.problem import SpinbookError
+from spinbook.site.build import Site, build_site, unchanged_site
+
+
+@click.command()
+@click.option("--course", "start", type=click.Path(path_type=Path), default=".", help="The course's folder.")
+@click.option("--no-run", is_flag=True, help="Run no notebook: show the outputs that are there, old as they may be.")
+@click.option("--serve", is_flag=True, help="Show the site in a browser, and build it again whenever a file is saved.")
+@click.option("--port", type=click.IntRange(1, 65535), default=8000, show_default=True, help="Where --serve listens.")
+def site(start: Path, no_run: bool, serve: bool, port: int) -> None:
+    """Make the course's website in build/site/.
+
+    Every output on it was made by real nodes: a chapter whose code has changed since it ran is run first, as
+    `spinbook build --execute` would. What has not changed is not made again.
+
+    \b
+      spinbook site                    build/site/index.html, to open in any browser
+      spinbook site --serve            while you write: http://127.0.0.1:8000
+      spinbook site --serve --no-run   the same, without waiting for nodes when code changes
+
+    The folder can be put on any web server as it is, or opened without one. Beside it, build/launch/ holds the
+    notebooks that Colab, Binder and Codespaces open: push it to the branch `notebooks` (docs/site.md).
+
+    Exit code: 0 the site is built, 1 something has to be mended first; the site of the last good build then stays.
+    """
+    course = find_course(start)
+    console = Console(soft_wrap=True, highlight=False)
+    if serve:
+        from spinbook.site.serve import serve_site
+
+        serve_site(course, port, no_run)
+        return
+    before = unchanged_site(course, as_it_ran=no_run)
+    if before is not None:
+        _report(console, before)
+        return
+    if not no_run and not _up_to_date(course, console):
+        console.print("The site was not built: mend what is said above first.", style="red")
+        sys.exit(1)
+    try:
+        with console.status("Making the pages …") as status:
+            built = build_site(course, lambda page: status.update(f"Making the pages: {page}"), as_it_ran=no_run)
+    except SpinbookError as error:
+        console.print(str(error), markup=False, style="red")
+        console.print("The site was not built.")
+        sys.exit(1)
+    _report(console, built)
+
+
+def _up_to_date(course: Course, console: Console) -> bool:
+    from spinbook.site.notebooks import bring_up_to_date
+
+    return bring_up_to_date(course, console)
+
+
+def _report(console: Console, built: Site) -> None:
+    for problem in built.problems:
+        console.print(str(problem), markup=False)
+    if built.fresh:
+        console.print(f"{built.pages} pages, {len(built.made)} made in {built.seconds:.1f} s")
+    else:
+        console.print(f"{built.pages} pages, unchanged")
+    console.print(f"Site: {os.path.relpath(built.folder)}/index.html", markup=False)

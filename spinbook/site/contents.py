@@ -1,0 +1,306 @@
+"""Everything that is to be published, read from the course and its executed notebooks, before any of it is written."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import jupytext
+import nbformat
+
+from grader.exercise import Exercise, ExerciseError, load, starter
+from spinbook.build.reading import read_all
+from spinbook.chapter.chapter import CellKind, Chapter
+from spinbook.course.course import Course
+from spinbook.problem import Problem, Severity, SpinbookError
+from spinbook.site import names
+from spinbook.site.about_page import about_markdown
+from spinbook.site.chapter_page import ExerciseCard, Ran, as_text, chapter_notebook
+from spinbook.site.drawing import drawing_files, drawing_html
+from spinbook.site.exercise_page import exercise_markdown
+from spinbook.site.glossary import Term, terms_of
+from spinbook.site.home_page import home_chapters, home_drawing, home_log, home_pictures
+from spinbook.site.launch import branch_files, launch_notebook, openers, requirement
+from spinbook.site.mermaid import CanNotDrawError, Picture, draw
+from spinbook.site.node_graph import node_graph_html, read_node_graph
+from spinbook.site.page import Page
+from spinbook.site.prose import Links, rich
+from spinbook.site.public_checks import public_checks
+from spinbook.site.repository import Repository, repository_of
+
+DOWNLOADS = "downloads"
+
+
+@dataclass
+class Contents:
+    """The site before it is built.
+
+    `pages` are in reading order, the home page first. `files` go into the site as they are, `branch` into the
+    branch of notebooks: path -> text. `origins` says for a staged page which file an author would mend, and `lines`
+    for a chapter's page the first line of each of its cells.
+    """
+
+    pages: list[Page] = field(default_factory=list)
+    files: dict[str, str | bytes] = field(default_factory=dict)
+    branch: dict[str, str] = field(default_factory=dict)
+    openers: dict[str, list[dict[str, str]]] = field(default_factory=dict)
+    terms: tuple[Term, ...] = ()
+    origins: dict[str, Path] = field(default_factory=dict)
+    lines: dict[str, list[int]] = field(default_factory=dict)
+    problems: list[Problem] = field(default_factory=list)
+
+
+class _Drawings:
+    """The drawings of a course: asked for in a first reading of the text, and shown in the second."""
+
+    def __init__(self) -> None:
+        self.codes: dict[str, None] = {}
+        self.pictures: dict[str, Picture | None] = {}
+
+    def note(self, code: str) -> str:
+        self.codes[code] = None
+        return ""
+
+    def html(self, code: str) -> str:
+        return drawing_html(code, self.pictures.get(code), "../")
+
+
+def read_contents(course: Course) -> Contents:
+    """Read all that the site shows. Raises SpinbookError where a chapter or an exercise can't be shown."""
+    chapters = _chapters(course)
+    exercises = _exercises(course, chapters)
+    repository = repository_of(course.root, course.repository)
+    contents = Contents()
+    links = Links(_pages_of_files(course, exercises), repository)
+    drawings = _drawn(course, chapters, exercises, links, contents)
+    _glossary(course, contents)
+    first = chapters[0].name
+    contents.pages.append(_home(course, chapters, exercises, repository, drawings, contents))
+    for chapter in chapters:
+        contents.pages.append(_chapter(course, chapter, exercises, links, drawings, contents))
+        for cell in chapter.cells:
+            if cell.kind is CellKind.EXERCISE and names.exercise_page(cell.name or "") not in contents.origins:
+                page = _exercise(exercises[cell.name or ""], chapter, links, drawings, contents)
+                contents.pages.append(page)
+    contents.pages += _closing_pages(course, repository, first, contents)
+    _notebooks(course, chapters, exercises, repository, contents)
+    for code, picture in drawings.pictures.items():
+        if picture is not None:
+            contents.files |= drawing_files(code, picture)
+    return contents
+
+
+def _chapters(course: Course) -> list[Chapter]:
+    readings = list(read_all(course))
+    problems = [problem for reading in readings for problem in reading.problems if problem.is_error]
+    if problems:
+        raise SpinbookError(*problems)
+    return [reading.chapter for reading in readings if reading.chapter is not None]
+
+
+def _exercises(course: Course, chapters: list[Chapter]) -> dict[str, Exercise]:
+    found: dict[str, Exercise] = {}
+    for chapter in chapters:
+        for cell in chapter.cells:
+            if cell.kind is CellKind.EXERCISE and cell.name:
+                try:
+                    found[cell.name] = load(course.root / "exercises" / cell.name)
+                except ExerciseError as error:
+                    mend = "Mend the exercise, or take it out of the chapter."
+                    raise SpinbookError(Problem(chapter.file, cell.line, str(error), mend)) from None
+    return found
+
+
+def _pages_of_files(course: Course, exercises: Mapping[str, Exercise]) -> dict[str, str]:
+    """The course's files that have pages, and what is staged for them: Sphinx makes the address."""
+    pages = {chapter.as_posix(): f"{names.chapter_page(chapter)}.ipynb" for chapter in course.chapters}
+    pages |= {f"exercises/{name}/task.md": f"{names.exercise_page(name)}.md" for name in exercises}
+    if course.glossary:
+        pages[course.glossary.as_posix()] = f"{names.GLOSSARY}.md"
+    return pages
+
+
+def _drawn(
+    course: Course,
+    chapters: list[Chapter],
+    exercises: Mapping[str, Exercise],
+    links: Links,
+    contents: Contents,
+) -> _Drawings:
+    drawings = _Drawings()
+    for text in [cell.source for c in chapters for cell in c.cells] + [e.task for e in exercises.values()]:
+        rich(text, links, "", "", drawings.note)
+    try:
+        drawings.pictures = draw(list(drawings.codes), course.build_folder / ".cache" / "drawings")
+    except CanNotDrawError as error:
+        found = f"mermaid drawings are shown in words, because {error}."
+        mend = "Everything else is as it should be; build the site again when that is mended."
+        contents.problems.append(Problem(course.chapters[0], None, found, mend, Severity.WARNING))
+    return drawings
+
+
+def _chapter(
+    course: Course,
+    chapter: Chapter,
+    exercises: Mapping[str, Exercise],
+    links: Links,
+    drawings: _Drawings,
+    contents: Contents,
+) -> Page:
+    name = names.chapter_page(chapter.file)
+    ran = _ran(course, chapter)
+    folder = chapter.file.parent.as_posix()
+    prose = {
+        cell.id: rich(cell.source, links, folder, "chapters", drawings.html)
+        for cell in chapter.cells
+        if cell.kind is CellKind.PROSE
+    }
+    cards = {name: ExerciseCard(name, exercise.title, exercise.points) for name, exercise in exercises.items()}
+    notebook = chapter_notebook(chapter, ran, prose, cards, links.repository, _graph(course, chapter))
+    contents.origins[name] = chapter.file
+    contents.lines[name] = [cell["metadata"]["spinbook"]["line"] for cell in notebook["cells"]]
+    for cell in chapter.nodes:
+        contents.files[f"{DOWNLOADS}/{cell.module}"] = cell.source.rstrip("\n") + "\n"
+    source = links.repository.link(chapter.file, 1)
+    return Page(
+        name, chapter.title, "chapter", ".ipynb", as_text(notebook), source, chapter.name, summary=chapter.summary
+    )
+
+
+def _ran(course: Course, chapter: Chapter) -> Ran:
+    file = course.build_folder / "executed" / f"{chapter.name}.ipynb"
+    try:
+        return Ran.read(file)
+    except (OSError, ValueError, KeyError):
+        found = "it has not been run yet, so that there are no outputs to show."
+        raise SpinbookError(Problem(chapter.file, None, found, "Run it: spinbook build --execute")) from None
+
+
+def _graph(course: Course, chapter: Chapter) -> str:
+    """The picture of the nodes that were seen while the chapter ran, in one line of HTML; "" where none were."""
+    graph = read_node_graph(course.build_folder / "executed" / f"{chapter.name}.graph.json")
+    if graph is None or not graph.nodes:
+        return ""
+    picture = node_graph_html(graph)
+    return (
+        '<details class="nodes-as-seen"><summary>The nodes of this chapter, as they were seen while it ran</summary>'
+        f"{picture}</details>"
+    )
+
+
+def _exercise(exercise: Exercise, chapter: Chapter, links: Links, drawings: _Drawings, contents: Contents) -> Page:
+    name = names.exercise_page(exercise.name)
+    folder = f"exercises/{exercise.name}"
+    task = rich(exercise.task, links, folder, "exercises", drawings.html)
+    begin = _starter_of(exercise)
+    checks = public_checks(exercise.folder / "checks.py")
+    if begin:
+        contents.files[f"{DOWNLOADS}/{exercise.file_name}"] = begin
+    contents.origins[name] = Path(folder, "task.md")
+    text = exercise_markdown(exercise, task, begin, checks, f"../{DOWNLOADS}/{exercise.file_name}")
+    about = {
+        "points": f"{exercise.points:g}",
+        "file": exercise.file_name,
+        "chapter": {"title": chapter.title, "page": names.chapter_page(chapter.file)},
+    }
+    notebook = names.exercise_notebook(exercise.name)
+    source = links.repository.link(Path(folder, "task.md"), 1)
+    summary = f"An exercise of the chapter {chapter.title}, worth {exercise.points:g} points."
+    return Page(name, exercise.title, "exercise", ".md", text, source, notebook, summary, about)
+
+
+def _starter_of(exercise: Exercise) -> str:
+    return starter(exercise.solution_file.read_text(encoding="utf-8")) if exercise.solution_file else ""
+
+
+def _glossary(course: Course, contents: Contents) -> None:
+    if course.glossary is None:
+        return
+    try:
+        text = (course.root / course.glossary).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        found = f"the glossary can't be read: {error}."
+        raise SpinbookError(Problem(course.glossary, None, found, "See `glossary` in course.toml.")) from None
+    contents.terms = terms_of(text)
+    contents.origins[names.GLOSSARY] = course.glossary
+
+
+def _closing_pages(course: Course, repository: Repository, first: str, contents: Contents) -> Iterator[Page]:
+    if course.glossary is not None:
+        text = (course.root / course.glossary).read_text(encoding="utf-8")
+        links = Links(_pages_of_files(course, {}), repository)
+        text = rich(text, links, course.glossary.parent.as_posix(), "", lambda code: "")
+        source = repository.link(course.glossary, 1)
+        summary = "The words of the course, each explained in a sentence or two."
+        yield Page(names.GLOSSARY, "Glossary", "glossary", ".md", text, source, first, summary)
+    middleware = os.environ.get("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp")
+    text = about_markdown(course, repository, middleware)
+    source = repository.link(Path("course.toml"))
+    summary = "What the course was built with, and how to run it yourself."
+    yield Page(names.ABOUT, "About this course", "about", ".md", text, source, first, summary)
+
+
+def _home(
+    course: Course,
+    chapters: list[Chapter],
+    exercises: Mapping[str, Exercise],
+    repository: Repository,
+    drawings: _Drawings,
+    contents: Contents,
+) -> Page:
+    runs = [(chapter, _ran(course, chapter)) for chapter in chapters]
+    pictures = home_pictures(runs)
+    contents.files |= {picture.path: picture.data for picture in pictures}
+    about = {
+        "chapters": home_chapters(chapters, exercises),
+        "drawing": home_drawing(drawings.pictures),
+        "pictures": [picture.about for picture in pictures],
+        "log": home_log(runs),
+        "nodes": sum(1 for chapter in chapters for _ in chapter.nodes),
+    }
+    source = repository.link(Path("course.toml"))
+    text = f"# {course.title}\n"
+    return Page(names.HOME, course.title, "home", ".md", text, source, chapters[0].name, course.title, about)
+
+
+def _notebooks(
+    course: Course,
+    chapters: list[Chapter],
+    exercises: Mapping[str, Exercise],
+    repository: Repository,
+    contents: Contents,
+) -> None:
+    """The notebooks to download and to open elsewhere, which install what they need."""
+    wanted = requirement(repository)
+    written: list[str] = []
+    for chapter in chapters:
+        file = course.build_folder / "notebooks" / f"{chapter.name}.ipynb"
+        notebook = json.loads(file.read_text(encoding="utf-8"))
+        _add_notebook(chapter.name, notebook, wanted, contents)
+        written.append(chapter.name)
+        for cell in chapter.cells:
+            if cell.kind is CellKind.EXERCISE and cell.name:
+                name = names.exercise_notebook(cell.name)
+                _add_notebook(name, _only_exercise(notebook, cell.name), wanted, contents)
+                written.append(name)
+    contents.branch |= branch_files(written, wanted, course.title)
+    for name in written:
+        contents.openers[name] = [{"name": o.name, "url": o.url} for o in openers(repository, name)]
+
+
+def _only_exercise(notebook: Mapping[str, Any], exercise: str) -> dict[str, Any]:
+    """A chapter's notebook without all but its set-up and one exercise."""
+    prefix = f"exercise-{exercise}-"
+    kept = [c for c in notebook["cells"] if c["id"] == "spinbook-setup" or c["id"].startswith(prefix)]
+    return {**notebook, "cells": kept}
+
+
+def _add_notebook(name: str, notebook: Mapping[str, Any], wanted: str, contents: Contents) -> None:
+    ready = launch_notebook(notebook, wanted)
+    contents.branch[f"{name}.ipynb"] = contents.files[f"{DOWNLOADS}/{name}.ipynb"] = as_text(ready)
+    script = jupytext.writes(nbformat.from_dict(ready), fmt="py:percent")
+    contents.files[f"{DOWNLOADS}/{name}.notebook.py"] = script

@@ -1,0 +1,79 @@
+"""The page of an exercise: the task, then the interface, the starter, how to check it, and the points."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from grader.exercise import Exercise
+from grader.exercise.interface import Topic
+from spinbook.site.public_checks import PublicCheck
+
+
+def exercise_markdown(exercise: Exercise, task: str, starter: str, checks: Sequence[PublicCheck], download: str) -> str:
+    """The page in MyST Markdown. `task` is the text of task.md as `rich` made it, so that its lines keep their numbers.
+
+    `download` is where the starter's file lies, seen from the page.
+    """
+    sections = [task.rstrip("\n"), _interface(exercise)]
+    if starter:
+        sections.append(_starter(exercise, starter, download))
+    sections += [_how_to_check(exercise), _points(exercise, checks)]
+    return "\n\n".join(sections) + "\n"
+
+
+def _interface(exercise: Exercise) -> str:
+    rows = "\n".join(_row(topic) for topic in exercise.topics)
+    return f"""\
+## Interface
+
+The node `{exercise.node_name}` is the class `{exercise.class_name}` in the file `{exercise.file_name}`.
+
+| The node | Topic | Type | QoS | Units |
+| --- | --- | --- | --- | --- |
+{rows}"""
+
+
+def _row(topic: Topic) -> str:
+    verb = "subscribes to" if topic.direction == "subscribe" else "publishes on"
+    units = ", ".join(f"`{field}` in {unit}" for field, unit in topic.units.items()) or "none"
+    quality = f"keep last {topic.depth}, reliable, volatile"
+    return f"| {verb} | `{topic.name}` | `{topic.type}` | {quality} | {units} |"
+
+
+def _starter(exercise: Exercise, starter: str, download: str) -> str:
+    return f"""\
+## Starter
+
+Begin with this file. What you are to write is marked in it.
+
+<p><a class="button" href="{download}" download>Download {exercise.file_name}</a></p>
+
+```python
+{starter.rstrip()}
+```"""
+
+
+def _how_to_check(exercise: Exercise) -> str:
+    return f"""\
+## Check your node
+
+Save your node as `{exercise.file_name}`, and let it be spun in the folder of the course:
+
+```bash
+spinbook grade {exercise.name} {exercise.file_name}
+```
+
+The command starts your node as it is, publishes to it, listens to what it answers, and says what is right and what is
+not yet. You may run it as often as you like. [How to install what it needs](../about.md) stands on another page."""
+
+
+def _points(exercise: Exercise, checks: Sequence[PublicCheck]) -> str:
+    shown = sum(check.points for check in checks)
+    rows = [f"| {check.title} | {check.points:g} |" for check in checks]
+    rest = exercise.points - shown
+    if rest > 0:
+        rows.append(f"| The rules of the task, in cases that are not shown | {rest:g} |")
+    table = "\n".join(
+        ["| What is checked | Points |", "| --- | ---: |", *rows, f"| **All** | **{exercise.points:g}** |"]
+    )
+    return f"## Points\n\n{table}"

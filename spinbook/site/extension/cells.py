@@ -1,0 +1,74 @@
+"""Says of each code cell what it is: its file, its place in the chapter's source, and whether it is meant to fail."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import Any
+
+from docutils import nodes
+from sphinx.transforms import SphinxTransform
+
+_LANGUAGES = {"shell": "bash", "node": "python"}
+_KINDS = {"shell": "Terminal", "node": "Node", "snippet": "Notebook"}
+
+
+class DescribeCells(SphinxTransform):
+    """Adds a line above a cell's code, a name to its output, and words to its pictures."""
+
+    default_priority = 400
+
+    def apply(self, **kwargs: Any) -> None:
+        """Change the document's cells."""
+        for cell in list(self.document.findall(nodes.container)):
+            about = cell.get("cell_metadata", {}).get("spinbook")
+            if cell.get("nb_element") == "cell_code" and about:
+                _describe(cell, about)
+
+
+def _describe(cell: nodes.container, about: dict[str, Any]) -> None:
+    kind = about["kind"]
+    cell["classes"].append(f"cell-{kind}")
+    for part in cell.children:
+        if not isinstance(part, nodes.container):
+            continue
+        if part.get("nb_element") == "cell_code_source":
+            for code in part.findall(nodes.literal_block):
+                code["language"] = _LANGUAGES.get(kind, "ipython3")
+        elif part.get("nb_element") == "cell_code_output":
+            _alternatives(part, about["alts"])
+            words = "Output: it fails, as it is meant to" if about["fails"] else "Output"
+            part.insert(0, nodes.raw("", f'<p class="output-name">{words}</p>', format="html"))
+    cell.insert(0, nodes.raw("", _head(kind, about), format="html"))
+
+
+def _head(kind: str, about: dict[str, Any]) -> str:
+    file = about.get("file", "")
+    name = f'<span class="cell-file">{escape(file)}</span>' if file else ""
+    of = file or f"this {_KINDS.get(kind, 'cell').lower()} block"
+    source = (
+        f'<a class="cell-source" href="{escape(about["source"])}" '
+        f'aria-label="Source of {escape(of)}, line {about["line"]}">line {about["line"]}</a>'
+        if about["source"]
+        else ""
+    )
+    download = (
+        f'<a class="cell-download" href="../downloads/{escape(file)}" download aria-label="Download {escape(file)}">'
+        "Download</a>"
+        if file
+        else ""
+    )
+    kind_name = f'<span class="cell-kind">{_KINDS.get(kind, "Cell")}</span>'
+    return f'<div class="cell-head">{kind_name}{name}<span class="cell-links">{download}{source}</span></div>'
+
+
+def _alternatives(output: nodes.container, alts: list[str]) -> None:
+    """Gives each picture its words; a picture in several formats is one picture."""
+    pictures: dict[int, list[nodes.image]] = {}
+    for image in output.findall(nodes.image):
+        bundle = image.parent
+        while bundle is not output and bundle.get("nb_element") != "mime_bundle":
+            bundle = bundle.parent
+        pictures.setdefault(id(bundle), []).append(image)
+    for images, alt in zip(pictures.values(), alts, strict=False):
+        for image in images:
+            image["alt"] = alt

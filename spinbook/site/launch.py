@@ -1,0 +1,108 @@
+"""Notebooks that can be opened anywhere: their first cell installs what is missing.
+
+They go to a branch of their own, `notebooks`, with what Binder and Codespaces need beside them. Colab opens a notebook
+of a branch on GitHub: https://colab.research.google.com/github/OWNER/NAME/blob/BRANCH/FILE. Binder's addresses:
+https://mybinder.readthedocs.io/en/latest/howto/badges.html. Codespaces':
+https://docs.github.com/codespaces/setting-up-your-project-for-codespaces.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+from urllib.parse import quote
+
+from spinbook.site.repository import Repository
+
+BRANCH = "notebooks"
+_BINDER_PYTHON = "python-3.11"
+_CODESPACES_IMAGE = "mcr.microsoft.com/devcontainers/python:3.11-bookworm"
+
+_INSTALL = """\
+# Installs ROS 2 and the course's commands where they are missing; where they are there, it does nothing.
+import importlib.util, subprocess, sys
+
+if missing := [name for name in ("rclpy", "spinbook") if importlib.util.find_spec(name) is None]:
+    print("Installing ROS 2 and the course's commands: about a minute …", flush=True)
+    wanted = {requirement!r}
+    done = subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", wanted], capture_output=True, text=True)
+    if done.returncode:
+        print(done.stderr[-2000:])
+        raise SystemExit("It could not be installed. ROS 2 comes as wheels for Linux on x86-64, Python 3.10 to 3.14.")
+    from spinbook.fresh_wheels import load_fresh_wheels
+
+    load_fresh_wheels()
+    print("Installed.")
+else:
+    print("Everything is here.")"""
+
+
+@dataclass(frozen=True)
+class Opener:
+    """A place that opens a notebook, by the name that people know it by."""
+
+    name: str
+    url: str
+
+
+def openers(repository: Repository, notebook: str) -> tuple[Opener, ...]:
+    """Where the notebook of this name can be opened; nowhere, if the course is not on GitHub."""
+    if repository.github is None:
+        return ()
+    owner, name = repository.github
+    container = quote(f".devcontainer/{notebook}/devcontainer.json", safe="")
+    return (
+        Opener("Colab", f"https://colab.research.google.com/github/{owner}/{name}/blob/{BRANCH}/{notebook}.ipynb"),
+        Opener("Binder", f"https://mybinder.org/v2/gh/{owner}/{name}/{BRANCH}?urlpath=lab/tree/{notebook}.ipynb"),
+        Opener("Codespaces", f"https://codespaces.new/{owner}/{name}/tree/{BRANCH}?devcontainer_path={container}"),
+    )
+
+
+def requirement(repository: Repository) -> str:
+    """What pip installs to run a notebook: Spinbook with ROS 2 and colcon, as the site was built with."""
+    extras = "spinbook[ros,colcon]"
+    if not repository.url:
+        return extras
+    return f"{extras} @ git+{repository.url}@{repository.commit or 'main'}"
+
+
+def launch_notebook(notebook: Mapping[str, Any], wanted: str) -> dict[str, Any]:
+    """The notebook with a cell before its first code cell that installs `wanted` where it is missing."""
+    cells = list(notebook["cells"])
+    first = next((index for index, cell in enumerate(cells) if cell["cell_type"] == "code"), len(cells))
+    install: dict[str, Any] = {
+        "cell_type": "code",
+        "id": "spinbook-install",
+        "metadata": {"spinbook": {"kind": "install", "line": 1}},
+        "source": _INSTALL.replace("{requirement!r}", repr(wanted)),
+        "outputs": [],
+        "execution_count": None,
+    }
+    return {**notebook, "cells": [*cells[:first], install, *cells[first:]]}
+
+
+def branch_files(names: Iterable[str], wanted: str, title: str) -> dict[str, str]:
+    """What the branch holds beside the notebooks: path -> text."""
+    files = {
+        "README.md": f"# {title}: notebooks\n\nMade by `spinbook site`; edits are lost at the next build.\n",
+        "requirements.txt": f"{wanted}\njupyterlab\n",
+        "runtime.txt": f"{_BINDER_PYTHON}\n",
+    }
+    for name in names:
+        files[f".devcontainer/{name}/devcontainer.json"] = _container(name)
+    return files
+
+
+def _container(notebook: str) -> str:
+    container = {
+        "name": notebook,
+        "image": _CODESPACES_IMAGE,
+        "postCreateCommand": "pip install -r requirements.txt",
+        "customizations": {
+            "codespaces": {"openFiles": [f"{notebook}.ipynb"]},
+            "vscode": {"extensions": ["ms-python.python", "ms-toolsai.jupyter"]},
+        },
+    }
+    return json.dumps(container, indent=2) + "\n"

@@ -1,0 +1,25 @@
+"""Colours what nodes print: warnings and errors stand out, times and names step back."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from pygments.lexer import RegexLexer, bygroups
+from pygments.token import Comment, Generic, Text
+
+
+class LogLexer(RegexLexer):  # type: ignore[misc]
+    """The lines of rcl's console output, `[SEVERITY] [node]: words`; anything else stays as it is."""
+
+    name = "ROS log"
+    aliases: ClassVar[list[str]] = ["ros-log"]
+    tokens: ClassVar[dict[str, list[tuple[str, object]]]] = {
+        "root": [
+            (r"^(\[WARN\] )(\[[^\]\n]+\]:)(.*\n)", bygroups(Generic.Strong, Generic.Strong, Generic.Strong)),
+            (r"^(\[(?:ERROR|FATAL)\] )(\[[^\]\n]+\]:)(.*\n)", bygroups(Generic.Error, Generic.Error, Generic.Error)),
+            (r"^(\[(?:INFO|DEBUG)\] )(\[[^\]\n]+\]:)", bygroups(Comment, Comment)),
+            (r"^—.*—\n", Generic.Emph),
+            (r"^Traceback .*\n", Generic.Error),
+            (r".*\n", Text),
+        ]
+    }

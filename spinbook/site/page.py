@@ -1,0 +1,43 @@
+"""A page of the site: what Sphinx reads, and what the frame around it needs to know."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Page:
+    """One page. `name` is its path without a suffix, such as chapters/03-nodes-and-topics.
+
+    `text` is a notebook or Markdown, by `suffix`. `notebook` names the notebook that its reader can run, `about` is
+    what the theme shows of it beside the text. `summary` is one sentence, for search engines and the home page.
+    """
+
+    name: str
+    title: str
+    kind: str
+    suffix: str
+    text: str
+    source: str = ""
+    notebook: str = ""
+    summary: str = ""
+    about: Mapping[str, Any] = field(default_factory=dict)
+
+    def frame(self, openers: Mapping[str, list[dict[str, str]]]) -> str:
+        """What the theme reads of the page, as JSON. `openers` are the places that open a notebook, by its name."""
+        return json.dumps(
+            {
+                "kind": self.kind,
+                "source": self.source,
+                "notebook": self.notebook,
+                "openers": openers.get(self.notebook, []),
+                "summary": self.summary,
+                **self.about,
+            },
+            ensure_ascii=False,
+            indent=1,
+            sort_keys=True,
+        )

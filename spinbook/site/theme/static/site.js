@@ -1,0 +1,145 @@
+// What pages do: colours, the menu on phones, copying, and places that scroll. All of it is extra: pages read well without.
+"use strict";
+
+const root = document.documentElement;
+const said = document.getElementById("said");
+
+function colours() {
+  const button = document.querySelector(".theme-button");
+  const show = () => button.setAttribute("aria-pressed", String(root.dataset.colours === "dark"));
+  show();
+  button.addEventListener("click", () => {
+    root.dataset.colours = root.dataset.colours === "dark" ? "light" : "dark";
+    try {
+      localStorage.setItem("colours", root.dataset.colours);
+    } catch {
+      // It then holds for this page only.
+    }
+    show();
+  });
+}
+
+function menu() {
+  const button = document.querySelector(".menu-button");
+  const open = (yes) => {
+    root.classList.toggle("menu-open", yes);
+    button.setAttribute("aria-expanded", String(yes));
+  };
+  button.addEventListener("click", () => open(!root.classList.contains("menu-open")));
+  document.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape") return;
+    if (root.classList.contains("menu-open")) {
+      open(false);
+      button.focus();
+    }
+    for (const places of document.querySelectorAll("details.run[open]")) {
+      places.open = false;
+      places.querySelector("summary").focus();
+    }
+  });
+  document.addEventListener("click", (event) => {
+    for (const places of document.querySelectorAll("details.run[open]")) {
+      if (!places.contains(event.target)) places.open = false;
+    }
+  });
+}
+
+async function toClipboard(text) {
+  try {
+    await navigator.clipboard.writeText(text);
+    return true;
+  } catch {
+    // Without a secure connection there is only the old way.
+    const field = document.createElement("textarea");
+    field.value = text;
+    field.className = "hidden-text";
+    document.body.append(field);
+    field.select();
+    const done = document.execCommand("copy");
+    field.remove();
+    return done;
+  }
+}
+
+function copying() {
+  for (const code of document.querySelectorAll("main .highlight > pre")) {
+    if (code.closest(".cell_output, .shown")) continue;
+    const button = document.createElement("button");
+    button.type = "button";
+    button.className = "copy";
+    button.textContent = "Copy";
+    const file = code.closest(".cell")?.querySelector(".cell-file")?.textContent;
+    button.setAttribute("aria-label", file ? `Copy ${file}` : "Copy this code");
+    button.addEventListener("click", async () => {
+      const done = await toClipboard(code.textContent.replace(/\n$/, ""));
+      button.textContent = done ? "Copied" : "Not copied";
+      said.textContent = done ? "Copied" : "Your browser does not allow copying";
+      setTimeout(() => {
+        button.textContent = "Copy";
+        said.textContent = "";
+      }, 2000);
+    });
+    code.parentElement.append(button);
+  }
+}
+
+// What scrolls sideways must be within reach of the keyboard, and what does not must not stand in its way.
+function scrolling() {
+  const look = (entries) => {
+    for (const { target } of entries) {
+      if (target.scrollWidth > target.clientWidth + 1) {
+        target.tabIndex = 0;
+        target.setAttribute("role", "group");
+        target.setAttribute("aria-label", target.matches("pre") ? "Code, scrolls sideways" : "Scrolls sideways");
+      } else {
+        target.removeAttribute("tabindex");
+        target.removeAttribute("role");
+        target.removeAttribute("aria-label");
+      }
+    }
+  };
+  const observer = new ResizeObserver(look);
+  for (const place of document.querySelectorAll("main pre, .table, figure.drawing, .math")) observer.observe(place);
+}
+
+// Marks the section at hand in the list beside the text.
+function whereabouts() {
+  const links = new Map();
+  for (const link of document.querySelectorAll(".page-toc a[href^='#']")) links.set(link.hash.slice(1), link);
+  if (links.size === 0) return;
+  const seen = new Set();
+  const observer = new IntersectionObserver(
+    (entries) => {
+      for (const entry of entries) seen[entry.isIntersecting ? "add" : "delete"](entry.target.id);
+      const at = [...links.keys()].filter((id) => seen.has(id)).pop();
+      if (!at) return;
+      for (const [id, link] of links) {
+        if (id === at) link.setAttribute("aria-current", "true");
+        else link.removeAttribute("aria-current");
+      }
+    },
+    { rootMargin: "-80px 0px -70% 0px" },
+  );
+  for (const id of links.keys()) {
+    const section = document.getElementById(id);
+    if (section) observer.observe(section);
+  }
+}
+
+function printing() {
+  let opened = [];
+  addEventListener("beforeprint", () => {
+    opened = [...document.querySelectorAll("main details:not([open])")];
+    for (const details of opened) details.open = true;
+  });
+  addEventListener("afterprint", () => {
+    for (const details of opened) details.open = false;
+  });
+}
+
+colours();
+menu();
+copying();
+scrolling();
+whereabouts();
+printing();

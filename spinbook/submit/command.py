@@ -1,0 +1,137 @@
+"""`spinbook submit`: one file to upload."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import click
+from rich.console import Console
+
+from grader.exercise import Exercise, ExerciseError, load
+from grader.exercise.finding import NoExercise, find
+from grader.report.terminal import show
+from grader.submission import NoSubmission, read
+from spinbook.problem import Problem, SpinbookError
+from spinbook.submit import student as names
+from spinbook.submit.candidates import Candidate, candidates, is_starter
+from spinbook.submit.hand_in import HandIn, default_target, write_upload
+from spinbook.submit.self_check import SelfCheck, self_check
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("exercise")
+@click.argument("file", required=False, type=click.Path(path_type=Path))
+@click.option("--student", help="Your name or number, as your course wants it; kept in this folder for the next time.")
+@click.option("--output", type=click.Path(path_type=Path), help="Where to write.  [default: EXERCISE-submission.zip]")
+@click.option("--code", type=click.Path(path_type=Path), hidden=True, help="The code, as a kernel ran it last.")
+@click.option("--no-check", is_flag=True, help="Write the file without running the checks first.")
+def submit(
+    exercise: str, file: Path | None, student: str | None, output: Path | None, code: Path | None, no_check: bool
+) -> None:
+    """Write ONE file to upload: your code for EXERCISE, and what the public checks say of it.
+
+    \b
+      spinbook submit joint_velocity                    finds your notebook or joint_velocity.py in this folder
+      spinbook submit joint_velocity week3.ipynb        takes the exercise's cell in this notebook
+      spinbook submit joint_velocity --student "Ada L"  puts your name into the file
+
+    Save your notebook first. In the notebook itself, %submit joint_velocity does the same.
+
+    The file, such as joint_velocity-submission.zip, is what you upload to your course's platform. Do not unpack or
+    change it. You may hand in whatever the checks say: they are there to help you, and their result decides nothing.
+    The grade comes from grading.
+
+    Exit codes: 0 the file is written, 1 it could not be written, 2 wrong usage.
+    """
+    folder = Path.cwd()
+    wanted = _exercise(exercise)
+    chosen = _ran(code, file, wanted) if code else _given(file, wanted) if file else _found(wanted, folder)
+    name = _student(student, folder)
+    checked = SelfCheck(None, "It was left out.") if no_check else self_check(wanted, chosen.submission)
+    console = Console(soft_wrap=False, highlight=False)
+    tell(checked, wanted, console)
+    target = output or default_target(wanted, folder)
+    try:
+        write_upload(HandIn(wanted, chosen, name, checked), target)
+    except OSError as error:
+        raise SpinbookError(
+            Problem(target, None, f"it can't be written: {error.strerror}.", "Name another place: --output FILE")
+        ) from None
+    console.print(f"Your code is from {chosen.origin}.", markup=False)
+    if is_starter(chosen, wanted):
+        console.print("It is still the starter, as it was handed out. Was your work saved?", style="bold yellow")
+    if not name:
+        console.print("Your name is not in it. If your course wants it there: --student NAME", markup=False)
+    console.print(f"Upload this file: {_shown(target)}", style="bold", markup=False, soft_wrap=True)
+
+
+def tell(checked: SelfCheck, exercise: Exercise, console: Console) -> None:
+    """Print what the self-check found, or why there was none."""
+    if checked.grade:
+        show(checked.grade, exercise, console)
+    else:
+        console.print(f"No self-check: {checked.why} You can hand in all the same.", markup=False, soft_wrap=True)
+
+
+def _exercise(name: str) -> Exercise:
+    try:
+        return load(find(name, Path.cwd()))
+    except NoExercise as error:
+        raise click.UsageError(str(error)) from None
+    except ExerciseError as error:
+        raise SpinbookError(Problem(error.file, error.line, error.found, error.mend)) from None
+
+
+def _given(file: Path, exercise: Exercise) -> Candidate:
+    if file.suffix not in (".py", ".ipynb"):
+        raise click.UsageError(f"{file}: hand in a notebook (.ipynb) or a Python file (.py).")
+    try:
+        submission = read(str(file), exercise)
+    except NoSubmission as error:
+        raise click.UsageError(str(error)) from None
+    if submission.program is None:
+        raise SpinbookError(Problem(file, None, submission.problem, "There is nothing in it to hand in yet."))
+    return Candidate(file, submission, file.name)
+
+
+def _ran(code: Path, notebook: Path | None, exercise: Exercise) -> Candidate:
+    """The code that a notebook's kernel ran last, which may not have been saved yet."""
+    return replace(_given(code, exercise), file=notebook, origin="the cell as you ran it last")
+
+
+def _found(exercise: Exercise, folder: Path) -> Candidate:
+    found = candidates(exercise, folder)
+    if not found:
+        raise SpinbookError(
+            Problem(
+                folder,
+                None,
+                f"nothing here holds {exercise.name}: no {exercise.file_name}, and no notebook with its cell.",
+                f"Go to the folder of your notebook, or name the file: spinbook submit {exercise.name} FILE",
+            )
+        )
+    if len(found) == 1:
+        return found[0]
+    listed = [candidate.origin for candidate in found]
+    if not sys.stdin.isatty():
+        raise click.UsageError(f"Which file? {', '.join(listed)}. Name it: spinbook submit {exercise.name} FILE")
+    click.echo("More than one file here holds this exercise:")
+    for number, name in enumerate(listed, start=1):
+        click.echo(f"  {number}  {name}")
+    return found[click.prompt("Which one do you hand in?", type=click.IntRange(1, len(found))) - 1]
+
+
+def _student(given: str | None, folder: Path) -> str:
+    if given is not None:
+        return names.keep(given, folder)
+    known = names.known(folder)
+    if known is None and sys.stdin.isatty():
+        asked = click.prompt("Your name or number (leave empty to hand in without)", default="", show_default=False)
+        return names.keep(asked, folder)
+    return known or ""
+
+
+def _shown(path: Path) -> str:
+    return str(path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path)

@@ -1,0 +1,1 @@
+"""`spinbook update`: a newer handout, with the student's work kept."""

@@ -1,0 +1,121 @@
+"""`spinbook update`: a newer handout, with the student's work kept."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from spinbook.problem import Problem, SpinbookError
+from spinbook.update.base import BASE
+from spinbook.update.carrying_out import carry_out
+from spinbook.update.handout import read_handout
+from spinbook.update.merging import Told
+from spinbook.update.plan import Plan, plan
+
+#: Files that say what to install.
+_INSTALLS = {"requirements.txt", "environment.yml"}
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("new_handout", required=False, type=click.Path(path_type=Path))
+@click.option("--dry-run", is_flag=True, help="Only tell what would be done.")
+def update(new_handout: Path | None, dry_run: bool) -> None:
+    """Bring your folder up to a newer handout, and keep what you wrote.
+
+    \b
+      spinbook update ../course-handout.zip            the zip or folder that you were given
+      spinbook update ../course-handout.zip --dry-run  tell what would be done, and do nothing
+
+    Start it in your folder of the course. Save and close your notebooks first. NEW_HANDOUT may be left out where there
+    is just one handout's zip in this folder or beside it.
+
+    A cell that you changed or added is kept. A cell that only the course changed is taken. Where both did, yours is
+    kept, and the new one is shown below it, marked CHANGED IN THE NEW HANDOUT. Outputs stay where the code did. Before
+    anything is changed, a copy of it is put into backups/.
+
+    Exit codes: 0 all is done (or nothing was to do), 1 it could not be done, 2 wrong usage.
+    """
+    folder = _folder(Path.cwd())
+    source = new_handout or _only_handout(folder)
+    if source.resolve() == folder:
+        raise click.UsageError(f"{source} is your own folder. Name the new handout.")
+    made = plan(folder, read_handout(source))
+    _tell(made)
+    if not made.writes:
+        if not dry_run and (made.base or made.forgotten):
+            carry_out(made, folder)
+        click.echo("Nothing else to do." if made.told else "Nothing to do: you have all of this handout.")
+        return
+    if dry_run:
+        click.echo("Nothing was changed: this was a dry run.")
+        return
+    try:
+        backup = carry_out(made, folder)
+    except OSError as error:
+        place = Path(error.filename) if error.filename else folder
+        mend = "Mend that, then start the same update again: nothing is lost."
+        raise SpinbookError(Problem(place, None, f"it can't be written: {error.strerror}.", mend)) from None
+    if backup:
+        click.echo(f"What was there before is in {backup.relative_to(folder)}/.")
+    if _INSTALLS & {place.name for place in made.writes}:
+        click.echo("What to install has changed, too: follow the first step of README.md again.")
+    for wheel in (place for place in made.writes if place.suffix == ".whl"):
+        click.echo(f"Spinbook itself has changed, too: pip install --force-reinstall --no-deps {wheel}")
+
+
+def _folder(start: Path) -> Path:
+    for folder in (start, *start.parents):
+        if (folder / BASE).is_dir():
+            return folder.resolve()
+    if any(start.glob("*.ipynb")):
+        return start.resolve()
+    found = "this is no folder of a course: there is no notebook in it."
+    raise SpinbookError(Problem(start, None, found, "Go to the folder of your notebooks, then start it again."))
+
+
+def _only_handout(folder: Path) -> Path:
+    found = [file for place in (folder, folder.parent) for file in sorted(place.glob("*.zip")) if _is_handout(file)]
+    if len(found) == 1:
+        return found[0]
+    told = f"There are {', '.join(str(file) for file in found)}." if found else "There is no handout's zip here."
+    raise click.UsageError(f"Which handout? {told} Name it: spinbook update NEW_HANDOUT")
+
+
+def _is_handout(file: Path) -> bool:
+    try:
+        with zipfile.ZipFile(file) as archive:
+            return any(str(BASE) in name for name in archive.namelist())
+    except (OSError, zipfile.BadZipFile, ValueError, NotImplementedError):
+        return False
+
+
+def _tell(made: Plan) -> None:
+    for place, lines in sorted(made.told.items()):
+        for line in lines:
+            click.echo(f"{place}: {line}")
+        if place in made.notebooks:
+            click.echo(f"{place}:")
+            for line in _lines(made.notebooks[place]):
+                click.echo(f"  {line}")
+
+
+def _lines(told: Told) -> list[str]:
+    """What became of a notebook's cells, in words."""
+    lines = [f"CONFLICT: you and the course changed this cell; yours is kept: {name}" for name in told.conflicts]
+    lines += [
+        f"the course has taken this cell out; yours is kept, for you changed it: {n}" for n in told.kept_though_removed
+    ]
+    lines += [f"you had deleted this cell, and the course has changed it: it is back: {name}" for name in told.back]
+    lines += [f"this exercise's cell is not in your notebook any more: {name}" for name in told.missing]
+    if told.order_kept:
+        lines.append("you and the course moved cells: yours are in your order")
+    counted = (("changed", told.taken), ("new", told.added), ("taken out", told.removed))
+    counts = [f"{len(names)} {what}" for what, names in counted if names]
+    return [*lines, f"other cells: {_and(counts)}. Yours are as they were."]
+
+
+def _and(parts: Sequence[str]) -> str:
+    return ", ".join(parts) or "none changed"

@@ -1,0 +1,79 @@
+"""Reads a handout, a folder or a zip, into memory."""
+
+from __future__ import annotations
+
+import stat
+import zipfile
+import zlib
+from pathlib import Path, PurePosixPath
+
+from spinbook.problem import Problem, SpinbookError
+
+MOST_FILES = 5_000
+MOST_BYTES = 500_000_000
+
+#: Never part of a handout: what editors, Python and students leave in folders.
+_LEFT_OUT = {"__pycache__", ".ipynb_checkpoints", ".git", ".venv", "backups"}
+
+Files = dict[PurePosixPath, bytes]
+
+
+def read_handout(place: Path) -> Files:
+    """Every file of a handout, by its path in it. Raises `SpinbookError` where it can't be read or is none."""
+    if not place.exists():
+        raise SpinbookError(Problem(place, None, "there is no such file or folder.", "Name the new handout."))
+    try:
+        files = _of_folder(place) if place.is_dir() else _of_zip(place)
+    except (OSError, zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError) as error:
+        found = f"it can't be read: {error}."
+        raise SpinbookError(Problem(place, None, found, "Download the handout once more.")) from None
+    files = _without_outer_folder(files)
+    if not any(path.suffix == ".ipynb" for path in files):
+        found = "there is no notebook in it."
+        raise SpinbookError(Problem(place, None, found, "Give the course's new handout, a folder or a zip."))
+    return files
+
+
+def _of_folder(folder: Path) -> Files:
+    files: Files = {}
+    for path in sorted(folder.rglob("*")):
+        place = PurePosixPath(path.relative_to(folder).as_posix())
+        if path.is_file() and not path.is_symlink() and not _LEFT_OUT & set(place.parts):
+            files[place] = path.read_bytes()
+            _bounded(folder, len(files), 0)
+    return files
+
+
+def _of_zip(file: Path) -> Files:
+    files: Files = {}
+    left = MOST_BYTES
+    with zipfile.ZipFile(file) as archive:
+        entries = [entry for entry in archive.infolist() if not entry.is_dir() and "__MACOSX" not in entry.filename]
+        _bounded(file, len(entries), 0)
+        for entry in entries:
+            place = PurePosixPath(entry.filename)
+            if place.is_absolute() or ".." in place.parts or "\\" in entry.filename or "\0" in entry.filename:
+                found = f"{entry.filename!r} in it leads out of its folder."
+                raise SpinbookError(Problem(file, None, found, "This is no handout. Nothing was changed."))
+            if stat.S_ISLNK(entry.external_attr >> 16):
+                found = f"{entry.filename!r} in it is a symbolic link."
+                raise SpinbookError(Problem(file, None, found, "This is no handout. Nothing was changed."))
+            with archive.open(entry) as opened:
+                files[place] = opened.read(left + 1)
+            left -= len(files[place])
+            _bounded(file, 0, MOST_BYTES - left)
+    return files
+
+
+def _bounded(place: Path, count: int, size: int) -> None:
+    if count > MOST_FILES or size > MOST_BYTES:
+        found = f"it holds more than {MOST_FILES} files or {MOST_BYTES // 1_000_000} MB."
+        raise SpinbookError(Problem(place, None, found, "Give the course's new handout, a folder or a zip."))
+
+
+def _without_outer_folder(files: Files) -> Files:
+    """A zip often has one folder around everything."""
+    outer = {path.parts[0] for path in files}
+    if len(outer) == 1 and all(len(path.parts) > 1 for path in files) and not outer & {".spinbook"}:
+        return {PurePosixPath(*path.parts[1:]): data for path, data in files.items()}
+    return files

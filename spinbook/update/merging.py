@@ -1,0 +1,182 @@
+"""Brings an author's changes into a student's cells. What the student wrote stays, whatever happens.
+
+There are three sides: `base`, what was handed out; `mine`, what the student made of it; `new`, what is handed out now.
+A cell that only one of the two changed is taken from that one. Where both did, the student's is kept and the new one is
+shown below it, as text: were it code, it could be taken for the student's.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from spinbook.update.cells import Cell, content, found_again, label, text
+
+
+@dataclass
+class Told:
+    """What became of cells, by their labels, for the student to read."""
+
+    taken: list[str] = field(default_factory=list)
+    added: list[str] = field(default_factory=list)
+    removed: list[str] = field(default_factory=list)
+    conflicts: list[str] = field(default_factory=list)
+    kept_though_removed: list[str] = field(default_factory=list)
+    back: list[str] = field(default_factory=list)
+    missing: list[str] = field(default_factory=list)
+    order_kept: bool = False
+
+
+@dataclass(frozen=True)
+class _Item:
+    """One cell of the result: where it is in `mine` and in `new`, and what is put below it."""
+
+    mine: int | None
+    new: int | None
+    cell: Cell
+    below: tuple[Cell, ...] = ()
+
+
+def merged(base: Sequence[Cell], mine: Sequence[Cell], new: Sequence[Cell]) -> tuple[list[Cell], Told]:
+    """The student's cells with the author's changes in them, and what became of what.
+
+    With `new` equal to `base` the result equals `mine`. Every cell of `mine` that differs from its `base`, or has none,
+    is in the result.
+    """
+    merge = _Merge(base, mine, new, found_again(base, mine), found_again(base, new))
+    return merge.cells(), merge.told
+
+
+def merged_without_base(mine: Sequence[Cell], new: Sequence[Cell]) -> tuple[list[Cell], Told]:
+    """The same where nobody knows what was handed out: a cell that differs counts as changed by both."""
+    pairs = sorted(found_again(new, mine).items())
+    unknown: Cell = {"cell_type": "", "source": ""}
+    base = [new[j] if content(new[j]) == content(mine[i]) else unknown for j, i in pairs]
+    merge = _Merge(base, mine, new, {b: i for b, (_, i) in enumerate(pairs)}, {b: j for b, (j, _) in enumerate(pairs)})
+    return merge.cells(), merge.told
+
+
+class _Merge:
+    """One merge. `mine_of` and `new_of` tell for a cell of the base, by its number, where it is now."""
+
+    def __init__(
+        self,
+        base: Sequence[Cell],
+        mine: Sequence[Cell],
+        new: Sequence[Cell],
+        mine_of: dict[int, int],
+        new_of: dict[int, int],
+    ) -> None:
+        self.base, self.mine, self.new = base, mine, new
+        self.mine_of, self.new_of = mine_of, new_of
+        self.told = Told()
+
+    def cells(self) -> list[Cell]:
+        items = [*self._on_both_sides(), *self._only_mine()]
+        items += self._only_new({item.new for item in items})
+        in_mine = sorted((item for item in items if item.mine is not None), key=lambda item: item.mine or 0)
+        in_new = sorted((item for item in items if item.new is not None), key=lambda item: item.new or 0)
+        if self._moved(self.mine_of):
+            self.told.order_kept = self._moved(self.new_of)
+            order = _woven(in_mine, in_new)
+        else:
+            order = _woven(in_new, in_mine)
+        return [cell for item in order for cell in (item.cell, *item.below)]
+
+    def _on_both_sides(self) -> list[_Item]:
+        there = {content(cell) for cell in self.mine}
+        items = []
+        for b, i in self.mine_of.items():
+            if b in self.new_of:
+                j = self.new_of[b]
+                cell, below = self._merged_cell(self.base[b], self.mine[i], self.new[j])
+                items.append(_Item(i, j, cell, tuple(shown for shown in below if content(shown) not in there)))
+        return items
+
+    def _merged_cell(self, base: Cell, mine: Cell, new: Cell) -> tuple[Cell, tuple[Cell, ...]]:
+        if content(mine) == content(new) or content(new) == content(base):
+            return _refreshed(mine, base, new), ()
+        if content(mine) == content(base):
+            self.told.taken.append(label(new))
+            return new, ()
+        self.told.conflicts.append(label(mine))
+        return _refreshed(mine, base, new), (shown_below(new),)
+
+    def _only_mine(self) -> list[_Item]:
+        """Cells that the student added, and cells that the author has taken out."""
+        base_of = {i: b for b, i in self.mine_of.items()}
+        added = [j for j in range(len(self.new)) if j not in self.new_of.values()]
+        items = []
+        for i, cell in enumerate(self.mine):
+            b = base_of.get(i)
+            if b is None:
+                # A cell may be new on both sides and the same, such as after an update that was broken off.
+                same = next((j for j in added if content(self.new[j]) == content(cell) and text(cell)), None)
+                added = [j for j in added if j != same]
+                items.append(_Item(i, same, cell))
+            elif b not in self.new_of and content(cell) == content(self.base[b]):
+                self.told.removed.append(label(cell))
+            elif b not in self.new_of:
+                self.told.kept_though_removed.append(label(cell))
+                items.append(_Item(i, None, cell))
+        return items
+
+    def _only_new(self, have: set[int | None]) -> list[_Item]:
+        """Cells that the author added, and cells that the student has deleted: those stay so, unless they changed."""
+        base_of = {j: b for b, j in self.new_of.items()}
+        items = []
+        for j, cell in enumerate(self.new):
+            if j in have:
+                continue
+            if j not in base_of:
+                self.told.added.append(label(cell))
+                items.append(_Item(None, j, cell))
+            elif content(cell) != content(self.base[base_of[j]]):
+                self.told.back.append(label(cell))
+                items.append(_Item(None, j, cell))
+            elif cell.get("metadata", {}).get("spinbook", {}).get("exercise"):
+                self.told.missing.append(label(cell))
+        return items
+
+    def _moved(self, of: dict[int, int]) -> bool:
+        """Whether the cells that both sides have stand in another order than in the base."""
+        places = [of[b] for b in range(len(self.base)) if b in self.mine_of and b in self.new_of]
+        return places != sorted(places)
+
+
+def _refreshed(mine: Cell, base: Cell, new: Cell) -> Cell:
+    """The student's cell as it is, with what our tools need to know of it."""
+    if new.get("metadata") == base.get("metadata") and new.get("id") == base.get("id"):
+        return mine
+    cell = {**mine, "metadata": dict(mine.get("metadata", {}))}
+    if "spinbook" in new.get("metadata", {}):
+        cell["metadata"]["spinbook"] = new["metadata"]["spinbook"]
+    if "id" in new:
+        cell["id"] = new["id"]
+    return cell
+
+
+def shown_below(new: Cell) -> Cell:
+    """The new version of a cell that the student has changed, as text to look at."""
+    language = "python" if new.get("cell_type") == "code" else "markdown"
+    fence = "`" * max(3, 1 + max((len(run) for run in re.findall(r"`+", text(new))), default=0))
+    words = (
+        "**CHANGED IN THE NEW HANDOUT.** You have changed the cell above, so yours is kept. This is the new version. "
+        "Take over what you like, then delete this cell."
+    )
+    name = str(new.get("id", "cell"))[:60]
+    source = f"{words}\n\n{fence}{language}\n{text(new)}\n{fence}"
+    return {"cell_type": "markdown", "id": f"{name}-new", "metadata": {"spinbook": {"new": name}}, "source": source}
+
+
+def _woven(first: Sequence[_Item], second: Sequence[_Item]) -> list[_Item]:
+    """`first` in its order, with what only `second` has put behind what it follows there."""
+    order = list(first)
+    before: _Item | None = None
+    for item in second:
+        if not any(item is there for there in order):
+            at = next((k + 1 for k, there in enumerate(order) if there is before), 0)
+            order.insert(at, item)
+        before = item
+    return order

@@ -1,0 +1,26 @@
+"""What tests call an audit with."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from small_exercise import SmallExercise
+
+from grader.audit.result import Audit
+
+
+class Silence:
+    """Progress that nobody looks at."""
+
+    def begin(self, exercise: str, total: int) -> None:
+        """Say nothing."""
+
+    def done(self) -> None:
+        """Say nothing."""
+
+
+class Auditing(Protocol):
+    """Audits a small exercise: quickly and without mutants, unless a test asks for more."""
+
+    def __call__(self, small: SmallExercise, quick: bool = True, most: int = 0) -> Audit:
+        """What was found."""

@@ -1,0 +1,70 @@
+"""`spinbook audit` tells people and programs, and ends with 0, 1 or 2."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from browser import opened
+from click.testing import CliRunner, Result
+from playwright.sync_api import Browser
+from small_exercise import SmallExercise
+
+from grader.audit.command import audit
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner(mix_stderr=False).invoke(audit, [*arguments], catch_exceptions=False)
+
+
+@pytest.fixture(autouse=True)
+def in_the_course(small: SmallExercise, cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Start in the small exercise's course."""
+    monkeypatch.chdir(small.course)
+
+
+def test_nothing_to_mend_ends_with_0_and_is_written_as_json_and_as_a_page(small: SmallExercise) -> None:
+    done = run("--quick", "--json", "audit.json")
+    assert done.exit_code == 0, done.stdout
+    assert "nothing to mend" in done.stdout
+    (entries,) = json.loads(Path("audit.json").read_text())["audits"]
+    assert (entries["exercise"], entries["problems"]) == ("doubler", [])
+    assert entries["score"] == 1
+    assert entries["caught"] + entries["equivalent"] == len(entries["mutants"])
+    assert {check["name"] for check in entries["checks"]} >= {"test_publishes", "test_nothing_below_zero"}
+    assert all(scenario["spinning_s"] > 0 for scenario in entries["scenarios"])
+
+
+def test_a_change_that_lets_a_mistake_through_ends_with_1_and_says_which(
+    small: SmallExercise, browser: Browser
+) -> None:
+    small.change("exercises/doubler/hidden_checks.py", "    negative.must_be_silent()\n", "")
+    done = run("doubler", "--quick", "--html", "audit.html")
+    assert done.exit_code == 1
+    text = " ".join(done.stdout.split())
+    assert "test_nothing_below_zero lets the mistake mistakes/any_number.py" in text
+    assert "1 thing to mend" in text
+    for width, dark in ((1280, False), (390, True)):
+        with opened(browser, Path("audit.html"), width=width, dark=dark) as shown:
+            for group in shown.page.query_selector_all("details"):
+                group.evaluate("group => group.open = true")
+            assert "lets the mistake mistakes/any_number.py" in shown.page.inner_text("main")
+            assert shown.faults == []
+            assert shown.violations() == []
+            assert not shown.scrolls_sideways()
+
+
+def test_an_exercise_that_can_not_be_audited_ends_with_1_and_says_why(small: SmallExercise) -> None:
+    small.change("exercises/doubler/exercise.toml", "points = 10", "points = 11")
+    done = run("--quick", "--json", "audit.json")
+    assert done.exit_code == 1
+    assert "give 10 points together, but points = 11" in done.stderr
+    assert json.loads(Path("audit.json").read_text())["faults"][0]["place"].endswith("exercise.toml")
+
+
+@pytest.mark.parametrize(("arguments", "told"), [(("tripler",), "There are: doubler"), (("--no",), "No such option")])
+def test_wrong_usage_ends_with_2(arguments: tuple[str, ...], told: str) -> None:
+    done = run(*arguments)
+    assert done.exit_code == 2
+    assert told in done.stderr

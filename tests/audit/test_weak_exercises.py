@@ -1,0 +1,144 @@
+"""An audit tells an author what is weak in an exercise, check by check."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from quiet_audit import Auditing
+from small_exercise import SmallExercise
+
+from grader.audit.result import Audit
+
+CHECKS = "exercises/doubler/checks.py"
+HIDDEN = "exercises/doubler/hidden_checks.py"
+SOLUTION = "solutions/doubler/solution.py"
+
+
+def told(result: Audit, about: str) -> list[str]:
+    """What the audit found about a check, a mistake or a mutant."""
+    return [problem.found for problem in result.problems if problem.about == about]
+
+
+def without(small: SmallExercise, file: str, check: str) -> None:
+    """Remove a check from a file."""
+    path = small.course / file
+    text = path.read_text(encoding="utf-8")
+    shorter = re.sub(rf"@check\((?:(?!@check).)*?\ndef {check}\b.*?(?=\n@check|\Z)", "", text, flags=re.DOTALL)
+    assert shorter != text
+    path.write_text(shorter, encoding="utf-8")
+
+
+def test_a_sound_exercise_has_nothing_to_mend(small: SmallExercise, audited: Auditing) -> None:
+    result = audited(small, most=6)
+    assert result.problems == ()
+    assert result.count("caught") >= 3
+    assert {program.name: program.score for program in result.programs if program.kind != "mistake"} == {
+        "solution.py": 10, "the starter": 0, "an empty file": 0, "a node that does nothing": 0,
+    }  # fmt: skip
+
+
+def test_a_weak_copy_is_told_so_check_by_check(small: SmallExercise, audited: Auditing) -> None:
+    removed = {
+        (CHECKS, "test_once"): "mistakes/twice.py",
+        (CHECKS, "test_ends_on_ctrl_c"): "mistakes/no_end.py",
+        (HIDDEN, "test_nothing_below_zero"): "mistakes/any_number.py",
+    }
+    for file, check in removed:
+        without(small, file, check)
+    small.change(
+        CHECKS,
+        '@check(points=1, hint="Look at the name',
+        '@check(points=3, hint="It may be anything.", depends=[test_publishes])\n'
+        "def test_any_answer(positive: Run) -> None:\n"
+        '    """It is some answer."""\n'
+        "    assert positive.received is not None, 'an answer was expected'\n\n\n"
+        '@check(points=1, hint="Look at the name',
+    )
+    result = audited(small, quick=False, most=24)
+    for (_, check), mistake in removed.items():
+        assert any(mistake in found and "there is no such check" in found for found in told(result, check)), check
+    assert told(result, "test_any_answer") == ["no mutant and no mistake fails test_any_answer: can it fail at all?"]
+    survivors = [problem for problem in result.problems if problem.diff]
+    assert survivors, "what the removed checks caught survives now"
+    assert all("Is this a right solution? Then list it" in problem.mend for problem in survivors)
+    assert any(re.search(r"^[-+] +self\.publisher", problem.diff, re.MULTILINE) for problem in survivors)
+
+
+def test_a_check_that_lets_a_mistake_through_is_named_with_the_mistake(small: SmallExercise, audited: Auditing) -> None:
+    small.change(HIDDEN, "    negative.must_be_silent()\n", "")
+    (found,) = told(audited(small), "test_nothing_below_zero")
+    assert found == (
+        "test_nothing_below_zero lets the mistake mistakes/any_number.py (“Doubles negative numbers, too.”) through"
+    )
+
+
+def test_a_mistake_that_fails_another_check_too(small: SmallExercise, audited: Auditing) -> None:
+    small.change(CHECKS, "    positive.must_answer()", "    positive.must_answer()\n    positive.must_match('data')")
+    (found,) = told(audited(small), "test_once")
+    assert "mistakes/adds_two.py" in found
+    assert "which it does not name" in found
+
+
+def test_points_for_nothing(small: SmallExercise, audited: Auditing) -> None:
+    small.change(HIDDEN, 'depends=["test_publishes"], rule', "rule")
+    found = told(audited(small), "test_leaves_numbers_alone")
+    assert [text.partition(" passes")[0] for text in found] == ["the starter", "a node that does nothing"]
+
+
+def test_a_right_solution_that_a_check_refuses_with_some_numbers_only(small: SmallExercise, audited: Auditing) -> None:
+    small.change(
+        HIDDEN,
+        '    if any.publishers("/numbers"):',
+        "    assert any.sent[0].data < 8, 'a number below 8 was expected'\n    if any.publishers(\"/numbers\"):",
+    )
+    result = audited(small, quick=False)
+    assert (result.seeds, result.randomised) == (20, ("any",))
+    found = told(result, "test_leaves_numbers_alone")
+    assert found
+    assert all(re.search(r"right solution solution\.py fails .* with --seed \d+", text) for text in found)
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "about", "words"),
+    [
+        (HIDDEN, ', rule="Publish nothing on /numbers."', "", "test_leaves_numbers_alone", "does not name"),
+        (HIDDEN, "Publish nothing on /numbers", "Leave /numbers alone", "test_leaves_numbers_alone", "not in the task"),
+        (CHECKS, 'hint="Multiply."', 'hint="if message.data  >= 0:"', "test_twice_the_number", "line of the solution"),
+        (CHECKS, 'expected="/doubler", got=positive.nodes', "", "test_is_called_doubler", "not say what was expected"),
+        (HIDDEN, '"Compare with 0."', '"self.publisher.publish(Float64(data=2 * message.data))"',
+         "test_nothing_below_zero", "line of the solution"),
+        ("solutions/doubler/mistakes/adds_two.py", "Caught by:\n- test_twice_the_number", "", "mistakes/adds_two.py",
+         "names no check"),
+    ],
+    ids=["no rule", "rule not told", "hint", "message", "hidden hint", "mistake"],
+)  # fmt: skip
+def test_what_the_exercise_tells(
+    small: SmallExercise, audited: Auditing, file: str, old: str, new: str, about: str, words: str
+) -> None:
+    small.change(file, old, new)
+    assert any(words in found for found in told(audited(small), about))
+
+
+def test_two_checks_that_always_fail_together(small: SmallExercise, audited: Auditing) -> None:
+    small.change(CHECKS, 'points=3, hint="Multiply', 'points=2, hint="Multiply')
+    small.change(
+        CHECKS,
+        '@check(points=1, hint="One publish',
+        '@check(points=1, hint="Twice is twice.", depends=[test_publishes])\n'
+        "def test_double(positive: Run) -> None:\n"
+        '    """It is the double."""\n'
+        '    positive.must_match("data")\n\n\n'
+        '@check(points=1, hint="One publish',
+    )
+    result = audited(small, quick=False, most=6)
+    assert any("test_twice_the_number and test_double always fail together" in t for t in told(result, "test_double"))
+
+
+def test_what_is_known_is_not_tried_again(small: SmallExercise, audited: Auditing) -> None:
+    first = audited(small, most=4)
+    again = audited(small, most=4)
+    assert (again.made, again.kept) == (0, first.made + first.kept)
+    assert (again.problems, again.programs, again.mutants) == (first.problems, first.programs, first.mutants)
+    small.change(SOLUTION, "2 * message.data", "message.data * 2")
+    assert audited(small, most=4).made > 0

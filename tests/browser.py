@@ -1,0 +1,88 @@
+"""A real Chromium, in which tests open the pages that Spinbook makes."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Browser, ConsoleMessage, Page, Request, sync_playwright
+
+NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+LOCAL = ("file:", "data:", "blob:", "about:")
+
+#: No calls home, and no GPU that a test machine would not have.
+ARGUMENTS = ["--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
+
+
+@dataclass
+class Opened:
+    """An open page, and what it did that no page of ours may do."""
+
+    page: Page
+    console: list[str] = field(default_factory=list)
+    outside: list[str] = field(default_factory=list)
+
+    @property
+    def faults(self) -> list[str]:
+        """Errors and warnings on the console, and requests to anywhere but the page's own origin."""
+        return [*self.console, *(f"outside request: {url}" for url in self.outside)]
+
+    def violations(self) -> list[str]:
+        """What axe finds against accessibility, a line each: the rule, and the elements that break it."""
+        found: list[dict[str, Any]] = Axe().run(self.page).response["violations"]
+        return [f"{v['id']}: {v['help']}: {[node['html'][:200] for node in v['nodes']]}" for v in found]
+
+    def scrolls_sideways(self) -> bool:
+        """Whether the page is wider than its window."""
+        root = "document.documentElement"
+        return bool(self.page.evaluate(f"{root}.scrollWidth > {root}.clientWidth"))
+
+
+@contextmanager
+def chromium() -> Iterator[Browser]:
+    """A running Chromium without a window. Fails the test where none is installed: `make test` installs it."""
+    path = next(filter(None, map(shutil.which, NAMES)), None)
+    if path is None:
+        pytest.fail("There is no Chromium here. Install it: sudo apt-get install chromium")
+    arguments = [*ARGUMENTS, "--no-sandbox"] if os.geteuid() == 0 else ARGUMENTS
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=path, args=arguments)
+        try:
+            yield browser
+        finally:
+            browser.close()
+
+
+@contextmanager
+def opened(
+    browser: Browser, where: Path | str, *, width: int = 1280, height: int = 900, dark: bool = False
+) -> Iterator[Opened]:
+    """The page at a file's path or a URL, loaded, in a window of `width` pixels."""
+    url = where.resolve().as_uri() if isinstance(where, Path) else where
+    context = browser.new_context(viewport={"width": width, "height": height}, color_scheme="dark" if dark else "light")
+    try:
+        shown = Opened(context.new_page())
+        origin = "/".join(url.split("/")[:3])
+
+        def hear(message: ConsoleMessage) -> None:
+            if message.type in ("error", "warning"):
+                shown.console.append(f"{message.type}: {message.text}")
+
+        def see(request: Request) -> None:
+            if not request.url.startswith((*LOCAL, origin)):
+                shown.outside.append(request.url)
+
+        shown.page.on("console", hear)
+        shown.page.on("pageerror", lambda error: shown.console.append(f"page error: {error}"))
+        shown.page.on("request", see)
+        shown.page.goto(url, wait_until="load")
+        yield shown
+    finally:
+        context.close()

@@ -1,0 +1,52 @@
+"""A student's copy of the course's exercise, and a kernel in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from notebook_kernel import Kernel
+
+from grader.crew import Crew
+from grader.exercise import load
+from spinbook.handout.exercise import exercise_files
+
+ROOT = Path(__file__).parents[2]
+SOLUTIONS = ROOT / "solutions" / "joint_velocity"
+
+
+@pytest.fixture(scope="session")
+def crew() -> Iterator[Crew]:
+    """One worker for the whole session."""
+    with Crew() as crew:
+        yield crew
+
+
+@pytest.fixture(scope="session")
+def handed_out(tmp_path_factory: pytest.TempPathFactory, crew: Crew) -> Path:
+    """A folder with exercises/joint_velocity as students have it."""
+    folder = tmp_path_factory.mktemp("handout")
+    exercise = folder / "exercises" / "joint_velocity"
+    exercise.mkdir(parents=True)
+    for name, content in exercise_files(load(ROOT / "exercises" / "joint_velocity"), crew).items():
+        (exercise / name).write_bytes(content)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def kernel(handed_out: Path) -> Iterator[Kernel]:
+    """A kernel in the handout's folder; cells of other tests may have run in it before."""
+    kernel = Kernel(handed_out)
+    yield kernel
+    kernel.shut_down()
+
+
+def node_cell(code: str) -> str:
+    """The exercise's cell with this code, which is not waited for."""
+    return f"%%node joint_velocity --seconds 0.1\n{code}"
+
+
+def solution() -> str:
+    """The author's."""
+    return (SOLUTIONS / "solution.py").read_text(encoding="utf-8")

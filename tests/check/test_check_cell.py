@@ -1,0 +1,172 @@
+"""`%check` in a notebook says what the public checks say of the exercise's cell, and never blocks the kernel."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import threading
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+from notebook_kernel import Kernel, Shown
+
+from check.conftest import ROOT, SOLUTIONS, node_cell, solution
+from grader.exercise import load, starter
+
+CHECK = "%check joint_velocity"
+PUBLIC = (ROOT / "exercises" / "joint_velocity" / "checks.py").read_text(encoding="utf-8").count("\n@check(")
+
+
+def shown_of(kernel: Kernel, code: str, check: str = CHECK) -> Shown:
+    kernel.run(node_cell(code))
+    return kernel.run(check)
+
+
+def texts(shown: Shown) -> tuple[str, str]:
+    """(plain text with single spaces, HTML) of a check."""
+    assert not shown.error, shown.error
+    assert len(shown.pictures) == 1
+    return " ".join(shown.pictures[0]["text/plain"].split()), shown.pictures[0]["text/html"]
+
+
+def test_a_cell_that_was_not_run_is_asked_for(kernel: Kernel) -> None:
+    shown = kernel.run("%check joint_velocity")
+
+    assert shown.error == "Run the cell that begins with %%node joint_velocity first. Then run this one again."
+
+
+def test_the_starter_gets_no_points_and_is_told_what_to_mend_first(kernel: Kernel) -> None:
+    text, html = texts(shown_of(kernel, starter(solution())))
+
+    for told in (text, html):
+        assert re.search(rf"\b0 of {PUBLIC} public checks, 0 of \d+ points", told)
+        assert re.search(r"\d+ hidden checks \(\d+ points\) will be judged after you hand in\.", told)
+        assert "This is a self-check, not your grade." in told
+    assert text.count("Can't be judged before this is right: It hears /joint_commands") == PUBLIC - 1
+    assert html.count('class="sb-failed"') == 1
+    assert html.count('class="sb-blocked"') == PUBLIC - 1
+
+
+def test_a_right_cell_passes_every_public_check(kernel: Kernel) -> None:
+    text, html = texts(shown_of(kernel, solution()))
+
+    assert re.search(rf"\b{PUBLIC} of {PUBLIC} public checks, (\d+) of \1 points\.", text)
+    assert html.count('class="sb-passed"') == PUBLIC
+    assert "data:image/svg+xml;base64," in html
+
+
+def test_a_mistake_is_told_with_what_was_expected_what_came_when_and_which_joint(kernel: Kernel) -> None:
+    text, html = texts(shown_of(kernel, (SOLUTIONS / "mistakes" / "degrees.py").read_text(encoding="utf-8")))
+
+    assert "Message 2 of 100 (0.10 s after the start" in text
+    assert "expected velocity 0.499167 rad/s, got 28.6002 rad/s. All values are in degrees." in text
+    assert "Hint: (position now - position before)" in text
+    for label, value in {
+        "expected": "0.499167 rad/s",
+        "came": "28.6002 rad/s",
+        "when": "0.10 s after the start (message 2 of 100)",
+        "joint": "left_shoulder_pitch",
+    }.items():
+        assert f'<th scope="row">{label}</th><td>{value}</td>' in html
+    assert "All values are in degrees." in html
+    assert "<b>Hint:</b> (position now - position before)" in html
+    assert "First wrong: 0.10 s, left_shoulder_pitch." in html
+
+
+def test_nothing_of_the_students_becomes_markup(kernel: Kernel) -> None:
+    bad = "<script>alert(1)</script><img src=x onerror=alert(2)>"
+    spoiled = solution().replace("answer.name.append(name)", f"answer.name.append({bad!r})")
+    assert bad in spoiled
+
+    _, html = texts(shown_of(kernel, spoiled))
+
+    assert "&lt;script&gt;alert(1)&lt;/script&gt;" in html
+    assert "<script" not in html
+    assert "<img src=x" not in html
+
+
+def test_a_program_that_can_not_start_is_told_with_its_line(kernel: Kernel) -> None:
+    broken = solution().replace("def main", "def main(:\n    pass\n\n\ndef other", 1)
+
+    text, html = texts(shown_of(kernel, broken))
+
+    line = 1 + next(i for i, line in enumerate(broken.split("\n"), start=1) if "def main(:" in line)
+    for told in (text, html):
+        assert "did-not-start" in told
+        assert f"line {line}" in told, "lines are counted as in the cell, the one with %%node included"
+
+
+def test_a_loop_without_end_is_told_and_the_kernel_goes_on(kernel: Kernel) -> None:
+    looping = solution().replace("answer = JointState()", "while True: pass")
+    assert looping != solution()
+
+    text, _ = texts(shown_of(kernel, looping))
+
+    assert "timed-out" in text
+    assert kernel.run("print(6 * 7)").text == "42\n"
+
+
+def checks_of(kernel: Kernel) -> list[psutil.Process]:
+    """Check processes that run in this kernel."""
+    found = []
+    for process in psutil.Process(kernel.process_id).children(recursive=True):
+        try:
+            if "spinbook.check.program" in process.cmdline():
+                found.append(process)
+        except psutil.Error:
+            continue
+    return found
+
+
+def test_a_check_ends_with_its_bound_and_leaves_nothing_behind(kernel: Kernel) -> None:
+    shown = shown_of(kernel, solution(), "%check joint_velocity --seconds 0.05")
+
+    assert "not done after 0.05 s and has been stopped" in shown.error
+    assert checks_of(kernel) == []
+
+
+def test_stop_ends_a_check_and_leaves_nothing_behind(kernel: Kernel) -> None:
+    kernel.run(node_cell(solution()))
+
+    def press() -> None:
+        deadline = time.monotonic() + 60
+        while not checks_of(kernel) and time.monotonic() < deadline:
+            time.sleep(0.01)
+        os.kill(kernel.process_id, signal.SIGINT)
+
+    pressing = threading.Thread(target=press)
+    pressing.start()
+    shown = kernel.run(CHECK)
+    pressing.join()
+
+    assert "The check was interrupted" in shown.error
+    assert checks_of(kernel) == []
+    assert kernel.run("print(6 * 7)").text == "42\n"
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("%check", "the following arguments are required: exercise"),
+        ("%check no_such", "There is no exercise 'no_such' here. There are: joint_velocity."),
+        ("%check joint_velocity --seconds soon", "invalid float value: 'soon'"),
+    ],
+)
+def test_bad_usage_is_told_in_words(kernel: Kernel, line: str, told: str) -> None:
+    assert told in kernel.run(line).error
+
+
+def test_an_exercise_that_is_damaged_is_told_as_such(kernel: Kernel, handed_out: Path) -> None:
+    public = load(handed_out / "exercises" / "joint_velocity").public_file
+    content = public.read_bytes()
+    try:
+        public.write_bytes(content[:1000])
+        error = shown_of(kernel, solution()).error
+    finally:
+        public.write_bytes(content)
+
+    assert "The exercise is at fault, not your code." in error
+    assert "Take it from the course's handout again." in error

@@ -1,0 +1,133 @@
+"""A student's page tells what is right, what is wrong and what to do; and gives no hidden check away."""
+
+from __future__ import annotations
+
+import re
+from html import unescape
+
+import pytest
+from graded_class import EXTRA, LATE, entry
+
+from grader.exercise import Exercise
+from grader.feedback import feedback_page, feedback_plot
+from grader.grading import Grade
+
+
+def text(page: str) -> str:
+    """What is read on a page, without its head, in one line."""
+    body = page.split("</head>")[1]
+    return re.sub(r"\s+", " ", unescape(re.sub(r"<[^>]+>", " ", body)))
+
+
+def page_of(grade: Grade, exercise: Exercise) -> str:
+    return feedback_page(entry(grade), exercise, feedback_plot(grade, exercise))
+
+
+def test_a_failed_public_check_tells_what_was_expected_what_came_when_and_where(
+    graded: dict[str, Grade], exercise: Exercise
+) -> None:
+    shown = text(page_of(graded["position_for_velocity"], exercise))
+    assert "Begin here The first check that your node does not pass: Each joint's velocity" in shown
+    assert "expected 0.499167 rad/s came 0.0499167 rad/s when 0.10 s message 2 which left_shoulder_pitch" in shown
+    assert "Every velocity is the joint's position." in shown
+    assert "Hint: (position now - position before)" in shown
+
+
+def test_what_is_blocked_says_what_to_mend_first(graded: dict[str, Grade], exercise: Exercise) -> None:
+    shown = text(page_of(graded["position_for_velocity"], exercise))
+    assert "can't be judged before this is right: Each joint's velocity is its change of position" in shown
+
+
+def test_of_a_hidden_check_only_title_points_outcome_and_hint_are_told(
+    graded: dict[str, Grade], exercise: Exercise
+) -> None:
+    grade = graded["fixed_dt"]
+    page = page_of(grade, exercise)
+    failed = [verdict for verdict in grade.verdicts if verdict.status == "failed"]
+    assert failed
+    assert all(verdict.hidden for verdict in failed)
+    for verdict in failed:
+        assert verdict.finding
+        assert verdict.title in text(page)
+        assert verdict.hint in text(page)
+        for secret in (verdict.name, verdict.finding.text, verdict.finding.scenario, verdict.finding.expected):
+            assert not re.search(rf"(?<![\w.]){re.escape(secret)}(?![\w.])", text(page)), secret
+
+
+def test_the_plot_never_shows_a_hidden_scenario(graded: dict[str, Grade], exercise: Exercise) -> None:
+    plot = feedback_plot(graded["fixed_dt"], exercise)
+    assert plot
+    assert "over 9.9 s" in plot, "the public scenario, in which this mistake does no harm"
+    assert "They agree everywhere." in plot
+
+
+def test_the_plot_says_in_words_where_it_first_goes_wrong(graded: dict[str, Grade], exercise: Exercise) -> None:
+    page = page_of(graded["position_for_velocity"], exercise)
+    said = "6 of them differ; the first that is wrong is left_elbow at 0.10 s, marked with a cross."
+    assert re.search(rf'<img src="data:image/svg\+xml;base64,[^"]+" alt="[^"]*{said}">', unescape(page))
+    assert said in text(page)
+
+
+def test_full_marks_are_told_with_joy(graded: dict[str, Grade], exercise: Exercise) -> None:
+    shown = text(page_of(graded["solution"], exercise))
+    assert "Everything is right" in shown
+    assert "100 of 100 points" in shown
+    assert "Hint:" not in shown
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("crashes_at_message_37", ["Your program crashed", "message 37 is too much for me", "line 23", "Traceback"]),
+        ("syntax_error", ["Your program did not start", "SyntaxError", "python3 joint_velocity.py"]),
+        ("never_spins", ["Your node stopped answering", "rclpy.spin(node)", "A busy machine is not the reason"]),
+    ],
+)
+def test_a_run_that_broke_off_tells_why_and_what_to_do(
+    graded: dict[str, Grade], exercise: Exercise, name: str, words: list[str]
+) -> None:
+    shown = text(page_of(graded[name], exercise))
+    assert "0 of 100 points" in shown
+    for word in words:
+        assert word in shown
+
+
+def test_a_fault_of_ours_is_no_zero(graded: dict[str, Grade], exercise: Exercise) -> None:
+    assert graded["host_error"].outcome == "host-error"
+    shown = text(page_of(graded["host_error"], exercise))
+    assert "No score yet" in shown
+    assert "not your fault" in shown
+    assert "points" not in shown
+    assert "worker process" not in shown, "that is for the instructor"
+
+
+def test_adjustments_are_told_with_their_reasons(graded: dict[str, Grade], exercise: Exercise) -> None:
+    grade = graded["fixed_dt"]
+    shown = text(feedback_page(entry(grade, adjustments=(LATE, EXTRA)), exercise, None))
+    counts = f"{grade.score - 5.1:.1f}"
+    assert f"{counts} of 100 points" in shown
+    assert f"All checks {grade.score:g} Late handed in 1 day late −8.1" in shown
+    assert f"Extra credit found a mistake in the task +3 What counts {counts}" in shown
+
+
+def test_it_tells_what_was_handed_in_when_and_how_it_was_graded(graded: dict[str, Grade], exercise: Exercise) -> None:
+    grade = graded["fixed_dt"]
+    shown = text(page_of(grade, exercise))
+    assert "20 Nov 2026, 23:41 +01:00 (the file's date)" in shown
+    assert f"Sandbox {grade.isolation}" in shown
+    assert f"rclpy {grade.versions['rclpy']}" in shown
+
+
+def test_of_a_long_log_the_end_is_shown_without_terminal_codes(graded: dict[str, Grade], exercise: Exercise) -> None:
+    page = page_of(graded["breaks_pages"], exercise)
+    assert "What your program printed" in text(page)
+    assert not re.search(r"[\x00-\x08\x0b-\x1f\u202a-\u202e\u2066-\u2069]", page)
+    assert len(page) < 300_000
+
+
+def test_a_traceback_does_not_name_folders_of_the_machine_that_graded(
+    graded: dict[str, Grade], exercise: Exercise
+) -> None:
+    shown = text(page_of(graded["crashes_at_message_37"], exercise))
+    assert 'File "rclpy/executors.py"' in shown
+    assert "site-packages" not in shown

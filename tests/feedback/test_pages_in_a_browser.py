@@ -1,0 +1,138 @@
+"""Pages in a real browser: nothing that a student writes can do anything there, and everybody can read them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from browser import opened
+from graded_class import EXTRA, LATE, WHEN, entry
+from playwright.sync_api import Browser, expect
+
+from grader.classroom import Entry, Skipped, Student
+from grader.exercise import Exercise
+from grader.feedback import feedback_page, feedback_plot
+from grader.grading import Grade
+from grader.misconception import Signature, grouped
+from grader.misconception.signature import failures_of
+from grader.overview import overview_page
+
+EVIL = '</title></script><script>window.pwned=9</script><img src="http://example.org/x.png" onerror="window.pwned=8">\u202e'
+
+
+@pytest.fixture
+def site(graded: dict[str, Grade], exercise: Exercise, tmp_path: Path) -> Path:
+    """A folder of results: index.html and a page a student, one of whom is hostile in every field."""
+    names = {"solution": "Grace Hopper", "fixed_dt": "Jörg Müller", "breaks_pages": EVIL}
+    entries = [entry(grade, names.get(name, "Ada Lovelace")) for name, grade in graded.items() if name != "host_error"]
+    entries = [
+        replace(one, student=Student("../a b#?%", EVIL), file=EVIL, adjustments=(replace(LATE, reason=EVIL), EXTRA))
+        if one.student.name == EVIL
+        else one
+        for one in entries
+    ]
+    faults = [entry(graded["host_error"], "Unlucky Person")]
+    dt = Signature(("fixed_dt",), ("dt is always 0.1 s.",), failures_of(graded["fixed_dt"]))
+    skipped = [Skipped(f"s77/{EVIL}", EVIL)]
+    page = overview_page(exercise, entries, skipped, faults, grouped(entries, [dt]))
+    (tmp_path / "index.html").write_text(page, encoding="utf-8")
+    for number, one in enumerate([*entries, *faults]):
+        folder = tmp_path / (f"evil{number}" if one.student.name == EVIL else one.student.id)
+        folder.mkdir()
+        page = feedback_page(one, exercise, feedback_plot(one.grade, exercise))
+        (folder / "feedback.html").write_text(page, encoding="utf-8")
+    return tmp_path
+
+
+def every_page(site: Path) -> list[Path]:
+    return [site / "index.html", *sorted(site.glob("*/feedback.html"))]
+
+
+def test_no_page_runs_or_requests_what_a_student_wrote(browser: Browser, site: Path) -> None:
+    for page in every_page(site):
+        with opened(browser, page) as shown:
+            assert shown.page.evaluate("window.pwned") is None
+            assert shown.faults == []
+            assert shown.page.locator("script").count() == (1 if page.name == "index.html" else 0)
+
+
+def test_the_policy_stops_a_script_even_if_one_got_in(browser: Browser, site: Path) -> None:
+    for page in (site / "index.html", site / "s-solution" / "feedback.html"):
+        forced = page.with_name(f"forced-{page.name}")
+        html = page.read_text(encoding="utf-8").replace("</main>", "<script>window.pwned = 1</script></main>")
+        forced.write_text(html, encoding="utf-8")
+        with opened(browser, forced) as shown:
+            assert shown.page.evaluate("window.pwned") is None
+            assert any("Content Security Policy" in fault for fault in shown.faults)
+
+
+@pytest.mark.parametrize(("width", "dark"), [(1280, False), (390, True)])
+def test_everybody_can_read_them_at_a_desk_and_on_a_phone(browser: Browser, site: Path, width: int, dark: bool) -> None:
+    for page in every_page(site):
+        with opened(browser, page, width=width, dark=dark) as shown:
+            for details in shown.page.locator("details").all():
+                details.evaluate("details => details.open = true")
+            assert shown.violations() == [], page
+            assert not shown.scrolls_sideways(), page
+
+
+def test_the_class_at_a_glance(browser: Browser, site: Path) -> None:
+    with opened(browser, site / "index.html") as shown:
+        page = shown.page
+        chart = page.get_by_role("img", name="Histogram")
+        assert "students' points" in (chart.get_attribute("aria-label") or "")
+        group = page.locator("details", has_text="2 students: dt is always 0.1 s.")
+        group.locator("summary").click()
+        expect(group.get_by_role("link", name="Jörg Müller")).to_be_visible()
+        expect(page.get_by_role("region", name="Not graded, by a fault of ours")).to_contain_text("Unlucky Person")
+        expect(page.get_by_role("region", name="Skipped")).to_contain_text("s77/")
+        expect(page.get_by_role("region", name="Checks that fail most")).to_contain_text("Each joint's velocity")
+
+
+def test_a_row_opens_the_students_page(browser: Browser, site: Path) -> None:
+    with opened(browser, site / "index.html") as shown:
+        row = shown.page.get_by_role("row", name="Jörg Müller")
+        row.locator("td.number").first.click()
+        shown.page.wait_for_url("**/s-fixed_dt/feedback.html")
+        expect(shown.page.get_by_role("heading", level=1)).to_have_text("Jörg Müller")
+
+
+def test_the_table_is_sorted_by_a_click_and_is_in_order_without_script(browser: Browser, site: Path) -> None:
+    def column(number: int, rows: Callable[[], list[str]]) -> list[str]:
+        return [row.split("\t")[number].strip() for row in rows()]
+
+    with opened(browser, site / "index.html") as shown:
+        table = shown.page.locator("table.sortable")
+
+        def rows() -> list[str]:
+            return [row.inner_text() for row in table.locator("tbody tr").all()]
+
+        names = column(0, rows)
+        assert names == sorted(names, key=str.casefold)
+        for descending in (False, True):
+            shown.page.get_by_role("button", name="Points").click()
+            points = [float(value) for value in column(1, rows)]
+            assert points == sorted(points, reverse=descending)
+
+
+def test_a_student_of_any_id_has_a_link_that_stays_in_the_results(browser: Browser, site: Path) -> None:
+    with opened(browser, site / "index.html") as shown:
+        links = [link.get_attribute("href") or "" for link in shown.page.locator("tbody a").all()]
+        assert "..%2Fa%20b%23%3F%25/feedback.html" in links
+        assert all(link.count("/") == 1 for link in links)
+
+
+def test_an_empty_class_has_a_page_too(browser: Browser, exercise: Exercise, tmp_path: Path) -> None:
+    none: list[Entry] = []
+    (tmp_path / "index.html").write_text(overview_page(exercise, none, [], none, grouped(none, [])), encoding="utf-8")
+    with opened(browser, tmp_path / "index.html") as shown:
+        assert shown.faults == []
+        expect(shown.page.get_by_role("main")).to_contain_text("Nobody has a score yet.")
+
+
+def test_times_are_shown_in_their_own_zone(browser: Browser, site: Path) -> None:
+    assert WHEN.utcoffset()
+    with opened(browser, site / "index.html") as shown:
+        expect(shown.page.get_by_role("row", name="Jörg Müller")).to_contain_text("20 Nov 2026, 23:41 +01:00")

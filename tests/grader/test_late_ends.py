@@ -1,0 +1,62 @@
+"""A node may make its ends late: a publisher when it first has something to say, a subscription after a while."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.grading import Grade
+from grader.grading.grading import Grading
+from grader.submission.reading import of_source
+
+PUBLISHER = "        self.publisher = self.create_publisher(JointState, '/joint_velocities', 10)\n"
+SUBSCRIPTION = (
+    "        self.subscription = self.create_subscription(JointState, '/joint_commands', self.on_joints, 10)\n"
+)
+CALLBACK = "    def on_joints(self, message):\n"
+
+
+def grade_with(grading: Grading, *changes: tuple[str, str]) -> Grade:
+    """The grade of the solution with pieces of it replaced."""
+    solution = grading.spinner.exercise.solution_file
+    assert solution
+    source = solution.read_text(encoding="utf-8")
+    for old, new in changes:
+        assert source.count(old) == 1
+        source = source.replace(old, new)
+    return grading.grade(of_source("test.py", source.encode(), grading.spinner.exercise))
+
+
+@pytest.mark.parametrize(
+    "place",
+    ["    def publish_velocities(self, message, positions, dt):\n", pytest.param(CALLBACK, marks=pytest.mark.soak)],
+    ids=["with the first answer", "before the first answer"],
+)
+def test_a_publisher_made_in_the_callback_is_heard_from_its_first_message_on(grading: Grading, place: str) -> None:
+    made = f"{place}        if not hasattr(self, 'publisher'):\n    {PUBLISHER}"
+    grade = grade_with(grading, (PUBLISHER, ""), (place, made))
+    assert grade.full_marks, [v for v in grade.verdicts if v.status != "passed"]
+
+
+def test_a_subscription_made_after_a_while_is_told_as_that(grading: Grading) -> None:
+    begin = (
+        "    def begin(self):\n        self.ticks += 1\n        if self.ticks == 3:\n"
+        f"    {SUBSCRIPTION}            self.timer.cancel()\n\n"
+    )
+    timer = "        self.ticks = 0\n        self.timer = self.create_timer(1.0, self.begin)\n"
+    grade = grade_with(grading, (SUBSCRIPTION, timer), (CALLBACK, begin + CALLBACK))
+    told = {verdict.name: verdict.finding.text for verdict in grade.verdicts if verdict.finding}
+    assert "Message 2 of 100" in told["test_answers_each_message_once"]
+    assert "did not subscribe to /joint_commands yet" in told["test_answers_each_message_once"]
+
+
+def test_however_many_answers_come_at_once_each_is_filed_under_its_message(grading: Grading) -> None:
+    answers = (
+        "        self.count = getattr(self, 'count', 0) + 1\n"
+        "        for _ in range(12):\n"
+        "            self.publisher.publish(JointState(effort=[float(self.count)]))\n"
+        "        return\n"
+    )
+    grade = grade_with(grading, (CALLBACK, CALLBACK + answers))
+    received = grade.recordings["chapter"].received
+    assert len(received) == 1200
+    assert all(message.fields["effort"] == [message.after] for message in received)

@@ -1,0 +1,165 @@
+"""`spinbook handout` writes all that students need and nothing that they must not see, the same each time."""
+
+from __future__ import annotations
+
+import ast
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from grader.exercise import load
+from handout.conftest import NOTE, ROOT, HandedOut, append, copy_course
+from spinbook.handout.comments import without_comments
+
+EXERCISE = ROOT / "exercises" / "joint_velocity"
+SOLUTIONS = ROOT / "solutions" / "joint_velocity"
+
+
+def text_of(name: str, content: bytes) -> str:
+    """A file's text; of JSON, whatever stands in it as a text or a name."""
+    text = content.decode("utf-8", errors="replace")
+    return "\n".join(strings(json.loads(text))) if name.endswith((".ipynb", ".json")) else text
+
+
+def strings(value: Any) -> Iterator[str]:
+    if isinstance(value, dict):
+        for key, item in value.items():
+            yield from (key, *strings(item))
+    elif isinstance(value, list):
+        for item in value:
+            yield from strings(item)
+    elif isinstance(value, str):
+        yield value
+
+
+def secret_texts() -> set[str]:
+    """Hidden checks' names and titles, the solution's own lines, and what each other solution says of itself."""
+    found = {NOTE, "INSTRUCTOR-NOTE"}
+    for check in ast.parse((EXERCISE / "hidden_checks.py").read_text(encoding="utf-8")).body:
+        if isinstance(check, ast.FunctionDef) and check.name.startswith("test_"):
+            found |= {check.name, str(ast.get_docstring(check))}
+    solved = False
+    for line in (SOLUTIONS / "solution.py").read_text(encoding="utf-8").splitlines():
+        if "BEGIN SOLUTION" in line or "END SOLUTION" in line:
+            solved = "BEGIN" in line
+        elif solved and len(line.strip()) > 45:
+            found.add(line.strip())
+    for file in [*SOLUTIONS.glob("mistakes/*.py"), *SOLUTIONS.glob("right/*.py")]:
+        found.add(str(ast.get_docstring(ast.parse(file.read_text(encoding="utf-8")))).split("\n")[0])
+    public = (EXERCISE / "checks.py").read_text(encoding="utf-8")
+    return {text for text in found if text not in public}
+
+
+def test_no_file_has_a_solution_a_hidden_check_or_a_note_in_it(real: HandedOut) -> None:
+    secrets = secret_texts()
+    assert len(secrets) > 40
+
+    names = []
+    for name, content in real.files():
+        names.append(name)
+        text = text_of(name, content)
+        assert not [secret for secret in secrets if secret in text], name
+
+    assert len(names) > 200, "the wheel was looked into"
+    own = [name for name in names if ".whl/" not in name]
+    assert not [name for name in own if "solution" in name or "hidden" in name or name.endswith("scenarios.py")]
+
+
+def test_public_json_tells_the_public_scenarios_only(real: HandedOut) -> None:
+    public = json.loads((real.folder / "exercises" / "joint_velocity" / "public.json").read_text(encoding="utf-8"))
+
+    assert [scenario["name"] for scenario in public["scenarios"]] == list(public["expected"]) == ["chapter"]
+    hidden = (EXERCISE / "hidden_checks.py").read_text(encoding="utf-8")
+    assert public["hidden"]["checks"] == hidden.count("\n@check(")
+    assert "seed" not in set(strings(public))
+
+
+def test_notebooks_have_the_starter_and_the_check_and_no_outputs(real: HandedOut) -> None:
+    for file in real.folder.glob("*.ipynb"):
+        cells = json.loads(file.read_text(encoding="utf-8"))["cells"]
+        assert not [cell["id"] for cell in cells if cell.get("outputs") or cell.get("execution_count")]
+    ids = [cell["id"] for cell in cells]
+    starter = ids.index("exercise-joint-velocity-starter")
+    assert cells[starter]["source"].startswith("%%node joint_velocity\n")
+    assert "TODO" in cells[starter]["source"]
+    assert cells[starter + 1]["source"] == "%check joint_velocity"
+
+
+def test_the_same_course_gives_the_same_bytes_wherever_it_lies(real: HandedOut, again: HandedOut) -> None:
+    assert again.archive.read_bytes() == real.archive.read_bytes()
+
+
+def test_folder_and_zip_hold_the_same_and_the_folder_nothing_else(again: HandedOut) -> None:
+    outer = f"{again.archive.name}/{again.folder.name}/"
+    in_zip = {name.removeprefix(outer): content for name, content in again.files() if ".whl/" not in name}
+    in_folder = {
+        file.relative_to(again.folder).as_posix(): file.read_bytes()
+        for file in again.folder.rglob("*")
+        if file.is_file()
+    }
+    assert in_folder == in_zip
+    assert not (again.folder / "old").exists()
+
+
+def test_the_means_to_install_are_there_and_can_be_read(real: HandedOut) -> None:
+    readme = (real.folder / "README.md").read_text(encoding="utf-8")
+    assert [line for line in readme.splitlines() if line.startswith("## Step")] == [
+        "## Step 1: install",
+        "## Step 2: open",
+        "## Step 3: do the exercises, check, hand in",
+    ]
+    wheel = next((real.folder / "wheels").glob("spinbook-*.whl"))
+    assert f"./wheels/{wheel.name}[ros,colcon,lab]" in (real.folder / "requirements.txt").read_text().splitlines()
+    conda = yaml.safe_load((real.folder / "environment.yml").read_text())
+    assert conda["channels"] == ["robostack-jazzy", "conda-forge"]
+    assert {"pip": [f"./wheels/{wheel.name}"]} in conda["dependencies"]
+    container = json.loads((real.folder / ".devcontainer" / "devcontainer.json").read_text())
+    assert f"./wheels/{wheel.name}[colcon,lab]" in container["postCreateCommand"]
+
+
+def test_the_students_exercise_is_the_authors_without_what_is_not_for_them(real: HandedOut) -> None:
+    copy = real.folder / "exercises" / "joint_velocity"
+    theirs, authors = load(copy), load(EXERCISE)
+
+    for part in ("title", "points", "file_name", "class_name", "node_name", "topics"):
+        assert getattr(theirs, part) == getattr(authors, part)
+    assert (copy / "checks.py").read_bytes() == (EXERCISE / "checks.py").read_bytes()
+    assert (copy / "task.md").read_text(encoding="utf-8").strip() == (EXERCISE / "task.md").read_text().strip()
+
+
+def test_a_chapter_or_a_task_that_gives_something_away_is_refused(tmp_path: Path) -> None:
+    course = copy_course(tmp_path / "course")
+    chapter = next((course.root / "chapters").glob("*.md"))
+    lines = (SOLUTIONS / "solution.py").read_text(encoding="utf-8").split("\n")
+    begin = next(i for i, line in enumerate(lines) if "is not None and stamp >" in line)
+    append(chapter, "\n```text\n" + "\n".join(lines[begin : begin + 3]) + "\n```\n")
+    task = course.root / "exercises" / "joint_velocity" / "task.md"
+    append(task, "\nVelocities are right when messages are lost.\n")
+
+    done = course.spinbook("handout")
+
+    assert done.returncode == 1
+    assert f"{chapter.stem}.ipynb: error: a part of the solution of joint_velocity would be in it" in done.stderr
+    assert "task.md: error: the hidden check test_lost_messages of joint_velocity would be in it" in done.stderr
+    assert "Take it out of the chapter" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not (course.root / "build" / "handout").exists()
+
+
+@pytest.mark.parametrize(
+    ("markdown", "shown"),
+    [
+        ("One.\n<!-- note -->\nTwo.", "One.\nTwo."),
+        ("One <!-- note --> two.", "One  two."),
+        ("One.\n<!-- a\n\n```python\nb\n```\n-->\nTwo.", "One.\nTwo."),
+        ("One.\n\n```html\n<!-- shown -->\n```", "One.\n\n```html\n<!-- shown -->\n```"),
+        ("Write `<!-- exercise: x -->` here.", "Write `<!-- exercise: x -->` here."),
+        ("One. <!-- never closed\nTwo.", "One. "),
+    ],
+)
+def test_comments_are_taken_out_of_prose_and_left_in_code(markdown: str, shown: str) -> None:
+    assert without_comments(markdown) == shown

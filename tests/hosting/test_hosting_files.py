@@ -1,0 +1,79 @@
+"""The files for GitHub, Docker, dev containers and Binder: whole, pinned, and about what is really here."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).parents[2]
+WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
+SCRIPTS = [ROOT / "container" / "with-ros.sh", ROOT / "container" / "start.sh", ROOT / "binder" / "postBuild"]
+
+
+def workflow(name: str) -> dict[Any, Any]:
+    read: dict[Any, Any] = yaml.safe_load((ROOT / ".github" / "workflows" / name).read_text())
+    return read
+
+
+def steps(name: str) -> list[dict[str, Any]]:
+    return [step for job in workflow(name)["jobs"].values() for step in job["steps"]]
+
+
+@pytest.mark.parametrize("file", WORKFLOWS, ids=lambda file: file.name)
+def test_every_job_has_a_limit_and_every_action_a_version(file: Path) -> None:
+    jobs = workflow(file.name)["jobs"]
+
+    assert all("timeout-minutes" in job and "ubuntu-latest" not in job["runs-on"] for job in jobs.values())
+    for step in steps(file.name):
+        assert ("uses" in step) != ("run" in step)
+        if "uses" in step:
+            assert re.fullmatch(r"[\w-]+/[\w-]+@v\d+\.\d+\.\d+", step["uses"])
+
+
+def test_the_tests_run_on_every_python_that_is_supported() -> None:
+    matrix = workflow("ci.yml")["jobs"]["test"]["strategy"]["matrix"]["python"]
+    ((low, high),) = re.findall(r'requires-python = ">=3\.(\d+),<3\.(\d+)"', (ROOT / "pyproject.toml").read_text())
+
+    assert matrix == [f"3.{minor}" for minor in range(int(low), int(high))]
+    assert ".ci/run" in {step.get("run") for step in steps("ci.yml")}
+
+
+def test_the_site_that_the_course_makes_is_what_is_published() -> None:
+    published = next(step for step in steps("pages.yml") if "upload-pages-artifact" in step.get("uses", ""))
+
+    assert "make course" in {step.get("run") for step in steps("pages.yml")}
+    assert published["with"]["path"] == "build/site"
+    assert workflow("pages.yml")["jobs"]["deploy"]["permissions"] == {"pages": "write", "id-token": "write"}
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.name)
+def test_a_script_is_one_and_may_be_run(script: Path) -> None:
+    subprocess.run(["sh", "-n", script], check=True)
+    assert script.stat().st_mode & 0o111
+
+
+def test_what_the_image_copies_and_starts_is_there() -> None:
+    text = (ROOT / "Dockerfile").read_text()
+
+    for source in re.findall(r"^COPY (?:--\S+ )*(\S+) ", text, re.MULTILINE):
+        assert (ROOT / source).exists()
+    (start,) = re.findall(r'^CMD \["(\S+)"\]', text, re.MULTILINE)
+    assert (ROOT / start).exists()
+    stages = set(re.findall(r"^FROM \S+ AS base-(\w+)$", text, re.MULTILINE))
+    assert stages == {"amd64", "arm64"}
+    assert re.findall(r"^USER (\w+)$", text, re.MULTILINE) == ["student"]
+
+
+def test_the_dev_container_is_the_image() -> None:
+    told = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text())
+
+    assert (ROOT / ".devcontainer" / told["build"]["dockerfile"]).resolve() == ROOT / "Dockerfile"
+    assert told["remoteUser"] == "student"
+    assert told["workspaceFolder"] == "/course"
+    assert f"{told['workspaceFolder']}\n" in (ROOT / "Dockerfile").read_text()

@@ -1,0 +1,154 @@
+"""`spinbook new` makes a course, or an exercise, that works at once."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import nbformat
+import pytest
+from click.testing import CliRunner, Result
+
+from spinbook.course.course import read_course
+from spinbook.new.command import new
+from spinbook.problem import SpinbookError
+
+
+def run(*command: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "PYTEST_ADDOPTS": ""}
+    return subprocess.run(
+        [sys.executable, "-m", *command], cwd=cwd, env=environment, capture_output=True, text=True, timeout=280
+    )
+
+
+def made(*words: str) -> Result:
+    return CliRunner().invoke(new, words)
+
+
+@pytest.fixture(scope="module")
+def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A new course with one more exercise in it. Not to be changed."""
+    folder = tmp_path_factory.mktemp("new") / "My-Robots"
+    assert run("spinbook", "new", str(folder), cwd=folder.parent).returncode == 0
+    done = run("spinbook", "new", "--exercise", "gripper_force", cwd=folder / "chapters")
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+@pytest.fixture
+def course(pristine: Path, tmp_path: Path) -> Path:
+    """A new course of the test's own."""
+    return shutil.copytree(pristine, tmp_path / "course")
+
+
+def test_the_course_has_its_names(pristine: Path) -> None:
+    course = read_course(pristine)
+    assert (course.title, course.package.name, course.package.workspace) == ("My robots", "my_robots", "my_robots_ws")
+    assert course.exercises == {"speed_limit", "gripper_force"}
+    everything = "".join(file.read_text() for file in pristine.rglob("*") if file.is_file())
+    assert "first course" not in everything.lower().replace("_", " ")
+    assert (pristine / ".gitignore").exists()
+    assert (pristine / ".github" / "workflows" / "course.yml").exists()
+
+
+def test_the_exercise_has_its_names(pristine: Path) -> None:
+    files = [file for part in ("exercises", "solutions") for file in (pristine / part / "gripper_force").rglob("*.*")]
+    text = "".join(file.read_text() for file in files)
+    assert "speed_limit" not in text
+    assert "SpeedLimit" not in text
+    assert all(name in text for name in ('"gripper_force.py"', "class GripperForce(Node)", "# Gripper force"))
+
+
+def test_its_chapter_has_nothing_to_mend(course: Path) -> None:
+    done = run("spinbook", "lint", "--strict", cwd=course)
+    assert done.returncode == 0, done.stdout
+    assert "0 errors, 0 warnings" in done.stdout
+
+
+def test_its_notebook_has_two_nodes_and_the_exercises_starter(course: Path) -> None:
+    done = run("spinbook", "build", cwd=course)
+    assert done.returncode == 0, done.stdout + done.stderr
+    notebook = nbformat.read(course / "build" / "notebooks" / "01-two-nodes-and-a-topic.ipynb", as_version=4)
+    begins = [cell.source.split("\n")[0] for cell in notebook.cells if cell.source.startswith("%%node")]
+    assert [line.split()[1] for line in begins] == ["speed_publisher", "speed_monitor", "speed_limit"]
+    assert "SOLUTION" not in str(notebook)
+
+
+def test_its_own_tests_prove_the_exercise(course: Path) -> None:
+    """Solutions get full marks, mistakes lose what they name, the starter gets nothing."""
+    # The other exercise is the same, but for its names.
+    shutil.rmtree(course / "exercises" / "speed_limit")
+    done = run("pytest", "-q", "-p", "no:cacheprovider", "tests", cwd=course)
+    assert done.returncode == 0, done.stdout
+    assert "3 passed" in done.stdout
+
+
+def test_a_mistake_is_told_with_units(course: Path) -> None:
+    mistake = "solutions/gripper_force/mistakes/only_forwards.py"
+    done = run("spinbook", "grade", "gripper_force", mistake, cwd=course)
+    assert done.returncode == 1
+    assert "16 of 20 points" in done.stdout
+    assert "expected data -1 m/s, got -" in " ".join(done.stdout.split())
+
+
+@pytest.mark.soak
+def test_its_notebook_runs(course: Path) -> None:
+    done = run("spinbook", "build", "--execute", cwd=course)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("name", ["my robots", "3d", "rclpy", "json", "class", "müll", "a/b c", "."])
+def test_a_course_with_a_name_that_will_not_do_is_refused(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = made(name)
+    assert isinstance(done.exception, SpinbookError)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "name", ["Speed", "1_speed", "speed-limit", "speed__limit", "numpy", "import", "../x", "", "x.py"]
+)
+def test_an_exercise_with_a_name_that_will_not_do_is_refused(
+    name: str, course: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(course)
+    done = made("--exercise", name)
+    assert isinstance(done.exception, SpinbookError)
+    assert len(list((course / "exercises").iterdir())) == 2
+
+
+def test_what_exists_is_never_overwritten(course: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(course)
+    shutil.rmtree("exercises/gripper_force")
+    before = sorted((file, file.read_bytes()) for file in course.rglob("*") if file.is_file())
+    for words in ([str(course)], ["--exercise", "speed_limit"], ["--exercise", "gripper_force"]):
+        done = made(*words)
+        assert isinstance(done.exception, SpinbookError)
+        assert "already" in str(done.exception)
+    assert sorted((file, file.read_bytes()) for file in course.rglob("*") if file.is_file()) == before
+
+
+def test_an_exercise_outside_a_course_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = made("--exercise", "gripper_force")
+    assert "no course.toml" in str(done.exception)
+
+
+@pytest.mark.parametrize("title", ['My "Robots"', "two\nlines", " "])
+def test_a_title_that_would_break_a_file_is_refused(
+    title: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert isinstance(made("robots", "--title", title).exception, SpinbookError)
+
+
+@pytest.mark.parametrize("words", [[], ["robots", "--exercise", "speed"]])
+def test_either_a_course_or_an_exercise(words: list[str]) -> None:
+    done = made(*words)
+    assert done.exit_code == 2
+    assert "one of the two" in done.output

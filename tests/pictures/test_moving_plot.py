@@ -1,0 +1,94 @@
+"""The plot that is drawn again: all curves, at the pace at which they were recorded, and still where that is wanted."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Callable
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import pytest
+from browser import opened
+from playwright.sync_api import Browser
+
+from spinbook.animation.keyframes import BEFORE_S
+from spinbook.runtime.plot.moving import MOST_CURVES, moving_plot
+from spinbook.runtime.plot.recording import Recording
+from spinbook.runtime.plot.scale import Scale, around
+
+JOINTS = ["left_elbow", "right_elbow", "<b>&"]
+
+
+def recorded(value: Callable[[float], float] = math.sin, seconds: float = 4.0, joints: list[str] = JOINTS) -> Recording:
+    """A recording of joints at 10 Hz."""
+    recording = Recording()
+    recording.take(
+        json.dumps(["sample", "/joint_commands", "position", "rad", joint, 100 + n / 10, value(n / 10 + offset)])
+        for n in range(int(seconds * 10) + 1)
+        for offset, joint in enumerate(joints)
+    )
+    return recording
+
+
+def svg_of(recording: Recording) -> str:
+    svg = moving_plot(recording)
+    assert svg is not None
+    return svg
+
+
+def test_it_has_the_curves_with_names_and_units_in_a_few_kilobytes() -> None:
+    svg = svg_of(recorded())
+    root = ET.fromstring(svg)
+    texts = [node.text for node in root.iter("{http://www.w3.org/2000/svg}text")]
+
+    assert {"/joint_commands", "position (rad)", "4 s", *JOINTS} <= set(texts)
+    assert len(svg) < 6_000
+    assert svg == svg_of(recorded())
+    assert not re.search(r"<script|https?://(?!www\.w3\.org/2000/svg)|@import|<image", svg)
+    assert "left_elbow: 41 samples" in svg
+
+
+def test_noise_is_capped() -> None:
+    assert len(svg_of(recorded(lambda t: math.sin(1e4 * t), seconds=300))) < 12_000
+
+
+def test_a_constant_curve_and_one_with_a_hole_do_not_hurt() -> None:
+    assert "left_elbow" in svg_of(recorded(lambda t: 0.0))
+    recording = recorded(joints=["fine"])
+    recording.take([json.dumps(["sample", "/joint_commands", "position", "rad", "broken", 100.0, float("nan")])] * 2)
+    assert ">fine<" in svg_of(recording)
+    assert ">broken<" not in svg_of(recording)
+
+
+@pytest.mark.parametrize("recording", [Recording(), recorded(seconds=0), recorded(joints=list(map(str, range(99))))])
+def test_what_can_not_move_has_no_moving_picture(recording: Recording) -> None:
+    assert moving_plot(recording) is None
+    assert MOST_CURVES < 99
+
+
+def test_marks_are_round_and_few() -> None:
+    assert Scale(-0.9, 0.9, 0, 100).marks() == [-0.5, 0.0, 0.5]
+    assert Scale(0, 30, 0, 100).marks() == [0, 10, 20, 30]
+    for low, high in ((0.0, 1e-6), (-3.0, 1e9), (5.0, 5.1)):
+        assert 2 <= len(Scale(low, high, 0, 1).marks()) <= 6
+    assert around([2.0], 0, 1).low < 2.0
+
+
+_WINDOW = """ms => {
+    for (const each of document.getAnimations()) { each.pause(); each.currentTime = ms; }
+    const matrix = new DOMMatrix(getComputedStyle(document.querySelector('clipPath rect')).transform);
+    return [matrix.a, document.getAnimations().length];
+}"""
+
+
+def test_in_a_browser_the_window_grows_as_time_went_by(browser: Browser, tmp_path: Path) -> None:
+    (tmp_path / "page.html").write_text("<!doctype html><title>plot</title>" + svg_of(recorded()))
+    with opened(browser, tmp_path / "page.html") as shown:
+        for seconds, seen in ((-0.2, 0), (1.0, 0.25), (2.0, 0.5), (4.0, 1), (5.0, 1)):
+            part, _ = shown.page.evaluate(_WINDOW, 1000 * (BEFORE_S + seconds))
+            assert part == pytest.approx(seen, abs=0.01)
+        shown.page.emulate_media(reduced_motion="reduce")
+        assert shown.page.evaluate(_WINDOW, 0) == [1, 0]
+        assert shown.faults == []

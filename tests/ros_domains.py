@@ -1,0 +1,37 @@
+"""ROS domains for tests: each is one test's, or one fixture's, alone on this machine."""
+
+from __future__ import annotations
+
+import fcntl
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+LOOPBACK = Path(__file__).parents[1] / "spinbook" / "runtime" / "loopback.xml"
+
+
+@contextmanager
+def reserved() -> Iterator[int]:
+    """A ROS domain that no other test and no notebook on this machine uses meanwhile."""
+    # Domains above 60 are the tests'; notebooks take theirs from below.
+    locks = Path(tempfile.gettempdir()) / "spinbook-test-domains"
+    locks.mkdir(exist_ok=True)
+    for domain in range(61, 100):
+        with (locks / str(domain)).open("w") as lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                continue
+            yield domain
+            return
+    raise RuntimeError("every ROS domain from 61 to 99 is in use by another test")
+
+
+def environment(domain: int) -> dict[str, str]:
+    """The variables with which rclpy, here and in children, uses a domain, on loopback only."""
+    return {
+        "ROS_DOMAIN_ID": str(domain),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
+        "FASTRTPS_DEFAULT_PROFILES_FILE": str(LOOPBACK),
+    }

@@ -1,0 +1,180 @@
+"""A small course with all that a page can hold, and its site."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+
+_COURSE = """\
+title = "A small course"
+repository = "https://github.com/example/course"
+chapters = ["chapters/01-talk.md", "chapters/02-more.md"]
+glossary = "chapters/glossary.md"
+[package]
+name = "small_robot"
+workspace = "small_ws"
+"""
+
+_TALK = '''\
+---
+title: Talk
+summary: One node that talks.
+---
+
+# Talk
+
+A publisher sends messages. Another publisher does so too; see [the next chapter](02-more.md) and the
+[task](../exercises/joint_velocity/task.md), or [the course's file](../course.toml).
+
+> [!WARNING]
+> Mind the angle $\\omega = \\frac{v}{r}$.
+
+$$r = \\frac{v}{\\omega}$$
+
+```mermaid
+flowchart LR
+    A(["left toe"]) --> T["/left_foot/toe"]
+    T --> B(["controller"])
+```
+
+## A node
+
+```python title="talker.py" seconds=20 until="number 3"
+"""Talks."""
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+
+
+class Talker(Node):
+    def __init__(self):
+        super().__init__('talker')
+        self.count = 0
+        self.timer = self.create_timer(0.1, self.say)
+
+    def say(self):
+        self.count += 1
+        self.get_logger().info(f'number {self.count}') if self.count != 2 else self.get_logger().warning('SAFETY: two')
+
+
+def main():
+    rclpy.init()
+    node = Talker()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == '__main__':
+    main()
+```
+
+```python raises
+1 / 0
+```
+
+## Draw
+
+```python
+import matplotlib.pyplot as plt
+plt.plot([0, 1, 0])
+plt.show()
+```
+
+| Joint | Highest |
+| --- | ---: |
+| elbow | 2.356 |
+
+<details>
+<summary>Answer</summary>
+
+It is forty-two.
+
+</details>
+
+## Practice
+
+<!-- exercise: joint_velocity -->
+'''
+
+_MORE = "---\ntitle: More\nsummary: What comes next.\n---\n\n# More\n\nWords only.\n\n## Last words\n\nGood-bye.\n"
+_GLOSSARY = "# Glossary\n\n## Publisher\n\nWhoever sends.\n\n## Message\n\nWhat is sent.\n"
+
+
+@dataclass(frozen=True)
+class SmallCourse:
+    """The course's folder, and what is done with it."""
+
+    root: Path
+
+    @property
+    def site(self) -> Path:
+        """Where its site is built."""
+        return self.root / "build" / "site"
+
+    @property
+    def pages(self) -> list[str]:
+        """Every page's path."""
+        return sorted(page.relative_to(self.site).as_posix() for page in self.site.rglob("*.html"))
+
+    def page(self, name: str) -> str:
+        """A page's HTML."""
+        return (self.site / name).read_text(encoding="utf-8")
+
+    def change(self, file: str, old: str, new: str) -> None:
+        """Replace `old`, which must be there."""
+        text = (self.root / file).read_text(encoding="utf-8")
+        assert old in text
+        (self.root / file).write_text(text.replace(old, new), encoding="utf-8")
+
+    def spinbook_site(self, *words: str) -> subprocess.CompletedProcess[str]:
+        """Run `spinbook site` in the course's folder, where npm's registry is out of reach."""
+        environment = {**os.environ, "npm_config_registry": "http://127.0.0.1:9"}
+        argv = [sys.executable, "-m", "spinbook", "site", *words]
+        return subprocess.run(argv, cwd=self.root, env=environment, capture_output=True, text=True, timeout=250)
+
+
+def write_course(root: Path) -> SmallCourse:
+    """Write the course's files, with the real exercise."""
+    (root / "chapters").mkdir(parents=True)
+    (root / "course.toml").write_text(_COURSE)
+    for name, text in (("01-talk", _TALK), ("02-more", _MORE), ("glossary", _GLOSSARY)):
+        (root / "chapters" / f"{name}.md").write_text(text, encoding="utf-8")
+    for folder in ("exercises", "solutions"):
+        shutil.copytree(ROOT / folder / "joint_velocity", root / folder / "joint_velocity")
+    return SmallCourse(root)
+
+
+class _Quiet(SimpleHTTPRequestHandler):
+    def log_message(self, format: str, *args: object) -> None:
+        pass
+
+
+@contextmanager
+def served(folder: Path) -> Iterator[str]:
+    """The folder behind an address of its own."""
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(_Quiet, directory=str(folder)))
+    thread = threading.Thread(target=server.serve_forever, daemon=True)
+    thread.start()
+    try:
+        yield f"http://127.0.0.1:{server.server_port}"
+    finally:
+        server.shutdown()
+        server.server_close()
+        thread.join()

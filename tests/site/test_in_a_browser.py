@@ -1,0 +1,99 @@
+"""The site in a real Chromium: on a phone and a desk, light and dark, served and from a folder."""
+
+from __future__ import annotations
+
+import gzip
+from pathlib import Path
+
+import pytest
+from browser import opened
+from playwright.sync_api import Browser, expect
+from small_course import SmallCourse
+
+PAGES = [
+    "index.html",
+    "chapters/01-talk.html",
+    "chapters/02-more.html",
+    "exercises/joint_velocity.html",
+    "glossary.html",
+    "about.html",
+    "search.html?q=publisher",
+]
+PATIENCE_MS = 60_000
+
+
+@pytest.mark.parametrize("page", PAGES)
+@pytest.mark.parametrize(("width", "dark"), [(1280, False), (390, True)])
+def test_a_page_is_without_fault(browser: Browser, address: str, page: str, width: int, dark: bool) -> None:
+    with opened(browser, f"{address}/{page}", width=width, dark=dark) as shown:
+        assert shown.violations() == []
+        assert not shown.scrolls_sideways()
+        assert shown.faults == []
+
+
+@pytest.mark.parametrize("from_folder", [True, False])
+def test_the_search_finds_publisher(browser: Browser, built: SmallCourse, address: str, from_folder: bool) -> None:
+    start: str | Path = built.site / "chapters" / "01-talk.html" if from_folder else f"{address}/chapters/01-talk.html"
+    with opened(browser, start) as shown:
+        shown.page.get_by_role("searchbox").fill("publisher")
+        shown.page.get_by_role("searchbox").press("Enter")
+        results = shown.page.locator("#search-results li")
+        expect(results.first).to_be_visible(timeout=PATIENCE_MS)
+        assert "Publisher" in results.first.inner_text()
+        results.get_by_role("link", name="Talk", exact=True).click()
+        expect(shown.page.get_by_role("heading", level=1)).to_contain_text("Talk", timeout=PATIENCE_MS)
+        assert shown.faults == []
+
+
+def test_the_switch_changes_colours_and_they_stay(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/index.html") as shown:
+        light = shown.page.evaluate("getComputedStyle(document.body).backgroundColor")
+        shown.page.get_by_role("button", name="Dark colours").click()
+        dark = shown.page.evaluate("getComputedStyle(document.body).backgroundColor")
+        assert dark != light
+        shown.page.goto(f"{address}/glossary.html")
+        assert shown.page.evaluate("getComputedStyle(document.body).backgroundColor") == dark
+
+
+def test_copying_gives_the_node_s_code(browser: Browser, built: SmallCourse, address: str) -> None:
+    with opened(browser, f"{address}/chapters/01-talk.html") as shown:
+        shown.page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+        shown.page.get_by_role("button", name="Copy talker.py").click()
+        expect(shown.page.locator("#said")).to_have_text("Copied", timeout=PATIENCE_MS)
+        copied = shown.page.evaluate("navigator.clipboard.readText()")
+    assert copied.strip() == (built.site / "downloads" / "talker.py").read_text().strip()
+
+
+def test_the_keyboard_reaches_the_text_first(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/01-talk.html") as shown:
+        shown.page.keyboard.press("Tab")
+        shown.page.keyboard.press("Enter")
+        assert shown.page.evaluate("document.activeElement.id") == "content"
+
+
+def test_the_menu_of_a_phone_opens_and_closes_by_keyboard(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/01-talk.html", width=390) as shown:
+        link = shown.page.get_by_role("navigation", name="Course").get_by_role("link", name="Glossary")
+        expect(link).to_be_hidden()
+        shown.page.get_by_role("button", name="Contents").press("Enter")
+        expect(link).to_be_visible(timeout=PATIENCE_MS)
+        shown.page.keyboard.press("Escape")
+        expect(link).to_be_hidden(timeout=PATIENCE_MS)
+
+
+def test_a_chapter_is_below_a_megabyte_over_the_wire(browser: Browser, built: SmallCourse, address: str) -> None:
+    asked: list[str] = []
+    with opened(browser, "about:blank") as shown:
+        shown.page.on("request", lambda request: asked.append(request.url))
+        shown.page.goto(f"{address}/chapters/01-talk.html", wait_until="networkidle")
+    files = [built.site / url.removeprefix(f"{address}/") for url in asked]
+    assert len(files) > 4
+    assert sum(len(gzip.compress(file.read_bytes())) for file in files) < 1_000_000
+
+
+def test_a_chapter_prints(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/01-talk.html", dark=True) as shown:
+        assert shown.page.pdf(format="A4").startswith(b"%PDF")
+        shown.page.emulate_media(media="print")
+        assert shown.page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+        expect(shown.page.get_by_role("navigation", name="Course")).to_be_hidden()

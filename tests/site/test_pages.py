@@ -1,0 +1,173 @@
+"""What the pages hold: text, outputs as they came, exercises, glossary, downloads; and what they must not hold."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+from pathlib import Path
+from urllib.parse import unquote, urldefrag
+
+import nbformat
+import pytest
+from small_course import ROOT, SmallCourse
+
+TALK = "chapters/01-talk.html"
+EXERCISE = "exercises/joint_velocity.html"
+
+
+def text_of(html: str) -> str:
+    return re.sub(r"\s+", " ", re.sub(r"<[^>]+>", "", html))
+
+
+def test_every_page_is_there(built: SmallCourse) -> None:
+    assert built.pages == [
+        "about.html", TALK, "chapters/02-more.html", EXERCISE, "glossary.html", "index.html", "search.html",
+    ]  # fmt: skip
+
+
+def test_a_node_s_log_stands_in_order_below_its_code(built: SmallCourse) -> None:
+    page = text_of(built.page(TALK))
+
+    lines = ["class Talker(Node)", "[talker]: number 1", "[talker]: SAFETY: two", "[talker]: number 3"]
+    places = [page.index(line) for line in lines]
+    assert places == sorted(places)
+
+
+def test_a_warning_in_a_log_stands_out(built: SmallCourse) -> None:
+    assert re.search(r'<span class="gs">\[WARN\] [^<]*SAFETY: two', built.page(TALK))
+
+
+def test_a_cell_that_is_meant_to_fail_says_so(built: SmallCourse) -> None:
+    page = text_of(built.page(TALK))
+
+    assert page.index("it fails, as it is meant to") < page.index("ZeroDivisionError")
+
+
+def test_the_code_is_shown_as_it_was_written_without_the_notebook_s_magics(built: SmallCourse) -> None:
+    assert "%%node" not in built.page(TALK)
+    assert (built.site / "downloads" / "talker.py").read_text().startswith('"""Talks."""')
+
+
+def test_alerts_maths_and_drawings_are_more_than_text(built: SmallCourse) -> None:
+    page = built.page(TALK)
+
+    assert 'class="admonition warning"' in page
+    assert page.count("<math") == 2
+    assert "left toe → /left_foot/toe" in page  # in words, where no drawing can be made
+
+
+def test_the_chapter_leads_to_the_next_one_and_to_the_source_line(built: SmallCourse) -> None:
+    page = built.page(TALK)
+
+    assert 'href="02-more.html"' in page
+    line = next(
+        n for n, s in enumerate((built.root / "chapters/01-talk.md").read_text().split("\n"), 1) if "Talks" in s
+    )
+    assert f"https://github.com/example/course/blob/main/chapters/01-talk.md?plain=1#L{line}" in page
+
+
+def test_a_chapter_opens_in_colab_binder_and_codespaces(built: SmallCourse) -> None:
+    page = built.page(TALK)
+
+    for place in ("colab.research.google.com", "mybinder.org", "codespaces.new"):
+        assert re.search(rf'href="https://{re.escape(place)}/[^"]*01-talk', page)
+
+
+def test_the_first_use_of_a_term_leads_to_the_glossary(built: SmallCourse) -> None:
+    page = built.page(TALK)
+
+    assert page.count('href="../glossary.html#publisher"') == 1
+    assert 'id="publisher"' in built.page("glossary.html")
+
+
+def test_an_exercise_has_task_interface_starter_and_points(built: SmallCourse) -> None:
+    page = text_of(built.page(EXERCISE))
+
+    assert "100 points" in page
+    assert re.search(r"publishes on /joint_velocities sensor_msgs/msg/JointState keep last 10.*velocity in rad/s", page)
+    assert "It publishes one message for each message after the first." in page
+    starter = (built.site / "downloads" / "joint_velocity.py").read_text()
+    assert "SOLUTION" not in starter
+    ast.parse(starter)
+
+
+def test_the_about_page_names_versions(built: SmallCourse) -> None:
+    page = text_of(built.page("about.html"))
+
+    assert re.search(r"Python 3\.\d+\.\d+", page)
+    assert "rclpy" in page
+
+
+def test_notebooks_to_download_begin_by_installing_what_is_missing(built: SmallCourse) -> None:
+    for file in [*(built.site / "downloads").glob("*.ipynb"), *(built.root / "build" / "launch").glob("*.ipynb")]:
+        notebook = nbformat.read(file, as_version=4)
+        nbformat.validate(notebook)
+        first = next(cell for cell in notebook.cells if cell.cell_type == "code")
+        assert "spinbook[ros,colcon] @ git+https://github.com/example/course@main" in first.source
+        assert "pip" in first.source
+
+
+def test_the_branch_of_notebooks_has_a_container_for_each(built: SmallCourse) -> None:
+    branch = built.root / "build" / "launch"
+
+    for name in ("01-talk", "02-more", "exercise-joint_velocity"):
+        container = json.loads((branch / ".devcontainer" / name / "devcontainer.json").read_text())
+        assert (branch / container["customizations"]["codespaces"]["openFiles"][0]).exists()
+
+
+def test_all_links_and_anchors_lead_somewhere(built: SmallCourse) -> None:
+    ids = {page: set(re.findall(r'\bid="([^"]+)"', built.page(page))) for page in built.pages}
+    for page in built.pages:
+        for target in re.findall(r'\b(?:href|src)="([^"]*)"', built.page(page)):
+            if re.match(r"https?:", target):
+                continue
+            path, anchor = urldefrag(unquote(target))
+            file = ((built.site / page).parent / path).resolve() if path else built.site / page
+            assert file.is_file(), f"{page}: {target}"
+            if anchor:
+                assert anchor in ids[file.relative_to(built.site.resolve()).as_posix()], f"{page}: {target}"
+
+
+def test_every_picture_says_what_it_shows(built: SmallCourse) -> None:
+    for page in built.pages:
+        for image in re.findall(r"<img[^>]*>", built.page(page)):
+            assert re.search(r'alt="[^"]+"', image), f"{page}: {image}"
+
+
+def test_no_page_holds_a_script_or_a_style_of_its_own(built: SmallCourse) -> None:
+    for page in built.pages:
+        html = built.page(page)
+        assert not re.search(r"<script(?![^>]*\bsrc=)|<style|\sstyle=|\son\w+=", html), page
+        assert "default-src 'none'; script-src 'self'; style-src 'self'" in html
+
+
+def secret_lines() -> set[str]:
+    """Lines that stand in solutions or hidden checks and nowhere that students may look."""
+    exercise, solutions = ROOT / "exercises" / "joint_velocity", ROOT / "solutions" / "joint_velocity"
+    secret = [exercise / "hidden_checks.py", *solutions.rglob("*.py")]
+    lines = {line.strip() for file in secret for line in file.read_text().splitlines()}
+    solution = (solutions / "solution.py").read_text()
+    begun = re.sub(r"# BEGIN SOLUTION.*?# END SOLUTION", "", solution, flags=re.DOTALL)
+    shown = [begun, *((exercise / name).read_text() for name in ("task.md", "checks.py", "exercise.toml"))]
+    public = "\n".join([*shown, *(file.read_text() for file in (ROOT / "chapters").glob("*.md"))])
+    return {line for line in lines if len(line) > 24 and line not in public}
+
+
+@pytest.mark.parametrize("folder", ["site", "launch", "site-source"])
+def test_no_solution_and_no_hidden_check_is_published(built: SmallCourse, folder: str) -> None:
+    secrets = secret_lines()
+    assert len(secrets) > 100
+    seen = [file for file in (built.root / "build" / folder).rglob("*") if file.is_file()]
+    assert seen
+    for file in seen:
+        assert_holds_none(file, secrets)
+
+
+def assert_holds_none(file: Path, secrets: set[str]) -> None:
+    text = file.read_text(encoding="utf-8", errors="replace")
+    for html, plain in (("&quot;", '"'), ("&#39;", "'"), ("&lt;", "<"), ("&gt;", ">"), ("&amp;", "&")):
+        text = text.replace(html, plain)
+    for version in (text, re.sub(r"</?span[^>]*>", "", text), text.replace('\\"', '"')):
+        found = [line for line in secrets if line in version]
+        assert not found, f"{file}: {found[:3]}"
