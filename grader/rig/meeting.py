@@ -62,7 +62,14 @@ def let_in(ros: Ros, student: Student, fence: Fence, recorder: Recorder) -> None
     """Wait until a publisher that the student's node has made only now has found the recorder, if it ever will, and
     has sent again what it has already published."""
     came = len(recorder.received)
-    for done in (lambda: recorder.hears, lambda: len(recorder.received) > came):
+
+    def found() -> bool:
+        return recorder.hears
+
+    def sent_again() -> bool:
+        return len(recorder.received) > came
+
+    for done in (found, sent_again):
         patience = Patience(student, cpu_s=5.0, blocked_s=5.0)
         quiet, looked = 0.0, time.monotonic()
         while not done() and quiet < SENT_AGAIN_S and not patience.ended():
