@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import os
 import stat
 import zipfile
 from datetime import datetime, timezone
@@ -254,7 +253,7 @@ def test_a_damaged_file_in_a_zip_costs_only_its_own(tmp_path: Path) -> None:
 def test_links_in_a_folder_are_not_followed(tmp_path: Path) -> None:
     root = written(tmp_path / "s", "anna.py")
     written(tmp_path / "elsewhere", "other.py")
-    os.symlink(tmp_path / "elsewhere", root / "bert")
+    (root / "bert").symlink_to(tmp_path / "elsewhere")
     assert list(files(taken(root, tmp_path))) == ["anna"]
 
 

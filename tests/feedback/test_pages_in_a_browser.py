@@ -19,7 +19,10 @@ from grader.misconception import Signature, grouped
 from grader.misconception.signature import failures_of
 from grader.overview import overview_page
 
-EVIL = '</title></script><script>window.pwned=9</script><img src="http://example.org/x.png" onerror="window.pwned=8">\u202e'
+EVIL = (
+    "</title></script><script>window.pwned=9</script>"
+    '<img src="http://example.org/x.png" onerror="window.pwned=8">\u202e'
+)
 
 
 @pytest.fixture
