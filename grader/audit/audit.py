@@ -16,7 +16,7 @@ from grader.audit.survivors import listed, stale
 from grader.audit.told import problems_in_text
 from grader.audit.trial import Trials
 from grader.audit.trying import Progress, try_all
-from grader.audit.worth import messages, problems_of_checks
+from grader.audit.worth import messages, problems_of_broken, problems_of_checks
 from grader.crew import Crew
 from grader.exercise import Exercise
 from grader.grading import Options, grading_of
@@ -32,6 +32,7 @@ def audit(
     Raises what `grading_of` raises.
     """
     began = time.monotonic()
+    crew.prepare_to_judge()
     grading = grading_of(exercise, options, crew)
     checks: tuple[Check, ...] = crew.do(ChecksJob(exercise, grading.references))
     trials = Trials(grading, checks, Spins(grading))
@@ -49,6 +50,7 @@ def audit(
     problems = problems_of(programs, tried.programs, checks)
     for number, with_seed in tried.seeds.items():
         problems += problems_of(plan.right, with_seed, checks, number)
+    problems += problems_of_broken(checks, {**tried.programs, **evidence})
     problems += messages(checks, evidence) if quick else problems_of_checks(checks, evidence)
     problems += problems_in_text(exercise, checks)
     problems += problems_of_survivors(exercise, mutants)

@@ -14,11 +14,12 @@ from grader.audit.report.terminal import show
 from grader.audit.result import Audit, Problem
 from grader.crew import Crew, HostFault
 from grader.exercise import Exercise, ExerciseError, load
+from grader.exercise.finding import NoExercise, find
 from grader.grading import Options
 from grader.sandbox import SandboxUnavailable
 
-#: Exit codes. 2 is click's own, for usage.
-PROVED, TO_MEND, USAGE, OUR_FAULT = 0, 1, 2, 3
+#: Exit codes, beside click's 2 for usage and a shell's 130 for Ctrl-C.
+PROVED, TO_MEND, OUR_FAULT, STOPPED = 0, 1, 3, 130
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
@@ -48,11 +49,16 @@ def audit(
       spinbook audit --quick                      a sample, in seconds
       spinbook audit joint_velocity --html a.html how much each check catches, and what it costs
 
-    EXERCISE is a name in the course's folder exercises/, or the path of an exercise's folder. What has been tried
-    before is not tried again while nothing that it depends on has changed.
+    EXERCISE is a name in the course's folder exercises/, or the path of an exercise's folder. The first audit of an
+    exercise takes minutes. What has been tried before is not tried again while nothing that it depends on has changed,
+    so that an audit after a change takes seconds, and one that was stopped goes on.
 
     Exit codes: 0 all is proved, 1 there is something to mend, 2 wrong usage, 3 a fault of the machine's or ours.
     """
+    for option, file in (("--json", json_), ("--html", html)):
+        if file and (file.is_dir() or not file.absolute().parent.is_dir()):
+            told = "that is a folder" if file.is_dir() else f"there is no folder {file.parent}"
+            raise click.UsageError(f"{option} {file}: {told}. Name a file in a folder that is there.")
     options = Options(parallel=parallel) if parallel else Options()
     audits: list[Audit] = []
     faulty: list[ExerciseError] = []
@@ -77,6 +83,9 @@ def audit(
     except OSError as error:
         click.echo(f"{error.filename}: {error.strerror}", err=True)
         sys.exit(OUR_FAULT)
+    except KeyboardInterrupt:
+        click.echo("Stopped. What was tried is kept; the same command goes on from there.", err=True)
+        sys.exit(STOPPED)
     sys.exit(TO_MEND if faulty or any(result.problems for result in audits) else PROVED)
 
 
@@ -102,25 +111,15 @@ def _problem(error: ExerciseError) -> Problem:
 
 
 def _folder(exercise: str) -> Path:
-    if Path(exercise, "exercise.toml").exists():
-        return Path(exercise)
-    here = _exercises()
-    if here and (here / exercise / "exercise.toml").exists():
-        return here / exercise
-    known = ", ".join(folder.name for folder in _all_here())
-    raise click.UsageError(f"There is no exercise {exercise!r} here. There are: {known}.")
+    try:
+        return find(exercise, Path.cwd())
+    except NoExercise as error:
+        raise click.UsageError(str(error)) from None
 
 
 def _all_here() -> list[Path]:
-    here = _exercises()
-    found = sorted(file.parent for file in here.glob("*/exercise.toml")) if here else []
-    if not found:
-        raise click.UsageError(
-            "There are no exercises here. Start in a course's folder, the one with exercises/ in it."
-        )
-    return found
-
-
-def _exercises() -> Path | None:
-    """The exercises/ of this folder, or of the nearest one above it."""
-    return next((c / "exercises" for c in (Path.cwd(), *Path.cwd().parents) if (c / "exercises").is_dir()), None)
+    """Every exercise of this folder's course, or of the nearest one above it."""
+    for course in (Path.cwd(), *Path.cwd().parents):
+        if found := sorted(file.parent for file in course.glob("exercises/*/exercise.toml")):
+            return found
+    raise click.UsageError("There are no exercises here. Start in a course's folder, the one with exercises/ in it.")

@@ -36,6 +36,7 @@ def check_results(
     """What each check is worth; `mutants` are the trials of those that can be told from the solution."""
     seconds = {scenario.name: scenario.spinning_s for scenario in scenarios}
     asked_by_one = {scenario.name for scenario in scenarios[1:] if scenario.checks == 1}
+    kills = {check.name: sum(check.name in trial.failed for trial in mutants.values()) for check in checks}
     return tuple(
         CheckResult(
             name=check.name,
@@ -43,7 +44,8 @@ def check_results(
             points=check.points,
             hidden=check.hidden,
             rule=check.rule,
-            kills=sum(check.name in trial.failed for trial in mutants.values()),
+            kills=kills[check.name],
+            score=kills[check.name] / len(mutants) if mutants else 0.0,
             alone=sum(trial.failed == (check.name,) for trial in mutants.values()),
             mistakes=tuple(name for name, trial in mistakes.items() if check.name in trial.failed),
             scenarios=check.scenarios,

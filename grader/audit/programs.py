@@ -73,7 +73,7 @@ def _mistake(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> l
             found.append(Problem(place, name, f"{said} is to be caught by {name}: there is no such check", mend))
         elif status == "passed":
             found.append(Problem(place, name, f"{name} lets {said} through", mend))
-        elif status != "failed":
+        elif status == "blocked":
             by = ", ".join(trial.failed) or "another check"
             told = f"{name} is to catch {said}, but is blocked: it depends on {by}, which fails"
             found.append(Problem(place, name, told, mend))

@@ -8,6 +8,7 @@ import hashlib
 import json
 import os
 import tempfile
+import threading
 import time
 from functools import cache
 from pathlib import Path
@@ -31,17 +32,22 @@ KEPT_DAYS = 30
 LONGEST_LOG = 20_000
 
 
+class Stopped(Exception):
+    """Raised in place of a recording when the audit is to end at once."""
+
+
 class Spins:
-    """The kept recordings of one exercise's programs."""
+    """The kept recordings of one exercise's programs. Once `stopped` is set, no more are made."""
 
     def __init__(self, grading: Grading) -> None:
+        self.stopped = threading.Event()
         self._grading = grading
         self._folder = audit_folder(grading.spinner.exercise.name)
 
     def spin(self, submission: Submission, scenario: Scenario, turn: int) -> Recording:
         """The recording of a program in one scenario, kept or made now; `turn` chooses the core that it runs on.
 
-        Raises `HostFault` where the machine or we are at fault.
+        Raises `HostFault` where the machine or we are at fault, `Stopped` when no more are to be made.
         """
         spinner = self._grading.spinner
         key = (submission.digest, scenario.digest, str(spinner.isolation), spinner.exercise.outputs, engine())
@@ -52,7 +58,9 @@ class Spins:
             return kept
         except (OSError, EOFError, ValueError, KeyError, TypeError):
             pass
-        recording: Recording = spinner.crew.do(spinner.job(submission, scenario, turn))
+        recording: Recording | None = spinner.crew.do(spinner.job(submission, scenario, turn), self.stopped)
+        if recording is None:
+            raise Stopped
         if len(recording.log) <= LONGEST_LOG:
             keep(file, gzip.compress(to_json({scenario.name: recording}).encode(), 5))
         return recording

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from grader.audit.comparing import Difference, differences
 from grader.audit.listing import Check
 from grader.audit.spins import Spins
 from grader.checking.verdict import Status, Verdict
 from grader.checking.wrong import Finding
-from grader.crew import HostFault
 from grader.crew.jobs import JudgeJob
 from grader.grading.grading import Grading
 from grader.recording import Ending, Recording
@@ -22,9 +21,9 @@ from grader.submission import Submission
 class Trial:
     """What became of one program.
 
-    `statuses` is how each check that could be judged ended, `findings` what those that failed tell. `spun` are the
-    scenarios that were needed; in `differences` stands what differs from the solution there, and `messages` is how many
-    messages came. `seconds` is how long each spin took.
+    `statuses` is how each check that could be judged ended, `findings` what those that failed or broke tell.
+    `spun` are the scenarios that were needed; in `differences` stands what differs from the solution there, and
+    `messages` is how many messages came. `seconds` is how long each spin took.
     """
 
     story: str
@@ -90,9 +89,6 @@ class Trials:
         spinner = self.grading.spinner
         titles = {scenario.name: scenario.title for scenario in spinner.scenarios}
         verdicts: tuple[Verdict, ...] = spinner.crew.do(JudgeJob(spinner.exercise, recordings, references, titles))
-        broken = [verdict for verdict in verdicts if verdict.status == "error"]
-        if broken:
-            raise HostFault(f"the check {broken[0].name} broke: {broken[0].error}")
         return {verdict.name: verdict for verdict in verdicts}
 
     def trial_of_recordings(self, recordings: dict[str, Recording]) -> Trial:
@@ -169,11 +165,8 @@ class Trials:
                 statuses[check.name] = verdicts[check.name].status
             elif any(statuses.get(name, "passed") != "passed" for name in check.depends):
                 statuses[check.name] = "blocked"
-        findings = {
-            name: replace(finding)
-            for name in statuses
-            if (finding := verdicts[name].finding) and statuses[name] == "failed"
-        }
+        told = {name: verdicts[name] for name, status in statuses.items() if status in ("failed", "error")}
+        findings = {name: verdict.finding or Finding(verdict.error) for name, verdict in told.items()}
         references = self.grading.references
         return Trial(
             story=story,

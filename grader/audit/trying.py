@@ -55,6 +55,10 @@ def try_all(plan: Plan, trials: Trials, store: Store, progress: Progress) -> Tri
             for future in as_completed(every):
                 future.result()
                 progress.done()
+        except BaseException:
+            # Ctrl-C, or a fault: nobody wants to wait for what is under way.
+            trials.spins.stopped.set()
+            raise
         finally:
             for future in every:
                 future.cancel()

@@ -45,6 +45,19 @@ def _that_fail_together(checks: tuple[Check, ...], trials: dict[str, Trial]) -> 
     return found
 
 
+def problems_of_broken(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Problem]:
+    """Checks that broke themselves on what some program published; `trials` are those of all programs, by name."""
+    found = []
+    for check in checks:
+        for name, trial in trials.items():
+            if trial.statuses.get(check.name) == "error":
+                told = f"{check.name} breaks on what {name} publishes: {trial.findings[check.name].text}"
+                mend = "Whatever a student's node publishes, a check has to pass or to fail: look before you take."
+                found.append(Problem(f"{check.file}:{check.line}", check.name, told, mend))
+                break
+    return found
+
+
 def _broke_off(finding: Finding) -> bool:
     """Whether the program did not come through the scenario: then its story is told, and not what a check wanted."""
     return bool(finding.scenario) and finding.message is None
@@ -55,7 +68,7 @@ def messages(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Proble
     found = []
     for check in checks:
         for name, trial in trials.items():
-            finding = trial.findings.get(check.name)
+            finding = trial.findings.get(check.name) if check.name in trial.failed else None
             if finding and not _broke_off(finding) and not finding.expected and not WORDS.search(finding.text):
                 told = f"{check.name} fails for {name} and does not say what was expected: “{finding.text}”"
                 found.append(Problem(f"{check.file}:{check.line}", check.name, told, "Name it in the message."))

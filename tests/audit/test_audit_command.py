@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 from browser import opened
 from click.testing import CliRunner, Result
 from playwright.sync_api import Browser
+from process_mark import ProcessMark
 from small_exercise import SmallExercise
 
 from grader.audit.command import audit
 
 
 def run(*arguments: str) -> Result:
-    return CliRunner(mix_stderr=False).invoke(audit, [*arguments], catch_exceptions=False)
+    return CliRunner().invoke(audit, [*arguments], catch_exceptions=False)
 
 
 @pytest.fixture(autouse=True)
@@ -63,8 +68,38 @@ def test_an_exercise_that_can_not_be_audited_ends_with_1_and_says_why(small: Sma
     assert json.loads(Path("audit.json").read_text())["faults"][0]["place"].endswith("exercise.toml")
 
 
-@pytest.mark.parametrize(("arguments", "told"), [(("tripler",), "There are: doubler"), (("--no",), "No such option")])
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("tripler",), "There are: doubler"),
+        (("--no",), "No such option"),
+        (("--html", "nowhere/audit.html"), "there is no folder nowhere"),
+        (("--json", "exercises"), "that is a folder"),
+    ],
+)
 def test_wrong_usage_ends_with_2(arguments: tuple[str, ...], told: str) -> None:
     done = run(*arguments)
     assert done.exit_code == 2
     assert told in done.stderr
+
+
+def test_outside_a_course_it_says_where_to_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.setattr(Path, "cwd", lambda: Path("/"))
+    done = run()
+    assert done.exit_code == 2
+    assert "Start in a course's folder" in done.stderr
+
+
+def test_ctrl_c_ends_it_at_once_and_leaves_nothing_running(small: SmallExercise, process_mark: ProcessMark) -> None:
+    command = [sys.executable, "-c", "from grader.audit.command import audit; audit()", "--mutants", "4"]
+    environment = {**os.environ, "SPINBOOK_CACHE": str(small.course / "cache")}
+    running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+    assert running.stderr
+    assert "doubler: " in running.stderr.readline(), "it tells how far it is"
+    running.send_signal(signal.SIGINT)
+    _, told = running.communicate(timeout=120)
+    assert running.returncode == 130
+    assert "Stopped. What was tried is kept" in told
+    assert "Traceback" not in told
+    process_mark.wait_until_none()

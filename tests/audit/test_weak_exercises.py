@@ -81,20 +81,20 @@ def test_a_mistake_that_fails_another_check_too(small: SmallExercise, audited: A
 
 
 def test_points_for_nothing(small: SmallExercise, audited: Auditing) -> None:
-    small.change(HIDDEN, 'depends=["test_publishes"], rule', "rule")
-    found = told(audited(small), "test_leaves_numbers_alone")
+    small.change(HIDDEN, 'depends=["test_publishes"],\n       rule', "rule")
+    found = told(audited(small), "test_leaves_other_topics_alone")
     assert [text.partition(" passes")[0] for text in found] == ["the starter", "a node that does nothing"]
 
 
 def test_a_right_solution_that_a_check_refuses_with_some_numbers_only(small: SmallExercise, audited: Auditing) -> None:
     small.change(
         HIDDEN,
-        '    if any.publishers("/numbers"):',
-        "    assert any.sent[0].data < 8, 'a number below 8 was expected'\n    if any.publishers(\"/numbers\"):",
+        '    if any.publishers("/numbers") or',
+        "    assert any.sent[0].data < 8, 'a number below 8 was expected'\n    if any.publishers(\"/numbers\") or",
     )
     result = audited(small, quick=False)
     assert (result.seeds, result.randomised) == (20, ("any",))
-    found = told(result, "test_leaves_numbers_alone")
+    found = told(result, "test_leaves_other_topics_alone")
     assert found
     assert all(re.search(r"right solution solution\.py fails .* with --seed \d+", text) for text in found)
 
@@ -102,8 +102,9 @@ def test_a_right_solution_that_a_check_refuses_with_some_numbers_only(small: Sma
 @pytest.mark.parametrize(
     ("file", "old", "new", "about", "words"),
     [
-        (HIDDEN, ', rule="Publish nothing on /numbers."', "", "test_leaves_numbers_alone", "does not name"),
-        (HIDDEN, "Publish nothing on /numbers", "Leave /numbers alone", "test_leaves_numbers_alone", "not in the task"),
+        (HIDDEN, 'rule="Publish nothing on /numbers or /clock."', "", "test_leaves_other_topics_alone",
+         "does not name"),
+        (HIDDEN, "Publish nothing on", "Leave alone", "test_leaves_other_topics_alone", "not in the task"),
         (CHECKS, 'hint="Multiply."', 'hint="if message.data  >= 0:"', "test_twice_the_number", "line of the solution"),
         (CHECKS, 'expected="/doubler", got=positive.nodes', "", "test_is_called_doubler", "not say what was expected"),
         (HIDDEN, '"Compare with 0."', '"self.publisher.publish(Float64(data=2 * message.data))"',
@@ -118,6 +119,15 @@ def test_what_the_exercise_tells(
 ) -> None:
     small.change(file, old, new)
     assert any(words in found for found in told(audited(small), about))
+
+
+def test_a_check_that_breaks_on_what_a_node_publishes(small: SmallExercise, audited: Auditing) -> None:
+    # With the mistake any_number there are five answers to five numbers, and only then.
+    small.change(HIDDEN, "    negative.must_be_silent()\n", "    [2, 0, 6][len(negative.received) - 1]\n")
+    problems = [problem for problem in audited(small).problems if "breaks on what" in problem.found]
+    assert [problem.about for problem in problems] == ["test_nothing_below_zero"]
+    assert "mistakes/any_number.py" in problems[0].found
+    assert re.search(r"hidden_checks\.py:\d+: IndexError", problems[0].found)
 
 
 def test_two_checks_that_always_fail_together(small: SmallExercise, audited: Auditing) -> None:

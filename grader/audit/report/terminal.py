@@ -51,13 +51,14 @@ def _short(place: str) -> str:
 def _checks(audit: Audit) -> Table:
     table = Table(box=None, pad_edge=False, header_style="dim", padding=(0, 1))
     table.add_column("check", overflow="fold")
-    for name in ("points", "mutants", "alone", "mistakes", "seconds"):
+    for name in ("points", "mutants", "score", "alone", "mistakes", "seconds"):
         table.add_column(name, justify="right")
     for check in audit.checks:
         table.add_row(
             check.name,
             f"{check.points:g}",
             str(check.kills),
+            f"{check.score:.0%}",
             str(check.alone),
             str(len(check.mistakes)),
             f"{check.spinning_s + check.judging_s:.2f}",
