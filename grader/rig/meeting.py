@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 
+from grader.exercise.interface import Topic
 from grader.rig.clock import Clock
 from grader.rig.fence import Fence
 from grader.rig.graph import Graph
@@ -58,16 +59,15 @@ def wait_until_connected(
 SENT_AGAIN_S, LOOK_S = 0.4, 0.01
 
 
-def let_in(ros: Ros, student: Student, fence: Fence, recorder: Recorder) -> None:
-    """Wait until a publisher that the student's node has made only now has found the recorder, if it ever will, and
-    has sent again what it has already published."""
-    came = len(recorder.received)
+def let_in(ros: Ros, student: Student, fence: Fence, recorder: Recorder, topic: Topic, came: int) -> None:
+    """Wait until a publisher of `topic`, which the student's node has made only now, has found the recorder, if it ever
+    will, and has sent again what it has already published: something other than the first `came` messages."""
 
     def found() -> bool:
-        return recorder.hears
+        return recorder.hears_all(topic)
 
     def sent_again() -> bool:
-        return len(recorder.received) > came
+        return recorder.since(came, topic)
 
     for done in (found, sent_again):
         patience = Patience(student, cpu_s=5.0, blocked_s=5.0)

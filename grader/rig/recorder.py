@@ -28,12 +28,14 @@ class Recorder:
 
     def __init__(self, node: Any, topics: tuple[Topic, ...], moment: Callable[[], tuple[int, int]]) -> None:
         self._node = node
+        self._topics = topics
         self._moment = moment
         self.received: list[Received] = []
         self.too_much: Stopped | None = None
         self._matched: dict[str, int] = {}
         self._subscriptions: dict[str, Any] = {}
         self._refused: list[Topic] = []
+        self._known: set[bytes] = set()
         for topic in topics:
             self._subscribe(topic, ACCEPT)
 
@@ -79,10 +81,30 @@ class Recorder:
         """Whether the student's node publishes every topic, in a way that reaches this recorder."""
         return all(self._matched.values())
 
-    @property
-    def publishers(self) -> int:
-        """How many publishers its topics have, those included that do not reach this recorder."""
-        return sum(self._node.count_publishers(topic) for topic in self._matched)
+    def newcomers(self) -> list[Topic]:
+        """Topics that have got a publisher since this was asked the last time.
+
+        A publisher of another type counts as none: nothing of it can ever reach this recorder.
+        """
+        found = []
+        for topic in self._topics:
+            identities = {bytes(info.endpoint_gid) for info in self._publishers(topic)}
+            if identities - self._known:
+                found.append(topic)
+            self._known |= identities
+        return found
+
+    def hears_all(self, topic: Topic) -> bool:
+        """Whether every publisher of `topic` has found this recorder."""
+        return self._matched[topic.name] >= len(self._publishers(topic))
+
+    def _publishers(self, topic: Topic) -> list[Any]:
+        infos = self._node.get_publishers_info_by_topic(topic.name)
+        return [info for info in infos if info.topic_type == topic.type]
+
+    def since(self, count: int, topic: Topic) -> bool:
+        """Whether anything came on `topic` after the first `count` messages."""
+        return any(received.topic == topic.name for received in self.received[count:])
 
     def check(self) -> None:
         """Raise `Stopped` when the node has published too much."""

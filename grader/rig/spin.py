@@ -72,7 +72,6 @@ class Rig:
         self._met = False
         self._lockstep_seconds = 0.0
         self._end_points: tuple[EndPoint, ...] = ()
-        self._publishers_known = 0
 
     def _moment(self) -> tuple[int, int]:
         return self._clock.now, len(self._publishers.sent)
@@ -112,7 +111,8 @@ class Rig:
         if self._fence.hold == "parameters":
             self._sim_time = all(self._fence.use_sim_time(node) for node in self._nodes)
         wait_until_connected(self._ros, self._student, self._fence, self._clock, self._publishers, self._recorder)
-        self._publishers_known = self._recorder.publishers
+        if self._recorder.hears:
+            self._recorder.newcomers()
         self._clock.set(START)
         self._fence.wait(AFTER_CLOCK)
         self._met = True
@@ -124,22 +124,22 @@ class Rig:
                 self._keep_pace(began, message.at)
                 self._clock.set(message.at)
                 self._fence.wait(AFTER_CLOCK)
+            came = len(self._recorder.received)
             self._publishers.publish(message)
             self._fence.wait(AFTER_MESSAGES)
-            self._let_late_publishers_in()
+            self._let_late_publishers_in(came)
             self._recorder.check()
         self._drain()
         self._lockstep_seconds = time.monotonic() - began
 
-    def _let_late_publishers_in(self) -> None:
-        """A node may make its publisher only when it has something to publish."""
-        if self._recorder.hears:
-            return
+    def _let_late_publishers_in(self, came: int) -> None:
+        """A node may make a publisher only when it has something to publish; `came` messages had come before."""
         wait_for_others()
-        publishers = self._recorder.publishers
-        if publishers > self._publishers_known:
-            let_in(self._ros, self._student, self._fence, self._recorder)
-        self._publishers_known = publishers
+        late = self._recorder.newcomers()
+        for topic in late:
+            let_in(self._ros, self._student, self._fence, self._recorder, topic, came)
+        if late:
+            self._fence.wait(AFTER_MESSAGES)
 
     def _keep_pace(self, began: float, at: int) -> None:
         if self._what.pace:
@@ -154,7 +154,7 @@ class Rig:
         while True:
             before = len(self._recorder.received)
             self._fence.wait(AFTER_MESSAGES)
-            self._let_late_publishers_in()
+            self._let_late_publishers_in(before)
             self._recorder.check()
             if len(self._recorder.received) == before:
                 return
