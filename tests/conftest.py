@@ -11,6 +11,13 @@ from browser import chromium
 from course_folder import CourseFolder
 from playwright.sync_api import Browser
 from process_mark import ProcessMark
+from workers import ByFolder
+from xdist.remote import Producer
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> ByFolder:
+    return ByFolder(config, log)
 
 
 @pytest.fixture
