@@ -14,6 +14,7 @@ from grader.exercise import Exercise, ExerciseError, load
 from grader.exercise.finding import NoExercise, find
 from grader.grading import Grade, Options, grading_of
 from grader.intake import IntakeError
+from grader.marking.marks import NoCluster
 from grader.marking.order import Order
 from grader.marking.results import Busy
 from grader.report.as_json import as_json
@@ -109,7 +110,7 @@ def grade(
             raise click.UsageError(f"{submission}: to grade a class, say with --out where the results go.")
         handed_in = read(submission, found)
         result = _graded(found, handed_in, options)
-    except (NoSubmission, IntakeError, OverridesError, Busy) as error:
+    except (NoSubmission, IntakeError, OverridesError, Busy, NoCluster) as error:
         raise click.UsageError(str(error)) from None
     except ExerciseError as error:
         _stop(f"The exercise is at fault, not the submission.\n{error}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing.connection
 import os
 import socket
@@ -30,11 +31,18 @@ class HostFault(Exception):
 
 
 class Crew:
-    """A worker process that forks one process for each job. Any thread may call `do`; use it as a context manager."""
+    """A worker process that forks one process for each job, and is started again should it die.
+
+    Any thread may call `do`; use it as a context manager.
+    """
 
     def __init__(self) -> None:
-        self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._lock = threading.Lock()
+        self._closed = False
+        self._start()
+
+    def _start(self) -> None:
+        self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._worker = subprocess.Popen(
             [sys.executable, "-m", "grader.crew.worker", str(theirs.fileno())],
             pass_fds=[theirs.fileno()],
@@ -61,14 +69,13 @@ class Crew:
 
     def prepare_to_judge(self) -> None:
         """Let the worker import what judging needs, while spins are still running."""
-        with self._lock:
+        with self._lock, contextlib.suppress(OSError):  # a worker that died is started again with the next job
             self._control.send(PREPARE_TO_JUDGE)
 
     def _once(self, job: Job, cancelled: threading.Event) -> tuple[str, Any]:
         ours, theirs = socket.socketpair()
         try:
-            with self._lock:
-                socket.send_fds(self._control, [JOB], [theirs.fileno()])
+            self._hand_over(theirs.fileno())
         except OSError as error:
             ours.close()
             return "host", f"the worker process is gone: {error}"
@@ -89,8 +96,23 @@ class Crew:
             except (EOFError, OSError):
                 return "host", "the process that did the work died"
 
+    def _hand_over(self, descriptor: int) -> None:
+        """Give the worker one more job; where it has died, as by the kernel for want of memory, start another."""
+        with self._lock:
+            try:
+                socket.send_fds(self._control, [JOB], [descriptor])
+            except OSError:
+                if self._closed:
+                    raise
+                self._control.close()
+                self._worker.kill()
+                self._worker.wait()
+                self._start()
+                socket.send_fds(self._control, [JOB], [descriptor])
+
     def close(self) -> None:
         """End the worker, and with it every job and every student's program."""
+        self._closed = True
         self._control.close()
         self._worker.wait()
 

@@ -110,7 +110,13 @@ def _signatures(grading: Grading, entries: Sequence[Entry], console: Console) ->
 
 @contextlib.contextmanager
 def _markers(grading: Grading, order: Order) -> Iterator[Markers]:
-    yield Here(grading, order.jobs or at_once())
+    if order.scheduler:
+        from grader.marking.cluster import cluster
+
+        with cluster(grading, order.scheduler) as workers:
+            yield workers
+    else:
+        yield Here(grading, order.jobs or at_once())
 
 
 @contextlib.contextmanager

@@ -19,6 +19,10 @@ class Marked:
     plot: str | None
 
 
+class NoCluster(Exception):
+    """Raised when the cluster can't be used; tells the instructor why."""
+
+
 class Markers(Protocol):
     """Grades submissions side by side."""
 

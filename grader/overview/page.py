@@ -30,7 +30,8 @@ def overview_page(
     """
     faulty = [*faults, *(entry for entry in entries if entry.final is None and entry not in faults)]
     scored = [entry for entry in entries if entry.final is not None]
-    rows = sorted((row(entry, misconceptions) for entry in scored), key=lambda row: row.name.casefold())
+    rows = [row(entry, misconceptions) for entry in scored]
+    rows.sort(key=lambda row: (row.name.casefold(), row.entry.student.id))
     broken = Counter(OUTCOMES[entry.grade.outcome] for entry in scored if entry.grade.outcome != "graded")
     scores = [entry.final for entry in scored if entry.final is not None]
     return render(
