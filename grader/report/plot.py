@@ -60,7 +60,7 @@ def _panels(figure: Figure, run: Run, field: str, unit: str, per: str) -> None:
         _panel(panel, joint, expected.get(joint, []), got.get(joint, []))
         panel.set_ylabel(unit)
     named = {line.get_label(): line for panel in panels for line in panel.lines}
-    figure.legend(list(named.values()), list(named), loc="outside upper right", ncols=3, fontsize=8, frameon=False)
+    figure.legend(list(named.values()), list(named), loc="outside lower center", ncols=3, fontsize=8, frameon=False)
     figure.align_ylabels()
     panels[-1].set_xlabel("simulated time (s)")
 

@@ -10,7 +10,7 @@ from grader.rig.fence import Fence
 from grader.rig.graph import Graph
 from grader.rig.patience import Patience
 from grader.rig.publishers import ReferencePublishers
-from grader.rig.quiet import others_at_work
+from grader.rig.quiet import Others
 from grader.rig.recorder import Recorder
 from grader.rig.ros import Ros
 from grader.rig.stopped import Stopped
@@ -59,7 +59,9 @@ def wait_until_connected(
 SENT_AGAIN_S, LOOK_S = 0.4, 0.01
 
 
-def let_in(ros: Ros, student: Student, fence: Fence, recorder: Recorder, topic: Topic, came: int) -> None:
+def let_in(
+    ros: Ros, student: Student, fence: Fence, others: Others, recorder: Recorder, topic: Topic, came: int
+) -> None:
     """Wait until a publisher of `topic`, which the student's node has made only now, has found the recorder, if it ever
     will, and has sent again what it has already published: something other than the first `came` messages."""
 
@@ -77,6 +79,6 @@ def let_in(ros: Ros, student: Student, fence: Fence, recorder: Recorder, topic: 
             ros.executor.spin_once(timeout_sec=0.004)
             recorder.adapt()
             now = time.monotonic()
-            if not student.runnable_threads() and not others_at_work():
+            if not student.runnable_threads() and not others.at_work():
                 quiet += min(now - looked, LOOK_S)
             looked = now

@@ -14,22 +14,42 @@ Activity = dict[str, bytes]
 CHILDREN_EVERY_S = 0.05
 
 
-def others_at_work() -> bool:
-    """Whether a thread of this process other than the one that asks runs, or waits for a CPU to run on."""
-    for thread in os.listdir("/proc/self/task"):  # noqa: PTH208
-        if int(thread) != threading.get_native_id():
-            with contextlib.suppress(OSError), open(f"/proc/self/task/{thread}/stat", "rb") as file:  # noqa: PTH123
-                if file.read().rpartition(b") ")[2][:1] == b"R":
+class Others:
+    """The threads of this process other than the one that made this. Files stay open between looks."""
+
+    def __init__(self) -> None:
+        self._own = str(threading.get_native_id())
+        self._open: dict[str, int] = {}
+
+    def at_work(self) -> bool:
+        """Whether one of them runs, or waits for a CPU to run on."""
+        for thread in os.listdir("/proc/self/task"):  # noqa: PTH208
+            if thread == self._own:
+                continue
+            try:
+                if thread not in self._open:
+                    self._open[thread] = os.open(f"/proc/self/task/{thread}/stat", os.O_RDONLY | os.O_CLOEXEC)
+                if os.pread(self._open[thread], 512, 0).rpartition(b") ")[2][:1] == b"R":
                     return True
-    return False
+            except OSError:  # it has ended
+                self._let_go(thread)
+        return False
 
+    def wait(self, deadline_s: float = 5.0) -> None:
+        """Wait until what has reached this process is handled by its threads: what it knows of the graph is then
+        complete up to all that was sent before."""
+        deadline = time.monotonic() + deadline_s
+        while self.at_work() and time.monotonic() < deadline:
+            time.sleep(0.0005)
 
-def wait_for_others(deadline_s: float = 5.0) -> None:
-    """Wait until what has reached this process is handled by its threads: what it knows of the graph is then complete
-    up to all that was sent before."""
-    deadline = time.monotonic() + deadline_s
-    while others_at_work() and time.monotonic() < deadline:
-        time.sleep(0.0005)
+    def close(self) -> None:
+        """Close every file."""
+        for thread in list(self._open):
+            self._let_go(thread)
+
+    def _let_go(self, thread: str) -> None:
+        if thread in self._open:
+            os.close(self._open.pop(thread))
 
 
 class Threads:

@@ -14,7 +14,7 @@ from grader.rig.fence import AFTER_CLOCK, AFTER_MESSAGES, Fence, Gone
 from grader.rig.graph import Graph
 from grader.rig.meeting import let_in, wait_for_nodes, wait_until_connected
 from grader.rig.publishers import ReferencePublishers
-from grader.rig.quiet import wait_for_others
+from grader.rig.quiet import Others
 from grader.rig.recorder import Recorder
 from grader.rig.ros import Ros
 from grader.rig.stopped import Stopped
@@ -67,6 +67,7 @@ class Rig:
         ros.executor.add_node(node)
         self._graph = Graph(node, ros.names)
         self._fence = Fence(ros, node, student)
+        self._others = Others()
         self._nodes: list[str] = []
         self._sim_time = False
         self._met = False
@@ -87,6 +88,7 @@ class Rig:
         except Gone:
             ending = cut_short(self._student, self._what, self._met, len(self._publishers.sent))
         self._fence.close()
+        self._others.close()
         self._ros.turn()
         end_points = self._graph.end_points()
         self._student.kill()
@@ -134,10 +136,10 @@ class Rig:
 
     def _let_late_publishers_in(self, came: int) -> None:
         """A node may make a publisher only when it has something to publish; `came` messages had come before."""
-        wait_for_others()
+        self._others.wait()
         late = self._recorder.newcomers()
         for topic in late:
-            let_in(self._ros, self._student, self._fence, self._recorder, topic, came)
+            let_in(self._ros, self._student, self._fence, self._others, self._recorder, topic, came)
         if late:
             self._fence.wait(AFTER_MESSAGES)
 
