@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
 from quiet_audit import Silence
+from removing import remove_check
 
 from grader.audit.audit import audit
 from grader.audit.result import Audit
@@ -13,7 +15,11 @@ from grader.crew import Crew
 from grader.exercise import load
 from grader.grading import Options
 
-EXERCISES = sorted(file.parent for file in (Path(__file__).parents[2] / "exercises").glob("*/exercise.toml"))
+ROOT = Path(__file__).parents[2]
+
+#: Every exercise of the course, and the one that a new course begins with.
+COURSES = (ROOT, ROOT / "spinbook" / "new" / "template")
+EXERCISES = [file.parent for course in COURSES for file in sorted(course.glob("exercises/*/exercise.toml"))]
 
 
 def to_mend(result: Audit) -> str:
@@ -37,6 +43,43 @@ def test_the_whole_audit_finds_nothing_to_mend(folder: Path, crew: Crew, cache: 
 
 
 @pytest.mark.soak
+@pytest.mark.timeout(3600)
 def test_joint_velocity_has_enough_mutants(crew: Crew, cache: Path) -> None:
-    result = audit(load(EXERCISES[0].parent / "joint_velocity"), Options(), crew, Silence())
+    result = audit(load(ROOT / "exercises" / "joint_velocity"), Options(), crew, Silence())
     assert result.different >= 150
+
+
+#: Check of joint_velocity -> its file, and a mistake that nothing else catches.
+REMOVED = {
+    "test_names_in_the_order_of_the_message": ("checks.py", "sorted_names.py"),
+    "test_frame_is_copied": ("hidden_checks.py", "forgets_the_frame.py"),
+    "test_publisher_restarts": ("hidden_checks.py", "leaves_out_jumps.py"),
+}
+
+CAN_NOT_FAIL = '''
+
+@check(points=7, hint="Publish joints.", depends=[test_publishes_velocities])
+def test_some_joints(chapter: Run) -> None:
+    """There are some joints in it."""
+    assert len(chapter.sent) >= len(chapter.received) - 1000, "some joints were expected"
+'''
+
+
+@pytest.mark.soak
+@pytest.mark.timeout(3600)
+def test_a_weak_copy_of_joint_velocity_is_told_so_check_by_check(tmp_path: Path, crew: Crew, cache: Path) -> None:
+    for folder in ("exercises", "solutions"):
+        shutil.copytree(ROOT / folder / "joint_velocity", tmp_path / folder / "joint_velocity")
+    folder = tmp_path / "exercises" / "joint_velocity"
+    for check, (file, _) in REMOVED.items():
+        remove_check(folder / file, check)
+    with (folder / "checks.py").open("a", encoding="utf-8") as checks:
+        checks.write(CAN_NOT_FAIL)
+    told = to_mend(audit(load(folder), Options(), crew, Silence()))
+    for check, (_, mistake) in REMOVED.items():
+        assert f"the mistake mistakes/{mistake}" in told
+        assert f"is to be caught by {check}: there is no such check" in told
+    assert "no mutant and no mistake fails test_some_joints: can it fail at all?" in told
+    assert "leaves out answer.header = message.header" in told or "drops the frame" in told, (
+        "a mutant that survives now"
+    )

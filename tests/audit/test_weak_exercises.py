@@ -6,6 +6,7 @@ import re
 
 import pytest
 from quiet_audit import Auditing
+from removing import remove_check
 from small_exercise import SmallExercise
 
 from grader.audit.result import Audit
@@ -18,15 +19,6 @@ SOLUTION = "solutions/doubler/solution.py"
 def told(result: Audit, about: str) -> list[str]:
     """What the audit found about a check, a mistake or a mutant."""
     return [problem.found for problem in result.problems if problem.about == about]
-
-
-def without(small: SmallExercise, file: str, check: str) -> None:
-    """Remove a check from a file."""
-    path = small.course / file
-    text = path.read_text(encoding="utf-8")
-    shorter = re.sub(rf"@check\((?:(?!@check).)*?\ndef {check}\b.*?(?=\n@check|\Z)", "", text, flags=re.DOTALL)
-    assert shorter != text
-    path.write_text(shorter, encoding="utf-8")
 
 
 def test_a_sound_exercise_has_nothing_to_mend(small: SmallExercise, audited: Auditing) -> None:
@@ -45,7 +37,7 @@ def test_a_weak_copy_is_told_so_check_by_check(small: SmallExercise, audited: Au
         (HIDDEN, "test_nothing_below_zero"): "mistakes/any_number.py",
     }
     for file, check in removed:
-        without(small, file, check)
+        remove_check(small.course / file, check)
     small.change(
         CHECKS,
         '@check(points=1, hint="Look at the name',
