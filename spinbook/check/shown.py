@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import io
 from dataclasses import dataclass
+from itertools import groupby
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -14,6 +15,7 @@ from rich.console import Console
 from grader.checking.wrong import Finding
 from grader.exercise import Exercise
 from grader.feedback import feedback_plot
+from grader.feedback.outcomes import advice
 from grader.feedback.told import Told, told
 from grader.grading import Grade
 from grader.report import self_check
@@ -29,18 +31,34 @@ LONGEST = 4000
 
 @dataclass(frozen=True)
 class Row:
-    """One check as it is shown. `facts` are label and value; `remark` is what they leave out."""
+    """One check as it is shown. `facts` are label and value; `remark` is what they leave out.
+
+    `before` stands above the first of several checks that all wait for the same one.
+    """
 
     check: Told
-    facts: tuple[tuple[str, str], ...]
-    remark: str
+    facts: tuple[tuple[str, str], ...] = ()
+    remark: str = ""
+    before: str = ""
 
 
 def as_text(grade: Grade, exercise: Exercise) -> str:
     """What the terminal says, without colours."""
     out = io.StringIO()
     show(grade, exercise, Console(file=out, width=WIDTH, color_system=None, highlight=False))
-    return "\n".join(line.rstrip() for line in out.getvalue().rstrip("\n").split("\n"))
+    lines = [line.rstrip() for line in out.getvalue().rstrip("\n").split("\n")]
+    return "\n".join([*lines, f"Next: {next_step(grade, exercise)}"])
+
+
+def next_step(grade: Grade, exercise: Exercise) -> str:
+    """What a beginner does now."""
+    if grade.full_marks:
+        return f"hand in. Type %submit {exercise.name} into a new cell and run it."
+    if grade.outcome == "host-error":
+        return "run this cell again."
+    node = exercise.file_name.removesuffix(".py")
+    what = "mend the first ✗" if grade.outcome == "graded" else "mend that"
+    return f"{what}, run the cell that begins with %%node {node}, then this one again."
 
 
 def as_html(grade: Grade, exercise: Exercise) -> str:
@@ -58,12 +76,14 @@ def as_html(grade: Grade, exercise: Exercise) -> str:
         title=exercise.title,
         total=self_check.total(grade),
         full=grade.full_marks,
-        outcome=grade.outcome,
         message=grade.message,
-        rows=[_row(check, grade) for check in told(grade)],
+        steps=_steps(grade, exercise),
+        log=_end(grade.log) if grade.outcome != "graded" else "",
+        rows=_rows(grade),
         # As an image an SVG can neither run nor load anything, whatever is in it.
         plot=Markup("data:image/svg+xml;base64,") + base64.b64encode(plot.encode()).decode() if plot else "",
         plot_says=_plot_says(grade),
+        next_step=next_step(grade, exercise),
         to_come=self_check.to_come(grade),
         standing=self_check.standing(grade),
     )
@@ -73,11 +93,33 @@ def _harmless(value: Any) -> Any:
     return printable(value, LONGEST) if isinstance(value, str) and not isinstance(value, Markup) else value
 
 
+def _steps(grade: Grade, exercise: Exercise) -> tuple[str, ...]:
+    """What to do about a program that did not come through; nothing where a plain grade tells all."""
+    found = advice(grade, exercise)
+    return found.steps if found else ()
+
+
+def _end(log: str) -> str:
+    """The end of a log, where the reason for an end stands."""
+    return log.strip()[-LONGEST:]
+
+
+def _rows(grade: Grade) -> list[Row]:
+    rows = []
+    for needs, group in groupby(told(grade), key=lambda check: check.needs):
+        first, *rest = group
+        if needs:
+            which = f"The next {len(rest) + 1} checks" if rest else "The next check"
+            before = f"{which} can't be judged before this is right: {' '.join(needs)}"
+            rows += [Row(first, before=before), *(Row(check) for check in rest)]
+        else:
+            rows += [_row(check, grade) for check in (first, *rest)]
+    return rows
+
+
 def _row(check: Told, grade: Grade) -> Row:
-    if check.needs:
-        return Row(check, (), "Can't be judged before this is right: " + " ".join(check.needs))
     if not check.finding:
-        return Row(check, (), "")
+        return Row(check)
     return Row(check, *_facts(check.finding, grade))
 
 

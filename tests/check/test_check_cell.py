@@ -45,9 +45,13 @@ def test_the_starter_gets_no_points_and_is_told_what_to_mend_first(kernel: Kerne
         assert re.search(rf"\b0 of {PUBLIC} public checks, 0 of \d+ points", told)
         assert re.search(r"\d+ hidden checks \(\d+ points\) will be judged after you hand in\.", told)
         assert "This is a self-check, not your grade." in told
+        assert "Next:" in told
+        assert "mend the first ✗, run the cell that begins with %%node joint_velocity, then this one again." in told
     assert text.count("Can't be judged before this is right: It hears /joint_commands") == PUBLIC - 1
     assert html.count('class="sb-failed"') == 1
     assert html.count('class="sb-blocked"') == PUBLIC - 1
+    waiting = f"The next {PUBLIC - 1} checks can&#39;t be judged before this is right: It hears /joint_commands"
+    assert html.count(waiting) == 1, "what all wait for is told once"
 
 
 def test_a_right_cell_passes_every_public_check(kernel: Kernel) -> None:
@@ -56,6 +60,7 @@ def test_a_right_cell_passes_every_public_check(kernel: Kernel) -> None:
     assert re.search(rf"\b{PUBLIC} of {PUBLIC} public checks, (\d+) of \1 points\.", text)
     assert html.count('class="sb-passed"') == PUBLIC
     assert "data:image/svg+xml;base64," in html
+    assert "Next: hand in. Type %submit joint_velocity into a new cell" in text
 
 
 def test_a_mistake_is_told_with_what_was_expected_what_came_when_and_which_joint(kernel: Kernel) -> None:
@@ -95,7 +100,7 @@ def test_a_program_that_can_not_start_is_told_with_its_line(kernel: Kernel) -> N
 
     line = 1 + next(i for i, line in enumerate(broken.split("\n"), start=1) if "def main(:" in line)
     for told in (text, html):
-        assert "did-not-start" in told
+        assert "Your program did not start: SyntaxError" in told
         assert f"line {line}" in told, "lines are counted as in the cell, the one with %%node included"
 
 
@@ -103,9 +108,10 @@ def test_a_loop_without_end_is_told_and_the_kernel_goes_on(kernel: Kernel) -> No
     looping = solution().replace("answer = JointState()", "while True: pass")
     assert looping != solution()
 
-    text, _ = texts(shown_of(kernel, looping))
+    text, html = texts(shown_of(kernel, looping))
 
-    assert "timed-out" in text
+    for told in (text, html):
+        assert "Is there an endless loop?" in told
     assert kernel.run("print(6 * 7)").text == "42\n"
 
 

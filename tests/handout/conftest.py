@@ -17,6 +17,9 @@ ROOT = Path(__file__).parents[2]
 #: Stands wherever an author may have written what students must not see.
 NOTE = "INSTRUCTOR-NOTE-4711"
 
+#: The real course's chapter with the exercise in it.
+CHAPTER = "03-nodes-and-topics.md"
+
 SMALL_CHAPTER = f"""# A small chapter
 
 A node that publishes. <!-- {NOTE} -->
@@ -86,8 +89,7 @@ def copy_course(root: Path) -> CourseFolder:
     shutil.copy(ROOT / "course.toml", root)
     for folder in ("chapters", "exercises", "solutions"):
         shutil.copytree(ROOT / folder, root / folder, ignore=shutil.ignore_patterns("__pycache__"))
-    chapter = next((root / "chapters").glob("*.md"))
-    append(chapter, f"\n<!-- {NOTE}\nover two lines -->\n")
+    append(root / "chapters" / CHAPTER, f"\n<!-- {NOTE}\nover two lines -->\n")
     exercise = root / "exercises" / "joint_velocity"
     append(exercise / "task.md", f"\n<!-- {NOTE} -->\n")
     append(exercise / "exercise.toml", f"# {NOTE}\n")

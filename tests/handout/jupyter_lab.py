@@ -102,7 +102,8 @@ def opened_notebook(browser: Browser, url: str, name: str) -> Iterator[Notebook]
         page.set_default_timeout(LONG)
         page.goto(url.format(name))
         page.locator(".jp-Notebook .jp-CodeCell").first.wait_for()
-        page.locator('.jp-Notebook-ExecutionIndicator[data-status="idle"]').first.wait_for()
+        # The notebook's own sign is green before there is a kernel; what ran then would be lost.
+        page.locator(".jp-StatusBar-TextItem, .jp-StatusBar-GroupItem").get_by_text("| Idle").first.wait_for()
         yield Notebook(page)
     finally:
         context.close()

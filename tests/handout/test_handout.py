@@ -12,7 +12,7 @@ import pytest
 import yaml
 
 from grader.exercise import load
-from handout.conftest import NOTE, ROOT, HandedOut, append, copy_course
+from handout.conftest import CHAPTER, NOTE, ROOT, HandedOut, append, copy_course
 from spinbook.handout.comments import without_comments
 
 EXERCISE = ROOT / "exercises" / "joint_velocity"
@@ -133,7 +133,7 @@ def test_the_students_exercise_is_the_authors_without_what_is_not_for_them(real:
 
 def test_a_chapter_or_a_task_that_gives_something_away_is_refused(tmp_path: Path) -> None:
     course = copy_course(tmp_path / "course")
-    chapter = next((course.root / "chapters").glob("*.md"))
+    chapter = course.root / "chapters" / CHAPTER
     lines = (SOLUTIONS / "solution.py").read_text(encoding="utf-8").split("\n")
     begin = next(i for i, line in enumerate(lines) if "is not None and stamp >" in line)
     append(chapter, "\n```text\n" + "\n".join(lines[begin : begin + 3]) + "\n```\n")
