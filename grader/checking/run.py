@@ -162,12 +162,15 @@ class Run:
 
         must_be_silent(self.exchanges[:1], self)
 
-    def wrong(self, exchange: Exchange, text: str, part: str = "", expected: str = "", got: str = "") -> NoReturn:
-        """End the check: `text` tells what is wrong with the answers to this exchange's message."""
+    def wrong(self, exchange: Exchange, text: str, part: str = "", expected: object = "", got: object = "") -> NoReturn:
+        """End the check: `text` tells what is wrong with the answers to this exchange's message.
+
+        `part` is what of the message is wrong, such as the joint; `expected` and `got` stand in reports on their own.
+        """
         where = f"Message {exchange.number} of {len(self.sent)} ({exchange.sent.at:.2f} s after the start"
         where += f"; {self.title})" if self.title else ")"
         told = f"{where}{f', {part}' if part else ''}: {text}"
-        raise Wrong(Finding(told, self.scenario, exchange.number, exchange.sent.at, part, expected, got))
+        raise Wrong(Finding(told, self.scenario, exchange.number, exchange.sent.at, part, str(expected), str(got)))
 
 
 def _answers(recording: Recording) -> dict[int, list[Message]]:

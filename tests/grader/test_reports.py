@@ -8,14 +8,19 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
+from jsonschema import Draft202012Validator
 from rich.console import Console
 
+from grader.checking import Run
+from grader.checking.wrong import Wrong
 from grader.grading import Grade
 from grader.grading.grading import Grading
 from grader.report.as_json import as_json
 from grader.report.plot import draw
 from grader.report.terminal import show
 from grader.submission.reading import of_source
+
+SCHEMA = Path(__file__).parents[2] / "docs" / "grade.schema.json"
 
 HOSTILE = """
     def publish_velocities(self, message, positions, dt):
@@ -44,8 +49,20 @@ def test_the_terminal_shows_no_control_codes_of_a_students(hostile: Grade, gradi
     assert "left_shoulder_pitch" in text.getvalue()
 
 
-def test_the_json_is_json(hostile: Grade) -> None:
-    assert json.loads(as_json(hostile))["outcome"] == "graded"
+def test_the_json_is_json_and_as_the_schema_says(hostile: Grade) -> None:
+    grade = json.loads(as_json(hostile))
+    assert grade["outcome"] == "graded"
+    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
+    Draft202012Validator({"$defs": schema["$defs"], "$ref": "#/$defs/grade"}).validate(grade)
+
+
+def test_what_a_check_expected_is_text_whatever_its_author_gives(hostile: Grade, grading: Grading) -> None:
+    run = Run(grading.spinner.exercise, hostile.recordings["chapter"], hostile.references["chapter"], "a title")
+    with pytest.raises(Wrong) as caught:
+        run.wrong(run.exchanges[1], "too few.", "left_elbow", expected=6, got=5)
+    finding = caught.value.finding
+    assert (finding.expected, finding.got, finding.message) == ("6", "5", 2)
+    assert finding.text == "Message 2 of 100 (0.10 s after the start; a title), left_elbow: too few."
 
 
 def test_the_plot_is_a_picture_and_the_same_each_time(hostile: Grade, grading: Grading, tmp_path: Path) -> None:
