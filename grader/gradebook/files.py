@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from datetime import datetime
 from pathlib import Path
 
 from grader.classroom.entry import Entry
@@ -16,16 +17,19 @@ from grader.gradescope.results import results_json
 BYTE_ORDER_MARK = "\ufeff"
 
 
-def write_gradebook(results: Path, exercise: Exercise, entries: Sequence[Entry]) -> tuple[Path, ...]:
+def write_gradebook(
+    results: Path, exercise: Exercise, entries: Sequence[Entry], due: datetime | None = None
+) -> tuple[Path, ...]:
     """Write a class's grades into the folder `results`, and return the files, in order of students' ids.
 
     `grades.csv`, `nbgrader.csv`, `canvas.csv`, `moodle.csv`, `junit.xml`, and in each student's folder `results.json`
-    for Gradescope. Each is written whole or not at all. Raises OSError when the folder can't be written.
+    for Gradescope. `due` is when the work was due, which nbgrader tells. Each is written whole or not at all. Raises
+    OSError when the folder can't be written.
     """
     ordered = sorted(entries, key=lambda entry: entry.student.id)
     contents = {
         results / "grades.csv": BYTE_ORDER_MARK + grades(exercise, ordered),
-        results / "nbgrader.csv": nbgrader(exercise, ordered),
+        results / "nbgrader.csv": nbgrader(exercise, ordered, due),
         results / "canvas.csv": canvas(exercise, ordered),
         results / "moodle.csv": moodle(exercise, ordered),
         results / "junit.xml": junit(exercise, ordered),

@@ -35,7 +35,7 @@ def grades(exercise: Exercise, entries: Sequence[Entry]) -> str:
     return csv_text([*header, "message", "file", "submitted", *checks], rows)
 
 
-def nbgrader(exercise: Exercise, entries: Sequence[Entry]) -> str:
+def nbgrader(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = None) -> str:
     """What `nbgrader export` writes (nbgrader/plugins/export.py, CsvExportPlugin): its columns, times in UTC.
 
     `late_submission_penalty` is what was taken for lateness, `raw_score` the score before that.
@@ -48,7 +48,7 @@ def nbgrader(exercise: Exercise, entries: Sequence[Entry]) -> str:
         raw = None if entry.final is None else entry.final + penalty
         rows.append(
             [
-                *(exercise.name, _utc(getattr(exercise, "due", None)), _utc(entry.submitted), entry.student.id),
+                *(exercise.name, _utc(due), _utc(entry.submitted), entry.student.id),
                 *(last, first, entry.student.email, raw, None if raw is None else penalty),
                 *(entry.final, entry.grade.points),
             ]
@@ -123,7 +123,4 @@ def _comment(entry: Entry) -> str:
 
 
 def _utc(moment: datetime | None) -> str:
-    if not isinstance(moment, datetime):
-        return ""
-    aware = moment if moment.tzinfo else moment.replace(tzinfo=timezone.utc)
-    return str(aware.astimezone(timezone.utc).replace(tzinfo=None))
+    return str(moment.astimezone(timezone.utc).replace(tzinfo=None)) if moment else ""

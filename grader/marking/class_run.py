@@ -14,7 +14,7 @@ from rich.console import Console
 from grader.classroom import Entry, Skipped
 from grader.classroom.writing import write
 from grader.crew import Crew
-from grader.deadline import Adjusting, deadline_of, overrides_in
+from grader.deadline import Adjusting, Deadline, deadline_of, overrides_in
 from grader.exercise import Exercise
 from grader.gradebook.files import write_gradebook
 from grader.grading import grading_of
@@ -56,7 +56,7 @@ def grade_class(exercise: Exercise, order: Order, console: Console) -> int:
                 plan = marking.plan(intake, submissions, lambda who: "*" in order.regrade or who in order.regrade)
                 try:
                     _grade(marking, plan, submissions, console)
-                    return _finish(marking, grading, intake, console)
+                    return _finish(marking, grading, intake, console, adjusting.deadline)
                 except KeyboardInterrupt:
                     kept, wanted = len(marking.entries), len(intake.handed_in)
                     told = f"Stopped. {kept} of {wanted} are graded and kept; the same command goes on from there."
@@ -83,12 +83,12 @@ def _grade(marking: Marking, plan: Plan, submissions: Mapping[str, Submission], 
             progress.done(entry, difference(former.grade, entry.grade) if former else "")
 
 
-def _finish(marking: Marking, grading: Grading, intake: Intake, console: Console) -> int:
+def _finish(marking: Marking, grading: Grading, intake: Intake, console: Console, deadline: Deadline | None) -> int:
     every = sorted(marking.entries.values(), key=lambda entry: entry.student.id)
     faults = [entry for entry in every if entry.final is None]
     entries = [entry for entry in every if entry.final is not None]
     folder = marking.results.folder
-    write_gradebook(folder, marking.exercise, entries)
+    write_gradebook(folder, marking.exercise, entries, deadline.due if deadline else None)
     asked = [Skipped(", ".join(question.files), str(question)) for question in intake.questions]
     misconceptions = grouped(entries, _signatures(grading, entries, console))
     skipped = [*asked, *intake.skipped]

@@ -52,7 +52,7 @@ class Cluster:
             for who, submission in submissions.items()
         }
         try:
-            for future in as_completed(list(asked)):
+            for future in as_completed(list(asked), loop=self.client.loop):
                 who = asked[future]
                 error = future.exception()
                 if error is None:

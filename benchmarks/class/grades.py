@@ -1,0 +1,55 @@
+"""Compares the grades in a class's results with what each must be."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+from students import Expected, Handed
+
+from grader.intake.handed_in import student_id
+
+
+def wrong_with(handed: Handed, results: Path) -> str:
+    """Why a student's grade is not what it must be, or nothing."""
+    file = results / student_id(handed.student) / "grade.json"
+    try:
+        entry = json.loads(file.read_text(encoding="utf-8"))
+    except OSError:
+        return "there is no grade"
+    return _wrong(entry, handed.expected)
+
+
+def _wrong(entry: dict[str, Any], expected: Expected) -> str:
+    grade = entry["grade"]
+    verdicts: list[dict[str, Any]] = grade["verdicts"]
+    failed = {verdict["name"] for verdict in verdicts if verdict["status"] == "failed"}
+    if grade["outcome"] not in expected.outcomes:
+        return f"{grade['outcome']}, not {' or '.join(expected.outcomes)}: {grade['message']}"
+    earned = sum(verdict["points"] for verdict in verdicts if verdict["status"] == "passed")
+    if not entry["final"] == grade["score"] == earned:
+        return f"final {entry['final']}, score {grade['score']}, but the checks that it passes give {earned}"
+    full = grade["score"] == grade["points"]
+    right = {"zero": grade["score"] == 0, "full": full, "less": not full, "any": True}
+    if not right[expected.score]:
+        return f"{grade['score']:g} of {grade['points']:g} points, not {expected.score}; it fails {sorted(failed)}"
+    if expected.fails is not None:
+        if failed != expected.fails:
+            return f"it fails {sorted(failed)}, not {sorted(expected.fails)}"
+        blocked = {name: set(v["blocked_by"]) for v in verdicts if v["status"] == "blocked" for name in [v["name"]]}
+        if loose := [name for name, by in blocked.items() if not by & (failed | set(blocked))]:
+            return f"blocked by nothing that fails: {loose}"
+    told = _told(grade)
+    if missing := [words for words in expected.words if not re.search(words, told, re.IGNORECASE)]:
+        return f"it is not told {missing}: {told[:200]}"
+    if leaked := [word for word in expected.never if word in grade["log"]]:
+        return f"an attack has worked: {leaked}"
+    return ""
+
+
+def _told(grade: dict[str, Any]) -> str:
+    findings = [verdict["finding"]["text"] for verdict in grade["verdicts"] if verdict["finding"]]
+    titles = [verdict["title"] for verdict in grade["verdicts"] if verdict["status"] == "failed"]
+    return "\n".join([grade["message"], *findings, *titles])

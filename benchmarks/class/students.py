@@ -1,0 +1,148 @@
+"""A class of any size, made from the right solutions, the usual mistakes, hostile programs and odd files.
+
+The same size and seed make the same class. With each submission goes what its grade must be.
+"""
+
+from __future__ import annotations
+
+import ast
+import random
+import re
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import cycle, islice
+from pathlib import Path
+from typing import Any
+
+from variants import as_notebook, as_upload, reworded
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+ROOT = Path(__file__).parents[2]
+EXERCISE = "joint_velocity"
+FILE = f"{EXERCISE}.py"
+SOLUTIONS = ROOT / "solutions" / EXERCISE
+HOSTILE = ROOT / "tests" / "hostile"
+
+sys.path.append(str(HOSTILE))
+from odd_files import ODD_FILES, OddFile  # noqa: E402
+
+#: Of a class this share hands in mistakes, hostile programs and files that are odd as files; the rest is right.
+MISTAKEN, ATTACKING, ODD = 0.30, 0.12, 0.03
+
+#: An empty folder hands in nothing, the link needs a file beside the student's folder, the cells are 100 MB to write.
+LEFT_OUT = {"folder", "symlink_to_a_secret", "million_cells"}
+
+FIRST = (
+    *("Ada", "Ali", "Amara", "Ana", "Ben", "Chen", "Dina", "Elif", "Emil", "Femi", "Grace", "Hana", "Ines", "Ivan"),
+    *("Jon", "Kofi", "Lena", "Leo", "Mai", "Mira", "Nils", "Nora", "Omar", "Priya"),
+)
+LAST = (
+    *("Abe", "Berg", "Costa", "Diaz", "Eriksen", "Fischer", "Gupta", "Haddad", "Ito", "Jansen", "Kaya", "Lund"),
+    *("Mbeki", "Novak", "Okoro", "Popov", "Rossi", "Sato"),
+)
+
+
+@dataclass(frozen=True)
+class Expected:
+    """What a grade must be. `fails` are exactly the checks that fail, where that is known; the rest is as in
+    tests/hostile/expected.toml.
+    """
+
+    outcomes: tuple[str, ...] = ("graded",)
+    score: str = "full"
+    fails: frozenset[str] | None = None
+    words: tuple[str, ...] = ()
+    never: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Handed:
+    """One student's submission: whose, of which kind, made from what, and how it is written into a folder."""
+
+    student: str
+    kind: str
+    origin: str
+    expected: Expected
+    write: Callable[[Path], object]
+
+
+def the_class(count: int, seed: int) -> list[Handed]:
+    """`count` students in alphabetical order, who hand in as a real class does."""
+    chance = random.Random(seed)
+    attacking, odd, mistaken = round(ATTACKING * count), round(ODD * count), round(MISTAKEN * count)
+    origins = [
+        *islice(cycle(_attacks(chance)), attacking),
+        *islice(cycle(_odd(chance)), odd),
+        *islice(cycle(_shuffled(sorted((SOLUTIONS / "mistakes").glob("*.py")), chance)), mistaken),
+        *islice(cycle([SOLUTIONS / "solution.py", *sorted((SOLUTIONS / "right").glob("*.py"))]), count),
+    ][:count]
+    chance.shuffle(origins)
+    return [_handed(name, origin, chance) for name, origin in zip(_names(count, chance), origins, strict=True)]
+
+
+def write(made: list[Handed], folder: Path) -> None:
+    """Write the class's submissions, a folder a student."""
+    for handed in made:
+        (folder / handed.student).mkdir(parents=True)
+        handed.write(folder / handed.student)
+
+
+def _names(count: int, chance: random.Random) -> list[str]:
+    every = [f"{first} {last}" for last in LAST for first in FIRST]
+    while len(every) < count:
+        every += [f"{name} {len(every)}" for name in every]
+    return sorted(chance.sample(every, k=count))
+
+
+def _shuffled(files: list[Any], chance: random.Random) -> list[Any]:
+    return chance.sample(files, k=len(files))
+
+
+def _attacks(chance: random.Random) -> list[Path]:
+    return _shuffled(sorted((HOSTILE / "submissions").glob("*.py")), chance)
+
+
+def _odd(chance: random.Random) -> list[OddFile]:
+    return _shuffled([odd for odd in ODD_FILES if odd.name not in LEFT_OUT], chance)
+
+
+def _handed(student: str, origin: Path | OddFile, chance: random.Random) -> Handed:
+    if isinstance(origin, OddFile):
+        return Handed(student, "odd file", origin.name, Expected(origin.outcome, origin.score), origin.make)
+    if origin.parent.parent == HOSTILE:
+        content = origin.read_bytes()
+        expected = _expected_of(origin.stem)
+        return Handed(student, "hostile", origin.stem, expected, lambda folder: (folder / FILE).write_bytes(content))
+    source = origin.read_text(encoding="utf-8")
+    fails = frozenset(_caught_by(source)) if origin.parent.name == "mistakes" else frozenset()
+    kind, score = ("mistake", "less") if fails else ("right", "full")
+    name, text = _packed(reworded(source, student, chance), chance)
+    return Handed(
+        student, kind, origin.stem, Expected(("graded",), score, fails), lambda f: (f / name).write_bytes(text)
+    )
+
+
+def _packed(source: str, chance: random.Random) -> tuple[str, bytes]:
+    """As a file, or now and then as a notebook, or as the upload that `spinbook submit` writes."""
+    kind = chance.choices(("py", "ipynb", "zip"), (7, 2, 1))[0]
+    if kind == "ipynb":
+        return "week3.ipynb", as_notebook(source, EXERCISE).encode()
+    if kind == "zip":
+        return f"{EXERCISE}.zip", as_upload(source, FILE, EXERCISE)
+    return FILE, source.encode()
+
+
+def _caught_by(source: str) -> Iterator[str]:
+    """The checks that a mistake's header names."""
+    yield from re.findall(r"^- (test_\w+)$", ast.get_docstring(ast.parse(source)) or "", re.MULTILINE)
+
+
+def _expected_of(attack: str) -> Expected:
+    told = tomllib.loads((HOSTILE / "expected.toml").read_text(encoding="utf-8"))[attack]
+    words, never = tuple(told.get("words", ())), tuple(told.get("never", ()))
+    return Expected(tuple(told["outcome"]), told["score"], None, words, never)

@@ -1,0 +1,145 @@
+"""Late work: what exercise.toml may say of it, what it costs, and what the instructor decides otherwise."""
+
+from __future__ import annotations
+
+from datetime import datetime, timedelta, timezone
+from pathlib import Path
+
+import plain_grades as plain
+import pytest
+
+from grader.deadline import Adjusting, Deadline, OverridesError, deadline_of, overrides_in
+from grader.exercise import Exercise, ExerciseError, load
+
+DUE = datetime(2026, 11, 22, 23, 59, tzinfo=timezone.utc)
+
+
+@pytest.fixture
+def exercise(tmp_path: Path) -> Exercise:
+    """An exercise of the test's own, without a deadline."""
+    folder = tmp_path / "exercises" / "joint_velocity"
+    folder.mkdir(parents=True)
+    for name in ("exercise.toml", "task.md"):
+        (folder / name).write_bytes((plain.ROOT / "exercises" / "joint_velocity" / name).read_bytes())
+    return load(folder)
+
+
+def saying(exercise: Exercise, *lines: str) -> Deadline | None:
+    with (exercise.folder / "exercise.toml").open("a", encoding="utf-8") as file:
+        file.write("\n[deadline]\n" + "\n".join(lines) + "\n")
+    return deadline_of(exercise)
+
+
+def after(**length: float) -> datetime:
+    return DUE + timedelta(**length)
+
+
+def test_without_a_deadline_nothing_is_late(exercise: Exercise) -> None:
+    assert deadline_of(exercise) is None
+    assert Adjusting(None)(plain.entry(plain.RIGHT)) == ()
+
+
+@pytest.mark.parametrize(
+    ("handed_in", "lost"),
+    [
+        (DUE, 0),
+        (after(minutes=15), 0),
+        (after(minutes=16), 10),
+        (after(hours=24), 10),
+        (after(hours=24, seconds=1), 20),
+        (after(days=9), 50),
+        (after(days=11), 100),
+    ],
+)
+def test_each_day_that_has_begun_costs_up_to_a_most(exercise: Exercise, handed_in: datetime, lost: float) -> None:
+    deadline = saying(
+        exercise,
+        "due = 2026-11-22T23:59:00Z",
+        'grace = "15 minutes"',
+        'penalty = "10 % a day up to 50 %"',
+        "closes = 2026-12-03T00:00:00Z",
+    )
+    assert deadline
+    assert deadline.lost(handed_in) == lost
+
+
+def test_a_due_date_may_be_a_day_and_a_rule_may_be_by_the_hour(exercise: Exercise) -> None:
+    deadline = saying(exercise, "due = 2026-11-22", 'penalty = "1.5 % per hour"')
+    assert deadline
+    assert deadline.due == datetime(2026, 11, 22, 23, 59, 59).astimezone()
+    assert deadline.lost(deadline.due + timedelta(hours=2)) == 3.0
+
+
+@pytest.mark.parametrize(
+    ("lines", "told"),
+    [
+        (['penalty = "10 % a day"'], "has no due"),
+        (['due = "tomorrow"'], "due = 'tomorrow'"),
+        (["due = 2026-11-22", 'penalty = "ten percent"'], "penalty = 'ten percent'"),
+        (["due = 2026-11-22", 'penalty = "110 % a day"'], "110 %"),
+        (["due = 2026-11-22", 'grace = "soon"'], "grace = 'soon'"),
+        (["due = 2026-11-22", "late = 3"], "has 'late'"),
+    ],
+)
+def test_what_can_not_be_understood_names_the_file_and_what_to_write(
+    exercise: Exercise, lines: list[str], told: str
+) -> None:
+    with pytest.raises(ExerciseError, match=r"exercise\.toml") as error:
+        saying(exercise, *lines)
+    assert told in str(error.value)
+
+
+def adjusting(tmp_path: Path, *rows: str) -> Adjusting:
+    file = tmp_path / "overrides.csv"
+    file.write_text("student,points,due,reason\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    return Adjusting(Deadline(DUE, percent=10.0), overrides_in(file, {"ada", "ben"}))
+
+
+def test_lateness_is_that_of_the_hand_in_and_told_with_its_source(tmp_path: Path) -> None:
+    late = plain.entry(plain.HALF, submitted=after(days=1, hours=3), submitted_from="timestamp.txt")
+    [found] = adjusting(tmp_path)(late)
+    assert (found.kind, found.points) == ("late", -1.2)
+    assert found.reason == "handed in 1 day 3 h late, by timestamp.txt: 20 % of 6 points"
+
+
+def test_a_later_due_date_of_one_student_is_kept_with_its_reason(tmp_path: Path) -> None:
+    adjust = adjusting(tmp_path, "ada,,2026-11-24 12:00 +0000,was ill".replace(" +0000", "+00:00"))
+    late = plain.entry(plain.RIGHT, submitted=after(days=1), submitted_from="timestamp.txt")
+    [found] = adjust(late)
+    assert (found.kind, found.points) == ("override", 0.0)
+    assert found.reason.endswith("was ill")
+
+
+def test_points_may_be_added_beyond_full_marks(tmp_path: Path) -> None:
+    on_time = plain.entry(plain.RIGHT, submitted=DUE)
+    made = adjusting(tmp_path, "ada,+2.5,,found a mistake in the task")(on_time)
+    assert plain.entry(plain.RIGHT, adjustments=made).final == 12.5
+
+
+def test_points_that_are_set_count_late_or_not_also_after_a_fault_of_ours(tmp_path: Path) -> None:
+    adjust = adjusting(tmp_path, "ada,7,,graded by hand")
+    for grade in (plain.HALF, plain.FAULT):
+        late = plain.entry(grade, submitted=after(days=3))
+        assert plain.entry(grade, adjustments=adjust(late)).final == 7
+
+
+def test_nobody_gets_less_than_nothing(tmp_path: Path) -> None:
+    made = adjusting(tmp_path, "ada,-20,,copied")(plain.entry(plain.HALF, submitted=DUE))
+    assert plain.entry(plain.HALF, adjustments=made).final == 0
+
+
+@pytest.mark.parametrize(
+    ("row", "told"),
+    [
+        ("eve,5,,why", "nobody is called 'eve'"),
+        ("ada,5,,", "there is no reason"),
+        ("ada,,,why", "Give one of the two"),
+        ("ada,5,2026-11-24,why", "Give one of the two"),
+        ("ada,five,,why", "points = 'five'"),
+        ("ada,,soon,why", "due = 'soon'"),
+    ],
+)
+def test_a_row_with_a_mistake_is_told_with_its_line(tmp_path: Path, row: str, told: str) -> None:
+    with pytest.raises(OverridesError, match=r"overrides.csv:2: ") as error:
+        adjusting(tmp_path, row)
+    assert told in str(error.value)

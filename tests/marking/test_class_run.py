@@ -1,0 +1,188 @@
+"""A class is graded with one command: what comes out, what is done once, what is different, what is no score."""
+
+from __future__ import annotations
+
+import csv
+import fcntl
+import json
+import re
+import shutil
+from pathlib import Path
+
+import jsonschema
+import pytest
+from small_class import POINTS, ROOT, SmallClass, without_timings
+
+SCHEMA = json.loads((ROOT / "docs" / "grade.schema.json").read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module")
+def graded(tmp_path_factory: pytest.TempPathFactory, cache: Path) -> tuple[SmallClass, str]:
+    """A class that was graded, and what the command printed. Not to be changed."""
+    small = SmallClass(tmp_path_factory.mktemp("graded") / "course", cache)
+    code, printed = small.grade()
+    assert code == 0, printed
+    return small, printed
+
+
+@pytest.fixture
+def done(graded: tuple[SmallClass, str], tmp_path: Path) -> SmallClass:
+    """A graded class of the test's own."""
+    small = object.__new__(SmallClass)
+    small.__dict__ |= vars(graded[0])
+    small.folder = shutil.copytree(graded[0].folder, tmp_path / "course")
+    small.exercise = small.folder / "exercises" / graded[0].exercise.name
+    small.submissions = small.folder / "submissions"
+    return small
+
+
+def test_everybody_gets_what_is_theirs_whatever_others_hand_in(graded: tuple[SmallClass, str]) -> None:
+    small, printed = graded
+    assert small.finals() == POINTS
+    assert small.entry("fay")["grade"]["outcome"] == "did-not-start"
+    assert "6 submissions in a folder with a file or a folder a student." in printed
+    assert "fay: 0 of 20 points (did-not-start)" in printed
+    assert "6 grades: median 17 of 20 points, 2 with full marks." in printed
+
+
+def test_each_grade_is_as_the_published_schema_says(graded: tuple[SmallClass, str]) -> None:
+    validator = jsonschema.Draft202012Validator(SCHEMA)
+    for student in POINTS:
+        assert list(validator.iter_errors(graded[0].entry(student))) == []
+
+
+def test_all_files_lie_where_they_are_looked_for(graded: tuple[SmallClass, str]) -> None:
+    results = graded[0].folder / "results"
+    assert {file.name for file in results.iterdir() if file.is_file()} == {
+        *(".lock", "index.html", "grades.csv", "nbgrader.csv", "canvas.csv", "moodle.csv", "junit.xml"),
+    }
+    for student in POINTS:
+        there = {file.name for file in (results / student).iterdir()}
+        assert there - {"plot.svg"} == {"feedback.html", "grade.json", "results.json"}
+
+
+def test_students_stand_under_the_mistakes_that_they_make(graded: tuple[SmallClass, str]) -> None:
+    page = (graded[0].folder / "results" / "index.html").read_text(encoding="utf-8")
+    groups = re.findall(r"<summary><b>(\d+)</b> students?: (.*?)</summary>(.*?)</details>", page, re.DOTALL)
+    found = {what: re.findall(r'href="(\w+)/feedback.html"', names) for _, what, names in groups}
+    assert found == {
+        "Limits the speed forwards, and not backwards.": ["carl", "emil"],
+        "Never asks whether the speed is a number.": ["dora", "emil"],
+    }
+
+
+def test_what_is_unchanged_is_not_graded_again(done: SmallClass) -> None:
+    before = {file: file.read_bytes() for file in (done.folder / "results").rglob("*") if file.is_file()}
+    code, printed = done.grade()
+    assert code == 0, printed
+    assert "6 unchanged since they were graded." in printed
+    assert {file: file.read_bytes() for file in (done.folder / "results").rglob("*") if file.is_file()} == before
+
+
+def test_what_changed_is_graded_again_and_the_difference_is_told(done: SmallClass) -> None:
+    done.hand_in("carl", (done.submissions / "ana.py").read_text(encoding="utf-8") + "# carl\n")
+    code, printed = done.grade()
+    assert code == 0, printed
+    assert "5 unchanged since they were graded." in printed
+    assert "1/1 carl: 16 -> 20 points; up: test_too_fast_backwards (+4)" in printed
+    assert done.finals() == {**POINTS, "carl": 20}
+
+
+def test_regrade_grades_one_student_again_though_nothing_changed(done: SmallClass) -> None:
+    kept = done.folder / "results" / "dora" / "grade.json"
+    entry = json.loads(kept.read_text(encoding="utf-8"))
+    for verdict in entry["grade"]["verdicts"]:
+        # As an older, mistaken version might have judged.
+        if verdict["name"] == "test_not_a_number":
+            verdict |= {"status": "passed", "earned": 2, "finding": None}
+        if verdict["name"] == "test_burst":
+            verdict |= {"status": "failed", "earned": 0}
+    entry["grade"]["score"] = 18
+    kept.write_text(json.dumps(entry), encoding="utf-8")
+    code, printed = done.grade("--regrade", "dora")
+    assert code == 0, printed
+    assert "5 unchanged" in printed
+    assert "dora: 18 -> 18 points; up: test_burst (+2); down: test_not_a_number (-2)" in printed
+    code, printed = done.grade("--regrade", "nobody")
+    assert code == 2
+    assert "--regrade nobody: nobody is called so who handed something in." in printed
+
+
+def test_a_fault_of_ours_is_tried_again_listed_apart_and_never_scored(done: SmallClass, tmp_path: Path) -> None:
+    hidden = done.exercise / "hidden_checks.py"
+    right = hidden.read_text(encoding="utf-8")
+    tries = tmp_path / "tries"
+    breaks = f"""    if any(message.data < -100 for message in backwards.received):
+        with open({str(tries)!r}, "a") as file:
+            file.write("x")
+        raise RuntimeError("the check has a hole")
+    backwards.must_match("data")"""
+    hidden.write_text(right.replace('    backwards.must_match("data")', breaks), encoding="utf-8")
+    forwards = (done.submissions / "carl.py").read_text(encoding="utf-8")
+    done.hand_in("carl", forwards.replace("min(1.0, message.data)", "min(1.0, message.data * 1000)"))
+    (done.submissions / "emil.py").unlink()
+    code, printed = done.grade()
+    assert code == 3, printed
+    assert "not graded, a fault of ours or the machine's: carl" in printed
+    assert "the check has a hole" in printed
+    assert tries.read_text() == "xx", "tried once more, and no oftener"
+    assert "emil" in printed, "of an earlier run, and said so"
+    assert done.finals() == {**POINTS, "carl": None}
+    page = (done.folder / "results" / "index.html").read_text(encoding="utf-8")
+    assert "Not graded, by a fault of ours" in page
+    with (done.folder / "results" / "grades.csv").open(encoding="utf-8-sig") as file:
+        assert [row["student"] for row in csv.DictReader(file)] == ["ana", "bert", "dora", "fay"]
+    hidden.write_text(right, encoding="utf-8")
+    code, printed = done.grade()
+    assert code == 0, printed
+    assert done.finals()["carl"] is not None
+
+
+def test_two_files_of_one_student_are_a_question(done: SmallClass) -> None:
+    (done.submissions / "ana.ipynb").write_text("{}", encoding="utf-8")
+    code, printed = done.grade()
+    assert code == 1
+    assert "not graded: ana handed in 2 files: ana.ipynb, ana.py. Which one counts?" in printed
+    assert "ana.ipynb" in (done.folder / "results" / "index.html").read_text(encoding="utf-8")
+
+
+def test_late_work_loses_and_a_changed_due_date_needs_no_grading(done: SmallClass) -> None:
+    # All were handed in at 2026-11-18 11:06:40 UTC.
+    settings = done.exercise / "exercise.toml"
+    rule = '\n[deadline]\ndue = 2026-11-17T12:00:00Z\npenalty = "10 % a day up to 50 %"\n'
+    settings.write_text(settings.read_text(encoding="utf-8") + rule, encoding="utf-8")
+    wishes = done.folder / "overrides.csv"
+    wishes.write_text(
+        "student,points,due,reason\nana,,2026-11-19 12:00,was ill\ncarl,+3,,found a mistake in the task\n"
+    )
+    code, printed = done.grade("--overrides", str(wishes))
+    assert code == 0, printed
+    assert "6 unchanged since they were graded." in printed
+    assert done.finals() == {"ana": 20, "bert": 18, "carl": 17.4, "dora": 16.2, "emil": 12.6, "fay": 0}
+    reasons = [adjustment["reason"] for adjustment in done.entry("carl")["adjustments"]]
+    assert reasons[0].startswith("handed in 23 h 7 min late, by the file's date: 10 % of 16 points")
+    assert reasons[1] == "found a mistake in the task"
+    assert "was ill" in (done.folder / "results" / "ana" / "feedback.html").read_text(encoding="utf-8")
+
+
+def test_a_mistake_in_the_overrides_is_told_with_its_line(done: SmallClass) -> None:
+    wishes = done.folder / "overrides.csv"
+    wishes.write_text("student,points,reason\nana,18,\n")
+    code, printed = done.grade("--overrides", str(wishes))
+    assert code == 2
+    assert "overrides.csv:2: there is no reason." in printed
+    assert "Traceback" not in printed
+
+
+def test_two_gradings_never_write_into_one_folder(done: SmallClass) -> None:
+    with (done.folder / "results" / ".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        code, printed = done.grade()
+    assert code == 2
+    assert "another grading is at work in this folder" in printed
+
+
+def test_grading_twice_gives_the_same_files(done: SmallClass) -> None:
+    code, printed = done.grade("--jobs", "2", out="again")
+    assert code == 0, printed
+    assert without_timings(done.folder / "again") == without_timings(done.folder / "results")

@@ -1,0 +1,76 @@
+"""A class is graded by other processes, reached by the network, as it is on this machine; one of them may die."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+import psutil
+import pytest
+from small_class import POINTS, SmallClass, wait_until, without_timings
+
+pytest.importorskip("distributed")
+
+
+@contextmanager
+def started(*arguments: str, cwd: Path, cache: Path) -> Iterator[subprocess.Popen[bytes]]:
+    """A process of the cluster's."""
+    environment = {**os.environ, "SPINBOOK_CACHE": str(cache)}
+    with (cwd / "cluster.log").open("ab") as log:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "dask", *arguments], cwd=cwd, env=environment, stdout=log, stderr=log
+        )
+    try:
+        yield process
+    finally:
+        process.terminate()
+        try:
+            process.wait(30)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def spinning(worker: subprocess.Popen[bytes]) -> bool:
+    """Whether a student's program runs under this worker of the cluster's."""
+    try:
+        every = psutil.Process(worker.pid).children(recursive=True)
+        return any("bwrap" in process.name() or len(process.children()) > 1 for process in every)
+    except psutil.Error:
+        return False
+
+
+def test_a_worker_dies_while_it_grades_and_the_grades_are_those_of_one_machine(tmp_path: Path, cache: Path) -> None:
+    small = SmallClass(tmp_path / "course", cache)
+    places = {"cwd": tmp_path, "cache": cache}
+    with ExitStack() as cluster:
+        local = ("--host", "127.0.0.1", "--no-dashboard")
+        cluster.enter_context(started("scheduler", "--port", "0", "--scheduler-file", "where.json", *local, **places))
+        where = tmp_path / "where.json"
+        wait_until(lambda: where.exists() and where.stat().st_size)
+        one = ("worker", "--scheduler-file", "where.json", "--nthreads", "1", "--no-nanny", *local)
+        first, second = (cluster.enter_context(started(*one, **places)) for _ in range(2))
+        address = json.loads(where.read_text(encoding="utf-8"))["address"]
+        wait_until(lambda: (tmp_path / "cluster.log").read_text(errors="replace").count("Registered to") >= 2)
+        process = small.start("--scheduler", address)
+        wait_until(lambda: spinning(first) or process.poll() is not None)
+        first.kill()
+        printed, _ = process.communicate(timeout=240)
+        assert process.returncode == 0, printed
+        assert second.poll() is None
+    assert small.finals() == POINTS
+    code, printed = small.grade(out="here")
+    assert code == 0, printed
+    assert without_timings(small.folder / "results") == without_timings(small.folder / "here")
+
+
+def test_a_scheduler_that_does_not_answer_is_told_in_a_sentence(small_class: SmallClass, cache: Path) -> None:
+    code, printed = small_class.grade("--scheduler", "tcp://127.0.0.1:9")
+    assert code == 2, printed
+    assert "nobody answers there as a Dask scheduler does" in printed
+    assert "Traceback" not in printed

@@ -1,0 +1,39 @@
+"""The processes that do the work may die; the work is done all the same."""
+
+from __future__ import annotations
+
+import os
+import signal
+
+import psutil
+import pytest
+from small_class import ROOT, wait_until
+
+from grader.crew import Crew, HostFault
+from grader.crew.jobs import ListJob
+from grader.exercise import load
+
+EXERCISE = ROOT / "exercises" / "joint_velocity"
+
+
+def workers() -> list[psutil.Process]:
+    found = psutil.Process().children()
+    return [process for process in found if "grader.crew.worker" in " ".join(process.cmdline())]
+
+
+def test_a_crew_whose_worker_was_killed_gets_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    job = ListJob(load(EXERCISE))
+    others = {process.pid for process in workers()}
+    with Crew() as crew:
+        before = crew.do(job)
+        [worker] = [process for process in workers() if process.pid not in others]
+        os.kill(worker.pid, signal.SIGKILL)
+        wait_until(lambda: worker.status() == psutil.STATUS_ZOMBIE)
+        assert crew.do(job) == before
+
+
+def test_a_crew_that_was_sent_home_does_not_come_back() -> None:
+    with Crew() as crew:
+        pass
+    with pytest.raises(HostFault, match="the worker process is gone"):
+        crew.do(ListJob(load(EXERCISE)))

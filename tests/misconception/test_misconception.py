@@ -1,0 +1,78 @@
+"""Students are grouped by the known mistakes that their failures match; the rest is under other."""
+
+from __future__ import annotations
+
+import plain_grades as plain
+
+from grader.checking.verdict import Verdict
+from grader.checking.wrong import Finding
+from grader.classroom import Entry, Student
+from grader.misconception import Signature, grouped
+from grader.misconception.signature import failure_of, failures_of
+
+
+def finding(text: str, expected: str = "0.489 rad/s", got: str = "0.978 rad/s") -> Finding:
+    return Finding(text, "lossy", 3, 0.3, "left_elbow", expected, got)
+
+
+HALF_AS_LARGE = finding(
+    "Message 3 of 16 (0.30 s after the start; one in three messages is lost), left_elbow: expected velocity "
+    "0.489 rad/s, got 0.978 rad/s. All values are 2 times as large."
+)
+OTHER_JOINT = finding(
+    "Message 7 of 16 (0.90 s after the start; one in three messages is lost), right_elbow: expected velocity "
+    "0.1 rad/s, got 0.2 rad/s. All values are 2 times as large.",
+    "0.1 rad/s",
+    "0.2 rad/s",
+)
+BARE = finding("Message 3 of 16 (0.30 s), left_elbow: expected velocity 0.489 rad/s, got 0.978 rad/s.")
+SILENT = Finding("Nothing came.", "lossy")
+
+
+def entry(name: str, **failing: Finding) -> Entry:
+    verdicts = [Verdict(check, check, "failed", 1.0, finding=found) for check, found in failing.items()]
+    return plain.entry(plain.grade(plain.PUBLIC, *verdicts), Student(name))
+
+
+def signature(name: str, **failing: Finding) -> Signature:
+    return Signature((name,), (f"{name} in words.",), failures_of(entry(name, **failing).grade))
+
+
+LOST = signature("fixed_dt", test_lost=HALF_AS_LARGE, test_gap=HALF_AS_LARGE)
+MUTE = signature("mute", test_first=SILENT)
+
+
+def groups(*entries: Entry) -> tuple[dict[str, list[str]], list[str]]:
+    found = grouped(entries, [LOST, MUTE])
+    members = {group.signature.names[0]: [entry.student.id for entry in group.entries] for group in found.groups}
+    return members, [entry.student.id for entry in found.other]
+
+
+def test_another_message_joint_and_number_is_the_same_mistake() -> None:
+    assert failure_of(HALF_AS_LARGE).kind == failure_of(OTHER_JOINT).kind
+    assert groups(entry("ada", test_lost=OTHER_JOINT, test_gap=OTHER_JOINT)) == ({"fixed_dt": ["ada"]}, [])
+
+
+def test_who_makes_two_mistakes_stands_under_both() -> None:
+    both = entry("ada", test_lost=HALF_AS_LARGE, test_gap=HALF_AS_LARGE, test_first=SILENT)
+    assert groups(both) == ({"fixed_dt": ["ada"], "mute": ["ada"]}, [])
+
+
+def test_the_largest_group_comes_first() -> None:
+    members, _ = groups(
+        entry("a", test_lost=HALF_AS_LARGE, test_gap=HALF_AS_LARGE), *(entry(n, test_first=SILENT) for n in "bc")
+    )
+    assert list(members) == ["mute", "fixed_dt"]
+
+
+def test_what_no_known_mistake_does_is_other() -> None:
+    assert groups(entry("ada", test_new=HALF_AS_LARGE)) == ({}, ["ada"])
+
+
+def test_the_same_check_failed_in_another_way_is_no_match() -> None:
+    assert groups(entry("ada", test_first=BARE)) == ({}, ["ada"])
+
+
+def test_who_fails_nothing_or_did_not_come_through_is_in_no_group() -> None:
+    crashed = plain.entry(plain.CRASHED, Student("ben"))
+    assert groups(entry("ada"), crashed) == ({}, [])

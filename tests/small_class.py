@@ -1,0 +1,100 @@
+"""A class of six in a small course, graded by the real command."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parents[1]
+TEMPLATE = ROOT / "spinbook" / "new" / "template"
+EXERCISE = "speed_limit"
+
+#: What each of the six must get, of 20 points.
+POINTS = {"ana": 20, "bert": 20, "carl": 16, "dora": 18, "emil": 14, "fay": 0}
+
+
+class SmallClass:
+    """A course with one exercise, and the submissions of six students: see `POINTS`."""
+
+    def __init__(self, folder: Path, cache: Path) -> None:
+        self.folder, self._cache = folder, cache
+        for part in ("exercises", "solutions"):
+            shutil.copytree(TEMPLATE / part, folder / part, ignore=shutil.ignore_patterns("__pycache__"))
+        self.exercise = folder / "exercises" / EXERCISE
+        self.submissions = folder / "submissions"
+        self.submissions.mkdir()
+        solutions = folder / "solutions" / EXERCISE
+        right = (solutions / "solution.py").read_text(encoding="utf-8")
+        forwards = (solutions / "mistakes" / "only_forwards.py").read_text(encoding="utf-8")
+        self.hand_in("ana", right)
+        self.hand_in("bert", f"# mine\n{right}")
+        self.hand_in("carl", forwards)
+        self.hand_in("dora", (solutions / "mistakes" / "trusts_every_number.py").read_text(encoding="utf-8"))
+        self.hand_in("emil", forwards.replace("0.0 if math.isnan(message.data) else ", ""))
+        self.hand_in("fay", "import rclpy\n\nrclpy.spin(\n")
+
+    def hand_in(self, student: str, source: str) -> None:
+        """One student's file, with a date that is the same each time."""
+        file = self.submissions / f"{student}.py"
+        file.write_text(source, encoding="utf-8")
+        os.utime(file, (1_795_000_000, 1_795_000_000))
+
+    def start(self, *arguments: str, out: str = "results") -> subprocess.Popen[str]:
+        """The command, under way, in a process group of its own."""
+        command = [sys.executable, "-m", "grader", EXERCISE, "submissions", "--out", out, *arguments]
+        return subprocess.Popen(
+            command,
+            cwd=self.folder,
+            env={**os.environ, "SPINBOOK_CACHE": str(self._cache), "COLUMNS": "200"},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,
+        )
+
+    def grade(self, *arguments: str, out: str = "results") -> tuple[int, str]:
+        """The command's exit code, and all that it printed."""
+        process = self.start(*arguments, out=out)
+        printed, _ = process.communicate(timeout=280)
+        return process.returncode, printed
+
+    def wait_for_grades(self, count: int, process: subprocess.Popen[str], out: str = "results") -> None:
+        """Wait until `count` students have a grade, or the command has ended."""
+        wait_until(lambda: len(list((self.folder / out).glob("*/grade.json"))) >= count or process.poll() is not None)
+
+    def entry(self, student: str, out: str = "results") -> dict[str, Any]:
+        """What is in a student's grade.json."""
+        entry: dict[str, Any] = json.loads((self.folder / out / student / "grade.json").read_text(encoding="utf-8"))
+        return entry
+
+    def finals(self, out: str = "results") -> dict[str, float]:
+        """The points that count, by student."""
+        students = sorted(file.parent.name for file in (self.folder / out).glob("*/grade.json"))
+        return {student: self.entry(student, out)["final"] for student in students}
+
+
+def wait_until(happened: Callable[[], object], timeout_s: float = 240) -> None:
+    """Wait for a condition; fails the test where it never comes true."""
+    deadline = time.monotonic() + timeout_s
+    while not happened():
+        assert time.monotonic() < deadline, "it never happened"
+        time.sleep(0.02)
+
+
+def without_timings(results: Path) -> dict[str, str]:
+    """Every file in a folder of results, by its path; timings are left out."""
+    found = {}
+    for file in sorted(results.rglob("*")):
+        if file.is_file() and file.name != ".lock":
+            text = file.read_text(encoding="utf-8")
+            text = re.sub(r'"(seconds|execution_time)": [\d.e-]+', r'"\1": 0', text)
+            found[str(file.relative_to(results))] = re.sub(r' time="[\d.]+"', "", text)
+    return found
