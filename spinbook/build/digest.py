@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import importlib.metadata
+import os
 import platform
 from collections.abc import Iterable
 from pathlib import Path
@@ -22,9 +23,12 @@ def digest(*parts: str | bytes) -> str:
     return total.hexdigest()
 
 
-def files_digest(files: Iterable[Path]) -> str:
-    """A digest of files' contents; one that is missing counts as such."""
-    return digest(*(part for file in sorted(files) for part in (str(file), _bytes(file))))
+def files_digest(files: Iterable[Path], root: Path) -> str:
+    """A digest of files' names below `root` and of their contents; one that is missing counts as such.
+
+    It is the same wherever `root` lies, so that a course that has been moved need not be made again.
+    """
+    return digest(*(part for file in sorted(files) for part in (os.path.relpath(file, root), _bytes(file))))
 
 
 def _bytes(file: Path) -> bytes:
@@ -38,7 +42,8 @@ def _bytes(file: Path) -> bytes:
 def code_digest(*folders: str) -> str:
     """A digest of Spinbook's own code in these folders: what it makes may change with it."""
     root = Path(spinbook.__file__).parent
-    return files_digest(file for folder in folders for file in (root / folder).rglob("*.*") if file.suffix != ".pyc")
+    files = (file for folder in folders for file in (root / folder).rglob("*.*") if file.suffix != ".pyc")
+    return files_digest(files, root)
 
 
 @functools.cache

@@ -162,9 +162,14 @@ def _key(notebook: dict[str, Any], job: Job) -> str:
     judged_by = ""
     if any(source.startswith("%check ") for _, source, _ in code):
         course = job.build_folder.parent
-        folders = (course / "exercises", course / "solutions", Path(grader.__file__).parent)
-        judged_by = files_digest(file for folder in folders for file in folder.rglob("*.*") if file.suffix != ".pyc")
+        roots = {course: ("exercises", "solutions"), Path(grader.__file__).parent: (".",)}
+        judged_by = digest(*(_files_digest(root, folders) for root, folders in roots.items()))
     return digest(repr(code), judged_by, code_digest(*_USED_BY_CELLS), versions())
+
+
+def _files_digest(root: Path, folders: Iterable[str]) -> str:
+    files = (file for folder in folders for file in (root / folder).rglob("*.*") if file.suffix != ".pyc")
+    return files_digest(files, root)
 
 
 def _remembered(job: Job, key: str) -> dict[str, Any] | None:

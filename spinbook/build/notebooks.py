@@ -45,13 +45,14 @@ def build_notebooks(course: Course) -> Iterator[Built]:
     before = _read_record(record)
     known = surroundings(course)
     common = digest(code_digest("chapter", "build", "course"), repr(course), repr(_sorted(known)))
+    parts = ("exercises", "solutions")
     exercise_files = files_digest(
-        file for part in ("exercises", "solutions") for file in (course.root / part).rglob("*") if file.is_file()
+        (file for part in parts for file in (course.root / part).rglob("*") if file.is_file()), course.root
     )
     after: dict[str, Any] = {}
     for chapter in course.chapters:
         notebook = folder / f"{chapter.stem}.ipynb"
-        key = digest(common, exercise_files, files_digest([course.root / chapter]))
+        key = digest(common, exercise_files, files_digest([course.root / chapter], course.root))
         entry = before.get(chapter.as_posix())
         if entry and entry["key"] == key and notebook.exists():
             built = Built(chapter, notebook, tuple(_problem(p) for p in entry["problems"]), fresh=False)

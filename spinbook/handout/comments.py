@@ -9,8 +9,11 @@ _FENCE = re.compile(r"^ {0,3}(`{3,}|~{3,})(.*)$")
 _PART = re.compile(r"(?P<code>`+)(?!`).*?(?<!`)(?P=code)(?!`)|<!--(?P<comment>.*?)(?P<end>-->|$)")
 
 
-def without_comments(markdown: str) -> str:
-    """`markdown` without comments; what stands in code is no comment."""
+def without_comments(markdown: str, *, keep_lines: bool = False) -> str:
+    """`markdown` without comments; what stands in code is no comment.
+
+    A line that held nothing else is left out, or, with `keep_lines`, left empty, so that lines keep their numbers.
+    """
     out: list[str] = []
     fence = ""
     inside = False
@@ -19,6 +22,7 @@ def without_comments(markdown: str) -> str:
             _, ended, line = line.partition("-->")
             inside = not ended
             if not line.strip():
+                out += [""] if keep_lines else []
                 continue
         elif match := _FENCE.match(line):
             mark, info = match.groups()
@@ -32,7 +36,7 @@ def without_comments(markdown: str) -> str:
             out.append(line)
             continue
         shown, inside = _shown(line)
-        if shown.strip() or not line.strip():
+        if shown.strip() or not line.strip() or keep_lines:
             out.append(shown)
     return "\n".join(out)
 

@@ -54,6 +54,7 @@ def build_site(course: Course, on_page: Callable[[str], None], *, as_it_ran: boo
     before, key = _read(record), _key(course, as_it_ran=as_it_ran)
     # Sphinx takes a second to import: only where it is needed.
     from spinbook.site.contents import read_contents
+    from spinbook.site.leaks import prove_nothing_leaks
     from spinbook.site.publish import publish
     from spinbook.site.sphinx_build import run_sphinx
     from spinbook.site.staging import stage
@@ -63,6 +64,7 @@ def build_site(course: Course, on_page: Callable[[str], None], *, as_it_ran: boo
     if before.get("code") != code:
         shutil.rmtree(cache, ignore_errors=True)
     contents = read_contents(course)
+    prove_nothing_leaks(course, contents)
     source = course.build_folder / "site-source"
     stage(contents, source)
     made: list[str] = []
@@ -93,7 +95,8 @@ def _key(course: Course, *, as_it_ran: bool) -> str:
     for made in ("executed", "notebooks"):
         inputs += (course.build_folder / made).glob("*.*")
     repository = repository_of(course.root, course.repository)
-    return digest(files_digest(inputs), code_digest(*_CODE), versions(), repr(repository), str(as_it_ran))
+    known = (repository.url, repository.commit, repository.date)
+    return digest(files_digest(inputs, course.root), code_digest(*_CODE), versions(), *known, str(as_it_ran))
 
 
 def _read(record: Path) -> dict[str, str]:

@@ -52,7 +52,7 @@ def chapter_notebook(
 ) -> dict[str, Any]:
     """The page's notebook. `prose` holds the text of each prose cell by id, as `rich` made it.
 
-    `graph` is the HTML of the picture of the nodes that ran; it stands below the chapter's first cell.
+    `graph` is the Markdown of the section that shows the nodes that ran; it is the page's last.
     """
     cells: list[dict[str, Any]] = []
     for cell in chapter.cells:
@@ -62,8 +62,8 @@ def chapter_notebook(
             cells.append(_prose(cell, _card(exercises[cell.name or ""])))
         else:
             cells.append(_code(cell, ran, repository.link(chapter.file, cell.line)))
-        if graph and len(cells) == 1:
-            cells.append({**_prose(cell, graph), "id": "nodes-as-seen"})
+    if graph:
+        cells.append({**_prose(chapter.cells[-1], graph), "id": "nodes-as-seen"})
     return {
         "nbformat": 4,
         "nbformat_minor": 5,

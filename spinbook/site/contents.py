@@ -16,6 +16,7 @@ from grader.exercise import Exercise, ExerciseError, load, starter
 from spinbook.build.reading import read_all
 from spinbook.chapter.chapter import CellKind, Chapter
 from spinbook.course.course import Course
+from spinbook.handout.comments import without_comments
 from spinbook.problem import Problem, Severity, SpinbookError
 from spinbook.site import names
 from spinbook.site.about_page import about_markdown
@@ -26,7 +27,7 @@ from spinbook.site.glossary import Term, terms_of
 from spinbook.site.home_page import home_chapters, home_drawing, home_log, home_pictures
 from spinbook.site.launch import branch_files, launch_notebook, openers, requirement
 from spinbook.site.mermaid import CanNotDrawError, Picture, draw
-from spinbook.site.node_graph import node_graph_html, read_node_graph
+from spinbook.site.node_graph import node_graph_excerpt, node_graph_of, node_graph_section
 from spinbook.site.page import Page
 from spinbook.site.prose import Links, rich
 from spinbook.site.public_checks import public_checks
@@ -41,7 +42,7 @@ class Contents:
 
     `pages` are in reading order, the home page first. `files` go into the site as they are, `branch` into the
     branch of notebooks: path -> text. `origins` says for a staged page which file an author would mend, and `lines`
-    for a chapter's page the first line of each of its cells.
+    for a chapter's page the first line of each of its cells. `taught` is the code of the chapters' nodes.
     """
 
     pages: list[Page] = field(default_factory=list)
@@ -51,6 +52,7 @@ class Contents:
     terms: tuple[Term, ...] = ()
     origins: dict[str, Path] = field(default_factory=dict)
     lines: dict[str, list[int]] = field(default_factory=dict)
+    taught: list[str] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
 
 
@@ -164,6 +166,7 @@ def _chapter(
     contents.origins[name] = chapter.file
     contents.lines[name] = [cell["metadata"]["spinbook"]["line"] for cell in notebook["cells"]]
     for cell in chapter.nodes:
+        contents.taught.append(cell.source)
         contents.files[f"{DOWNLOADS}/{cell.module}"] = cell.source.rstrip("\n") + "\n"
     source = links.repository.link(chapter.file, 1)
     return Page(
@@ -181,15 +184,9 @@ def _ran(course: Course, chapter: Chapter) -> Ran:
 
 
 def _graph(course: Course, chapter: Chapter) -> str:
-    """The picture of the nodes that were seen while the chapter ran, in one line of HTML; "" where none were."""
-    graph = read_node_graph(course.build_folder / "executed" / f"{chapter.name}.graph.json")
-    if graph is None or not graph.nodes:
-        return ""
-    picture = node_graph_html(graph)
-    return (
-        '<details class="nodes-as-seen"><summary>The nodes of this chapter, as they were seen while it ran</summary>'
-        f"{picture}</details>"
-    )
+    """The section with the picture of the nodes that were seen while the chapter ran; "" where none were."""
+    graph = node_graph_of(course, chapter)
+    return node_graph_section(graph) if graph else ""
 
 
 def _exercise(exercise: Exercise, chapter: Chapter, links: Links, drawings: _Drawings, contents: Contents) -> Page:
@@ -253,10 +250,12 @@ def _home(
     contents: Contents,
 ) -> Page:
     runs = [(chapter, _ran(course, chapter)) for chapter in chapters]
+    graphs = [node_graph_of(course, chapter) for chapter in chapters]
     pictures = home_pictures(runs)
     contents.files |= {picture.path: picture.data for picture in pictures}
     about = {
         "chapters": home_chapters(chapters, exercises),
+        "graph": next((node_graph_excerpt(graph) for graph in graphs if graph), ""),
         "drawing": home_drawing(drawings.pictures),
         "pictures": [picture.about for picture in pictures],
         "log": home_log(runs),
@@ -301,6 +300,9 @@ def _only_exercise(notebook: Mapping[str, Any], exercise: str) -> dict[str, Any]
 
 def _add_notebook(name: str, notebook: Mapping[str, Any], wanted: str, contents: Contents) -> None:
     ready = launch_notebook(notebook, wanted)
+    for cell in ready["cells"]:
+        if cell["cell_type"] == "markdown":
+            cell["source"] = without_comments(cell["source"])
     contents.branch[f"{name}.ipynb"] = contents.files[f"{DOWNLOADS}/{name}.ipynb"] = as_text(ready)
     script = jupytext.writes(nbformat.from_dict(ready), fmt="py:percent")
     contents.files[f"{DOWNLOADS}/{name}.notebook.py"] = script

@@ -10,6 +10,8 @@ from spinbook.build.digest import digest
 from spinbook.site.mermaid import Picture
 
 FOLDER = "_drawings"
+#: A drawing wider than this (px) could not be read if it were made as narrow as a phone: it scrolls there.
+_WIDE = 640
 #: A node of a flowchart: A(["left toe"]), A["/topic"], A{{…}} or a bare A.
 _NODE = r"""(?P<{0}>\w+)(?:[(\[{{<>]+\s*"?(?P<{0}_label>[^"\])}}]*)"?\s*[)\]}}]+)?"""
 _LINK = r"""\s*(?:<?[-=.]+(?:\s*"?(?P<on>[^"|>-]+)"?\s*[-=.]+)?>?(?:\|(?P<label>[^|]*)\|)?)\s*"""
@@ -53,12 +55,13 @@ def drawing_html(code: str, picture: Picture | None, root: str) -> str:
     words = html.escape(in_words(code))
     if picture is None:
         return _without_picture(code)
+    wide = " drawing-wide" if picture.width > _WIDE else ""
     size = f'width="{picture.width}" height="{picture.height}" loading="lazy"'
     images = "".join(
         f'<img class="only-{theme}" src="{root}{_path(code, theme)}" alt="{words or "Drawing"}" {size}>'
         for theme in ("light", "dark")
     )
-    return f'<figure class="drawing">{images}</figure>'
+    return f'<figure class="drawing{wide}">{images}</figure>'
 
 
 def _without_picture(code: str) -> str:

@@ -65,23 +65,25 @@ def home_pictures(runs: list[tuple[Chapter, Ran]]) -> list[Shown]:
     turtles = [found for found in pictures if "turtle" in alternative(found[2], found[1]).lower()]
     chosen = []
     if plots:
-        chosen.append((max(plots, key=lambda found: len(alternative(found[2], found[1]))), "Six joints, as commanded"))
+        chosen.append(
+            (max(plots, key=lambda found: len(alternative(found[2], found[1]))), "What a topic carried, as it came")
+        )
     if turtles:
         chosen.append((turtles[-1], "A turtle, driven by a node"))
     return [_shown(*found, caption) for found, caption in chosen]
 
 
 def home_log(runs: list[tuple[Chapter, Ran]]) -> dict[str, str]:
-    """What a node with something to warn of printed, and where; {} where no node has printed anything."""
-    best: tuple[int, dict[str, str]] = (-1, {})
+    """What the last node with something to warn of printed, and where; {} where no node has printed anything."""
+    best: tuple[bool, dict[str, str]] = (False, {})
     for chapter, ran in runs:
         for cell in chapter.nodes:
             text = "".join("".join(o.get("text", "")) for o in ran.outputs(cell.id) if o["output_type"] == "stream")
             lines = [line for line in text.splitlines() if line.startswith("[")][:_LOG_LINES]
-            warnings = sum("[WARN]" in line for line in lines)
-            if lines and not cell.raises and warnings >= best[0]:
+            warns = any("[WARN]" in line for line in lines)
+            if lines and not cell.raises and warns >= best[0]:
                 page = f"{chapter_page(chapter.file)}.html"
-                best = warnings, {"html": _coloured("\n".join(lines)), "file": cell.module, "page": page}
+                best = warns, {"html": _coloured("\n".join(lines)), "file": cell.module, "page": page}
     return best[1]
 
 

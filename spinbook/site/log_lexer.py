@@ -19,7 +19,8 @@ class LogLexer(RegexLexer):  # type: ignore[misc]
             (r"^(\[(?:ERROR|FATAL)\] )(\[[^\]\n]+\]:)(.*\n)", bygroups(Generic.Error, Generic.Error, Generic.Error)),
             (r"^(\[(?:INFO|DEBUG)\] )(\[[^\]\n]+\]:)", bygroups(Comment, Comment)),
             (r"^—.*—\n", Generic.Emph),
-            (r"^Traceback .*\n", Generic.Error),
+            (r"^(?:Traceback .*|\w*(?:Error|Exception|Interrupt): .*|\w+Error)\n", Generic.Error),
+            (r"^-+> \d+ .*\n", Generic.Strong),
             (r".*\n", Text),
         ]
     }

@@ -1,13 +1,32 @@
-"""The node graph of a chapter, as it was while the chapter ran, for the chapter's page."""
+"""The node graph of a chapter, as it was while the chapter ran, for the chapter's page and the home page."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+from spinbook.chapter.chapter import Chapter
+from spinbook.course.course import Course
 from spinbook.graph.model import NodeGraph
 from spinbook.graph.picture import node_graph_svg, node_graph_svgs
+from spinbook.graph.shapes import drawings
 
-__all__ = ["node_graph_html", "node_graph_svg", "read_node_graph"]
+__all__ = [
+    "node_graph_excerpt",
+    "node_graph_html",
+    "node_graph_of",
+    "node_graph_section",
+    "node_graph_svg",
+    "read_node_graph",
+]
+
+#: So many parts of a graph are enough to show what one looks like.
+_PARTS = 2
+
+
+def node_graph_of(course: Course, chapter: Chapter) -> NodeGraph | None:
+    """The graph that was seen while the chapter ran; None where no node was."""
+    graph = read_node_graph(course.build_folder / "executed" / f"{chapter.name}.graph.json")
+    return graph if graph and graph.nodes else None
 
 
 def read_node_graph(file: Path) -> NodeGraph | None:
@@ -23,4 +42,28 @@ def node_graph_html(graph: NodeGraph) -> str:
 
     Needs no style. A page may set `--node-graph-node` and `--node-graph-topic`, the colours of the boxes.
     """
-    return f'<div class="node-graph">{" ".join(node_graph_svgs(graph))}</div>'
+    return _together(node_graph_svgs(graph))
+
+
+def node_graph_excerpt(graph: NodeGraph) -> str:
+    """As `node_graph_html`, with the parts only that have the most nodes."""
+    parts = zip(drawings(graph), node_graph_svgs(graph), strict=True)
+    largest = sorted(parts, key=lambda part: len(part[0].nodes), reverse=True)
+    return _together([svg for _, svg in largest[:_PARTS]])
+
+
+def node_graph_section(graph: NodeGraph) -> str:
+    """The section of a chapter's page, in Markdown."""
+    return f"""\
+## The nodes, as they were seen
+
+This picture was not drawn by hand: it is the ROS graph, watched while the outputs of this page were made. Round shapes
+are nodes. Boxes are topics, with their types, and with their rates where these were measured. Along a dashed arrow
+nothing flows, because no other end fits.
+
+{node_graph_html(graph)}
+"""
+
+
+def _together(parts: list[str]) -> str:
+    return f'<div class="node-graph">{" ".join(parts)}</div>'

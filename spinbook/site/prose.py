@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from spinbook.handout.comments import without_comments
 from spinbook.site.repository import Repository
 
 _FENCE = re.compile(r"^(\s*)(`{3,}|~{3,})\s*(.*)$")
@@ -43,11 +44,11 @@ class Links:
 
 
 def rich(text: str, links: Links, folder: str, page_folder: str, draw: Draw) -> str:
-    """`text`, from a file in `folder`, for a page in `page_folder`."""
+    """`text`, from a file in `folder`, for a page in `page_folder`. Comments, in which authors write notes, are left out."""
     out: list[str] = []
     fence: str | None = None
     drawing: list[str] | None = None
-    for line in text.split("\n"):
+    for line in without_comments(text, keep_lines=True).split("\n"):
         match = _FENCE.match(line)
         if match and fence is None:
             fence = match.group(2)

@@ -71,6 +71,7 @@ def _settings(contents: Contents, title: str, repository: str) -> dict[str, Any]
         "nb_execution_mode": "off",
         "nb_merge_streams": True,
         "nb_render_text_lexer": "ros-log",
+        "nb_render_error_lexer": "ros-log",
         "myst_enable_extensions": ["alert", "colon_fence", "deflist", "dollarmath", "strikethrough", "tasklist"],
         "myst_heading_anchors": 4,
         "myst_all_links_external": False,
@@ -115,7 +116,8 @@ def _place(file: str, line: str | None, contents: Contents, source: Path) -> tup
     if starts is None:
         return origin, number
     cell, within = divmod(number, _LINES_A_CELL)
-    return origin, starts[min(cell, len(starts)) - 1] + max(within, 1) - 1 if cell else None
+    # myst-nb counts a cell's lines from 1, and MyST's parser adds one more.
+    return origin, starts[min(cell, len(starts)) - 1] + max(within - 2, 0) if cell else None
 
 
 def _close_handlers() -> None:

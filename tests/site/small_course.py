@@ -48,6 +48,8 @@ flowchart LR
     T --> B(["controller"])
 ```
 
+<!-- Ask them: is NOTE_OF_THE_CHAPTER a number? -->
+
 ## A node
 
 ```python title="talker.py" seconds=20 until="number 3"
@@ -113,8 +115,10 @@ It is forty-two.
 <!-- exercise: joint_velocity -->
 '''
 
-_MORE = "---\ntitle: More\nsummary: What comes next.\n---\n\n# More\n\nWords only.\n\n## Last words\n\nGood-bye.\n"
-_GLOSSARY = "# Glossary\n\n## Publisher\n\nWhoever sends.\n\n## Message\n\nWhat is sent.\n"
+_MORE = "---\ntitle: More\nsummary: What comes next.\n---\n\n# More\n\nWords only. <!-- NOTE_IN_A_LINE -->\n\n## Last words\n\nGood-bye.\n"
+_GLOSSARY = (
+    "# Glossary\n\n<!--\nNOTE_OF_THE_GLOSSARY\n-->\n\n## Publisher\n\nWhoever sends.\n\n## Message\n\nWhat is sent.\n"
+)
 
 
 @dataclass(frozen=True)
@@ -158,18 +162,31 @@ def write_course(root: Path) -> SmallCourse:
         (root / "chapters" / f"{name}.md").write_text(text, encoding="utf-8")
     for folder in ("exercises", "solutions"):
         shutil.copytree(ROOT / folder / "joint_velocity", root / folder / "joint_velocity")
+    with (root / "exercises" / "joint_velocity" / "task.md").open("a", encoding="utf-8") as task:
+        task.write("\n<!-- NOTE_OF_THE_TASK: most forget rule 5. -->\n")
     return SmallCourse(root)
 
 
-class _Quiet(SimpleHTTPRequestHandler):
+#: A server's own policy is at least as strict as the one in the pages.
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; "
+    "base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
+)
+
+
+class _Strict(SimpleHTTPRequestHandler):
+    def end_headers(self) -> None:
+        self.send_header("Content-Security-Policy", POLICY)
+        super().end_headers()
+
     def log_message(self, format: str, *args: object) -> None:
         pass
 
 
 @contextmanager
 def served(folder: Path) -> Iterator[str]:
-    """The folder behind an address of its own."""
-    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(_Quiet, directory=str(folder)))
+    """The folder behind an address of its own, from a server that sends a strict Content-Security-Policy."""
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(_Strict, directory=str(folder)))
     thread = threading.Thread(target=server.serve_forever, daemon=True)
     thread.start()
     try:

@@ -15,7 +15,6 @@ def snapshot(site: Path) -> dict[str, int]:
 
 
 def test_nothing_is_made_where_nothing_has_changed(course: SmallCourse) -> None:
-    course.spinbook_site()  # a copied course lies in another folder
     before = snapshot(course.site)
 
     said = course.spinbook_site()
@@ -59,6 +58,19 @@ def test_what_is_wrong_is_told_by_the_chapter_s_line(course: SmallCourse) -> Non
     line = (course.root / "chapters/02-more.md").read_text().split("\n").index("See [nothing](#not-here).") + 1
     assert re.search(rf"^chapters/02-more\.md:{line}: warning: .*not-here", said.stdout, re.MULTILINE)
     assert "Traceback" not in said.stdout + said.stderr
+
+
+def test_what_students_must_not_see_is_not_published(course: SmallCourse) -> None:
+    solution = (course.root / "solutions/joint_velocity/solution.py").read_text()
+    part = solution.split("# BEGIN SOLUTION\n")[1].split("# END SOLUTION")[0]
+    course.change("chapters/02-more.md", "Good-bye.", f"Good-bye.\n\n```text\n{part}\n```")
+    before = snapshot(course.site)
+
+    said = course.spinbook_site("--no-run")
+
+    assert said.returncode == 1
+    assert "chapters/02-more.md: error: a part of the solution of joint_velocity would be published" in said.stdout
+    assert snapshot(course.site) == before
 
 
 def test_a_chapter_that_has_never_run_can_not_be_shown(course: SmallCourse) -> None:

@@ -158,10 +158,22 @@ def secret_lines() -> set[str]:
 def test_no_solution_and_no_hidden_check_is_published(built: SmallCourse, folder: str) -> None:
     secrets = secret_lines()
     assert len(secrets) > 100
+    secrets |= {"NOTE_OF_THE_CHAPTER", "NOTE_IN_A_LINE", "NOTE_OF_THE_GLOSSARY", "NOTE_OF_THE_TASK"}
     seen = [file for file in (built.root / "build" / folder).rglob("*") if file.is_file()]
-    assert seen
+    assert ".ipynb" in {file.suffix for file in seen}
     for file in seen:
         assert_holds_none(file, secrets)
+
+
+def test_hidden_checks_are_not_named(built: SmallCourse) -> None:
+    tree = ast.parse((ROOT / "exercises" / "joint_velocity" / "hidden_checks.py").read_text())
+    checks = [node for node in tree.body if isinstance(node, ast.FunctionDef) and ast.get_docstring(node)]
+    assert checks
+    for check in checks:
+        title = (ast.get_docstring(check) or "").split("\n\n")[0]
+        for page in built.pages:
+            assert title not in text_of(built.page(page)), page
+            assert check.name not in built.page(page), page
 
 
 def assert_holds_none(file: Path, secrets: set[str]) -> None:
