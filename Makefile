@@ -21,12 +21,14 @@ help:    ## List what can be made.
 setup:   ## Make the virtual environment with every pinned dependency, or bring it up to date.
 	@PYTHON="$(PYTHON)" VENV="$(VENV)" sh setup.sh
 
-course: setup   ## Build, run and package the real course, and grade a submission.
+course: setup   ## Build, run and package the real course, make its site, and grade a submission.
 	$(BIN)/spinbook build --execute
+	$(BIN)/spinbook site
 	$(BIN)/spinbook package
 	$(BIN)/spinbook grade joint_velocity solutions/joint_velocity/solution.py
 	@echo
 	@echo "The course lies in build/notebooks, as it ran here in build/executed, its package in humanoid_ws."
+	@echo "Its site is build/site/index.html: open it in any browser."
 	@echo "Open a notebook in any editor, with $(BIN)/python as its Python."
 
 test: setup   ## Check types and style, then run every test.
