@@ -77,7 +77,7 @@ def as_html(grade: Grade, exercise: Exercise) -> str:
         total=self_check.total(grade),
         full=grade.full_marks,
         message=grade.message,
-        steps=_steps(grade, exercise),
+        step=_first_step(grade, exercise),
         log=_end(grade.log) if grade.outcome != "graded" else "",
         rows=_rows(grade),
         # As an image an SVG can neither run nor load anything, whatever is in it.
@@ -93,10 +93,10 @@ def _harmless(value: Any) -> Any:
     return printable(value, LONGEST) if isinstance(value, str) and not isinstance(value, Markup) else value
 
 
-def _steps(grade: Grade, exercise: Exercise) -> tuple[str, ...]:
-    """What to do about a program that did not come through; nothing where a plain grade tells all."""
+def _first_step(grade: Grade, exercise: Exercise) -> str:
+    """What to look for in a program that did not come through. The steps after it are about files, not cells."""
     found = advice(grade, exercise)
-    return found.steps if found else ()
+    return found.steps[0] if found else ""
 
 
 def _end(log: str) -> str:

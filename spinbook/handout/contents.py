@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,8 +15,9 @@ from spinbook.build.notebooks import build_notebooks
 from spinbook.course.course import Course
 from spinbook.handout.exercise import exercise_files
 from spinbook.handout.guide import Listing, guide_files
-from spinbook.handout.leaks import Secret, leaks, secrets
+from spinbook.handout.leaks import leaks
 from spinbook.handout.notebook import for_students
+from spinbook.handout.secrets import Secret, hidden_names, secrets
 from spinbook.handout.wheel import wheel
 from spinbook.problem import Problem, SpinbookError
 from spinbook.update.base import base_files
@@ -46,8 +49,10 @@ def handout(course: Course) -> Handout:
             except ExerciseError as error:
                 raise SpinbookError(Problem(error.file, error.line, error.found, error.mend)) from None
             files |= {f"exercises/{exercise.name}/{name}": content for name, content in copy.items()}
-    known = [secret for name in sorted(course.exercises) for secret in secrets(_load(course, name))]
-    _prove(files, known)
+    taught = "\n".join(_nodes(notebooks))
+    every = [_load(course, name) for name in sorted(course.exercises)]
+    known = [secret for exercise in every for secret in secrets(exercise, taught)]
+    _prove(files, known + [secret for exercise in every for secret in hidden_names(exercise)])
     name, content = wheel()
     files[f"wheels/{name}"] = content
     slug = re.sub(r"[^a-z0-9]+", "-", course.title.lower()).strip("-") or "course"
@@ -66,6 +71,14 @@ def _notebooks(course: Course) -> dict[str, bytes]:
         item.notebook.name: for_students(item.notebook.read_text(encoding="utf-8"), course.repository).encode()
         for item in built
     }
+
+
+def _nodes(notebooks: dict[str, bytes]) -> Iterator[str]:
+    """The code of the chapters' own nodes."""
+    for content in notebooks.values():
+        for cell in json.loads(content)["cells"]:
+            if cell["metadata"].get("spinbook", {}).get("kind") == "node":
+                yield cell["source"]
 
 
 def _used(course: Course, notebooks: dict[str, bytes]) -> set[str]:
@@ -89,7 +102,10 @@ def _listing(exercise: Exercise, crew: Crew) -> Listing:
 
 def _prove(files: dict[str, bytes], known: list[Secret]) -> None:
     """See to it that no secret is in any file."""
-    mend = "Students must not see it. Take it out of the chapter, the task or the public checks."
+    mend = (
+        "Students must not see it. Take it out of the chapter, the task or the public checks. A line of the solution "
+        "that they may see belongs before # BEGIN SOLUTION."
+    )
     if found := list(leaks(files, known)):
         folder = Path("build", "handout")
         raise SpinbookError(*(Problem(folder / file, None, f"{what} would be in it.", mend) for file, what in found))

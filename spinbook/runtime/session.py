@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -35,6 +36,8 @@ class Session:
     nodes: NodeRegistry = field(default_factory=NodeRegistry)
     ran: dict[str, str] = field(default_factory=dict)
     """The code of each node's cell as it was run last, by the node's name."""
+    ran_at: dict[str, float] = field(default_factory=dict)
+    """When that was (s since the epoch)."""
 
     def __post_init__(self) -> None:
         self.use_domain(self.domain)
@@ -56,6 +59,7 @@ class Session:
         if self.package.name == name:
             raise CellFailed(f"A node can't have the package's name, {name}.")
         self.ran[name] = code
+        self.ran_at[name] = time.time()
         module = add_module(self.workspace, self.package, Module(name, code.rstrip("\n") + "\n"))
         if spin_class:
             argv = [sys.executable, "-u", "-m", "spinbook.runtime.spin_class", os.fspath(module), spin_class]

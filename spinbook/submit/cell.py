@@ -19,7 +19,7 @@ def run(session: Session, shell: Any, name: str, course: str, student: str | Non
     """Write the upload for the exercise `name`. Raises CellFailed where there is nothing to hand in, or it fails."""
     notebook = notebook_file(shell.user_ns, os.environ)
     exercise = exercise_of(name, course, notebook)
-    code = code_of(exercise, session.ran, notebook)
+    code = code_of(exercise, session, notebook)
     if code.note:
         print(code.note.replace("checks", "hands in").replace("%check", "%submit"))
     with tempfile.TemporaryDirectory() as folder:

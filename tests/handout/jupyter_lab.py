@@ -9,7 +9,7 @@ import secrets
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,10 +19,13 @@ from playwright.sync_api import Browser, Locator, Page, expect
 #: How long anything on the page may take, on a busy machine (ms).
 LONG = 90_000
 
+#: JupyterLab of the environment that runs the tests.
+HERE = (sys.executable, "-m", "jupyterlab")
+
 
 @contextmanager
-def jupyter_lab(folder: Path, state: Path, python: Path = Path(sys.executable)) -> Iterator[str]:
-    """JupyterLab in `folder`, with all that it keeps in `state`. Gives its URL, which ends with a slash."""
+def jupyter_lab(folder: Path, state: Path, command: Sequence[str] = HERE) -> Iterator[str]:
+    """JupyterLab in `folder`, with all that it keeps in `state`. Gives a notebook's URL, with {} for its name."""
     token = secrets.token_hex(8)
     settings = state / "settings" / "@jupyterlab" / "apputils-extension" / "notification.jupyterlab-settings"
     settings.parent.mkdir(parents=True)
@@ -30,12 +33,11 @@ def jupyter_lab(folder: Path, state: Path, python: Path = Path(sys.executable)) 
     names = ("CONFIG", "DATA", "RUNTIME")
     places = {f"JUPYTER_{name}_DIR": str(state / name.lower()) for name in names}
     places |= {"JUPYTERLAB_SETTINGS_DIR": str(state / "settings"), "JUPYTERLAB_WORKSPACES_DIR": str(state / "spaces")}
-    command = [python, "-m", "jupyterlab", "--no-browser", "--ServerApp.ip=127.0.0.1", "--allow-root"]
-    command += [f"--IdentityProvider.token={token}", "--ServerApp.port=0"]
+    words = [*command, "--no-browser", "--ServerApp.ip=127.0.0.1", "--allow-root"]
+    words += [f"--IdentityProvider.token={token}", "--ServerApp.port=0"]
+    environment = {**(os.environ if command is HERE else a_new_terminal()), **places}
     with (state / "log").open("w") as log:
-        server = subprocess.Popen(
-            command, cwd=folder, env=_environment(os.environ, python, places), stdout=log, stderr=subprocess.STDOUT
-        )
+        server = subprocess.Popen(words, cwd=folder, env=environment, stdout=log, stderr=subprocess.STDOUT)
         try:
             yield f"{_address(server, state / 'log')}lab/tree/{{}}?token={token}"
         finally:
@@ -43,13 +45,10 @@ def jupyter_lab(folder: Path, state: Path, python: Path = Path(sys.executable)) 
             server.wait(60)
 
 
-def _environment(given: Mapping[str, str], python: Path, places: dict[str, str]) -> dict[str, str]:
-    """As in a new terminal where the environment of `python` is another than this one's."""
-    kept = dict(given)
-    if python != Path(sys.executable):
-        for name in ("_ROS_WHEELS_BOOTSTRAP_COMPLETE", "LD_LIBRARY_PATH", "VIRTUAL_ENV"):
-            kept.pop(name, None)
-    return kept | places
+def a_new_terminal() -> dict[str, str]:
+    """The environment, without what this Python's own has set in it."""
+    ours = ("_ROS_WHEELS_BOOTSTRAP_COMPLETE", "LD_LIBRARY_PATH", "VIRTUAL_ENV", "PYTHONPATH")
+    return {name: value for name, value in os.environ.items() if name not in ours}
 
 
 def _address(server: subprocess.Popen[bytes], log: Path) -> str:
@@ -85,6 +84,15 @@ class Notebook:
     def run(self, text: str) -> None:
         """Click into the cell and press Ctrl+Enter."""
         self.cell(text).locator(".cm-content").click()
+        self.page.keyboard.press("Control+Enter")
+
+    def add_below(self, text: str, code: str) -> None:
+        """A new cell with `code` below the one with this text, and Ctrl+Enter."""
+        self.cell(text).locator(".cm-content").click()
+        self.page.keyboard.press("Escape")
+        self.page.keyboard.press("b")
+        self.page.keyboard.press("Enter")
+        self.page.keyboard.insert_text(code)
         self.page.keyboard.press("Control+Enter")
 
     def save(self) -> None:

@@ -13,7 +13,11 @@ import yaml
 
 from grader.exercise import load
 from handout.conftest import CHAPTER, NOTE, ROOT, HandedOut, append, copy_course
+from spinbook.handout.archive import zipped
 from spinbook.handout.comments import without_comments
+from spinbook.handout.leaks import leaks
+from spinbook.handout.notebook import for_students
+from spinbook.handout.secrets import Secret, hidden_names, secrets
 
 EXERCISE = ROOT / "exercises" / "joint_velocity"
 SOLUTIONS = ROOT / "solutions" / "joint_velocity"
@@ -148,6 +152,99 @@ def test_a_chapter_or_a_task_that_gives_something_away_is_refused(tmp_path: Path
     assert "Take it out of the chapter" in done.stderr
     assert "Traceback" not in done.stderr
     assert not (course.root / "build" / "handout").exists()
+
+
+#: One line of each kind that students must not see.
+SECRET_LINES = {
+    "a part of the solution": "answer.velocity.append((position - self.positions_before[name]) / dt)",
+    "a line of scenarios.py": '"lossy": ("one in three messages is lost", lost(arm_swing(3), 3, seed)),',
+    "the hidden check test_lost_messages": "test_lost_messages",
+}
+
+
+@pytest.fixture(scope="module")
+def known() -> list[Secret]:
+    exercise = load(EXERCISE)
+    return [*secrets(exercise, ""), *hidden_names(exercise)]
+
+
+def notebook_with(place: str, secret: str) -> bytes:
+    """A notebook that has the secret in one place, and nothing else of note."""
+    cell: dict[str, Any] = {"cell_type": "code", "id": "a", "metadata": {}, "source": "x = 1", "outputs": []}
+    notebook: dict[str, Any] = {"cells": [cell], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}
+    if place == "a stream":
+        cell["outputs"] = [{"output_type": "stream", "name": "stdout", "text": ["x\n", f"  {secret}\n"]}]
+    elif place == "a picture's text":
+        cell["outputs"] = [{"output_type": "display_data", "metadata": {}, "data": {"text/html": f"<b>{secret}</b>"}}]
+    elif place == "a traceback":
+        cell["outputs"] = [{"output_type": "error", "ename": "E", "evalue": "", "traceback": [secret]}]
+    elif place == "a cell's metadata":
+        cell["metadata"] = {"editor": {"undo": [{"before": secret}]}}
+    elif place == "the notebook's metadata":
+        notebook["metadata"] = {"author": {secret: True}}
+    elif place == "an attachment":
+        cell["attachments"] = {"a.txt": {"text/plain": secret}}
+    else:
+        cell["source"] = ["x = 1\n", f"    {secret}"]
+    return json.dumps(notebook).encode()
+
+
+@pytest.mark.parametrize("what", SECRET_LINES)
+@pytest.mark.parametrize(
+    "place",
+    [
+        "a cell",
+        "a stream",
+        "a picture's text",
+        "a traceback",
+        "a cell's metadata",
+        "the notebook's metadata",
+        "an attachment",
+    ],
+)
+def test_one_line_is_found_wherever_in_a_notebook_it_hides(place: str, what: str, known: list[Secret]) -> None:
+    [(name, found)] = leaks({"week3.ipynb": notebook_with(place, SECRET_LINES[what])}, known)
+    assert (name, found.startswith(what)) == ("week3.ipynb", True)
+
+
+@pytest.mark.parametrize("what", SECRET_LINES)
+def test_one_line_is_found_in_any_file_and_in_archives_in_archives(what: str, known: list[Secret]) -> None:
+    secret = f"x\n\t{SECRET_LINES[what]}\n".encode()
+    files = {
+        "README.md": secret,
+        "public.json": json.dumps({"expected": [SECRET_LINES[what]]}).encode(),
+        "wheels/x.whl": zipped({"spinbook/a.py": secret}),
+        "more.zip": zipped({"inner.zip": zipped({"a.txt": secret})}),
+    }
+    assert {name for name, _ in leaks(files, known)} == {
+        "README.md",
+        "public.json",
+        "wheels/x.whl/spinbook/a.py",
+        "more.zip/inner.zip/a.txt",
+    }
+
+
+def test_a_file_that_is_named_after_a_hidden_check_is_found(known: list[Secret]) -> None:
+    assert list(leaks({"plots/test_lost_messages.png": b""}, known))
+
+
+def test_what_an_editor_put_into_a_built_notebook_does_not_get_out(tmp_path: Path) -> None:
+    course = copy_course(tmp_path / "course")
+    assert course.spinbook("build").returncode == 0
+    built = course.root / "build" / "notebooks" / CHAPTER.replace(".md", ".ipynb")
+    notebook = json.loads(built.read_text(encoding="utf-8"))
+    secret = SECRET_LINES["a part of the solution"]
+    notebook["metadata"]["note"] = secret
+    cell = next(cell for cell in notebook["cells"] if cell["cell_type"] == "code")
+    cell["outputs"] = [{"output_type": "stream", "name": "stdout", "text": secret}]
+    cell["metadata"]["note"] = secret
+    assert secret not in "\n".join(strings(json.loads(for_students(json.dumps(notebook), ""))))
+
+    cell["source"] += f"\n# {secret}"
+    built.write_text(json.dumps(notebook), encoding="utf-8")
+    done = course.spinbook("handout")
+    assert done.returncode == 1
+    assert f"{built.name}: error: a part of the solution of joint_velocity would be in it" in done.stderr
 
 
 @pytest.mark.parametrize(
