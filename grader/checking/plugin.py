@@ -78,11 +78,13 @@ class Checks:
             return mark
         raise ExerciseError(item.path, found, mend, line)
 
-    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+    def pytest_exception_interact(self, node: Any, call: pytest.CallInfo[Any], report: object) -> None:
         """A file of checks that can't be imported is its author's to mend."""
-        if report.failed and not self.problem:
-            last = str(report.longrepr).strip().splitlines()[-1].removeprefix("E").strip()
-            self.problem = ExerciseError(Path(report.nodeid), f"it can't be read: {last}", "It must import.")
+        if isinstance(report, pytest.CollectReport) and call.excinfo and not self.problem:
+            error = call.excinfo.value.__cause__ or call.excinfo.value
+            told = (str(error).strip().splitlines() or [""])[0]
+            found = f"it can't be read: {type(error).__name__}: {told}"
+            self.problem = ExerciseError(node.path, found, "It must import.", _line(error, node.path))
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
@@ -123,7 +125,15 @@ class Checks:
 
 
 def _told(error: BaseException, file: Path) -> str:
-    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(file)]
-    place = f"{file}:{lines[-1]}" if lines else f"{file}"
+    line = _line(error, file)
+    place = f"{file}:{line}" if line else f"{file}"
     text = str(error).strip().splitlines()
     return f"{place}: {type(error).__name__}: {text[0] if text else ''}"
+
+
+def _line(error: BaseException, file: Path) -> int | None:
+    """The last line of `file` that led to the error."""
+    if isinstance(error, SyntaxError) and error.filename == str(file):
+        return error.lineno
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(file)]
+    return lines[-1] if lines else None

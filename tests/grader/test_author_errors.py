@@ -78,6 +78,16 @@ def test_what_is_wrong_is_told_with_its_file(
     assert problem.mend
 
 
+@pytest.mark.parametrize("broken", ["def test_(:\n", "no_such_name\n", "import no_such_module\n"])
+def test_checks_that_can_not_be_imported_are_told_with_their_line(course: Path, crew: Crew, broken: str) -> None:
+    file = course / "exercises" / "small" / "checks.py"
+    lines = file.read_text(encoding="utf-8").count("\n")
+    with file.open("a", encoding="utf-8") as checks:
+        checks.write(broken)
+    problem = problem_of(course, crew)
+    assert (problem.file, problem.line) == (file, lines + 1)
+
+
 def test_a_solution_that_crashes(course: Path, crew: Crew) -> None:
     change(course / "solutions" / "small" / "solution.py", "if math.isfinite(position)", "if math.no(position)")
     problem = problem_of(course, crew)

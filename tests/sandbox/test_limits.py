@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import time
 from typing import Any
 
 import pytest
@@ -139,9 +138,7 @@ def test_all_output_is_counted_whatever_the_pieces() -> None:
 
 def test_a_student_whose_output_nobody_wants_is_not_held_up(any_rig: Rig) -> None:
     # 8 MiB go through a pipe that holds 64 KiB, and the program comes to its end by itself.
-    started = time.monotonic()
     run = any_rig.run("import os\nfor _ in range(128): os.write(1, bytes(65536))\nos._exit(4)")
 
     assert run.exit is not None
     assert (run.exit.code, run.exit.limit) == (4, None)
-    assert time.monotonic() - started < 60
