@@ -13,7 +13,7 @@ unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 # A sourced ROS 2 brings pytest plugins that do not load with a current pytest: only those named here are.
 PYTEST := PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(BIN)/pytest -p pytest_timeout -p xdist.plugin -p _hypothesis_pytestplugin
 
-.PHONY: help setup course test soak audit doctor lock clean
+.PHONY: help setup course class test soak audit doctor lock clean
 
 help:    ## List what can be made.
 	@sed -nE 's/^([a-z]+):.*##/\1\t/p' Makefile | expand -t 10
@@ -21,15 +21,19 @@ help:    ## List what can be made.
 setup:   ## Make the virtual environment with every pinned dependency, or bring it up to date.
 	@PYTHON="$(PYTHON)" VENV="$(VENV)" sh setup.sh
 
-course: setup   ## Build, run and package the real course, make its site, and grade a submission.
+course: setup   ## Build, run and package the real course, make its site, and grade a class of twelve.
 	$(BIN)/spinbook build --execute
 	$(BIN)/spinbook site
 	$(BIN)/spinbook package
-	$(BIN)/spinbook grade joint_velocity solutions/joint_velocity/solution.py
+	$(BIN)/python benchmarks/class/grade_all.py --count 12 --seed 7 --out build/class
 	@echo
 	@echo "The course lies in build/notebooks, as it ran here in build/executed, its package in humanoid_ws."
 	@echo "Its site is build/site/index.html: open it in any browser."
+	@echo "How the class did is build/class/results/index.html; each student's page is a click away."
 	@echo "Open a notebook in any editor, with $(BIN)/python as its Python."
+
+class: setup   ## Make a class of 200, grade it, and check every grade; the pages lie in build/class/results.
+	$(BIN)/python benchmarks/class/grade_all.py --count 200 --out build/class
 
 test: setup   ## Check types and style, then run every test.
 	@sh test-programs.sh

@@ -39,11 +39,13 @@ def main() -> int:
     return tell(made, results, seconds, memory)
 
 
-def grade(submissions: Path, results: Path, jobs: int | None) -> tuple[float, Memory]:
-    """Grade with the real command; how long it took in seconds, and its memory."""
+def grade(submissions: Path, results: Path, jobs: int | None, quiet: bool = False) -> tuple[float, Memory]:
+    """Grade with the real command; how long it took in seconds, and its memory. Ends this program where it fails."""
     command = [sys.executable, "-m", "grader", EXERCISE, str(submissions), "--out", str(results)]
     began = time.monotonic()
-    process = subprocess.Popen([*command, *(["--jobs", str(jobs)] if jobs else [])], cwd=ROOT)
+    process = subprocess.Popen(
+        [*command, *(["--jobs", str(jobs)] if jobs else [])], cwd=ROOT, stdout=subprocess.DEVNULL if quiet else None
+    )
     try:
         with Watched(process.pid) as watched:
             status = process.wait()

@@ -71,10 +71,11 @@ class Handed:
     write: Callable[[Path], object]
 
 
-def the_class(count: int, seed: int) -> list[Handed]:
-    """`count` students in alphabetical order, who hand in as a real class does."""
+def the_class(count: int, seed: int, hostile: bool = True) -> list[Handed]:
+    """`count` students in alphabetical order, who hand in as a real class does; or only what is meant well."""
     chance = random.Random(seed)
-    attacking, odd, mistaken = round(ATTACKING * count), round(ODD * count), round(MISTAKEN * count)
+    attacking, odd = (round(ATTACKING * count), round(ODD * count)) if hostile else (0, 0)
+    mistaken = round(MISTAKEN * count)
     origins = [
         *islice(cycle(_attacks(chance)), attacking),
         *islice(cycle(_odd(chance)), odd),

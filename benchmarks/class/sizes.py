@@ -1,0 +1,44 @@
+"""What a submission costs in classes of several sizes: `python benchmarks/class/sizes.py 10 100 200`.
+
+The class is one of right solutions and mistakes alone, so that its make-up is the same in each size. What is made once
+for an exercise (the solution's recordings, the signatures of known mistakes) is there already.
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+from grade_all import grade
+from grades import wrong_with
+from students import the_class, write
+
+
+def main(sizes: list[int]) -> int:
+    """Grade a class of each size, after a small one that makes ready; print a line for each."""
+    base = Path(tempfile.mkdtemp(prefix="spinbook-sizes-"))
+    wrong = 0
+    print(
+        "| class | seconds | s a submission | a minute | MB together (PSS) | MB largest process (RSS) |\n| --- |"
+        + " --- |" * 5
+    )
+    try:
+        for size in [4, *sizes]:
+            made = the_class(size, seed=2, hostile=False)
+            folder = base / str(size)
+            write(made, folder / "submissions")
+            seconds, memory = grade(folder / "submissions", folder / "results", None, quiet=True)
+            wrong += sum(bool(wrong_with(handed, folder / "results")) for handed in made)
+            name = f"{size}" if size in sizes else f"{size}, to make ready"
+            each = f"{seconds / size:.2f} | {60 * size / seconds:.0f}"
+            print(f"| {name} | {seconds:.1f} | {each} | {memory.together:.0f} | {memory.largest:.0f} |", flush=True)
+    finally:
+        shutil.rmtree(base, ignore_errors=True)
+    print(f"{wrong} grades are not what they must be.")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main([int(size) for size in sys.argv[1:]] or [10, 100, 200]))
