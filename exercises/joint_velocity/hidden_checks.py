@@ -42,7 +42,7 @@ def test_uneven_times(irregular: Run) -> None:
 
 
 @check(
-    points=8,
+    points=6,
     hint="A message may arrive late. Its stamp says when it was true, the clock only when it arrived.",
     depends=VELOCITY,
     misconception="time of arrival for the stamp",
@@ -51,6 +51,18 @@ def test_uneven_times(irregular: Run) -> None:
 def test_late_messages(delayed: Run) -> None:
     """Velocities are right when messages arrive later than their stamps say."""
     delayed.must_match("velocity", per="name")
+
+
+@check(
+    points=2,
+    hint="Copy the header as a whole. The node's clock says when the message arrived, not when it was true.",
+    depends=["test_stamp_is_copied"],
+    misconception="time of arrival for the stamp",
+    rule="Copy both stamp and frame_id.",
+)
+def test_stamp_of_late_messages(delayed: Run) -> None:
+    """The stamp is that of the message that arrived, also when it arrived late."""
+    delayed.must_match("header.stamp", missing_ok=True)
 
 
 @check(
