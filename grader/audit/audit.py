@@ -6,7 +6,7 @@ import time
 
 from grader.audit.costs import check_results, scenario_results
 from grader.audit.listing import Check, ChecksJob
-from grader.audit.plan import planned
+from grader.audit.plan import SEEDS, planned
 from grader.audit.programs import judged, problems_of
 from grader.audit.result import LEAST_SCORE, Audit, MutantResult, Problem, score_of
 from grader.audit.spins import Spins, tidy
@@ -23,12 +23,19 @@ from grader.grading import Options, grading_of
 
 
 def audit(
-    exercise: Exercise, options: Options, crew: Crew, progress: Progress, quick: bool = False, most: int | None = None
+    exercise: Exercise,
+    options: Options,
+    crew: Crew,
+    progress: Progress,
+    quick: bool = False,
+    most: int | None = None,
+    seeds: int = SEEDS,
 ) -> Audit:
     """Everything there is to find out about one exercise.
 
     A `quick` audit asks of each mistake only whether the checks that it names catch it, tries a sample of the mutants,
-    and leaves out the other right solutions and the seeds. With `most`, no more mutants than that are tried.
+    and leaves out the other right solutions and the seeds. With `most`, no more mutants than that are tried. Otherwise
+    right solutions have to be right over so many `seeds`.
     Raises what `grading_of` raises.
     """
     began = time.monotonic()
@@ -38,7 +45,7 @@ def audit(
     trials = Trials(grading, checks, Spins(grading))
     store = Store(trials)
     reasons = listed(exercise)
-    plan = planned(trials, quick, most)
+    plan = planned(trials, quick, most, seeds)
     tried = try_all(plan, trials, store, progress)
     tidy(exercise.name)
 

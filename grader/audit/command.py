@@ -26,6 +26,7 @@ PROVED, TO_MEND, OUR_FAULT, STOPPED = 0, 1, 3, 130
 @click.argument("exercises", nargs=-1, metavar="[EXERCISE]…")
 @click.option("--quick", is_flag=True, help="Only the mistakes, and a sample of the mutants: for every change.")
 @click.option("--mutants", type=click.IntRange(0), help="Try at most so many mutants, of all kinds.")
+@click.option("--seeds", type=click.IntRange(1), help="Numbers for the scenarios with chance in them.  [default: 20]")
 @click.option("--json", "json_", type=click.Path(path_type=Path), help="Write the report as JSON, for programs.")
 @click.option("--html", type=click.Path(path_type=Path), help="Write the report as a page.")
 @click.option("--parallel", type=click.IntRange(1, 64), help="How many spins run at once.  [default: twice the cores]")
@@ -33,6 +34,7 @@ def audit(
     exercises: tuple[str, ...],
     quick: bool,
     mutants: int | None,
+    seeds: int | None,
     json_: Path | None,
     html: Path | None,
     parallel: int | None,
@@ -67,7 +69,7 @@ def audit(
         with Crew() as crew:
             for folder in [_folder(name) for name in exercises] or _all_here():
                 try:
-                    audits.append(_audited(load(folder), options, crew, quick, mutants, console))
+                    audits.append(_audited(load(folder), options, crew, console, quick, mutants, seeds))
                 except ExerciseError as error:
                     faulty.append(error)
                     click.echo(f"{error}\n    The rest of this exercise was not audited.", err=True)
@@ -90,17 +92,24 @@ def audit(
 
 
 def _audited(
-    exercise: Exercise, options: Options, crew: Crew, quick: bool, mutants: int | None, console: Console
+    exercise: Exercise,
+    options: Options,
+    crew: Crew,
+    console: Console,
+    quick: bool,
+    mutants: int | None,
+    seeds: int | None,
 ) -> Audit:
     try:
         from grader.audit.audit import audit as audit_one
+        from grader.audit.plan import SEEDS
     except ModuleNotFoundError as error:
         if error.name != "libcst":
             raise
         told = "Mutants are made with libcst, which is not installed: pip install 'spinbook[audit]'"
         raise click.UsageError(told) from None
     with on(Console(stderr=True)) as progress:
-        result = audit_one(exercise, options, crew, progress, quick, mutants)
+        result = audit_one(exercise, options, crew, progress, quick, mutants, seeds or SEEDS)
     show(result, console)
     return result
 

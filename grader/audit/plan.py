@@ -33,7 +33,7 @@ class Plan:
     sampled: bool
 
 
-def planned(trials: Trials, quick: bool, most: int | None) -> Plan:
+def planned(trials: Trials, quick: bool, most: int | None, seeds: int = SEEDS) -> Plan:
     """All there is; in a quick audit without the other right solutions and the seeds. At most `most` mutants."""
     exercise = trials.grading.spinner.exercise
     right = right_ones(exercise)
@@ -42,7 +42,7 @@ def planned(trials: Trials, quick: bool, most: int | None) -> Plan:
     chosen = every if limit is None else sample(every, limit)
     return Plan(
         right=right[:1] if quick else right,
-        seeds=[] if quick else seeds_of(trials, SEEDS),
+        seeds=[] if quick else seeds_of(trials, seeds),
         nothings=nothings(exercise),
         mistakes=mistakes(exercise),
         mutants=chosen,

@@ -43,7 +43,7 @@ def small(tmp_path: Path) -> SmallExercise:
 def audited(crew: Crew, cache: Path) -> Auditing:
     """Audits a small exercise with what this session has spun already."""
 
-    def run(small: SmallExercise, quick: bool = True, most: int = 0) -> Audit:
-        return audit(load(small.folder), Options(), crew, Silence(), quick, most)
+    def run(small: SmallExercise, quick: bool = True, most: int = 0, seeds: int = 2) -> Audit:
+        return audit(load(small.folder), Options(), crew, Silence(), quick, most, seeds)
 
     return run

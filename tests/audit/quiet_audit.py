@@ -22,5 +22,5 @@ class Silence:
 class Auditing(Protocol):
     """Audits a small exercise: quickly and without mutants, unless a test asks for more."""
 
-    def __call__(self, small: SmallExercise, quick: bool = True, most: int = 0) -> Audit:
+    def __call__(self, small: SmallExercise, quick: bool = True, most: int = 0, seeds: int = 2) -> Audit:
         """What was found."""

@@ -30,7 +30,7 @@ def in_the_course(small: SmallExercise, cache: Path, monkeypatch: pytest.MonkeyP
 
 
 def test_nothing_to_mend_ends_with_0_and_is_written_as_json_and_as_a_page(small: SmallExercise) -> None:
-    done = run("--quick", "--json", "audit.json")
+    done = run("--quick", "--mutants", "6", "--json", "audit.json")
     assert done.exit_code == 0, done.stdout
     assert "nothing to mend" in done.stdout
     (entries,) = json.loads(Path("audit.json").read_text())["audits"]
@@ -45,7 +45,7 @@ def test_a_change_that_lets_a_mistake_through_ends_with_1_and_says_which(
     small: SmallExercise, browser: Browser
 ) -> None:
     small.change("exercises/doubler/hidden_checks.py", "    negative.must_be_silent()\n", "")
-    done = run("doubler", "--quick", "--html", "audit.html")
+    done = run("doubler", "--quick", "--mutants", "6", "--html", "audit.html")
     assert done.exit_code == 1
     text = " ".join(done.stdout.split())
     assert "test_nothing_below_zero lets the mistake mistakes/any_number.py" in text
