@@ -20,7 +20,7 @@ class Problem:
     """Something for the exercise's author to mend.
 
     `place` is a file, with a line where there is one. `about` names the check, the mistake or the mutant that it is
-    about. `diff` is there for a mutant.
+    about. `diff` is there for a mutant, and `evidence` for what it is that differs.
     """
 
     place: str
@@ -28,6 +28,7 @@ class Problem:
     found: str
     mend: str
     diff: str = ""
+    evidence: str = ""
 
 
 @dataclass(frozen=True)

@@ -44,9 +44,10 @@ def problems_of_survivors(exercise: Exercise, results: tuple[MutantResult, ...])
         Problem(
             f"{exercise.solution_file}:{result.mutant.line}",
             result.mutant.id,
-            f"no check catches the mutant {result.mutant.id} ({result.mutant.what}). It differs: {result.evidence}",
+            f"no check catches the mutant {result.mutant.id}: {result.mutant.what}",
             QUESTION.format(file.name, result.mutant.id),
             result.mutant.diff,
+            f"It can be told from the solution: {result.evidence}.",
         )
         for result in results
         if result.fate == "survived"

@@ -39,6 +39,8 @@ def _show_problem(problem: Problem, console: Console) -> None:
     console.print(Padding(Text(printable(_short(problem.place)), style="dim"), (0, 0, 0, 3)))
     if problem.diff:
         console.print(Padding(Syntax(problem.diff, "diff", background_color="default", word_wrap=True), (0, 0, 0, 3)))
+    if problem.evidence:
+        console.print(Padding(Text(printable(problem.evidence)), (0, 0, 0, 3)))
     console.print(Padding(Text(printable(problem.mend), style="cyan"), (0, 0, 0, 3)))
 
 
