@@ -32,7 +32,9 @@ class SmallClass:
         self.submissions = folder / "submissions"
         self.submissions.mkdir()
         solutions = folder / "solutions" / EXERCISE
-        right = (solutions / "solution.py").read_text(encoding="utf-8")
+        # Without what rclpy logs at most once a second of real time: that is more on a busy machine.
+        lines = (solutions / "solution.py").read_text(encoding="utf-8").splitlines(keepends=True)
+        right = "".join(line for line in lines if "throttle_duration_sec" not in line)
         forwards = (solutions / "mistakes" / "only_forwards.py").read_text(encoding="utf-8")
         self.hand_in("ana", right)
         self.hand_in("bert", f"# mine\n{right}")
