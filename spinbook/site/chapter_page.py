@@ -10,7 +10,7 @@ from typing import Any
 
 from spinbook.chapter.chapter import Cell, CellKind, Chapter
 from spinbook.site.names import exercise_page
-from spinbook.site.picture import smaller
+from spinbook.site.picture import smaller, still_of
 from spinbook.site.repository import Repository
 
 _FAILS = "raises-exception"
@@ -89,12 +89,15 @@ def _card(exercise: ExerciseCard) -> str:
 
 
 def _code(cell: Cell, ran: Ran, source_link: str) -> dict[str, Any]:
-    outputs = [_published(output) for output in ran.outputs(cell.id)]
+    shown = ran.outputs(cell.id)
+    outputs = [_published(output) for output in shown]
+    stills = [still_of(output) for output in shown if is_picture(output)]
     about: dict[str, Any] = {
         "kind": cell.kind.value,
         "line": cell.line,
         "source": source_link,
         "alts": [alternative(output, cell) for output in outputs if is_picture(output)],
+        "stills": [still.path if still else "" for still in stills],
         "fails": cell.raises,
     }
     if cell.kind is CellKind.NODE:
@@ -116,6 +119,8 @@ def _published(output: dict[str, Any]) -> dict[str, Any]:
     data = dict(output["data"])
     for kind in [kind for kind in data if kind not in _SHOWN]:
         del data[kind]
+    if "image/svg+xml" in data:
+        data.pop("image/png", None)
     if "image/png" in data:
         data["image/png"] = smaller(data["image/png"])
     return {**output, "data": data}
@@ -139,6 +144,12 @@ def alternative(output: Mapping[str, Any], cell: Cell) -> str:
     if plain and not plain.startswith("<"):
         return plain
     return f"What {cell.source.strip().splitlines()[0]} draws"
+
+
+def stills(chapter: Chapter, ran: Ran) -> dict[str, bytes]:
+    """The files that stand for the chapter's moving pictures where nothing may move: path in the site -> PNG."""
+    found = [still_of(output) for cell in chapter.cells for output in ran.outputs(cell.id)]
+    return {still.path: still.data for still in found if still}
 
 
 def as_text(notebook: Mapping[str, Any]) -> str:

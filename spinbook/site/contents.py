@@ -20,7 +20,7 @@ from spinbook.handout.comments import without_comments
 from spinbook.problem import Problem, Severity, SpinbookError
 from spinbook.site import names
 from spinbook.site.about_page import about_markdown
-from spinbook.site.chapter_page import ExerciseCard, Ran, as_text, chapter_notebook
+from spinbook.site.chapter_page import ExerciseCard, Ran, as_text, chapter_notebook, stills
 from spinbook.site.drawing import drawing_files, drawing_html
 from spinbook.site.exercise_page import exercise_markdown
 from spinbook.site.glossary import Term, terms_of
@@ -163,6 +163,7 @@ def _chapter(
     }
     cards = {name: ExerciseCard(name, exercise.title, exercise.points) for name, exercise in exercises.items()}
     notebook = chapter_notebook(chapter, ran, prose, cards, links.repository, _graph(course, chapter))
+    contents.files |= stills(chapter, ran)
     contents.origins[name] = chapter.file
     contents.lines[name] = [cell["metadata"]["spinbook"]["line"] for cell in notebook["cells"]]
     for cell in chapter.nodes:
@@ -252,7 +253,7 @@ def _home(
     runs = [(chapter, _ran(course, chapter)) for chapter in chapters]
     graphs = [node_graph_of(course, chapter) for chapter in chapters]
     pictures = home_pictures(runs)
-    contents.files |= {picture.path: picture.data for picture in pictures}
+    contents.files |= {path: data for picture in pictures for path, data in picture.files.items()}
     about = {
         "chapters": home_chapters(chapters, exercises),
         "graph": next((node_graph_excerpt(graph) for graph in graphs if graph), ""),

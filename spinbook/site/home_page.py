@@ -20,18 +20,16 @@ from spinbook.site.drawing import drawing_html
 from spinbook.site.log_lexer import LogLexer
 from spinbook.site.mermaid import Picture
 from spinbook.site.names import chapter_page, exercise_page
-from spinbook.site.picture import smaller
+from spinbook.site.picture import FOLDER, smaller, still_of
 
-FOLDER = "_pictures"
 _LOG_LINES = 6
 
 
 @dataclass(frozen=True)
 class Shown:
-    """A picture of the home page: the file that it needs, and what the theme needs to know."""
+    """A picture of the home page: the files that it needs, path -> content, and what the theme needs to know."""
 
-    path: str
-    data: bytes
+    files: dict[str, bytes]
     about: dict[str, Any]
 
 
@@ -109,12 +107,15 @@ def _shown(chapter: Chapter, cell: Cell, output: Mapping[str, Any], caption: str
         width, height = Image.open(io.BytesIO(picture)).size
         size = {"width": width, "height": height}
     path = f"{FOLDER}/{digest(picture)[:16]}{suffix}"
+    still = still_of(output)
+    files = {path: picture} | ({still.path: still.data} if still else {})
     about = {
         "src": path,
+        "still": still.path if still else "",
         "alt": alternative(output, cell),
         "caption": caption,
         "page": f"{chapter_page(chapter.file)}.html",
         "chapter": chapter.title,
         **size,
     }
-    return Shown(path, picture, about)
+    return Shown(files, about)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from grader.exercise import Exercise, ExerciseError, load
-from spinbook.chapter.chapter import Chapter
 from spinbook.course.course import Course
 from spinbook.handout.leaks import leaks
 from spinbook.handout.secrets import hidden_names, secrets
@@ -28,11 +27,11 @@ def prove_nothing_leaks(course: Course, contents: Contents) -> None:
     known = [secret for exercise in exercises for secret in (*secrets(exercise, taught), *hidden_names(exercise))]
     found: dict[Path, str] = {}
     for file, what in leaks(_published(contents), known):
-        found.setdefault(contents.origins.get(file.removesuffix(".frame").partition(".")[0], Path("build", file)), what)
+        page = file.removesuffix(".frame").partition(".")[0]
+        found.setdefault(contents.origins.get(page, Path("build", file)), what)
     if found:
-        raise SpinbookError(
-            *(Problem(file, None, f"{what} would be published.", _MEND) for file, what in found.items())
-        )
+        told = (Problem(file, None, f"{what} would be published.", _MEND) for file, what in found.items())
+        raise SpinbookError(*told)
 
 
 def _load(course: Course, name: str) -> Exercise:

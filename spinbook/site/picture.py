@@ -4,10 +4,37 @@ from __future__ import annotations
 
 import base64
 import io
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
 
 from PIL import Image
 
+from spinbook.build.digest import digest
+
+FOLDER = "_pictures"
+
 _COLOURS = 256
+
+
+@dataclass(frozen=True)
+class Still:
+    """What stands for a moving picture in print, and for readers who prefer no motion. `path` is its file in the site.
+
+    An SVG in an `<img>` is not told by browsers that it is printed, or that motion is not wanted: its page has to be.
+    """
+
+    path: str
+    data: bytes
+
+
+def still_of(output: Mapping[str, Any]) -> Still | None:
+    """The still of an output that moves: one that has an SVG and a PNG of the same."""
+    data = output.get("data", {})
+    if not {"image/svg+xml", "image/png"} <= set(data):
+        return None
+    png = base64.b64decode(smaller(data["image/png"]))
+    return Still(f"{FOLDER}/{digest(png)[:16]}.png", png)
 
 
 def smaller(png: str) -> str:

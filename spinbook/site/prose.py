@@ -44,7 +44,7 @@ class Links:
 
 
 def rich(text: str, links: Links, folder: str, page_folder: str, draw: Draw) -> str:
-    """`text`, from a file in `folder`, for a page in `page_folder`. Comments, in which authors write notes, are left out."""
+    """`text`, from a file in `folder`, for a page in `page_folder`; without comments, in which authors write notes."""
     out: list[str] = []
     fence: str | None = None
     drawing: list[str] | None = None

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
+import socket
 import subprocess
 import sys
 import threading
+import time
+import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -115,10 +119,35 @@ It is forty-two.
 <!-- exercise: joint_velocity -->
 '''
 
-_MORE = "---\ntitle: More\nsummary: What comes next.\n---\n\n# More\n\nWords only. <!-- NOTE_IN_A_LINE -->\n\n## Last words\n\nGood-bye.\n"
-_GLOSSARY = (
-    "# Glossary\n\n<!--\nNOTE_OF_THE_GLOSSARY\n-->\n\n## Publisher\n\nWhoever sends.\n\n## Message\n\nWhat is sent.\n"
-)
+_MORE = """\
+---
+title: More
+summary: What comes next.
+---
+
+# More
+
+Words only. <!-- NOTE_IN_A_LINE -->
+
+## Last words
+
+Good-bye.
+"""
+_GLOSSARY = """\
+# Glossary
+
+<!--
+NOTE_OF_THE_GLOSSARY
+-->
+
+## Publisher
+
+Whoever sends.
+
+## Message
+
+What is sent.
+"""
 
 
 @dataclass(frozen=True)
@@ -152,6 +181,35 @@ class SmallCourse:
         environment = {**os.environ, "npm_config_registry": "http://127.0.0.1:9"}
         argv = [sys.executable, "-m", "spinbook", "site", *words]
         return subprocess.run(argv, cwd=self.root, env=environment, capture_output=True, text=True, timeout=250)
+
+    @contextmanager
+    def serving(self) -> Iterator[str]:
+        """`spinbook site --serve`, without running notebooks; its address, once it answers."""
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        argv = [sys.executable, "-m", "spinbook", "site", "--no-run", "--serve", "--port", str(port)]
+        environment = {**os.environ, "npm_config_registry": "http://127.0.0.1:9"}
+        process = subprocess.Popen(argv, cwd=self.root, env=environment, start_new_session=True)
+        address = f"http://127.0.0.1:{port}"
+        try:
+            _wait_for(address, process)
+            yield address
+        finally:
+            os.killpg(process.pid, signal.SIGTERM)
+            process.wait(60)
+
+
+def _wait_for(address: str, process: subprocess.Popen[bytes]) -> None:
+    deadline = time.monotonic() + 120
+    while True:
+        try:
+            urllib.request.urlopen(address, timeout=10).close()
+            return
+        except OSError:
+            assert process.poll() is None, "it has ended"
+            assert time.monotonic() < deadline, "it does not answer"
+            time.sleep(0.1)
 
 
 def write_course(root: Path) -> SmallCourse:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import json
 from pathlib import Path
 
 import pytest
@@ -89,6 +90,39 @@ def test_a_chapter_is_below_a_megabyte_over_the_wire(browser: Browser, built: Sm
     files = [built.site / url.removeprefix(f"{address}/") for url in asked]
     assert len(files) > 4
     assert sum(len(gzip.compress(file.read_bytes())) for file in files) < 1_000_000
+
+
+def test_what_moves_stands_still_on_paper_and_for_those_who_prefer_no_motion(
+    browser: Browser, course: SmallCourse
+) -> None:
+    executed = course.root / "build" / "executed" / "01-talk.ipynb"
+    notebook = json.loads(executed.read_text())
+    (picture,) = (o for c in notebook["cells"] for o in c.get("outputs", []) if "image/png" in o.get("data", {}))
+    picture["data"]["image/svg+xml"] = '<svg xmlns="http://www.w3.org/2000/svg" width="42" height="24"></svg>'
+    executed.write_text(json.dumps(notebook))
+    assert course.spinbook_site("--no-run").returncode == 0
+
+    with opened(browser, course.site / "chapters" / "01-talk.html") as shown:
+        moving, still = shown.page.locator("main img.moving"), shown.page.locator("main img.still")
+        expect(moving).to_be_visible()
+        expect(still).to_be_hidden()
+        shown.page.emulate_media(reduced_motion="reduce")
+        expect(moving).to_be_hidden()
+        expect(still).to_be_visible()
+        shown.page.emulate_media(media="print", reduced_motion="no-preference")
+        expect(moving).to_be_hidden()
+        expect(still).to_be_visible()
+        assert still.evaluate("image => image.complete && image.naturalWidth > 42")
+        assert shown.faults == []
+
+
+def test_while_an_author_writes_the_open_page_follows(browser: Browser, course: SmallCourse) -> None:
+    with course.serving() as address, opened(browser, f"{address}/chapters/02-more.html") as shown:
+        with shown.page.expect_websocket(timeout=PATIENCE_MS):
+            shown.page.reload()
+        course.change("chapters/02-more.md", "Words only.", "Words that were saved just now.")
+        expect(shown.page.get_by_text("saved just now")).to_be_visible(timeout=2 * PATIENCE_MS)
+        assert shown.faults == []
 
 
 def test_a_chapter_prints(browser: Browser, address: str) -> None:

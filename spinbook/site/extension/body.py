@@ -53,16 +53,28 @@ def depend(app: Sphinx, page: str, source: list[str]) -> None:
     app.env.note_dependency(f"{page}{FRAME_SUFFIX}")
 
 
+def _size(file: Path) -> tuple[int, int]:
+    """Width and height of a picture in CSS pixels. Raises OSError or ValueError where it does not say."""
+    if file.suffix != ".svg":
+        with Image.open(file) as image:
+            return int(image.width), int(image.height)
+    opening = file.read_text(encoding="utf-8").partition(">")[0]
+    sizes = dict(re.findall(r'\b(width|height)="([\d.]+)(?:px)?"', opening))
+    if len(sizes) < 2:
+        raise ValueError(file)
+    return round(float(sizes["width"])), round(float(sizes["height"]))
+
+
 def _sized(tag: str, folder: Path, app: Sphinx) -> str:
     source = _SOURCE.search(tag)
-    if source is None or " width=" in tag:
+    if source is None or " width=" in tag or 'class="still"' in tag:
+        # What is shown on paper only must be there when somebody prints, and so is not left for later.
         return tag
     # Sphinx copies pictures after the pages are written; it knows already what they will be called.
     name = Path(source.group(1)).name
     original = next((Path(app.srcdir, at) for at, (_, to) in app.env.images.items() if to == name), folder / name)
     try:
-        with Image.open(original) as image:
-            width, height = image.size
-    except OSError:
+        width, height = _size(original)
+    except (OSError, ValueError):
         return f'{tag.rstrip("/> ")} loading="lazy">'
     return f'{tag.rstrip("/> ")} width="{width}" height="{height}" loading="lazy">'

@@ -35,7 +35,7 @@ def _describe(cell: nodes.container, about: dict[str, Any]) -> None:
             for code in part.findall(nodes.literal_block):
                 code["language"] = _LANGUAGES.get(kind, "ipython3")
         elif part.get("nb_element") == "cell_code_output":
-            _alternatives(part, about["alts"])
+            _pictures(part, about["alts"], about["stills"])
             words = "Output: it fails, as it is meant to" if about["fails"] else "Output"
             part.insert(0, nodes.raw("", f'<p class="output-name">{words}</p>', format="html"))
     cell.insert(0, nodes.raw("", _head(kind, about), format="html"))
@@ -61,14 +61,24 @@ def _head(kind: str, about: dict[str, Any]) -> str:
     return f'<div class="cell-head">{kind_name}{name}<span class="cell-links">{download}{source}</span></div>'
 
 
-def _alternatives(output: nodes.container, alts: list[str]) -> None:
-    """Gives each picture its words; a picture in several formats is one picture."""
+def _pictures(output: nodes.container, alts: list[str], stills: list[str]) -> None:
+    """Gives each picture its words, and a moving one its still; a picture in several formats is one picture."""
     pictures: dict[int, list[nodes.image]] = {}
     for image in output.findall(nodes.image):
         bundle = image.parent
         while bundle is not output and bundle.get("nb_element") != "mime_bundle":
             bundle = bundle.parent
         pictures.setdefault(id(bundle), []).append(image)
-    for images, alt in zip(pictures.values(), alts, strict=False):
+    for images, alt, still in zip(pictures.values(), alts, stills, strict=False):
         for image in images:
             image["alt"] = alt
+        if still:
+            _beside(images[0], still)
+
+
+def _beside(image: nodes.image, still: str) -> None:
+    """Puts the still after the image. Style sheets show one of the two: browsers choose no other source to print."""
+    image["classes"].append("moving")
+    alt = escape(image["alt"])
+    shown = nodes.raw("", f'<img class="still" src="../{escape(still)}" alt="{alt}">', format="html")
+    image.parent.insert(image.parent.index(image) + 1, shown)
