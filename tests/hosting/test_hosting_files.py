@@ -11,6 +11,8 @@ from typing import Any
 import pytest
 import yaml
 
+from spinbook.site.launch import BRANCH
+
 ROOT = Path(__file__).parents[2]
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
 SCRIPTS = [ROOT / "container" / "with-ros.sh", ROOT / "container" / "start.sh", ROOT / "binder" / "postBuild"]
@@ -50,6 +52,16 @@ def test_the_site_that_the_course_makes_is_what_is_published() -> None:
     assert "make course" in {step.get("run") for step in steps("pages.yml")}
     assert published["with"]["path"] == "build/site"
     assert workflow("pages.yml")["jobs"]["deploy"]["permissions"] == {"pages": "write", "id-token": "write"}
+
+
+def test_the_notebooks_that_the_site_leads_to_are_pushed_by_a_job_that_runs_no_course() -> None:
+    job = workflow("pages.yml")["jobs"]["notebooks"]
+    kept = next(step for step in steps("pages.yml") if "upload-artifact@" in step.get("uses", ""))
+
+    assert kept["with"] == {"name": "launch", "path": "build/launch", "include-hidden-files": True}
+    assert job["permissions"] == {"contents": "write"}
+    assert f"git init -q -b {BRANCH}" in job["steps"][-1]["run"]
+    assert "make course" not in {step.get("run") for step in job["steps"]}
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.name)
