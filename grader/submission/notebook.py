@@ -14,10 +14,15 @@ class NoCell(Exception):
 
 
 def cell_of(content: bytes, exercise: Exercise) -> str:
-    """The code of the exercise's cell, with its lines numbered as in the cell.
+    """The code of the exercise's cell, with its lines numbered as in the cell: of several the last."""
+    return cells_of(content, exercise)[-1]
 
-    That is the cell whose metadata says `spinbook.exercise`, else the one with `%%node` and the exercise's name, else
-    the one that defines the exercise's class. Of several, the last. Lines of magic become empty ones.
+
+def cells_of(content: bytes, exercise: Exercise) -> list[str]:
+    """The code of every cell that is the exercise's, in their order; at least one. Lines of magic become empty ones.
+
+    Those are cells whose metadata says `spinbook.exercise`, else those with `%%node` and the exercise's name, else
+    those that define the exercise's class, else those that make its node. Raises `NoCell`.
     """
     try:
         cells = json.loads(content)["cells"]
@@ -25,7 +30,7 @@ def cell_of(content: bytes, exercise: Exercise) -> str:
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
         raise NoCell(f"It is no notebook that can be read: {type(error).__name__}: {error}.") from None
     stem = exercise.file_name.removesuffix(".py")
-    magic = re.compile(rf"^%%node\s+{re.escape(stem)}(\.py)?\s*$", re.MULTILINE)
+    magic = re.compile(rf"^%%node\s+{re.escape(stem)}(\.py)?(\s.*)?$", re.MULTILINE)
     definition = re.compile(rf"^class\s+{re.escape(exercise.class_name)}\b", re.MULTILINE)
     node = re.compile(rf"""(Node|__init__|create_node)\(\s*['"]{re.escape(exercise.node_name)}['"]""")
     for found in (
@@ -35,7 +40,7 @@ def cell_of(content: bytes, exercise: Exercise) -> str:
         [code for _, code in codes if node.search(code)],
     ):
         if found:
-            return _without_magic(found[-1])
+            return [_without_magic(code) for code in found]
     raise NoCell(
         f"None of the notebook's {len(codes)} code cells is the exercise's. Write the class {exercise.class_name} in "
         f"the cell that the chapter gives for it; it begins with %%node {stem}."

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from grader.exercise import Exercise, starter
 from grader.submission import Submission, read
+from grader.submission.notebook import NoCell, cells_of
 from spinbook.update.base import BASE
 
 
@@ -40,6 +41,15 @@ def candidates(exercise: Exercise, folder: Path) -> list[Candidate]:
 def is_starter(candidate: Candidate, exercise: Exercise) -> bool:
     """Whether this is the starter still, as it was handed out."""
     return _bare(candidate.submission.source) in _starters(exercise)
+
+
+def cells_that_differ(candidate: Candidate, exercise: Exercise) -> int:
+    """How many different cells the candidate's notebook has for the exercise; 1 where the code is from elsewhere."""
+    if candidate.file is None or candidate.file.suffix != ".ipynb":
+        return 1
+    with contextlib.suppress(OSError, NoCell):
+        return len({_bare(code) for code in cells_of(candidate.file.read_bytes(), exercise)})
+    return 1
 
 
 def _name(file: Path, folder: Path) -> str:

@@ -15,7 +15,7 @@ from grader.report.terminal import show
 from grader.submission import NoSubmission, read
 from spinbook.problem import Problem, SpinbookError
 from spinbook.submit import student as names
-from spinbook.submit.candidates import Candidate, candidates, is_starter
+from spinbook.submit.candidates import Candidate, candidates, cells_that_differ, is_starter
 from spinbook.submit.hand_in import HandIn, default_target, write_upload
 from spinbook.submit.self_check import SelfCheck, self_check
 
@@ -60,6 +60,9 @@ def submit(
             Problem(target, None, f"it can't be written: {error.strerror}.", "Name another place: --output FILE")
         ) from None
     console.print(f"Your code is from {chosen.origin}.", markup=False)
+    if not code and (count := cells_that_differ(chosen, wanted)) > 1:
+        told = f"{count} cells there hold {wanted.name}, and they differ: this is the last of them. Delete the others."
+        console.print(told, style="bold yellow", markup=False)
     if is_starter(chosen, wanted):
         console.print("It is still the starter, as it was handed out. Was your work saved?", style="bold yellow")
     if not name:

@@ -109,7 +109,7 @@ def _lines(told: Told) -> list[str]:
         f"the course has taken this cell out; yours is kept, for you changed it: {n}" for n in told.kept_though_removed
     ]
     lines += [f"you had deleted this cell, and the course has changed it: it is back: {name}" for name in told.back]
-    lines += [f"this exercise's cell is not in your notebook any more: {name}" for name in told.missing]
+    lines += [f"you have deleted this cell, and it stays so, but an exercise needs it: {name}" for name in told.missing]
     if told.order_kept:
         lines.append("you and the course moved cells: yours are in your order")
     counted = (("changed", told.taken), ("new", told.added), ("taken out", told.removed))

@@ -135,7 +135,7 @@ class _Merge:
             elif content(cell) != content(self.base[base_of[j]]):
                 self.told.back.append(label(cell))
                 items.append(_Item(None, j, cell))
-            elif cell.get("metadata", {}).get("spinbook", {}).get("exercise"):
+            elif _is_needed(cell):
                 self.told.missing.append(label(cell))
         return items
 
@@ -143,6 +143,12 @@ class _Merge:
         """Whether the cells that both sides have stand in another order than in the base."""
         places = [of[b] for b in range(len(self.base)) if b in self.mine_of and b in self.new_of]
         return places != sorted(places)
+
+
+def _is_needed(cell: Cell) -> bool:
+    """Whether an exercise can't be done without this cell, so that a student should know that it is gone."""
+    known = cell.get("metadata", {}).get("spinbook", {})
+    return bool(known.get("exercise")) or known.get("kind") in ("setup", "check")
 
 
 def _refreshed(mine: Cell, base: Cell, new: Cell) -> Cell:

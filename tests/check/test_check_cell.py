@@ -134,12 +134,17 @@ def test_a_check_ends_with_its_bound_and_leaves_nothing_behind(kernel: Kernel) -
     assert checks_of(kernel) == []
 
 
-def test_stop_ends_a_check_and_leaves_nothing_behind(kernel: Kernel) -> None:
-    kernel.run(node_cell(solution()))
+def test_stop_ends_a_check_in_the_midst_and_leaves_nothing_behind(kernel: Kernel) -> None:
+    kernel.run(node_cell(solution().replace("answer = JointState()", "while True: pass")))
+    started: list[psutil.Process] = []
 
     def press() -> None:
         deadline = time.monotonic() + 60
-        while not checks_of(kernel) and time.monotonic() < deadline:
+        while time.monotonic() < deadline:
+            found = [child for check in checks_of(kernel) for child in [check, *children_of(check)]]
+            if any("fork_server" in " ".join(command_of(child)) for child in found):
+                started.extend(found)
+                break
             time.sleep(0.01)
         os.kill(kernel.process_id, signal.SIGINT)
 
@@ -149,8 +154,24 @@ def test_stop_ends_a_check_and_leaves_nothing_behind(kernel: Kernel) -> None:
     pressing.join()
 
     assert "The check was interrupted" in shown.error
+    assert len(started) > 1, "it was stopped while it had processes of its own"
+    assert psutil.wait_procs(started, timeout=30)[1] == []
     assert checks_of(kernel) == []
     assert kernel.run("print(6 * 7)").text == "42\n"
+
+
+def children_of(process: psutil.Process) -> list[psutil.Process]:
+    try:
+        return process.children(recursive=True)
+    except psutil.Error:
+        return []
+
+
+def command_of(process: psutil.Process) -> list[str]:
+    try:
+        return process.cmdline()
+    except psutil.Error:
+        return []
 
 
 @pytest.mark.parametrize(

@@ -100,6 +100,15 @@ def test_a_deleted_cell_stays_deleted_unless_it_changed_and_a_missing_exercise_i
     assert told.missing == ["%%node listener"]
 
 
+def test_a_deleted_check_is_told_too() -> None:
+    check = cell("%check listener", "exercise-listener-check")
+    check["metadata"]["spinbook"] = {"kind": "check"}
+    base = notebook(TITLE, SETUP, STARTER, check)
+    result, told = merged_notebook(base, notebook(TITLE, SETUP, MINE), notebook(TITLE, SETUP, STARTER, check, END))
+    assert check["source"] not in texts(result)
+    assert told.missing == ["%check listener"]
+
+
 def test_cells_that_lost_their_ids_are_found_by_content_by_node_and_by_likeness() -> None:
     def colab(made: Cell, number: int) -> Cell:
         return {k: v for k, v in made.items() if k != "id"} | {"metadata": {"id": f"x{number}"}}
