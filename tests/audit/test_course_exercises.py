@@ -27,6 +27,7 @@ def to_mend(result: Audit) -> str:
     return "\n".join(f"{problem.found}\n    {problem.place}\n    {problem.mend}" for problem in result.problems)
 
 
+@pytest.mark.timeout(900)
 @pytest.mark.parametrize("folder", EXERCISES, ids=lambda folder: folder.name)
 def test_every_mistake_is_caught_by_the_checks_that_it_names(folder: Path, crew: Crew, cache: Path) -> None:
     result = audit(load(folder), Options(), crew, Silence(), quick=True, most=4)
