@@ -49,10 +49,13 @@ class Gone(Exception):
 
 
 class Fence:
-    """Holds the rig until the student's nodes have handled what was published."""
+    """Holds the rig until the student's nodes have handled what was published.
 
-    def __init__(self, ros: Ros, node: Any, student: Student) -> None:
-        self._ros, self._node, self._student = ros, node, student
+    `check` is called again and again meanwhile, and may raise what ends the run.
+    """
+
+    def __init__(self, ros: Ros, node: Any, student: Student, check: Callable[[], None]) -> None:
+        self._ros, self._node, self._student, self._check = ros, node, student, check
         self._calls: list[tuple[Any, Any]] = []
         self._threads = Threads(student.pid)
         self._blocked = 0.0
@@ -110,6 +113,7 @@ class Fence:
         def meanwhile() -> None:
             nonlocal patience
             self.alive()
+            self._check()
             # Most waits are over before this is needed the first time.
             patience = patience or Patience(self._student, cpu_s)
             blocked = patience.blocked
@@ -135,6 +139,7 @@ class Fence:
         while not self._threads.wait_until_still(STILL_S, 0.1):
             self.alive()
             self._ros.turn()
+            self._check()
             if patience.ended() == "cpu":
                 raise Stopped("timed-out", ENDLESS.format(3.0))
 

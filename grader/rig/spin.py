@@ -66,7 +66,7 @@ class Rig:
         self._recorder = Recorder(node, what.exercise.outputs, self._moment)
         ros.executor.add_node(node)
         self._graph = Graph(node, ros.names)
-        self._fence = Fence(ros, node, student)
+        self._fence = Fence(ros, node, student, self._recorder.check)
         self._others = Others()
         self._nodes: list[str] = []
         self._sim_time = False
@@ -89,9 +89,9 @@ class Rig:
             ending = cut_short(self._student, self._what, self._met, len(self._publishers.sent))
         self._fence.close()
         self._others.close()
-        self._ros.turn()
         end_points = self._graph.end_points()
-        self._student.kill()
+        self._student.kill()  # before the last look at what has come: it may never stop publishing
+        self._ros.turn()
         return Recording(
             scenario=self._what.scenario.name,
             sent=tuple(self._publishers.sent),
