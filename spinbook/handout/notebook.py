@@ -13,8 +13,8 @@ _NOTEBOOK_KEYS = ("kernelspec", "language_info", "spinbook", "title")
 _CELL_KEYS = ("spinbook", "tags")
 
 _HELP = """\
-# It says "No module named 'spinbook'"? Choose the handout's .venv as this notebook's kernel, or do step 1 of README.md.
-# In Colab: README.md tells how.
+# It says "No module named 'spinbook'"? Choose the handout's .venv as this notebook's kernel,
+# or do step 1 of README.md. In Colab: README.md tells how.
 """
 
 

@@ -87,6 +87,12 @@ def test_notebooks_have_the_starter_and_the_check_and_no_outputs(real: HandedOut
         cells = json.loads(file.read_text(encoding="utf-8"))["cells"]
         assert not [cell["id"] for cell in cells if cell.get("outputs") or cell.get("execution_count")]
     ids = [cell["id"] for cell in cells]
+    setup = cells[ids.index("spinbook-setup")]["source"]
+    assert "No module named 'spinbook'" in setup, "where nothing is installed, the cell itself says what to do"
+    assert setup.split("\n")[-2:] == [
+        "%load_ext spinbook",
+        "%chapter 03-nodes-and-topics --package humanoid_control --workspace humanoid_ws",
+    ]
     starter = ids.index("exercise-joint-velocity-starter")
     assert cells[starter]["source"].startswith("%%node joint_velocity\n")
     assert "TODO" in cells[starter]["source"]
