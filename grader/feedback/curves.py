@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from grader.checking import Run
 from grader.checking.matching import close
+from grader.checking.run import Message
 from grader.exercise import Exercise
 from grader.grading import Grade
 
@@ -32,14 +33,17 @@ class Curve:
 
 
 def curves(grade: Grade, exercise: Exercise, scenario: str, field: str, per: str = "name") -> tuple[Curve, ...]:
-    """The curves of `field` in one scenario that is in the grade's recordings, a curve for each name in `per`."""
+    """The curves of `field` in one scenario that is in the grade's recordings: a curve for each name in `per`.
+
+    Where the field is a single number, there is one curve, called as the field.
+    """
     run = Run(exercise, grade.recordings[scenario], grade.references[scenario])
     expected: dict[str, list[Point]] = {}
     got: dict[str, list[Point]] = {}
     for exchange in run.exchanges:
         for lines, messages in ((expected, exchange.expected), (got, exchange.answers)):
             for message in messages:
-                for joint, value in message.by(per, field).items():
+                for joint, value in _values(message, per, field).items():
                     lines.setdefault(str(joint), []).append((exchange.sent.at, _number(value)))
     joints = [*expected, *(joint for joint in got if joint not in expected)][:MOST]
     return tuple(_curve(joint, expected.get(joint, []), got.get(joint, [])) for joint in joints)
@@ -55,6 +59,11 @@ def _first_difference(right: dict[float, float], came: dict[float, float]) -> Po
             shown = next((v for v in (came.get(at), right.get(at)) if v is not None and abs(v) < HIGHEST), 0.0)
             return at, shown
     return None
+
+
+def _values(message: Message, per: str, field: str) -> dict[str, object]:
+    value = message.value(field)
+    return {field: value} if isinstance(value, (int, float)) else message.by(per, field)
 
 
 def _number(value: object) -> float:

@@ -114,12 +114,16 @@ def _marks(start: float, end: float) -> list[float]:
 def _said(drawn: tuple[Curve, ...], field: str, end: float) -> str:
     """The plot in words."""
     wrong = [curve for curve in drawn if curve.first_wrong]
+    alone = drawn[0].joint == field
     names = "joint" if len(drawn) == 1 else "joints"
-    begin = f"The {field} of {len(drawn)} {names} over {end:.3g} s, yours drawn over the solution's. "
+    of = "" if alone else f" of {len(drawn)} {names}"
+    begin = f"The {field}{of} over {end:.3g} s, yours drawn over the solution's. "
     if not wrong:
         return begin + "They agree everywhere."
     times = [(curve.first_wrong[0], curve.joint) for curve in wrong if curve.first_wrong]
     at, joint = min(times)
+    if alone:
+        return begin + f"The first that is wrong is at {at:.2f} s, marked with a cross."
     return (
         begin + f"{len(wrong)} of them differ; the first that is wrong is {joint} at {at:.2f} s, marked with a cross."
     )

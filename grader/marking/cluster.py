@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from distributed import Client
 
 #: How long a scheduler has to answer, and then how long there may be no worker, in seconds.
-SCHEDULER_S, WORKER_S = 20.0, 60.0
+SCHEDULER_S, WORKER_S = 10.0, 60.0
 
 
 @dataclass(frozen=True)
