@@ -11,18 +11,9 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from small_class import POINTS, ROOT, SmallClass, without_timings
+from small_class import POINTS, ROOT, SmallClass
 
 SCHEMA = json.loads((ROOT / "docs" / "grade.schema.json").read_text(encoding="utf-8"))
-
-
-@pytest.fixture(scope="module")
-def graded(tmp_path_factory: pytest.TempPathFactory, cache: Path) -> tuple[SmallClass, str]:
-    """A class that was graded, and what the command printed. Not to be changed."""
-    small = SmallClass(tmp_path_factory.mktemp("graded") / "course", cache)
-    code, printed = small.grade()
-    assert code == 0, printed
-    return small, printed
 
 
 @pytest.fixture
@@ -180,9 +171,3 @@ def test_two_gradings_never_write_into_one_folder(done: SmallClass) -> None:
         code, printed = done.grade()
     assert code == 2
     assert "another grading is at work in this folder" in printed
-
-
-def test_grading_twice_gives_the_same_files(done: SmallClass) -> None:
-    code, printed = done.grade("--jobs", "2", out="again")
-    assert code == 0, printed
-    assert without_timings(done.folder / "again") == without_timings(done.folder / "results")

@@ -6,20 +6,16 @@ import os
 import random
 import signal
 import subprocess
-from pathlib import Path
 
 import pytest
 from process_mark import ProcessMark
 from small_class import POINTS, SmallClass, without_timings
 
 
-@pytest.fixture(scope="module")
-def undisturbed(tmp_path_factory: pytest.TempPathFactory, cache: Path) -> dict[str, str]:
+@pytest.fixture
+def undisturbed(graded: tuple[SmallClass, str]) -> dict[str, str]:
     """The results of a run that nobody disturbed."""
-    small = SmallClass(tmp_path_factory.mktemp("undisturbed") / "course", cache)
-    code, printed = small.grade()
-    assert code == 0, printed
-    return without_timings(small.folder / "results")
+    return without_timings(graded[0].folder / "results")
 
 
 def killed(small: SmallClass, after: int) -> int:
