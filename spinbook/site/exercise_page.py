@@ -64,7 +64,8 @@ spinbook grade {exercise.name} {exercise.file_name}
 ```
 
 The command starts your node as it is, publishes to it, listens to what it answers, and says what is right and what is
-not yet. You may run it as often as you like. [How to install what it needs](../about.md) stands on another page."""
+not yet. You may run it as often as you like. In the notebook of the handout, `%check {exercise.name}` does so for the
+exercise's cell. [How to install what it needs](../about.md) stands on another page."""
 
 
 def _points(exercise: Exercise, checks: Sequence[PublicCheck]) -> str:
