@@ -10,6 +10,7 @@ from grader.audit.trial import Trial, Trials
 from grader.recording import Recording
 from grader.scenario import Scenario
 from grader.scenario.declared import declared
+from grader.submission import Submission
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ def over_seed(trials: Trials, store: Store, seed: Seed, candidates: list[Candida
         if not made:
             solution = candidates[0].submission
             made.update(trials.grading.references)
-            made.update({scenario.name: trials.spin(solution, scenario) for scenario in seed.randomised})
+            made.update(_spun(trials, solution, seed.randomised))
         return made
 
     def trial_of(candidate: Candidate) -> Trial:
@@ -52,7 +53,7 @@ def over_seed(trials: Trials, store: Store, seed: Seed, candidates: list[Candida
         with_seed = replace(trials, grading=replace(grading, spinner=spinner, references=references()))
         if candidate is candidates[0]:
             return with_seed.trial_of_recordings(references())
-        spun = {scenario.name: trials.spin(candidate.submission, scenario) for scenario in seed.randomised}
+        spun = _spun(trials, candidate.submission, seed.randomised)
         return with_seed.trial_of_recordings({**references(), **spun})
 
     digests = [scenario.digest for scenario in seed.randomised]
@@ -63,3 +64,20 @@ def over_seed(trials: Trials, store: Store, seed: Seed, candidates: list[Candida
         )
         for candidate in candidates
     }
+
+
+def _spun(trials: Trials, submission: Submission, scenarios: tuple[Scenario, ...]) -> dict[str, Recording]:
+    """The recordings, by scenario.
+
+    What has the very same messages as another is not spun a second time: here only the numbers are in question.
+    """
+    spun: list[Scenario] = []
+    made: dict[str, Recording] = {}
+    for scenario in scenarios:
+        like = next((s for s in spun if (s.messages, s.interrupt) == (scenario.messages, scenario.interrupt)), None)
+        if like:
+            made[scenario.name] = replace(made[like.name], scenario=scenario.name)
+        else:
+            made[scenario.name] = trials.spin(submission, scenario)
+            spun.append(scenario)
+    return made

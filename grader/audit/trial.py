@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass, field
+from typing import Literal
 
 from grader.audit.comparing import Difference, differences
 from grader.audit.listing import Check
@@ -15,6 +16,9 @@ from grader.grading.grading import Grading
 from grader.recording import Ending, Recording
 from grader.scenario import Scenario
 from grader.submission import Submission
+
+#: Where a trial may end before its end.
+Until = Literal["a failure", "a failure in the first", "the end"]
 
 
 @dataclass(frozen=True)
@@ -54,13 +58,14 @@ class Trials:
     spins: Spins
     _turn: itertools.count[int] = field(default_factory=itertools.count, compare=False)
 
-    def try_(self, submission: Submission, only: tuple[str, ...] = (), enough: bool = False) -> Trial:
+    def try_(self, submission: Submission, only: tuple[str, ...] = (), until: Until = "the end") -> Trial:
         """Spin and judge a program.
 
         The first scenario comes first. Then a scenario is spun only where a check wants it that is not blocked, which
         changes no verdict: a blocked check never looks at its recording. With `only`, nothing but these checks counts.
-        With `enough`, the first check that fails ends the trial. A program that no check fails is spun through every
-        scenario. Raises `HostFault` where the machine or we are at fault.
+        With `until` it ends where a check fails, at once or in the first scenario: then nothing is known of the checks
+        that were not judged. A program that no check fails is spun through every scenario. Raises `HostFault` where the
+        machine or we are at fault.
         """
         if not submission.program:
             return self._nothing(submission.problem)
@@ -76,12 +81,13 @@ class Trials:
             verdicts = self._judged_where_different(recordings)
             decided = [check for check in self.checks if set(check.scenarios) <= set(recordings)]
             failed = any(verdicts[check.name].status == "failed" for check in decided)
-            wanted = [] if enough and failed else self._wanted(wanted_checks, verdicts, recordings)
+            caught = failed and (until == "a failure" or (until == "a failure in the first" and len(recordings) == 1))
+            wanted = [] if caught else self._wanted(wanted_checks, verdicts, recordings)
             if not wanted and not failed and not only:
                 wanted = [scenario for scenario in scenarios if scenario.name not in recordings]
             if not wanted:
                 return self._trial("", recordings, verdicts, tuple(decided))
-            for scenario in wanted[: 3 if enough else None]:
+            for scenario in wanted[: 3 if until == "a failure" else None]:
                 recordings[scenario.name] = self.spin(submission, scenario)
 
     def judge(self, recordings: dict[str, Recording], references: dict[str, Recording]) -> dict[str, Verdict]:

@@ -12,7 +12,7 @@ from grader.audit.mutants import Mutant
 from grader.audit.plan import Plan
 from grader.audit.seeds import over_seed
 from grader.audit.store import Store
-from grader.audit.trial import Trial, Trials
+from grader.audit.trial import Trial, Trials, Until
 from grader.submission.reading import of_source
 
 
@@ -85,8 +85,8 @@ class _Work:
         return self.store.trial({"code": program.submission.digest, "only": only}, make)
 
     def mutant(self, mutant: Mutant) -> Trial:
-        """In a quick audit only until one check fails."""
+        """Most are caught in the first scenario, and need no other; in a quick audit any failure is enough."""
         submission = of_source(mutant.id, mutant.source.encode(), self.trials.grading.spinner.exercise)
-        enough = self.plan.quick
-        make: Callable[[], Trial] = lambda: self.trials.try_(submission, enough=enough)  # noqa: E731
-        return self.store.trial({"code": submission.digest, "enough": enough}, make)
+        until: Until = "a failure" if self.plan.quick else "a failure in the first"
+        make: Callable[[], Trial] = lambda: self.trials.try_(submission, until=until)  # noqa: E731
+        return self.store.trial({"code": submission.digest, "until": until}, make)

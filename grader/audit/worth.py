@@ -34,12 +34,14 @@ def _that_never_fail(checks: tuple[Check, ...], trials: dict[str, Trial]) -> lis
 
 
 def _that_fail_together(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Problem]:
-    failed_by = {c.name: frozenset(name for name, trial in trials.items() if c.name in trial.failed) for c in checks}
     found = []
     for one, other in combinations(checks, 2):
-        together = failed_by[one.name]
-        if together and together == failed_by[other.name]:
-            told = f"{one.name} and {other.name} always fail together ({len(together)} times): do both judge the same?"
+        # Where only one of them was judged, nothing is known of the other.
+        pairs = [(trial.statuses.get(one.name), trial.statuses.get(other.name)) for trial in trials.values()]
+        judged = [pair for pair in pairs if set(pair) <= {"passed", "failed"}]
+        many = judged.count(("failed", "failed"))
+        if many and all(first == second for first, second in judged):
+            told = f"{one.name} and {other.name} always fail together ({many} times): do both judge the same?"
             mend = "Write a mistake that fails only one, let one depend on the other, or make them one check."
             found.append(Problem(f"{other.file}:{other.line}", other.name, told, mend))
     return found

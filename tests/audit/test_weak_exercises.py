@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 
-import pytest
 from quiet_audit import Auditing
 from removing import remove_check
 from small_exercise import SmallExercise
@@ -13,7 +12,6 @@ from grader.audit.result import Audit
 
 CHECKS = "exercises/doubler/checks.py"
 HIDDEN = "exercises/doubler/hidden_checks.py"
-SOLUTION = "solutions/doubler/solution.py"
 
 
 def told(result: Audit, about: str) -> list[str]:
@@ -57,14 +55,6 @@ def test_a_weak_copy_is_told_so_check_by_check(small: SmallExercise, audited: Au
     assert any(re.search(r"^[-+] +self\.publisher", problem.diff, re.MULTILINE) for problem in survivors)
 
 
-def test_a_check_that_lets_a_mistake_through_is_named_with_the_mistake(small: SmallExercise, audited: Auditing) -> None:
-    small.change(HIDDEN, "    negative.must_be_silent()\n", "")
-    (found,) = told(audited(small), "test_nothing_below_zero")
-    assert found == (
-        "test_nothing_below_zero lets the mistake mistakes/any_number.py (“Doubles negative numbers, too.”) through"
-    )
-
-
 def test_a_mistake_that_fails_another_check_too(small: SmallExercise, audited: Auditing) -> None:
     small.change(CHECKS, "    positive.must_answer()", "    positive.must_answer()\n    positive.must_match('data')")
     (found,) = told(audited(small), "test_once")
@@ -91,26 +81,25 @@ def test_a_right_solution_that_a_check_refuses_with_some_numbers_only(small: Sma
     assert all(re.search(r"right solution solution\.py fails .* with --seed \d+", text) for text in found)
 
 
-@pytest.mark.parametrize(
-    ("file", "old", "new", "about", "words"),
-    [
-        (HIDDEN, 'rule="Publish nothing on /numbers or /clock."', "", "test_leaves_other_topics_alone",
-         "does not name"),
-        (HIDDEN, "Publish nothing on", "Leave alone", "test_leaves_other_topics_alone", "not in the task"),
-        (CHECKS, 'hint="Multiply."', 'hint="if message.data  >= 0:"', "test_twice_the_number", "line of the solution"),
-        (CHECKS, 'expected="/doubler", got=positive.nodes', "", "test_is_called_doubler", "not say what was expected"),
-        (HIDDEN, '"Compare with 0."', '"self.publisher.publish(Float64(data=2 * message.data))"',
-         "test_nothing_below_zero", "line of the solution"),
-        ("solutions/doubler/mistakes/adds_two.py", "Caught by:\n- test_twice_the_number", "", "mistakes/adds_two.py",
-         "names no check"),
-    ],
-    ids=["no rule", "rule not told", "hint", "message", "hidden hint", "mistake"],
-)  # fmt: skip
-def test_what_the_exercise_tells(
-    small: SmallExercise, audited: Auditing, file: str, old: str, new: str, about: str, words: str
-) -> None:
-    small.change(file, old, new)
-    assert any(words in found for found in told(audited(small), about))
+SPOILT = [
+    (HIDDEN, 'rule="Publish nothing on /numbers or /clock."', "", "test_leaves_other_topics_alone",
+     "does not name the sentence"),
+    (HIDDEN, "Zero counts as positive", "Zero counts", "test_nothing_below_zero", "a sentence that is not in the task"),
+    (CHECKS, 'hint="Multiply."', 'hint="if message.data  >= 0:"', "test_twice_the_number", "hint of test_twice"),
+    (HIDDEN, "It says nothing to a number below zero, and twice zero to zero.", "if message.data >= 0: it is doubled.",
+     "test_nothing_below_zero", "title of test_nothing_below_zero"),
+    (CHECKS, 'expected="/doubler", got=positive.nodes', "", "test_is_called_doubler", "not say what was expected"),
+    ("solutions/doubler/mistakes/adds_two.py", "Caught by:\n- test_twice_the_number", "", "mistakes/adds_two.py",
+     "names no check"),
+]  # fmt: skip
+
+
+def test_what_an_exercise_has_to_tell_and_what_it_may_not(small: SmallExercise, audited: Auditing) -> None:
+    for file, old, new, _, _ in SPOILT:
+        small.change(file, old, new)
+    result = audited(small)
+    for _, _, _, about, words in SPOILT:
+        assert any(words in found for found in told(result, about)), (about, words)
 
 
 def test_a_check_that_breaks_on_what_a_node_publishes(small: SmallExercise, audited: Auditing) -> None:
@@ -142,5 +131,9 @@ def test_what_is_known_is_not_tried_again(small: SmallExercise, audited: Auditin
     again = audited(small, most=4)
     assert (again.made, again.kept) == (0, first.made + first.kept)
     assert (again.problems, again.programs, again.mutants) == (first.problems, first.programs, first.mutants)
-    small.change(SOLUTION, "2 * message.data", "message.data * 2")
-    assert audited(small, most=4).made > 0
+    small.change(CHECKS, "Multiply.", "Multiply it.")
+    changed = audited(small, most=4)
+    assert changed.made == again.kept, "another check judges everything again"
+    assert [scenario.spinning_s for scenario in changed.scenarios] == [s.spinning_s for s in first.scenarios], (
+        "and nothing is spun again"
+    )
