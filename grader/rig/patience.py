@@ -14,7 +14,8 @@ LONGEST_LOOK_S = 0.1
 class Patience:
     """Ends when the program has used `cpu_s` of CPU time, or was blocked for `blocked_s`, since this was made.
 
-    A program that waits for a CPU on a busy machine uses up neither.
+    A program that waits for a CPU on a busy machine uses up neither. One that has run into a limit of its sandbox is
+    about to end, and its end tells which limit it was: that is waited for.
     """
 
     def __init__(self, student: Student, cpu_s: float = 3.0, blocked_s: float = 3.0) -> None:
@@ -41,7 +42,7 @@ class Patience:
         self.look()
         if self.blocked >= self._blocked_s:
             return "blocked"
-        return "cpu" if self.cpu >= self._cpu_s else None
+        return "cpu" if self.cpu >= self._cpu_s and not self._student.at_limit() else None
 
     def check(self, busy: str, blocked: str) -> None:
         """Raise `Stopped` with one of the two stories once the patience has ended."""

@@ -81,6 +81,10 @@ class Student:
         """How many of its threads run or wait for a CPU now (of its children, those found within the last 50 ms)."""
         return sum(processes.runnable_threads(pid) for pid in (self.pid, *self._warden.others))
 
+    def at_limit(self) -> bool:
+        """Whether it is being ended for a limit that it has run into; looks at once, where the watch may be late."""
+        return self._warden.at_limit()
+
     def processes(self) -> int:
         """How many processes it has now."""
         return len(self._warden.members())

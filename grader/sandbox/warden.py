@@ -99,6 +99,11 @@ class Warden:
         orphans = processes.buried_cpu_seconds(self._init) if self._init != self._pid else 0.0
         return self._buried_cpu_s + orphans + sum(processes.usage(pid).cpu_s for pid in alive)
 
+    def at_limit(self) -> bool:
+        """Whether the program is killed, or has been, for a limit; counts what it uses now."""
+        self._look()
+        return self._limit is not None
+
     def join(self) -> None:
         """Waits for the end of the watch."""
         self._thread.join()
