@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.recording import Ending
 from grader.rig.patience import Patience
-from grader.rig.story import TRACEBACK, last_words, of_exit
+from grader.rig.story import TRACEBACK, is_rclpys_own, last_words, of_exit
 from grader.rig.student import Student
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def cut_short(student: Student, what: Spin, met: bool, sent: int) -> Ending:
     return Ending("crashed", f"Your program ended at message {sent}: {why}", line)
 
 
-def interrupted(student: Student) -> Ending:
+def interrupted(student: Student, what: Spin) -> Ending:
     """Ask the program to end, as Ctrl-C does, and see how it takes it."""
     before = student.output().text.count(TRACEBACK)
     student.interrupt()
@@ -43,4 +43,6 @@ def interrupted(student: Student) -> Ending:
     time.sleep(0)
     log = student.output().text
     words = last_words(log, "") if log.count(TRACEBACK) > before else None
+    if words and is_rclpys_own(log, what.file_name, what.source):
+        words = None
     return Ending("completed", interrupted=True, traceback=words.error if words else "")

@@ -82,7 +82,7 @@ class Rig:
         try:
             self._meet()
             self._lockstep()
-            ending = interrupted(self._student) if self._what.scenario.interrupt else Ending("completed")
+            ending = interrupted(self._student, self._what) if self._what.scenario.interrupt else Ending("completed")
         except Stopped as stopped:
             ending = Ending(stopped.outcome, stopped.story)
         except Gone:

@@ -48,6 +48,21 @@ def last_words(log: str, file_name: str, source: str = "") -> LastWords | None:
     return LastWords(error, line, rows[line - 1].strip() if line and line <= len(rows) else "")
 
 
+def is_rclpys_own(log: str, file_name: str, source: str) -> bool:
+    """Whether the last error in `log` is a race in rclpy, and so no fault of a program that did all it could.
+
+    On Ctrl-C a thread of rclpy shuts ROS 2 down. Where it does so between the `ok()` and the `shutdown()` of a program
+    that asks first, as `rclpy.try_shutdown()` does, the program's call fails (rclpy 7.1, `Context.try_shutdown`).
+    """
+    words = last_words(log, file_name, source)
+    if words is None or "rcl_shutdown already called" not in words.error:
+        return False
+    if ", in try_shutdown" in log[log.rfind(TRACEBACK) :]:
+        return True
+    rows = source.splitlines()[: words.line or 0]
+    return any("ok()" in row for row in rows[-2:])
+
+
 def of_exit(exit_: Exit, log: str, file_name: str, source: str) -> tuple[str, int | None]:
     """Why a program ended, as a clause that follows "Your program ended: ", and the line to blame."""
     if exit_.limit:

@@ -81,3 +81,25 @@ def test_a_crash_in_one_scenario_costs_only_its_checks(grading: Grading) -> None
     assert failed["test_empty_message"]
     assert "message 10" in failed["test_empty_message"].text
     assert "nobody expects an empty message" in failed["test_empty_message"].text
+
+
+@pytest.mark.parametrize(
+    ("ending", "status"),
+    [
+        ("try_shutdown()", "passed"),
+        ("if rclpy.ok() or True:\n            rclpy.shutdown() or rclpy.shutdown()", "passed"),
+        ("rclpy.shutdown()", "failed"),
+    ],
+    ids=["in try_shutdown", "after asking ok()", "without asking"],
+)
+def test_a_race_between_ctrl_c_and_a_shutdown_that_asks_first_costs_nothing(
+    grading: Grading, ending: str, status: str
+) -> None:
+    # The race itself comes once in a hundred Ctrl-C, so its error is raised each time, by shutting down twice.
+    twice = "def try_shutdown():\n    rclpy.shutdown() or rclpy.shutdown()\n\n\ndef main"
+    solution = grading.spinner.exercise.solution_file
+    assert solution
+    source = solution.read_text(encoding="utf-8").replace("rclpy.try_shutdown()", ending)
+    grade = grade_of(grading, source.replace("def main", twice, 1))
+    [verdict] = [verdict for verdict in grade.verdicts if "Ctrl-C" in verdict.title]
+    assert verdict.status == status, verdict
