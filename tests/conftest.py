@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -13,6 +14,11 @@ from playwright.sync_api import Browser
 from process_mark import ProcessMark
 from workers import ByFolder
 from xdist.remote import Producer
+
+
+def pytest_configure() -> None:
+    # Started in a shell's background, tests would hand on to every program that they start that Ctrl-C is ignored.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.hookimpl(optionalhook=True)
