@@ -17,7 +17,7 @@ def versions() -> dict[str, str]:
     return {
         "python": platform.python_version(),
         "rclpy": _version("ros-jazzy-rclpy", "rclpy"),
-        "rmw": _version("ros-jazzy-rmw-fastrtps-cpp", "rmw_fastrtps_cpp"),
+        "rmw": _version("ros-rmw-fastrtps-cpp", "rmw_fastrtps_cpp"),
         "grader": digest_of(sorted(GRADER.rglob("*.py")))[:12],
     }
 

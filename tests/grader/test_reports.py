@@ -52,6 +52,7 @@ def test_the_terminal_shows_no_control_codes_of_a_students(hostile: Grade, gradi
 def test_the_json_is_json_and_as_the_schema_says(hostile: Grade) -> None:
     grade = json.loads(as_json(hostile))
     assert grade["outcome"] == "graded"
+    assert "unknown" not in grade["versions"].values()
     schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
     Draft202012Validator({"$defs": schema["$defs"], "$ref": "#/$defs/grade"}).validate(grade)
 
