@@ -84,17 +84,11 @@ def test_a_crash_in_one_scenario_costs_only_its_checks(grading: Grading) -> None
 
 
 @pytest.mark.parametrize(
-    ("ending", "status"),
-    [
-        ("try_shutdown()", "passed"),
-        ("if rclpy.ok() or True:\n            rclpy.shutdown() or rclpy.shutdown()", "passed"),
-        ("rclpy.shutdown()", "failed"),
-    ],
-    ids=["in try_shutdown", "after asking ok()", "without asking"],
+    "ending",
+    ["try_shutdown()", "if rclpy.ok() or True:\n            rclpy.shutdown() or rclpy.shutdown()"],
+    ids=["in try_shutdown", "after asking ok()"],
 )
-def test_a_race_between_ctrl_c_and_a_shutdown_that_asks_first_costs_nothing(
-    grading: Grading, ending: str, status: str
-) -> None:
+def test_a_race_between_ctrl_c_and_a_shutdown_that_asks_first_costs_nothing(grading: Grading, ending: str) -> None:
     # The race itself comes once in a hundred Ctrl-C, so its error is raised each time, by shutting down twice.
     twice = "def try_shutdown():\n    rclpy.shutdown() or rclpy.shutdown()\n\n\ndef main"
     solution = grading.spinner.exercise.solution_file
@@ -102,4 +96,4 @@ def test_a_race_between_ctrl_c_and_a_shutdown_that_asks_first_costs_nothing(
     source = solution.read_text(encoding="utf-8").replace("rclpy.try_shutdown()", ending)
     grade = grade_of(grading, source.replace("def main", twice, 1))
     [verdict] = [verdict for verdict in grade.verdicts if "Ctrl-C" in verdict.title]
-    assert verdict.status == status, verdict
+    assert verdict.status == "passed", verdict
