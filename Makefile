@@ -35,13 +35,12 @@ course: setup   ## Build, run and package the real course, make its site, and gr
 class: setup   ## Make a class of 200, grade it, and check every grade; the pages lie in build/class/results.
 	$(BIN)/python benchmarks/class/grade_all.py --count 200 --out build/class
 
-# Four at once on two cores: much of a test is waiting, for nodes that find each other and for robots in real time.
 test: setup   ## Check types and style, then run every test.
 	@sh test-programs.sh
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(PYTEST) -n 4
+	$(PYTEST) -n 2
 
 soak: setup   ## The long suites in their full size.
 	$(PYTEST) -m soak
