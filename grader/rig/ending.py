@@ -42,7 +42,6 @@ def interrupted(student: Student, what: Spin) -> Ending:
             return Ending("completed", interrupted=True, ended_in_time=False)
     time.sleep(0)
     log = student.output().text
-    words = last_words(log, "") if log.count(TRACEBACK) > before else None
-    if words and is_rclpys_own(log, what.file_name, what.source):
-        words = None
+    broke = log.count(TRACEBACK) > before and not is_rclpys_own(log, what.file_name, what.source)
+    words = last_words(log, "") if broke else None
     return Ending("completed", interrupted=True, traceback=words.error if words else "")

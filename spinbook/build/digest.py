@@ -38,12 +38,16 @@ def _bytes(file: Path) -> bytes:
         return b"\0missing"
 
 
+def folders_digest(root: Path, *folders: str) -> str:
+    """A digest of all files in these folders of `root`, those apart that Python compiled."""
+    files = (file for folder in folders for file in (root / folder).rglob("*.*") if file.suffix != ".pyc")
+    return files_digest(files, root)
+
+
 @functools.cache
 def code_digest(*folders: str) -> str:
     """A digest of Spinbook's own code in these folders: what it makes may change with it."""
-    root = Path(spinbook.__file__).parent
-    files = (file for folder in folders for file in (root / folder).rglob("*.*") if file.suffix != ".pyc")
-    return files_digest(files, root)
+    return folders_digest(Path(spinbook.__file__).parent, *folders)
 
 
 @functools.cache

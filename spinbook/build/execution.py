@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import grader
-from spinbook.build.digest import code_digest, digest, files_digest, versions
+from spinbook.build.digest import code_digest, digest, folders_digest, versions
 from spinbook.build.failures import CellFailure, find_failures
 from spinbook.runtime.process import KeptProcess
 from spinbook.written import write_if_changed
@@ -162,14 +162,9 @@ def _key(notebook: dict[str, Any], job: Job) -> str:
     judged_by = ""
     if any(source.startswith("%check ") for _, source, _ in code):
         course = job.build_folder.parent
-        roots = {course: ("exercises", "solutions"), Path(grader.__file__).parent: (".",)}
-        judged_by = digest(*(_files_digest(root, folders) for root, folders in roots.items()))
+        judging = folders_digest(Path(grader.__file__).parent, ".")
+        judged_by = digest(folders_digest(course, "exercises", "solutions"), judging)
     return digest(repr(code), judged_by, code_digest(*_USED_BY_CELLS), versions())
-
-
-def _files_digest(root: Path, folders: Iterable[str]) -> str:
-    files = (file for folder in folders for file in (root / folder).rglob("*.*") if file.suffix != ".pyc")
-    return files_digest(files, root)
 
 
 def _remembered(job: Job, key: str) -> dict[str, Any] | None:
