@@ -1,12 +1,18 @@
 """Knows when a node has handled everything that was published so far.
 
-A fence is a call of a service that the node's own executor answers. The executor answers in the order in which things
-arrive, so an answer means that what was published before the call has been handled. One call can overtake a message
-that is still inside the middleware; three after the clock and two after messages never did (see docs/grading.md).
+A fence is a call of a service that the node's own executor answers, and the rest of the program's threads after it.
+What is published comes to the node before the call does, and wakes a program that waits for nothing else, so its
+executor finds the message first; when all threads rest after the answer, what the message set off is over, too.
+
+A program that also wakes by itself, by a clock of its own, may be looking for what is ready at the very moment when
+message and call arrive, and so find the call first. By the answer to a second call it has looked again, and messages
+come before calls; a third lets the timers go off that a new time has made due. They are sent at once: each is answered
+in a round of its own.
 """
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from typing import Any, Literal
 
@@ -14,10 +20,10 @@ from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters
 from type_description_interfaces.srv import GetTypeDescription
 
+from grader.rig.call import Answers, Caller
 from grader.rig.graph import Graph
 from grader.rig.patience import Patience
-from grader.rig.quiet import Threads
-from grader.rig.ros import Ros
+from grader.rig.quiet import Receivers, Threads
 from grader.rig.stopped import Stopped
 from grader.rig.student import Student
 
@@ -40,6 +46,12 @@ DEAF = (
 
 SLEEPY = "Your node waits and sleeps instead of answering: {0:g} s in this scenario. Let callbacks return at once."
 
+#: How often is looked whether the student's program is still alive and well, while an answer is waited for.
+CHECK_S = 0.02
+
+#: How often is looked for what the graph may show at any time.
+LOOK_S = 0.002
+
 #: A node may be blocked this long in one scenario, over all messages.
 MOST_BLOCKED_S = 20.0
 
@@ -51,15 +63,17 @@ class Gone(Exception):
 class Fence:
     """Holds the rig until the student's nodes have handled what was published.
 
-    `check` is called again and again meanwhile, and may raise what ends the run.
+    `hear` takes what they publish; it is called again and again, and may raise what ends the run.
     """
 
-    def __init__(self, ros: Ros, node: Any, student: Student, check: Callable[[], None]) -> None:
-        self._ros, self._node, self._student, self._check = ros, node, student, check
-        self._calls: list[tuple[Any, Any]] = []
+    def __init__(self, node: Any, student: Student, receivers: Receivers, hear: Callable[[], None]) -> None:
+        self._node, self._student, self._receivers, self._hear = node, student, receivers, hear
+        self._calls: list[tuple[Caller, Any]] = []
+        self._answers = Answers(node.context, ())
         self._threads = Threads(student.pid)
         self._blocked = 0.0
         self._restless = 0
+        self._wakes_itself = False
         self.hold: Hold = "quiet"
 
     def alive(self) -> None:
@@ -72,7 +86,7 @@ class Fence:
         end points of the rig are known to the node."""
         patience = Patience(self._student, cpu_s=5.0, blocked_s=0.25)
         found: dict[str, tuple[str, Any, Any]] = {}
-        while len(found) < len(nodes):
+        while True:
             for node in nodes:
                 services = graph.services(node)
                 if f"{node}/get_parameters" in services:
@@ -82,38 +96,47 @@ class Fence:
                     request = GetTypeDescription.Request(type_name="none", type_hash=f"RIHS01_{64 * '0'}")
                     found[node] = (f"{node}/get_type_description", GetTypeDescription, request)
             self.alive()
-            if patience.ended():
+            if len(found) == len(nodes) or patience.ended():
                 break
-            self._ros.executor.spin_once(timeout_sec=0.005)
-        for name, kind, request in found.values():
-            self._calls.append((self._node.create_client(kind, name), request))
+            time.sleep(LOOK_S)
+        self._calls = [(Caller(self._node, kind, name), request) for name, kind, request in found.values()]
+        self._answers = Answers(self._node.context, [caller for caller, _ in self._calls])
         if found:
             parameters = all(kind is GetParameters for _, kind, _ in found.values())
             self.hold = "parameters" if parameters else "type description"
-        self._wait_until_ready()
+            self._threads.with_middleware = False
+        self._wait_until_ready([caller for caller, _ in self._calls])
 
-    def _wait_until_ready(self) -> None:
-        self._wait_for(lambda: all(client.service_is_ready() for client, _ in self._calls), 10.0, 0.002)
+    def _wait_until_ready(self, callers: list[Caller]) -> None:
+        self._wait_for(lambda: all(caller.ready for caller in callers), lambda: time.sleep(LOOK_S), 10.0)
+
+    def look(self) -> None:
+        """See whether the program has done anything since it was at rest; to be called before anything is published."""
+        self._wakes_itself = self._wakes_itself or self._threads.stirred()
 
     def wait(self, times: int) -> None:
         """Wait until the nodes have handled what was published before this call. Raises `Stopped` or `Gone`."""
-        for _ in range(times if self._calls else 0):
-            self._once()
+        for caller, request in self._calls:
+            for _ in range(times if self._wakes_itself else 1):
+                caller.call(request)
+        self._wait_for_answers(self._answers)
         self._rest()
-        self._ros.turn()
+        self._receivers.wait()
+        self._hear()
 
-    def _once(self) -> None:
-        answers = [client.call_async(request) for client, request in self._calls]
-        self._wait_for(lambda: all(answer.done() for answer in answers))
+    def _wait_for_answers(self, answers: Answers) -> None:
+        self._wait_for(answers.all_there, lambda: answers.wait(CHECK_S))
 
-    def _wait_for(self, done: Callable[[], bool], cpu_s: float = 3.0, every_s: float = 0.02) -> None:
-        """Handle what arrives until `done`. Raises `Stopped` or `Gone` when it can't be waited for any longer."""
+    def _wait_for(self, done: Callable[[], bool], pause: Callable[[], None], cpu_s: float = 3.0) -> None:
+        """Pause until `done`. Raises `Stopped` or `Gone` when it can't be waited for any longer."""
         patience: Patience | None = None
-
-        def meanwhile() -> None:
-            nonlocal patience
+        due = time.monotonic() + CHECK_S
+        while not done():
+            pause()
+            if time.monotonic() < due:
+                continue
             self.alive()
-            self._check()
+            self._hear()
             # Most waits are over before this is needed the first time.
             patience = patience or Patience(self._student, cpu_s)
             blocked = patience.blocked
@@ -121,25 +144,21 @@ class Fence:
             self._blocked += patience.blocked - blocked
             if self._blocked > MOST_BLOCKED_S:
                 raise Stopped("timed-out", SLEEPY.format(MOST_BLOCKED_S))
-
-        self._ros.turn_until(done, meanwhile, every_s)
+            due = time.monotonic() + CHECK_S
 
     def _rest(self) -> None:
         """Wait until none of the program's threads is at work: a node may use threads of its own."""
         self.alive()
         if self.hold == "quiet":
             self._rest_without_answers()
-            return
-        enough = self._restless >= RESTLESS_TIMES or self._threads.still()
-        if not enough and not self._threads.wait_until_still(0.0, RESTLESS_S):
+        elif self._restless < RESTLESS_TIMES and not self._threads.wait_until_still(0.0, RESTLESS_S):
             self._restless += 1
 
     def _rest_without_answers(self) -> None:
         patience = Patience(self._student)
         while not self._threads.wait_until_still(STILL_S, 0.1):
             self.alive()
-            self._ros.turn()
-            self._check()
+            self._hear()
             if patience.ended() == "cpu":
                 raise Stopped("timed-out", ENDLESS.format(3.0))
 
@@ -149,14 +168,14 @@ class Fence:
 
     def call(self, kind: Any, name: str, request: Any) -> Any:
         """Call any service of the node and return its answer."""
-        client = self._node.create_client(kind, name)
+        caller = Caller(self._node, kind, name)
         try:
-            self._wait_for(client.service_is_ready, every_s=0.002)
-            answer = client.call_async(request)
-            self._wait_for(answer.done)
-            return answer.result()
+            self._wait_until_ready([caller])
+            caller.call(request)
+            self._wait_for_answers(Answers(self._node.context, [caller]))
+            return caller.answer
         finally:
-            self._node.destroy_client(client)
+            caller.close()
 
     def use_sim_time(self, node: str) -> bool:
         """Whether `node` takes its time from /clock; where it does not yet, tell it to."""

@@ -6,18 +6,20 @@ import time
 
 from grader.exercise.interface import Topic
 from grader.rig.clock import Clock
-from grader.rig.fence import Fence
+from grader.rig.fence import LOOK_S, Fence
 from grader.rig.graph import Graph
 from grader.rig.patience import Patience
 from grader.rig.publishers import ReferencePublishers
-from grader.rig.quiet import Others
+from grader.rig.quiet import Receivers
 from grader.rig.recorder import Recorder
-from grader.rig.ros import Ros
 from grader.rig.stopped import Stopped
 from grader.rig.student import Student
 
 #: Importing large libraries takes computing time; nothing that a node needs takes this much.
 START_CPU_S, START_BLOCKED_S = 20.0, 3.0
+
+#: How often is looked for a node; on the way from one program to another its name takes a tenth of a second, mostly.
+NODE_LOOK_S = 0.005
 
 NO_NODE_BUSY = f"Your program computed for {START_CPU_S:g} s and created no node. Is there an endless loop before it?"
 NO_NODE_BLOCKED = (
@@ -26,7 +28,7 @@ NO_NODE_BLOCKED = (
 )
 
 
-def wait_for_nodes(ros: Ros, graph: Graph, fence: Fence, student: Student) -> list[str]:
+def wait_for_nodes(graph: Graph, fence: Fence, student: Student) -> list[str]:
     """The student's nodes, once there is one. Raises `Stopped` when none appears and `Gone` when the program ends."""
     patience = Patience(student, START_CPU_S, START_BLOCKED_S)
     while not (nodes := graph.nodes()):
@@ -34,12 +36,12 @@ def wait_for_nodes(ros: Ros, graph: Graph, fence: Fence, student: Student) -> li
         which = patience.ended()
         if which:
             raise Stopped("timed-out", NO_NODE_BUSY if which == "cpu" else NO_NODE_BLOCKED)
-        ros.executor.spin_once(timeout_sec=0.004)
+        time.sleep(NODE_LOOK_S)
     return nodes
 
 
 def wait_until_connected(
-    ros: Ros, student: Student, fence: Fence, clock: Clock, publishers: ReferencePublishers, recorder: Recorder
+    student: Student, fence: Fence, clock: Clock, publishers: ReferencePublishers, recorder: Recorder
 ) -> None:
     """Wait until every topic has found its other end, or until it is clear that some never will.
 
@@ -50,18 +52,16 @@ def wait_until_connected(
         fence.alive()
         if patience.ended():
             return
-        ros.executor.spin_once(timeout_sec=0.004)
+        time.sleep(LOOK_S)
         recorder.adapt()
 
 
 #: What was published before its two ends knew one another is sent again within this time, in which neither the rig nor
 #: the program has anything to do but wait. A look counts for this much of it at most, however late it came.
-SENT_AGAIN_S, LOOK_S = 0.4, 0.01
+SENT_AGAIN_S, COUNTS_S = 0.4, 0.01
 
 
-def let_in(
-    ros: Ros, student: Student, fence: Fence, others: Others, recorder: Recorder, topic: Topic, came: int
-) -> None:
+def let_in(student: Student, fence: Fence, receivers: Receivers, recorder: Recorder, topic: Topic, came: int) -> None:
     """Wait until a publisher of `topic`, which the student's node has made only now, has found the recorder, if it ever
     will, and has sent again what it has already published: something other than the first `came` messages."""
 
@@ -76,9 +76,10 @@ def let_in(
         quiet, looked = 0.0, time.monotonic()
         while not done() and quiet < SENT_AGAIN_S and not patience.ended():
             fence.alive()
-            ros.executor.spin_once(timeout_sec=0.004)
+            time.sleep(LOOK_S)
             recorder.adapt()
+            recorder.hear()
             now = time.monotonic()
-            if not student.runnable_threads() and not others.at_work():
-                quiet += min(now - looked, LOOK_S)
+            if not student.runnable_threads() and not receivers.at_work():
+                quiet += min(now - looked, COUNTS_S)
             looked = now

@@ -4,52 +4,54 @@ from __future__ import annotations
 
 import contextlib
 import os
-import threading
 import time
+from pathlib import Path
 
 #: Thread -> what its schedstat says: ns on a CPU, ns waiting for one, times it got one.
 Activity = dict[str, bytes]
+
+#: How the middleware names its threads, and those of them that listen to a socket.
+MIDDLEWARE, RECEIVER = b"dds.", "dds.udp"
+
+#: How long to wait between two looks for the end of something that takes less than a millisecond.
+LOOK_S = 0.0001
 
 #: How often a program's child processes are looked for.
 CHILDREN_EVERY_S = 0.05
 
 
-class Others:
-    """The threads of this process other than the one that made this. Files stay open between looks."""
+class Receivers:
+    """The threads of this process that take in what the middleware gets: all that there are when this is made."""
 
     def __init__(self) -> None:
-        self._own = str(threading.get_native_id())
-        self._open: dict[str, int] = {}
+        self._states = [
+            os.open(f"/proc/self/task/{thread}/stat", os.O_RDONLY | os.O_CLOEXEC)
+            for thread in os.listdir("/proc/self/task")  # noqa: PTH208
+            if Path(f"/proc/self/task/{thread}/comm").read_text().startswith(RECEIVER)
+        ]
+        assert self._states, "the middleware has no thread of its own"
 
     def at_work(self) -> bool:
         """Whether one of them runs, or waits for a CPU to run on."""
-        for thread in os.listdir("/proc/self/task"):  # noqa: PTH208
-            if thread == self._own:
-                continue
-            try:
-                if thread not in self._open:
-                    self._open[thread] = os.open(f"/proc/self/task/{thread}/stat", os.O_RDONLY | os.O_CLOEXEC)
-                if os.pread(self._open[thread], 512, 0).rpartition(b") ")[2][:1] == b"R":
-                    return True
-            except OSError:  # it has ended
-                self._let_go(thread)
-        return False
+        return any(state(stat) == b"R" for stat in self._states)
 
     def wait(self, deadline_s: float = 5.0) -> None:
-        """Wait until what has reached this process is handled by its threads: what it knows of the graph is then
-        complete up to all that was sent before."""
+        """Wait until what has reached this process is handled: all that was sent to it before can be taken then, and
+        what it knows of the graph is complete."""
         deadline = time.monotonic() + deadline_s
         while self.at_work() and time.monotonic() < deadline:
-            time.sleep(0.0005)
+            time.sleep(LOOK_S)
 
     def close(self) -> None:
         """Close every file."""
-        for thread in list(self._open):
-            self._let_go(thread)
+        while self._states:
+            os.close(self._states.pop())
 
-    def _let_go(self, thread: str) -> None:
-        if thread in self._open:
-            os.close(self._open.pop(thread))
+
+def state(stat: int) -> bytes:
+    """The state of the thread whose stat file this is, such as R, S or D. Raises OSError when it has ended."""
+    # It follows the program's name, which may hold any character but ends with the last bracket.
+    return os.pread(stat, 512, 0).rpartition(b") ")[2][:1]
 
 
 class Threads:
@@ -60,6 +62,10 @@ class Threads:
         self._processes = [str(pid)]
         self._searched = 0.0
         self._open: dict[str, tuple[int, int]] = {}
+        self._middleware: set[str] = set()
+        self._rested: Activity | None = None
+        self.with_middleware = True
+        """Whether the middleware's own threads count. They don't where an answer of the program shows what they did."""
 
     def activity(self) -> Activity | None:
         """What each thread has done so far; None where one of them runs or could run."""
@@ -74,18 +80,14 @@ class Threads:
                 task = f"/proc/{process}/task/{thread}"
                 try:
                     stat, schedstat = self._open.get(task) or self._opened(task)
-                    # The state follows the program's name, which may hold any character but ends with the last bracket.
-                    if os.pread(stat, 512, 0).rpartition(b") ")[2][:1] == b"R":
+                    if task in self._middleware and not self.with_middleware:
+                        continue
+                    if state(stat) == b"R":
                         return None
                     seen[task] = os.pread(schedstat, 128, 0)
                 except OSError:
                     self._close(task)
         return seen
-
-    def still(self) -> bool:
-        """Whether no thread is at work, and none got a CPU between two looks."""
-        before = self.activity()
-        return before is not None and before == self.activity()
 
     def wait_until_still(self, for_s: float, deadline_s: float) -> bool:
         """Wait until no thread has got a CPU for `for_s` seconds; False when it does not come to that in time.
@@ -96,13 +98,19 @@ class Threads:
         deadline = time.monotonic() + deadline_s
         before, since = self.activity(), time.monotonic()
         while time.monotonic() < deadline:
-            time.sleep(for_s / 2)
+            if before is None or for_s:
+                time.sleep(max(for_s / 2, LOOK_S))
             now = self.activity()
             if now is None or now != before:
                 before, since = now, time.monotonic()
             elif time.monotonic() - since >= for_s:
+                self._rested = now
                 return True
         return False
+
+    def stirred(self) -> bool:
+        """Whether one of them has got a CPU since they were last found still, or could do with one."""
+        return self.activity() != self._rested
 
     def close(self) -> None:
         """Close every file."""
@@ -116,6 +124,8 @@ class Threads:
         except OSError:
             os.close(stat)
             raise
+        if b"(" + MIDDLEWARE in os.pread(stat, 64, 0):
+            self._middleware.add(task)
         return self._open[task]
 
     def _close(self, task: str) -> None:

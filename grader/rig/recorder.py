@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from rclpy.event_handler import SubscriptionEventCallbacks
-from rclpy.qos import QoSProfile
+from rclpy.qos import ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 
 from grader.exercise.interface import Topic
@@ -32,54 +31,59 @@ class Recorder:
         self._moment = moment
         self.received: list[Received] = []
         self.too_much: Stopped | None = None
-        self._matched: dict[str, int] = {}
-        self._subscriptions: dict[str, Any] = {}
-        self._refused: list[Topic] = []
+        self._modest: set[str] = set()
         self._known: set[bytes] = set()
-        for topic in topics:
-            self._subscribe(topic, ACCEPT)
+        self._subscriptions = {topic.name: self._subscription(topic, ACCEPT) for topic in topics}
+
+    def _subscription(self, topic: Topic, quality: Any) -> Any:
+        # Never called back: what comes is taken when the rig says so.
+        return self._node.create_subscription(
+            message_class(topic.type), topic.name, lambda data: None, quality, raw=True
+        )
 
     def adapt(self) -> None:
-        """Ask for less where what was asked for is not offered. Not to be called in a callback."""
-        while self._refused:
-            topic = self._refused.pop()
-            self._node.destroy_subscription(self._subscriptions[topic.name])
-            self._subscribe(topic, ACCEPT_ANY)
+        """Ask for less where what was asked for is not offered."""
+        for topic in self._topics:
+            offers = [info.qos_profile.reliability for info in self._publishers(topic)]
+            if topic.name not in self._modest and ReliabilityPolicy.BEST_EFFORT in offers:
+                self._node.destroy_subscription(self._subscriptions[topic.name])
+                self._subscriptions[topic.name] = self._subscription(topic, ACCEPT_ANY)
+                self._modest.add(topic.name)
 
-    def _subscribe(self, topic: Topic, quality: QoSProfile) -> None:
-        kind = message_class(topic.type)
-        self._matched[topic.name] = 0
+    def take(self) -> None:
+        """Take what has come."""
+        for topic in self._topics:
+            kind, handle = message_class(topic.type), self._subscriptions[topic.name].handle
+            while not self.too_much:
+                taken = handle.take_message(kind, True)
+                if taken is None:
+                    break
+                self._keep(topic, taken[0], kind)
 
-        def matched(status: Any) -> None:
-            self._matched[topic.name] = status.current_count
-
-        def refused(status: Any) -> None:
-            if quality is ACCEPT and topic not in self._refused:
-                self._refused.append(topic)
-
-        def keep(data: bytes) -> None:
-            if len(data) > MOST_BYTES:
-                self.too_much = Stopped("over-limit", f"Your node published a message of {len(data):,} bytes.")
-            elif len(self.received) >= MOST_MESSAGES:
-                self.too_much = Stopped("over-limit", f"Your node published more than {MOST_MESSAGES:,} messages.")
+    def _keep(self, topic: Topic, data: bytes, kind: Any) -> None:
+        if len(data) > MOST_BYTES:
+            self.too_much = Stopped("over-limit", f"Your node published a message of {len(data):,} bytes.")
+        elif len(self.received) >= MOST_MESSAGES:
+            self.too_much = Stopped("over-limit", f"Your node published more than {MOST_MESSAGES:,} messages.")
+        else:
+            at, after = self._moment()
+            try:
+                fields = to_fields(deserialize_message(data, kind))
+            except Exception as error:  # whatever a made-up packet leads to
+                self.too_much = Stopped("over-limit", f"Your node published bytes that are no message: {error}")
             else:
-                at, after = self._moment()
-                try:
-                    fields = to_fields(deserialize_message(data, kind))
-                except Exception as error:  # whatever a made-up packet leads to
-                    self.too_much = Stopped("over-limit", f"Your node published bytes that are no message: {error}")
-                else:
-                    self.received.append(Received(at, after, topic.name, topic.type, fields))
+                self.received.append(Received(at, after, topic.name, topic.type, fields))
 
-        events = SubscriptionEventCallbacks(matched=matched, incompatible_qos=refused, use_default_callbacks=False)
-        self._subscriptions[topic.name] = self._node.create_subscription(
-            kind, topic.name, keep, quality, raw=True, event_callbacks=events
-        )
+    def hear(self) -> None:
+        """Take what has come. Raises `Stopped` when it is too much."""
+        self.take()
+        if self.too_much:
+            raise self.too_much
 
     @property
     def hears(self) -> bool:
         """Whether the student's node publishes every topic, in a way that reaches this recorder."""
-        return all(self._matched.values())
+        return all(subscription.get_publisher_count() for subscription in self._subscriptions.values())
 
     def newcomers(self) -> list[Topic]:
         """Topics that have got a publisher since this was asked the last time.
@@ -96,7 +100,7 @@ class Recorder:
 
     def hears_all(self, topic: Topic) -> bool:
         """Whether every publisher of `topic` has found this recorder."""
-        return self._matched[topic.name] >= len(self._publishers(topic))
+        return bool(self._subscriptions[topic.name].get_publisher_count() >= len(self._publishers(topic)))
 
     def _publishers(self, topic: Topic) -> list[Any]:
         infos = self._node.get_publishers_info_by_topic(topic.name)
@@ -105,8 +109,3 @@ class Recorder:
     def since(self, count: int, topic: Topic) -> bool:
         """Whether anything came on `topic` after the first `count` messages."""
         return any(received.topic == topic.name for received in self.received[count:])
-
-    def check(self) -> None:
-        """Raise `Stopped` when the node has published too much."""
-        if self.too_much:
-            raise self.too_much

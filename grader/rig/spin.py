@@ -14,7 +14,7 @@ from grader.rig.fence import AFTER_CLOCK, AFTER_MESSAGES, Fence, Gone
 from grader.rig.graph import Graph
 from grader.rig.meeting import let_in, wait_for_nodes, wait_until_connected
 from grader.rig.publishers import ReferencePublishers
-from grader.rig.quiet import Others
+from grader.rig.quiet import Receivers
 from grader.rig.recorder import Recorder
 from grader.rig.ros import Ros
 from grader.rig.stopped import Stopped
@@ -59,15 +59,14 @@ class Rig:
     """One run: the rig's ends of the graph around one student."""
 
     def __init__(self, ros: Ros, what: Spin, student: Student) -> None:
-        self._ros, self._what, self._student = ros, what, student
+        self._what, self._student = what, student
         node = ros.node("rig")
         self._clock = Clock(node)
         self._publishers = ReferencePublishers(ros.node("joint_command_publisher"), what.scenario)
         self._recorder = Recorder(node, what.exercise.outputs, self._moment)
-        ros.executor.add_node(node)
         self._graph = Graph(node, ros.names)
-        self._fence = Fence(ros, node, student, self._recorder.check)
-        self._others = Others()
+        self._receivers = Receivers()
+        self._fence = Fence(node, student, self._receivers, self._recorder.hear)
         self._nodes: list[str] = []
         self._sim_time = False
         self._met = False
@@ -88,10 +87,11 @@ class Rig:
         except Gone:
             ending = cut_short(self._student, self._what, self._met, len(self._publishers.sent))
         self._fence.close()
-        self._others.close()
+        self._receivers.close()
         end_points = self._graph.end_points()
         self._student.kill()  # before the last look at what has come: it may never stop publishing
-        self._ros.turn()
+        self._receivers.wait()
+        self._recorder.take()
         return Recording(
             scenario=self._what.scenario.name,
             sent=tuple(self._publishers.sent),
@@ -107,14 +107,16 @@ class Rig:
         )
 
     def _meet(self) -> None:
-        self._nodes = wait_for_nodes(self._ros, self._graph, self._fence, self._student)
+        self._nodes = wait_for_nodes(self._graph, self._fence, self._student)
         self._fence.take_hold(self._graph, self._nodes)
         self._fence.wait(1)
         if self._fence.hold == "parameters":
             self._sim_time = all(self._fence.use_sim_time(node) for node in self._nodes)
-        wait_until_connected(self._ros, self._student, self._fence, self._clock, self._publishers, self._recorder)
+        wait_until_connected(self._student, self._fence, self._clock, self._publishers, self._recorder)
         if self._recorder.hears:
             self._recorder.newcomers()
+        self._fence.wait(1)
+        self._fence.look()
         self._clock.set(START)
         self._fence.wait(AFTER_CLOCK)
         self._met = True
@@ -124,22 +126,22 @@ class Rig:
         for message in self._what.scenario.messages:
             if message.at > self._clock.now:
                 self._keep_pace(began, message.at)
+                self._fence.look()
                 self._clock.set(message.at)
                 self._fence.wait(AFTER_CLOCK)
             came = len(self._recorder.received)
+            self._fence.look()
             self._publishers.publish(message)
             self._fence.wait(AFTER_MESSAGES)
             self._let_late_publishers_in(came)
-            self._recorder.check()
         self._drain()
         self._lockstep_seconds = time.monotonic() - began
 
     def _let_late_publishers_in(self, came: int) -> None:
         """A node may make a publisher only when it has something to publish; `came` messages had come before."""
-        self._others.wait()
         late = self._recorder.newcomers()
         for topic in late:
-            let_in(self._ros, self._student, self._fence, self._others, self._recorder, topic, came)
+            let_in(self._student, self._fence, self._receivers, self._recorder, topic, came)
         if late:
             self._fence.wait(AFTER_MESSAGES)
 
@@ -151,12 +153,12 @@ class Rig:
     def _drain(self) -> None:
         """Let the node finish what it began, and take everything it has published."""
         self._end_points = self._graph.end_points()
+        self._fence.look()
         self._clock.set(self._clock.now + AFTERWARDS)
         self._fence.wait(AFTER_CLOCK)
         while True:
             before = len(self._recorder.received)
             self._fence.wait(AFTER_MESSAGES)
             self._let_late_publishers_in(before)
-            self._recorder.check()
             if len(self._recorder.received) == before:
                 return

@@ -193,15 +193,23 @@ def own_packages() -> tuple[Path, ...]:
 
 def _masks(hidden: Iterable[Path], shown: Iterable[Path]) -> Iterator[Path]:
     """Where hidden files and folders would be seen: under each name by which a shown folder has them."""
+    to_hide = [path.resolve() for path in hidden if path.exists()]
     for source in shown:
-        real = source.resolve()
-        for path in hidden:
-            if path.exists() and path.resolve().is_relative_to(real):
-                yield source / path.resolve().relative_to(real)
+        real = _real(source)
+        for path in to_hide:
+            if path.is_relative_to(real):
+                yield source / path.relative_to(real)
 
 
 def _is_inside(path: Path, folders: Iterable[Path]) -> bool:
-    return any(path.resolve().is_relative_to(folder.resolve()) for folder in folders)
+    real = path.resolve()
+    return any(real.is_relative_to(_real(folder)) for folder in folders)
+
+
+@cache
+def _real(folder: Path) -> Path:
+    """Where a folder of an installation really lies: none moves while a grader runs."""
+    return folder.resolve()
 
 
 def _without_nested(paths: Iterable[Path]) -> Iterator[Path]:

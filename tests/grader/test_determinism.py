@@ -79,8 +79,13 @@ def test_graded_two_hundred_times_half_of_them_beside_busy_loops_it_is_the_same(
             "quiet",
         ),
         ({"rclpy.init()": "rclpy.init(args=[])"}, "parameters"),
+        (
+            {"rclpy.spin(node)": "while rclpy.ok(): rclpy.spin_once(node, timeout_sec=0.002); time.sleep(0.003)",
+             "import rclpy\n": "import time\nimport rclpy\n"},
+            "parameters",
+        ),
     ],
-    ids=["no parameter services", "no services at all", "deaf to the command line"],
+    ids=["no parameter services", "no services at all", "deaf to the command line", "asleep between its looks"],
 )  # fmt: skip
 def test_whatever_hold_a_node_gives_its_grade_is_right(grading: Grading, change: dict[str, str], hold: str) -> None:
     source = (SOLUTIONS / "solution.py").read_text(encoding="utf-8")
