@@ -20,9 +20,9 @@ from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters
 from type_description_interfaces.srv import GetTypeDescription
 
-from grader.rig.call import Answers, Caller
+from grader.rig.call import Caller, Calls
 from grader.rig.graph import Graph
-from grader.rig.patience import Patience
+from grader.rig.patience import Calm, Patience
 from grader.rig.quiet import Receivers, Threads
 from grader.rig.stopped import Stopped
 from grader.rig.student import Student
@@ -49,6 +49,9 @@ SLEEPY = "Your node waits and sleeps instead of answering: {0:g} s in this scena
 #: How often is looked whether the student's program is still alive and well, while an answer is waited for.
 CHECK_S = 0.02
 
+#: After so much calm a call that has had no answer is repeated.
+AGAIN_S = 0.5
+
 #: How often is looked for what the graph may show at any time.
 LOOK_S = 0.002
 
@@ -68,8 +71,7 @@ class Fence:
 
     def __init__(self, node: Any, student: Student, receivers: Receivers, hear: Callable[[], None]) -> None:
         self._node, self._student, self._receivers, self._hear = node, student, receivers, hear
-        self._calls: list[tuple[Caller, Any]] = []
-        self._answers = Answers(node.context, ())
+        self._calls = Calls(node.context, ())
         self._threads = Threads(student.pid)
         self._blocked = 0.0
         self._restless = 0
@@ -81,34 +83,30 @@ class Fence:
         if self._student.poll() is not None:
             raise Gone
 
-    def take_hold(self, graph: Graph, nodes: list[str]) -> None:
+    def take_hold(self, graph: Graph, nodes: list[str], no_more_to_come: Callable[[], bool]) -> None:
         """Find a service of each node to call; create these clients last, for their answers prove that all earlier
-        end points of the rig are known to the node."""
-        patience = Patience(self._student, cpu_s=5.0, blocked_s=0.25)
+        end points of the rig are known to the node. `no_more_to_come` says when all there is must be in the graph."""
         found: dict[str, tuple[str, Any, Any]] = {}
         while True:
             for node in nodes:
                 services = graph.services(node)
                 if f"{node}/get_parameters" in services:
                     found[node] = (f"{node}/get_parameters", GetParameters, GetParameters.Request())
-                elif f"{node}/get_type_description" in services and patience.blocked > 0.1:
+                elif f"{node}/get_type_description" in services:  # which every node makes after the other
                     # Of a type that does not exist, in the form of a type's hash: else the node logs an error.
                     request = GetTypeDescription.Request(type_name="none", type_hash=f"RIHS01_{64 * '0'}")
                     found[node] = (f"{node}/get_type_description", GetTypeDescription, request)
             self.alive()
-            if len(found) == len(nodes) or patience.ended():
+            if len(found) == len(nodes) or no_more_to_come():
                 break
             time.sleep(LOOK_S)
-        self._calls = [(Caller(self._node, kind, name), request) for name, kind, request in found.values()]
-        self._answers = Answers(self._node.context, [caller for caller, _ in self._calls])
+        calls = [(Caller(self._node, kind, name), request) for name, kind, request in found.values()]
+        self._calls = Calls(self._node.context, calls)
         if found:
             parameters = all(kind is GetParameters for _, kind, _ in found.values())
             self.hold = "parameters" if parameters else "type description"
             self._threads.with_middleware = False
-        self._wait_until_ready([caller for caller, _ in self._calls])
-
-    def _wait_until_ready(self, callers: list[Caller]) -> None:
-        self._wait_for(lambda: all(caller.ready for caller in callers), lambda: time.sleep(LOOK_S), 10.0)
+        self._wait_for(self._calls.ready, lambda: time.sleep(LOOK_S), 10.0)
 
     def look(self) -> None:
         """See whether the program has done anything since it was at rest; to be called before anything is published."""
@@ -116,16 +114,22 @@ class Fence:
 
     def wait(self, times: int) -> None:
         """Wait until the nodes have handled what was published before this call. Raises `Stopped` or `Gone`."""
-        for caller, request in self._calls:
-            for _ in range(times if self._wakes_itself else 1):
-                caller.call(request)
-        self._wait_for_answers(self._answers)
+        self._calls.call(times if self._wakes_itself else 1)
+        self._wait_for_answers(self._calls)
         self._rest()
         self._receivers.wait()
         self._hear()
 
-    def _wait_for_answers(self, answers: Answers) -> None:
-        self._wait_for(answers.all_there, lambda: answers.wait(CHECK_S))
+    def _wait_for_answers(self, calls: Calls) -> None:
+        calm = Calm(self._student, self._receivers)
+
+        def pause() -> None:
+            calls.wait(CHECK_S)
+            if not calls.answered() and calm.look() >= AGAIN_S:
+                calls.call_again()
+                calm.seconds = 0.0
+
+        self._wait_for(calls.answered, pause)
 
     def _wait_for(self, done: Callable[[], bool], pause: Callable[[], None], cpu_s: float = 3.0) -> None:
         """Pause until `done`. Raises `Stopped` or `Gone` when it can't be waited for any longer."""
@@ -169,10 +173,11 @@ class Fence:
     def call(self, kind: Any, name: str, request: Any) -> Any:
         """Call any service of the node and return its answer."""
         caller = Caller(self._node, kind, name)
+        calls = Calls(self._node.context, [(caller, request)])
         try:
-            self._wait_until_ready([caller])
-            caller.call(request)
-            self._wait_for_answers(Answers(self._node.context, [caller]))
+            self._wait_for(calls.ready, lambda: time.sleep(LOOK_S), 10.0)
+            calls.call(1)
+            self._wait_for_answers(calls)
             return caller.answer
         finally:
             caller.close()

@@ -8,7 +8,7 @@ from grader.exercise.interface import Topic
 from grader.rig.clock import Clock
 from grader.rig.fence import LOOK_S, Fence
 from grader.rig.graph import Graph
-from grader.rig.patience import Patience
+from grader.rig.patience import Calm, Patience
 from grader.rig.publishers import ReferencePublishers
 from grader.rig.quiet import Receivers
 from grader.rig.recorder import Recorder
@@ -28,37 +28,55 @@ NO_NODE_BLOCKED = (
 )
 
 
-def wait_for_nodes(graph: Graph, fence: Fence, student: Student) -> list[str]:
+def wait_for_nodes(graph: Graph, fence: Fence, student: Student, receivers: Receivers) -> list[str]:
     """The student's nodes, once there is one. Raises `Stopped` when none appears and `Gone` when the program ends."""
-    patience = Patience(student, START_CPU_S, START_BLOCKED_S)
+    patience, calm = Patience(student), Calm(student, receivers)
     while not (nodes := graph.nodes()):
         fence.alive()
-        which = patience.ended()
-        if which:
-            raise Stopped("timed-out", NO_NODE_BUSY if which == "cpu" else NO_NODE_BLOCKED)
+        if patience.cpu >= START_CPU_S and not student.at_limit():
+            raise Stopped("timed-out", NO_NODE_BUSY)
+        if calm.look() >= START_BLOCKED_S:
+            raise Stopped("timed-out", NO_NODE_BLOCKED)
         time.sleep(NODE_LOOK_S)
     return nodes
 
 
+#: What of the graph has got lost on its way is told again once a second (Fast DDS 2.14, `edp_heartbeat_period`).
+TOLD_AGAIN_S = 1.5
+
+#: A program that computes this long (s) is not about to make more of the graph.
+BUSY_S = 5.0
+
+
+class Discovery:
+    """Ends when all that there is of the graph must have been heard of."""
+
+    def __init__(self, student: Student, receivers: Receivers) -> None:
+        self._calm = Calm(student, receivers)
+        self._patience = Patience(student)
+
+    def ended(self) -> bool:
+        """Whether it has; to be asked again and again."""
+        return self._calm.look() >= TOLD_AGAIN_S or self._patience.cpu >= BUSY_S
+
+
 def wait_until_connected(
-    student: Student, fence: Fence, clock: Clock, publishers: ReferencePublishers, recorder: Recorder
+    discovery: Discovery, fence: Fence, clock: Clock, publishers: ReferencePublishers, recorder: Recorder
 ) -> None:
     """Wait until every topic has found its other end, or until it is clear that some never will.
 
     A topic of another name or type never does; the checks tell that from the graph.
     """
-    patience = Patience(student, cpu_s=5.0, blocked_s=0.3)
     while not (publishers.heard and recorder.hears and clock.heard):
         fence.alive()
-        if patience.ended():
+        if discovery.ended():
             return
         time.sleep(LOOK_S)
         recorder.adapt()
 
 
-#: What was published before its two ends knew one another is sent again within this time, in which neither the rig nor
-#: the program has anything to do but wait. A look counts for this much of it at most, however late it came.
-SENT_AGAIN_S, COUNTS_S = 0.4, 0.01
+#: What was published before its two ends knew one another is sent again within this time of calm.
+SENT_AGAIN_S = 0.4
 
 
 def let_in(student: Student, fence: Fence, receivers: Receivers, recorder: Recorder, topic: Topic, came: int) -> None:
@@ -73,13 +91,9 @@ def let_in(student: Student, fence: Fence, receivers: Receivers, recorder: Recor
 
     for done in (found, sent_again):
         patience = Patience(student, cpu_s=5.0, blocked_s=5.0)
-        quiet, looked = 0.0, time.monotonic()
-        while not done() and quiet < SENT_AGAIN_S and not patience.ended():
+        calm = Calm(student, receivers)
+        while not done() and calm.look() < SENT_AGAIN_S and not patience.ended():
             fence.alive()
             time.sleep(LOOK_S)
             recorder.adapt()
             recorder.hear()
-            now = time.monotonic()
-            if not student.runnable_threads() and not receivers.at_work():
-                quiet += min(now - looked, COUNTS_S)
-            looked = now

@@ -1,9 +1,10 @@
-"""How long a student's program may take: in its own CPU time and in time it spends blocked, never in wall time."""
+"""How long is waited for a student's program: in its own CPU time and in time it spends blocked, never in wall time."""
 
 from __future__ import annotations
 
 import time
 
+from grader.rig.quiet import Receivers
 from grader.rig.stopped import Stopped
 from grader.rig.student import Student
 
@@ -49,3 +50,28 @@ class Patience:
         which = self.ended()
         if which:
             raise Stopped("timed-out", busy if which == "cpu" else blocked)
+
+
+#: A calm look counts for this much at most, however late it came.
+LONGEST_CALM_S = 0.01
+
+
+class Calm:
+    """The time in which neither the program nor the rig has anything to do but wait (s), since this was made.
+
+    What is on its way between the two, on a busy machine, is work for one of them. So what has not come after
+    sufficient calm was not sent, or got lost.
+    """
+
+    def __init__(self, student: Student, receivers: Receivers) -> None:
+        self._student, self._receivers = student, receivers
+        self._looked = time.monotonic()
+        self.seconds = 0.0
+
+    def look(self) -> float:
+        """Count the time since the last look if there is calm. Returns what has been counted."""
+        now = time.monotonic()
+        if not self._student.runnable_threads() and not self._receivers.at_work():
+            self.seconds += min(now - self._looked, LONGEST_CALM_S)
+        self._looked = now
+        return self.seconds

@@ -12,7 +12,7 @@ from grader.rig.clock import Clock
 from grader.rig.ending import cut_short, interrupted
 from grader.rig.fence import AFTER_CLOCK, AFTER_MESSAGES, Fence, Gone
 from grader.rig.graph import Graph
-from grader.rig.meeting import let_in, wait_for_nodes, wait_until_connected
+from grader.rig.meeting import Discovery, let_in, wait_for_nodes, wait_until_connected
 from grader.rig.publishers import ReferencePublishers
 from grader.rig.quiet import Receivers
 from grader.rig.recorder import Recorder
@@ -107,12 +107,13 @@ class Rig:
         )
 
     def _meet(self) -> None:
-        self._nodes = wait_for_nodes(self._graph, self._fence, self._student)
-        self._fence.take_hold(self._graph, self._nodes)
+        self._nodes = wait_for_nodes(self._graph, self._fence, self._student, self._receivers)
+        discovery = Discovery(self._student, self._receivers)
+        self._fence.take_hold(self._graph, self._nodes, discovery.ended)
         self._fence.wait(1)
         if self._fence.hold == "parameters":
             self._sim_time = all(self._fence.use_sim_time(node) for node in self._nodes)
-        wait_until_connected(self._student, self._fence, self._clock, self._publishers, self._recorder)
+        wait_until_connected(discovery, self._fence, self._clock, self._publishers, self._recorder)
         if self._recorder.hears:
             self._recorder.newcomers()
         self._fence.wait(1)
