@@ -13,7 +13,13 @@ EVERYONE = {
 }
 
 #: For the worker and its rigs. A second RMW or a ROS_STATIC_PEERS of the user's would part rig and student.
-OURS = {**EVERYONE, "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp", "ROS_STATIC_PEERS": "", "PYTHONHASHSEED": "0"}
+OURS = {
+    **EVERYONE,
+    "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp",
+    "ROS_STATIC_PEERS": "",
+    "PYTHONHASHSEED": "0",
+    "OPENBLAS_NUM_THREADS": "1",
+}
 
 #: For students' programs. No time stamps in the log, so that two runs log the same.
 STUDENTS = {

@@ -7,6 +7,8 @@ import importlib
 import inspect
 from contextlib import suppress
 
+from rclpy.serialization import serialize_message
+
 from grader.crew.environment import PROFILE
 from grader.sandbox import view
 
@@ -25,6 +27,10 @@ def warm() -> None:
                 load = getattr(kind, "__import_type_support__", None)
                 if load:
                     load()
+                if package.endswith(".msg"):
+                    # So the middleware is loaded, too, and its own support for the type.
+                    with suppress(Exception):
+                        serialize_message(kind())
     view.steps((PROFILE,), (), 0)
     # Collected later, in each fork, it would be copied there.
     gc.collect()

@@ -20,7 +20,14 @@ from .keeper import Job, keep
 from .run import run
 
 _MOST_DESCRIPTORS = 8
-_USED_BY_EVERY_NODE = ("rcl_interfaces", "rosgraph_msgs", "builtin_interfaces")
+_USED_BY_EVERY_NODE = (
+    "rcl_interfaces",
+    "rosgraph_msgs",
+    "builtin_interfaces",
+    "std_msgs",
+    "geometry_msgs",
+    "sensor_msgs",
+)
 
 
 def main(arguments: list[str]) -> None:
@@ -66,11 +73,15 @@ def _import(name: str) -> None:
         return
     if name.split(".")[0] not in _USED_BY_EVERY_NODE:
         return
+    from rclpy.serialization import serialize_message
+
     for _, kind in inspect.getmembers(module, inspect.isclass):
         load = getattr(kind, "__import_type_support__", None)
         if load is not None:
             with contextlib.suppress(Exception):  # as it would fail in the student's own process, if it is used there
                 load()
+                if name.endswith(".msg"):
+                    serialize_message(kind())  # the middleware's own support as well
 
 
 if __name__ == "__main__":
