@@ -86,14 +86,14 @@ def test_regrade_grades_one_student_again_though_nothing_changed(done: SmallClas
         # As an older, mistaken version might have judged.
         if verdict["name"] == "test_not_a_number":
             verdict |= {"status": "passed", "earned": 2, "finding": None}
-        if verdict["name"] == "test_burst":
+        if verdict["name"] == "test_node_is_as_described":
             verdict |= {"status": "failed", "earned": 0}
     entry["grade"]["score"] = 18
     kept.write_text(json.dumps(entry), encoding="utf-8")
     code, printed = done.grade("--regrade", "dora")
     assert code == 0, printed
     assert "5 unchanged" in printed
-    assert "dora: 18 -> 18 points; up: test_burst (+2); down: test_not_a_number (-2)" in printed
+    assert "dora: 18 -> 18 points; up: test_node_is_as_described (+2); down: test_not_a_number (-2)" in printed
     code, printed = done.grade("--regrade", "nobody")
     assert code == 2
     assert "--regrade nobody: nobody is called so who handed something in." in printed

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from grader.checking import Run, check
+from grader.checking import Run, check, fail
 
+WANTED, SAFE = "/wanted_speed", "/safe_speed"
 PUBLISHES = ["test_publishes_safe_speeds"]
 
 
@@ -33,10 +34,18 @@ def test_not_a_number(not_a_number: Run) -> None:
 
 @check(
     points=2,
-    hint="Keep the callback short; never sleep in it.",
-    depends=["test_too_fast_is_slowed_down"],
-    rule="Answer from the callback, so that each answer goes out before the next message is handled.",
+    hint="Look at the names in __init__: of the node, of its topics. Is a plain 10 the last argument of both?",
+    depends=PUBLISHES,
+    rule="The node `speed_limit` has these two ends and no others.",
 )
-def test_burst(burst: Run) -> None:
-    """Each of 100 messages in 0.1 s gets its answer."""
-    burst.must_answer()
+def test_node_is_as_described(gentle: Run) -> None:
+    """It is called speed_limit, and has one subscription and one publisher, both reliable and volatile."""
+    if gentle.nodes != ("/speed_limit",):
+        fail("The node has another name.", expected="/speed_limit", got=", ".join(gentle.nodes))
+    published = [end.topic for topic in gentle.topics("publisher") for end in gentle.publishers(topic)]
+    if published != [SAFE]:
+        fail("Your node's publishers.", expected=f"one, on {SAFE}", got=", ".join(published))
+    for end in (*gentle.subscriptions(WANTED), *gentle.publishers(SAFE)):
+        if (end.reliability, end.durability) != ("reliable", "volatile"):
+            got = f"{end.reliability} and {end.durability}"
+            fail(f"The {end.kind} on {end.topic} has another QoS.", expected="reliable and volatile", got=got)

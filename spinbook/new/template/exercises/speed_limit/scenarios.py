@@ -20,6 +20,5 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         "too_fast": ("speeds up to 3 m/s", numbers(WANTED, chosen(0.5, 3.0, times, seed))),
         "backwards": ("speeds down to -3 m/s", numbers(WANTED, chosen(-3.0, -0.5, times, seed))),
         "not_a_number": ("a speed that is not a number", placed(gentle, 7, math.nan)),
-        "burst": ("100 messages in 0.1 s", numbers(WANTED, chosen(-2.0, 2.0, every(0.001, 0.1), seed))),
     }
     return tuple(Scenario(name, title, stream, interrupt=name == "gentle") for name, (title, stream) in streams.items())
