@@ -8,8 +8,9 @@ from grader.rig.quiet import Receivers
 from grader.rig.stopped import Stopped
 from grader.rig.student import Student
 
-#: The longest piece of time between two looks that counts as blocked: a rig that did not run itself saw nothing.
-LONGEST_LOOK_S = 0.1
+#: The longest piece of time between two looks that counts: a rig that did not run itself saw nothing. Where a machine
+#: is not busy the looks come sooner than this.
+LONGEST_LOOK_S = 0.025
 
 
 class Patience:
@@ -52,10 +53,6 @@ class Patience:
             raise Stopped("timed-out", busy if which == "cpu" else blocked)
 
 
-#: A calm look counts for this much at most, however late it came.
-LONGEST_CALM_S = 0.01
-
-
 class Calm:
     """The time in which neither the program nor the rig has anything to do but wait (s), since this was made.
 
@@ -72,6 +69,6 @@ class Calm:
         """Count the time since the last look if there is calm. Returns what has been counted."""
         now = time.monotonic()
         if not self._student.runnable_threads() and not self._receivers.at_work():
-            self.seconds += min(now - self._looked, LONGEST_CALM_S)
+            self.seconds += min(now - self._looked, LONGEST_LOOK_S)
         self._looked = now
         return self.seconds
