@@ -87,10 +87,10 @@ class Rig:
         except Gone:
             ending = cut_short(self._student, self._what, self._met, len(self._publishers.sent))
         self._fence.close()
-        self._receivers.close()
         end_points = self._graph.end_points()
         self._student.kill()  # before the last look at what has come: it may never stop publishing
         self._receivers.wait()
+        self._receivers.close()
         self._recorder.take()
         return Recording(
             scenario=self._what.scenario.name,

@@ -20,7 +20,7 @@ from .keeper import Job, keep
 from .run import run
 
 _MOST_DESCRIPTORS = 8
-_USED_BY_EVERY_NODE = (
+_USED_BY_MOST_NODES = (
     "rcl_interfaces",
     "rosgraph_msgs",
     "builtin_interfaces",
@@ -66,12 +66,12 @@ def serve(requests: int) -> Job | None:
 
 
 def _import(name: str) -> None:
-    """Imports a module and, if every node uses its message types, loads their compiled support."""
+    """Imports a module and, if most nodes use its message types, loads their compiled support."""
     try:
         module = importlib.import_module(name)
     except ImportError:
         return
-    if name.split(".")[0] not in _USED_BY_EVERY_NODE:
+    if name.split(".")[0] not in _USED_BY_MOST_NODES:
         return
     from rclpy.serialization import serialize_message
 
