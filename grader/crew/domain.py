@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcntl
 import os
 import tempfile
+from functools import cache
 from pathlib import Path
 
 from grader.sandbox import Isolation
@@ -17,6 +18,7 @@ ALONE = 42
 SHARED = range(215, 233)
 
 
+@cache
 def domain_for(isolation: Isolation) -> int:
     """The domain for this process; it stays this process's own until it ends. Raises OSError when none is left."""
     if isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):

@@ -13,7 +13,7 @@ from grader.scenario import Scenario
 
 
 class Job(Protocol):
-    """Something to do in a process of its own. `ready` is to be called once threads are allowed."""
+    """Something to do in a process of the crew's. `ready` is to be called once threads are allowed."""
 
     def run(self, nursery: Nursery, ready: Callable[[], None]) -> Any:
         """Do it."""

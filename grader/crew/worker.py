@@ -1,19 +1,25 @@
-"""The worker process, `python -m grader.crew.worker FD`: has rclpy in its memory and forks a process for each job."""
+"""The worker process, `python -m grader.crew.worker FD`: has rclpy in its memory and forks the processes for jobs."""
 
 from __future__ import annotations
 
 import contextlib
 import multiprocessing.connection
 import os
+import queue
 import signal
 import socket
 import sys
 import threading
 import traceback
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NoReturn
 
-from grader.crew.crew import JOB, PREPARE_TO_JUDGE
+from grader.crew.crew import PREPARE_TO_JUDGE, PROCESS
 from grader.exercise import ExerciseError
 from grader.sandbox import Nursery
+
+if TYPE_CHECKING:
+    from grader.crew.jobs import Job
 
 
 def main() -> None:
@@ -33,11 +39,11 @@ def main() -> None:
                 break
             if command == PREPARE_TO_JUDGE:
                 import grader.checking.judging  # noqa: F401
-            elif command == JOB:
+            elif command == PROCESS:
                 pid = os.fork()
                 if pid == 0:
                     control.close()
-                    _do(descriptors[0], nursery)
+                    _work(descriptors[0], nursery)
                 os.close(descriptors[0])
                 working.add(pid)
         for pid in working:
@@ -53,26 +59,41 @@ def _reap(working: set[int]) -> None:
             working.discard(pid)
 
 
-def _do(descriptor: int, nursery: Nursery) -> None:
-    """One job, in its own process, which ends with it."""
+def _work(descriptor: int, nursery: Nursery) -> NoReturn:
+    """One job after another in this process, which ends with the first that fails, or once nobody wants any more."""
     connection = multiprocessing.connection.Connection(descriptor)
-    try:
-        job = connection.recv()
-        # Whoever wanted the result may lose interest in it: then the other end is closed.
-        watch = threading.Thread(target=_end_with, args=(connection,), daemon=True)
-        answer = ("result", job.run(nursery, watch.start))
-    except ExerciseError as error:
-        answer = ("author", error)
-    except BaseException:
-        answer = ("host", traceback.format_exc())
-    with contextlib.suppress(OSError):
-        connection.send(answer)
+    jobs: queue.SimpleQueue[Job] = queue.SimpleQueue()
+    # Whoever wanted the result may lose interest in it: then the other end is closed, and the job ends at once.
+    listener = threading.Thread(target=_listen, args=(connection, jobs), daemon=True)
+
+    def ready() -> None:
+        if not listener.ident:
+            listener.start()
+
+    with contextlib.suppress(EOFError, OSError):
+        jobs.put(connection.recv())
+        while True:
+            kind, result = _answer(jobs.get(), nursery, ready)
+            ready()
+            connection.send((kind, result))
+            if kind != "result":
+                break
     os._exit(0)
 
 
-def _end_with(connection: multiprocessing.connection.Connection) -> None:  # type: ignore[type-arg, unused-ignore]
-    with contextlib.suppress(OSError):
-        connection.poll(None)
+def _answer(job: Job, nursery: Nursery, ready: Callable[[], None]) -> tuple[str, Any]:
+    try:
+        return "result", job.run(nursery, ready)
+    except ExerciseError as error:
+        return "author", error
+    except BaseException:
+        return "host", traceback.format_exc()
+
+
+def _listen(connection: multiprocessing.connection.Connection, jobs: queue.SimpleQueue[Job]) -> None:  # type: ignore[type-arg, unused-ignore]
+    with contextlib.suppress(EOFError, OSError):
+        while True:
+            jobs.put(connection.recv())
     os._exit(1)
 
 

@@ -1,13 +1,15 @@
-"""Spins one program through all scenarios, several at once."""
+"""Spins one program through all scenarios: several at once, each time one after another in the same rig's process."""
 
 from __future__ import annotations
 
 import os
+import queue
 import threading
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 
-from grader.crew import Crew
+from grader.crew import Crew, Hand
 from grader.crew.environment import PROFILE, STUDENTS
 from grader.crew.jobs import SpinJob
 from grader.exercise import Exercise
@@ -40,9 +42,21 @@ class Spinner:
         jobs = [self.job(submission, scenario, i) for i, scenario in enumerate(self.scenarios)]
         # The longest first, so that none is left over at the end; the very first is needed at once.
         rest = sorted(jobs[1:], key=lambda job: -len(job.scenario.messages))
-        with ThreadPoolExecutor(self.options.parallel) as pool:
+        free: queue.SimpleQueue[Hand] = queue.SimpleQueue()
+
+        def do(job: SpinJob) -> Recording:
+            hand = free.get()
             try:
-                futures = {job.scenario.name: pool.submit(self.crew.do, job, gave_up) for job in (jobs[0], *rest)}
+                recording: Recording = hand.do(job, gave_up)
+                return recording
+            finally:
+                free.put(hand)
+
+        with ExitStack() as hands, ThreadPoolExecutor(self.options.parallel) as pool:
+            for _ in range(self.options.parallel):
+                free.put(hands.enter_context(self.crew.hand()))
+            try:
+                futures = {job.scenario.name: pool.submit(do, job) for job in (jobs[0], *rest)}
                 first: Recording = futures[self.scenarios[0].name].result()
                 if first.ending.outcome != "completed":
                     return {scenario.name: _likewise(first, scenario) for scenario in self.scenarios}

@@ -22,11 +22,18 @@ def enter(isolation: Isolation) -> None:
     network, so that rig and student hear each other and nobody else. At the levels without namespaces only orphans
     are caught (see PR_SET_CHILD_SUBREAPER in prctl(2)); there a ROS domain of its own has to separate the rig.
 
+    Called again by the same thread, before its next student, it moves into another new network: in the old one the
+    kernel may still keep a port for a connection of the last student's.
+
     Raises:
         OSError: if this machine allows no such namespaces.
     """
     kernel.prctl(kernel.PR_SET_CHILD_SUBREAPER, 1)
     if isolation not in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
+        return
+    if _made:
+        kernel.unshare(kernel.CLONE_NEWNET)
+        _bring_loopback_up()
         return
     flags = kernel.CLONE_NEWNET | kernel.CLONE_NEWNS | kernel.CLONE_NEWIPC
     user, group = os.geteuid(), os.getegid()

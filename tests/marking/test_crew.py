@@ -32,6 +32,27 @@ def test_a_crew_whose_worker_was_killed_gets_another(monkeypatch: pytest.MonkeyP
         assert crew.do(job) == before
 
 
+def hands(worker: psutil.Process) -> list[psutil.Process]:
+    return [child for child in worker.children() if "grader.crew.worker" in " ".join(child.cmdline())]
+
+
+def test_a_hand_does_its_jobs_in_one_process_and_in_another_once_that_died() -> None:
+    job = ListJob(load(EXERCISE))
+    others = {process.pid for process in workers()}
+    with Crew() as crew:
+        with crew.hand() as hand:
+            before = hand.do(job)
+            [worker] = [process for process in workers() if process.pid not in others]
+            [first] = hands(worker)
+            assert hand.do(job) == before
+            assert hands(worker) == [first]
+            first.kill()
+            wait_until(lambda: first.status() == psutil.STATUS_ZOMBIE)
+            assert hand.do(job) == before
+            [second] = [process for process in hands(worker) if process != first]
+        wait_until(lambda: not second.is_running() or second.status() == psutil.STATUS_ZOMBIE)
+
+
 def test_a_crew_that_was_sent_home_does_not_come_back() -> None:
     with Crew() as crew:
         pass

@@ -95,8 +95,8 @@ def run_to_end(nursery: Nursery, level: Isolation, program: Program, limits: Lim
 def _serve(connection: Connection, level: Isolation, rootless: bool) -> None:
     if rootless:
         become_nobody()
-    enter(level)
     with Nursery() as nursery:
+        enter(level)
         while True:
             try:
                 function, arguments = connection.recv()

@@ -10,7 +10,7 @@ import psutil
 import pytest
 from sandbox_rig import Rig, reason_against
 
-from grader.sandbox import Exit, Isolation, Nursery, Program
+from grader.sandbox import Exit, Isolation, Nursery, Program, enter
 
 DAEMON = """
 import ctypes, os, signal, sys, time
@@ -118,6 +118,33 @@ def test_no_temporary_folder_is_left(any_rig: Rig) -> None:
     told = any_rig.run("import os\nprint(os.path.dirname(os.path.dirname(__file__)))").text.strip()
 
     assert Path(told).name not in folders() or told == "/"
+
+
+NOTE = """
+import socket
+server = socket.socket()
+server.bind(("127.0.0.1", 5005))  # refused while the kernel keeps the port for a connection that has ended
+server.listen()
+client = socket.create_connection(("127.0.0.1", 5005))
+there, _ = server.accept()
+there.close()
+client.close()
+print("nobody was here before", flush=True)
+"""
+
+
+def test_no_connection_tells_a_program_that_it_ran_before(apart_rig: Rig) -> None:
+    assert apart_rig.run(NOTE).text == "nobody was here before\n"
+    assert "Address already in use" in apart_rig.run(NOTE).text
+
+    apart_rig.do(enter_again)
+
+    assert apart_rig.run(NOTE).text == "nobody was here before\n"
+
+
+def enter_again(nursery: Nursery, level: Isolation) -> None:
+    """Makes the rig ready for the next program."""
+    enter(level)
 
 
 @pytest.mark.parametrize("times", [10, pytest.param(200, marks=pytest.mark.soak)])
