@@ -6,7 +6,7 @@ import time
 
 from grader.exercise.interface import Topic
 from grader.rig.clock import Clock
-from grader.rig.fence import LOOK_S, Fence
+from grader.rig.fence import CHECK_S, LOOK_S, Fence
 from grader.rig.graph import Graph
 from grader.rig.patience import Calm, Patience
 from grader.rig.publishers import ReferencePublishers
@@ -31,13 +31,17 @@ NO_NODE_BLOCKED = (
 def wait_for_nodes(graph: Graph, fence: Fence, student: Student, receivers: Receivers) -> list[str]:
     """The student's nodes, once there is one. Raises `Stopped` when none appears and `Gone` when the program ends."""
     patience, calm = Patience(student), Calm(student, receivers)
+    due = time.monotonic() + CHECK_S
     while not (nodes := graph.nodes()):
         fence.alive()
+        time.sleep(NODE_LOOK_S)
+        if time.monotonic() < due:
+            continue
         if patience.cpu >= START_CPU_S and not student.at_limit():
             raise Stopped("timed-out", NO_NODE_BUSY)
         if calm.look() >= START_BLOCKED_S:
             raise Stopped("timed-out", NO_NODE_BLOCKED)
-        time.sleep(NODE_LOOK_S)
+        due = time.monotonic() + CHECK_S
     return nodes
 
 
