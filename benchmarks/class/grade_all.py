@@ -20,6 +20,8 @@ from grades import wrong_with
 from memory import Memory, Watched
 from students import EXERCISE, ROOT, Handed, the_class, write
 
+from grader.marking.here import at_once
+
 
 def main() -> int:
     """Make, grade, check, tell."""
@@ -62,11 +64,10 @@ def tell(made: list[Handed], results: Path, seconds: float, memory: Memory) -> i
     wrong = {handed: told for handed in made if (told := wrong_with(handed, results))}
     for handed, told in wrong.items():
         print(f"WRONG {handed.student} ({handed.kind} {handed.origin}): {told}")
-    at_once = 2 * len(os.sched_getaffinity(0)) + 1
     print(f"{seconds:.0f} s, {60 * len(made) / seconds:.1f} submissions a minute, load {os.getloadavg()[0]:.1f}")
     print(
         f"memory: {memory.together:.0f} MB together at most (PSS of {memory.processes} processes), "
-        f"{memory.together / at_once:.0f} MB for each of {at_once} gradings at once, "
+        f"{memory.together / at_once():.0f} MB for each of {at_once()} gradings at once, "
         f"{memory.largest:.0f} MB the largest process (RSS)"
     )
     print(f"{len(made) - len(wrong)} of {len(made)} grades are what they must be.")

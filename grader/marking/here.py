@@ -16,8 +16,8 @@ from grader.submission import Submission
 
 
 def at_once() -> int:
-    """How many submissions to grade at once: more than there are cores, for discovery is waiting."""
-    return 2 * len(os.sched_getaffinity(0)) + 1
+    """How many submissions to grade at once: more than there are cores, for rig and student wait for one another."""
+    return 3 * len(os.sched_getaffinity(0)) + 1
 
 
 @dataclass(frozen=True)
