@@ -1,4 +1,6 @@
-"""What a submission costs in classes of several sizes: `python benchmarks/class/sizes.py 10 100 200`.
+"""What a submission costs in classes of several sizes.
+
+    python benchmarks/class/sizes.py 10 100 200
 
 The class is one of right solutions and mistakes alone, so that its make-up is the same in each size. What is made once
 for an exercise (the solution's recordings, the signatures of known mistakes) is there already.
@@ -6,6 +8,7 @@ for an exercise (the solution's recordings, the signatures of known mistakes) is
 
 from __future__ import annotations
 
+import argparse
 import shutil
 import sys
 import tempfile
@@ -16,8 +19,11 @@ from grades import wrong_with
 from students import the_class, write
 
 
-def main(sizes: list[int]) -> int:
+def main() -> int:
     """Grade a class of each size, after a small one that makes ready; print a line for each."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("sizes", type=int, nargs="*", default=[10, 100, 200], help="how many students  [10 100 200]")
+    sizes: list[int] = parser.parse_args().sizes
     base = Path(tempfile.mkdtemp(prefix="spinbook-sizes-"))
     wrong = 0
     print(
@@ -41,4 +47,4 @@ def main(sizes: list[int]) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main([int(size) for size in sys.argv[1:]] or [10, 100, 200]))
+    sys.exit(main())
