@@ -96,6 +96,7 @@ def ours(folder: Path, students: dict[str, str]) -> float:
             (folder / part / student).mkdir(parents=True)
             (folder / part / student / FILE).write_text(code, encoding="utf-8")
         seconds, _ = grade(folder / part, folder / f"{part}-results", None, quiet=True)
+    print(f"spinbook: {seconds / len(students):.1f} s a submission", flush=True)
     return 60 * len(students) / seconds
 
 
@@ -125,6 +126,7 @@ def otter(folder: Path, environment: Path, names: list[str], lib: Path, students
     began = time.monotonic()
     for student, code in students.items():
         notebook = hand_in_otter(folder, student, code.split(MAIN)[0])
+        (folder / student).mkdir(exist_ok=True)
         _run([command, "run", "-a", "autograder.zip", "-o", student, str(notebook)], folder, environment)
     seconds = time.monotonic() - began
     print(f"otter: {seconds / len(students):.1f} s a submission", flush=True)
