@@ -3,14 +3,9 @@
 from __future__ import annotations
 
 import gc
-import importlib
-import inspect
-from contextlib import suppress
-
-from rclpy.serialization import serialize_message
 
 from grader.crew.environment import PROFILE
-from grader.sandbox import view
+from grader.sandbox import type_support, view
 
 #: Whose compiled support the rig uses in every spin; loading it takes half as long as a short scenario.
 PACKAGES = (
@@ -22,15 +17,7 @@ PACKAGES = (
 def warm() -> None:
     """Load message types, look at the file system, and leave the memory as it is shared best with forks."""
     for package in PACKAGES:
-        with suppress(ImportError):
-            for _, kind in inspect.getmembers(importlib.import_module(package), inspect.isclass):
-                load = getattr(kind, "__import_type_support__", None)
-                if load:
-                    load()
-                if package.endswith(".msg"):
-                    # So the middleware is loaded, too, and its own support for the type.
-                    with suppress(Exception):
-                        serialize_message(kind())
+        type_support.load(package)
     view.steps((PROFILE,), (), 0)
     # Collected later, in each fork, it would be copied there.
     gc.collect()

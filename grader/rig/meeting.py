@@ -94,9 +94,8 @@ def let_in(student: Student, fence: Fence, receivers: Receivers, recorder: Recor
         return recorder.since(came, topic)
 
     for done in (found, sent_again):
-        patience = Patience(student, cpu_s=5.0, blocked_s=5.0)
-        calm = Calm(student, receivers)
-        while not done() and calm.look() < SENT_AGAIN_S and not patience.ended():
+        patience, calm = Patience(student), Calm(student, receivers)
+        while not done() and calm.look() < SENT_AGAIN_S and patience.cpu < BUSY_S:
             fence.alive()
             time.sleep(LOOK_S)
             recorder.adapt()

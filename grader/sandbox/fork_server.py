@@ -8,14 +8,13 @@ from __future__ import annotations
 import contextlib
 import gc
 import importlib
-import inspect
 import os
 import pickle
 import signal
 import socket
 import sys
 
-from . import view
+from . import type_support, view
 from .keeper import Job, keep
 from .run import run
 
@@ -67,21 +66,11 @@ def serve(requests: int) -> Job | None:
 
 def _import(name: str) -> None:
     """Imports a module and, if most nodes use its message types, loads their compiled support."""
-    try:
-        module = importlib.import_module(name)
-    except ImportError:
-        return
-    if name.split(".")[0] not in _USED_BY_MOST_NODES:
-        return
-    from rclpy.serialization import serialize_message
-
-    for _, kind in inspect.getmembers(module, inspect.isclass):
-        load = getattr(kind, "__import_type_support__", None)
-        if load is not None:
-            with contextlib.suppress(Exception):  # as it would fail in the student's own process, if it is used there
-                load()
-                if name.endswith(".msg"):
-                    serialize_message(kind())  # the middleware's own support as well
+    if name.split(".")[0] in _USED_BY_MOST_NODES:
+        type_support.load(name)
+    else:
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
 
 
 if __name__ == "__main__":
