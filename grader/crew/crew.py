@@ -16,6 +16,7 @@ from grader.crew.environment import OURS
 from grader.crew.hand import Hand
 
 if TYPE_CHECKING:
+    from grader.crew.hand import Connection
     from grader.crew.jobs import Job
 
 PREPARE_TO_JUDGE, PROCESS = b"p", b"j"
@@ -57,7 +58,7 @@ class Crew:
         with self._lock, contextlib.suppress(OSError):  # a worker that died is started again with the next job
             self._control.send(PREPARE_TO_JUDGE)
 
-    def _process(self) -> multiprocessing.connection.Connection:  # type: ignore[type-arg, unused-ignore]
+    def _process(self) -> Connection:
         """A connection to a new process that does jobs. Raises OSError where there is none to be had."""
         ours, theirs = socket.socketpair()
         try:

@@ -19,6 +19,7 @@ from grader.exercise import ExerciseError
 from grader.sandbox import Nursery
 
 if TYPE_CHECKING:
+    from grader.crew.hand import Connection
     from grader.crew.jobs import Job
 
 
@@ -90,7 +91,7 @@ def _answer(job: Job, nursery: Nursery, ready: Callable[[], None]) -> tuple[str,
         return "host", traceback.format_exc()
 
 
-def _listen(connection: multiprocessing.connection.Connection, jobs: queue.SimpleQueue[Job]) -> None:  # type: ignore[type-arg, unused-ignore]
+def _listen(connection: Connection, jobs: queue.SimpleQueue[Job]) -> None:
     with contextlib.suppress(EOFError, OSError):
         while True:
             jobs.put(connection.recv())
