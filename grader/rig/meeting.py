@@ -53,15 +53,16 @@ BUSY_S = 5.0
 
 
 class Discovery:
-    """Ends when all that there is of the graph must have been heard of."""
+    """Ends after `calm_s` seconds of calm: then all that there is, of the graph or on its way, must have been heard."""
 
-    def __init__(self, student: Student, receivers: Receivers) -> None:
+    def __init__(self, student: Student, receivers: Receivers, calm_s: float = TOLD_AGAIN_S) -> None:
+        self._calm_s = calm_s
         self._calm = Calm(student, receivers)
         self._patience = Patience(student)
 
     def ended(self) -> bool:
         """Whether it has; to be asked again and again."""
-        return self._calm.look() >= TOLD_AGAIN_S or self._patience.cpu >= BUSY_S
+        return self._calm.look() >= self._calm_s or self._patience.cpu >= BUSY_S
 
 
 def wait_until_connected(
@@ -94,8 +95,8 @@ def let_in(student: Student, fence: Fence, receivers: Receivers, recorder: Recor
         return recorder.since(came, topic)
 
     for done in (found, sent_again):
-        patience, calm = Patience(student), Calm(student, receivers)
-        while not done() and calm.look() < SENT_AGAIN_S and patience.cpu < BUSY_S:
+        discovery = Discovery(student, receivers, SENT_AGAIN_S)
+        while not done() and not discovery.ended():
             fence.alive()
             time.sleep(LOOK_S)
             recorder.adapt()
