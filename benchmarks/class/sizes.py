@@ -22,7 +22,7 @@ from students import the_class, write
 def main() -> int:
     """Grade a class of each size, after a small one that makes ready; print a line for each."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("sizes", type=int, nargs="*", default=[10, 100, 200], help="how many students  [10 100 200]")
+    parser.add_argument("sizes", type=int, nargs="*", default=[10, 100, 200], help="how many students  %(default)s")
     sizes: list[int] = parser.parse_args().sizes
     base = Path(tempfile.mkdtemp(prefix="spinbook-sizes-"))
     wrong = 0
