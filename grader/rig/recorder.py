@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.qos import ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 
@@ -44,7 +45,7 @@ class Recorder:
     def adapt(self) -> None:
         """Ask for less where what was asked for is not offered."""
         for topic in self._topics:
-            offers = [info.qos_profile.reliability for info in self._publishers(topic)]
+            offers = [info["qos_profile"]["reliability"] for info in self._publishers(topic)]
             if topic.name not in self._modest and ReliabilityPolicy.BEST_EFFORT in offers:
                 self._node.destroy_subscription(self._subscriptions[topic.name])
                 self._subscriptions[topic.name] = self._subscription(topic, ACCEPT_ANY)
@@ -92,7 +93,7 @@ class Recorder:
         """
         found = []
         for topic in self._topics:
-            identities = {bytes(info.endpoint_gid) for info in self._publishers(topic)}
+            identities = {bytes(info["endpoint_gid"]) for info in self._publishers(topic)}
             if identities - self._known:
                 found.append(topic)
             self._known |= identities
@@ -102,9 +103,12 @@ class Recorder:
         """Whether every publisher of `topic` has found this recorder."""
         return bool(self._subscriptions[topic.name].get_publisher_count() >= len(self._publishers(topic)))
 
-    def _publishers(self, topic: Topic) -> list[Any]:
-        infos = self._node.get_publishers_info_by_topic(topic.name)
-        return [info for info in infos if info.topic_type == topic.type]
+    def _publishers(self, topic: Topic) -> list[dict[str, Any]]:
+        # What the node's get_publishers_info_by_topic makes objects of, which would cost more than all that is done
+        # for a message else.
+        with self._node.handle:
+            infos = rclpy_implementation.rclpy_get_publishers_info_by_topic(self._node.handle, topic.name, False)
+        return [info for info in infos if info["topic_type"] == topic.type]
 
     def since(self, count: int, topic: Topic) -> bool:
         """Whether anything came on `topic` after the first `count` messages."""

@@ -87,7 +87,7 @@ class Rig:
         except Gone:
             ending = cut_short(self._student, self._what, self._met, len(self._publishers.sent))
         self._fence.close()
-        end_points = self._graph.end_points()
+        end_points = self._end_points or self._graph.end_points()
         self._student.kill()  # before the last look at what has come: it may never stop publishing
         self._receivers.wait()
         self._receivers.close()
@@ -97,7 +97,7 @@ class Rig:
             sent=tuple(self._publishers.sent),
             received=tuple(self._recorder.received),
             nodes=tuple(self._nodes),
-            end_points=self._end_points or end_points,
+            end_points=end_points,
             hold=self._fence.hold if self._met else "none",
             uses_sim_time=self._sim_time,
             ending=ending,
