@@ -59,9 +59,13 @@ class Discovery:
         self._calm_s = calm_s
         self._calm = Calm(student, receivers)
         self._patience = Patience(student)
+        self._due = time.monotonic()
 
     def ended(self) -> bool:
-        """Whether it has; to be asked again and again."""
+        """Whether it has; to be asked again and again. It looks as often as the calm needs, and no more."""
+        if time.monotonic() < self._due:
+            return False
+        self._due = time.monotonic() + CHECK_S
         return self._calm.look() >= self._calm_s or self._patience.cpu >= BUSY_S
 
 
