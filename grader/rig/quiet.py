@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import time
 from pathlib import Path
+
+from grader.rig.student import Student
 
 #: Thread -> what its schedstat says: ns on a CPU, ns waiting for one, times it got one.
 Activity = dict[str, bytes]
@@ -15,9 +16,6 @@ MIDDLEWARE, RECEIVER = b"dds.", "dds.udp"
 
 #: How long to wait between two looks for the end of something that takes less than a millisecond.
 LOOK_S = 0.0001
-
-#: How often a program's child processes are looked for.
-CHILDREN_EVERY_S = 0.05
 
 
 class Receivers:
@@ -55,12 +53,10 @@ def state(stat: int) -> bytes:
 
 
 class Threads:
-    """The threads of a program and of its children. Files stay open between looks, which makes a look cheap."""
+    """The threads of a program's processes. Files stay open between looks, which makes a look cheap."""
 
-    def __init__(self, pid: int) -> None:
-        self._pid = pid
-        self._processes = [str(pid)]
-        self._searched = 0.0
+    def __init__(self, student: Student) -> None:
+        self._student = student
         self._open: dict[str, tuple[int, int]] = {}
         self._middleware: set[str] = set()
         self._rested: Activity | None = None
@@ -69,9 +65,8 @@ class Threads:
 
     def activity(self) -> Activity | None:
         """What each thread has done so far; None where one of them runs or could run."""
-        self._find_children()
         seen: Activity = {}
-        for process in self._processes:
+        for process in self._student.pids():
             try:
                 threads = os.listdir(f"/proc/{process}/task")  # noqa: PTH208
             except OSError:
@@ -131,17 +126,3 @@ class Threads:
     def _close(self, task: str) -> None:
         for descriptor in self._open.pop(task, ()):
             os.close(descriptor)
-
-    def _find_children(self) -> None:
-        if time.monotonic() - self._searched < CHILDREN_EVERY_S:
-            return
-        self._searched = time.monotonic()
-        found, waiting = [], [str(self._pid)]
-        while waiting:
-            process = waiting.pop()
-            found.append(process)
-            with contextlib.suppress(OSError):
-                for thread in os.listdir(f"/proc/{process}/task"):  # noqa: PTH208
-                    with contextlib.suppress(OSError), open(f"/proc/{process}/task/{thread}/children") as file:  # noqa: PTH123
-                        waiting += file.read().split()
-        self._processes = found

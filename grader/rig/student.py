@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Protocol
 
 
@@ -28,8 +29,7 @@ class Output(Protocol):
 class Student(Protocol):
     """A student's program, running."""
 
-    @property
-    def pid(self) -> int: ...
+    def pids(self) -> Collection[int]: ...
     def output(self) -> Output: ...
     def poll(self) -> Exit | None: ...
     def wait(self, timeout_s: float) -> Exit | None: ...

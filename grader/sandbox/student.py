@@ -79,7 +79,11 @@ class Student:
 
     def runnable_threads(self) -> int:
         """How many of its threads run or wait for a CPU now (of its children, those found within the last 50 ms)."""
-        return sum(processes.runnable_threads(pid) for pid in (self.pid, *self._warden.others))
+        return sum(processes.runnable_threads(pid) for pid in self.pids())
+
+    def pids(self) -> tuple[int, ...]:
+        """The numbers of its processes, as seen from outside the sandbox: its first, and others found within 50 ms."""
+        return (self.pid, *self._warden.others)
 
     def at_limit(self) -> bool:
         """Whether it is being ended for a limit that it has run into; looks at once, where the watch may be late."""
