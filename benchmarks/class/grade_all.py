@@ -29,7 +29,7 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=200, help="how many students")
     parser.add_argument("--seed", type=int, default=1, help="which class: the same seed makes the same one")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "class", help="a folder, made anew")
-    parser.add_argument("--jobs", type=int, help="how many submissions to grade at once")
+    parser.add_argument("--jobs", type=int, default=at_once(), help="how many submissions at once  %(default)s")
     wanted = parser.parse_args()
     made = the_class(wanted.count, wanted.seed)
     shutil.rmtree(wanted.out, ignore_errors=True)
@@ -38,7 +38,7 @@ def main() -> int:
     kinds = Counter(handed.kind for handed in made)
     print(f"{len(made)} students: " + ", ".join(f"{count} {kind}" for kind, count in kinds.most_common()), flush=True)
     seconds, memory = grade(submissions, results, wanted.jobs)
-    return tell(made, results, seconds, memory)
+    return tell(made, results, seconds, memory, wanted.jobs)
 
 
 def grade(submissions: Path, results: Path, jobs: int | None, quiet: bool = False) -> tuple[float, Memory]:
@@ -59,7 +59,7 @@ def grade(submissions: Path, results: Path, jobs: int | None, quiet: bool = Fals
     return time.monotonic() - began, watched.memory
 
 
-def tell(made: list[Handed], results: Path, seconds: float, memory: Memory) -> int:
+def tell(made: list[Handed], results: Path, seconds: float, memory: Memory, jobs: int) -> int:
     """Say which grades are wrong; returns the exit code."""
     wrong = {handed: told for handed in made if (told := wrong_with(handed, results))}
     for handed, told in wrong.items():
@@ -67,7 +67,7 @@ def tell(made: list[Handed], results: Path, seconds: float, memory: Memory) -> i
     print(f"{seconds:.0f} s, {60 * len(made) / seconds:.1f} submissions a minute, load {os.getloadavg()[0]:.1f}")
     print(
         f"memory: {memory.together:.0f} MB together at most (PSS of {memory.processes} processes), "
-        f"{memory.together / at_once():.0f} MB for each of {at_once()} gradings at once, "
+        f"{memory.together / jobs:.0f} MB for each of {jobs} gradings at once, "
         f"{memory.largest:.0f} MB the largest process (RSS)"
     )
     print(f"{len(made) - len(wrong)} of {len(made)} grades are what they must be.")
