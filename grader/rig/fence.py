@@ -72,7 +72,7 @@ class Fence:
     def __init__(self, node: Any, student: Student, receivers: Receivers, hear: Callable[[], None]) -> None:
         self._node, self._student, self._receivers, self._hear = node, student, receivers, hear
         self._calls = Calls(node.context, ())
-        self._threads = Threads(student)
+        self._threads = Threads(student.pids)
         self._blocked = 0.0
         self._restless = 0
         self._wakes_itself = False

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import time
+from collections.abc import Callable, Collection
 from pathlib import Path
-
-from grader.rig.student import Student
+from typing import NamedTuple
 
 #: Thread -> what its schedstat says: ns on a CPU, ns waiting for one, times it got one.
 Activity = dict[str, bytes]
@@ -52,13 +53,72 @@ def state(stat: int) -> bytes:
     return os.pread(stat, 512, 0).rpartition(b") ")[2][:1]
 
 
+class _Thread(NamedTuple):
+    """The open files of one thread: its state, and what it has got of the CPU."""
+
+    stat: int
+    schedstat: int
+    of_the_middleware: bool
+
+    @classmethod
+    def of(cls, name: str, folder: int) -> _Thread:
+        """Raises OSError when it has ended."""
+        stat = os.open(f"{name}/stat", os.O_RDONLY | os.O_CLOEXEC, dir_fd=folder)
+        try:
+            schedstat = os.open(f"{name}/schedstat", os.O_RDONLY | os.O_CLOEXEC, dir_fd=folder)
+        except OSError:
+            os.close(stat)
+            raise
+        return cls(stat, schedstat, b"(" + MIDDLEWARE in os.pread(stat, 64, 0))
+
+    def close(self) -> None:
+        os.close(self.stat)
+        os.close(self.schedstat)
+
+
+class _Process:
+    """The threads of one process. The number of links of their folder tells when it has to be read again."""
+
+    def __init__(self, pid: int) -> None:
+        self._folder = os.open(f"/proc/{pid}/task", os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+        self._links = 0
+        self._threads: dict[str, _Thread] = {}
+
+    def threads(self) -> dict[str, _Thread]:
+        """Those that there are, by number. Raises OSError when the process has ended."""
+        links = os.fstat(self._folder).st_nlink
+        if links != self._links:
+            self._read(links)
+        return self._threads
+
+    def _read(self, links: int) -> None:
+        names = set(os.listdir(self._folder))  # noqa: PTH208
+        for ended in self._threads.keys() - names:
+            self._threads.pop(ended).close()
+        for name in names - self._threads.keys():
+            with contextlib.suppress(OSError):
+                self._threads[name] = _Thread.of(name, self._folder)
+        # Linux counts two links, and one for each thread. Where that does not hold, the folder is read each time.
+        self._links = links if links == len(self._threads) + 2 else 0
+
+    def ended(self, name: str) -> None:
+        """One of the threads has ended; another may have begun, which the number of links would not tell."""
+        self._threads.pop(name).close()
+        self._links = 0
+
+    def close(self) -> None:
+        os.close(self._folder)
+        while self._threads:
+            self._threads.popitem()[1].close()
+
+
 class Threads:
     """The threads of a program's processes. Files stay open between looks, which makes a look cheap."""
 
-    def __init__(self, student: Student) -> None:
-        self._student = student
-        self._open: dict[str, tuple[int, int]] = {}
-        self._middleware: set[str] = set()
+    def __init__(self, pids: Callable[[], Collection[int]]) -> None:
+        """`pids` tells the numbers of the processes that there are now."""
+        self._pids = pids
+        self._processes: dict[int, _Process] = {}
         self._rested: Activity | None = None
         self.with_middleware = True
         """Whether the middleware's own threads count. They don't where an answer of the program shows what they did."""
@@ -66,23 +126,25 @@ class Threads:
     def activity(self) -> Activity | None:
         """What each thread has done so far; None where one of them runs or could run."""
         seen: Activity = {}
-        for process in self._student.pids():
+        for process, name, thread in self._that_count():
             try:
-                threads = os.listdir(f"/proc/{process}/task")  # noqa: PTH208
+                if state(thread.stat) == b"R":
+                    return None
+                seen[name] = os.pread(thread.schedstat, 128, 0)
             except OSError:
-                continue
-            for thread in threads:
-                task = f"/proc/{process}/task/{thread}"
-                try:
-                    stat, schedstat = self._open.get(task) or self._opened(task)
-                    if task in self._middleware and not self.with_middleware:
-                        continue
-                    if state(stat) == b"R":
-                        return None
-                    seen[task] = os.pread(schedstat, 128, 0)
-                except OSError:
-                    self._close(task)
+                process.ended(name)
         return seen
+
+    def _that_count(self) -> list[tuple[_Process, str, _Thread]]:
+        pids = self._pids()
+        for pid in self._processes.keys() - pids:
+            self._processes.pop(pid).close()
+        found = []
+        for pid in pids:
+            with contextlib.suppress(OSError):
+                process = self._processes[pid] = self._processes.get(pid) or _Process(pid)
+                found += [(process, name, thread) for name, thread in process.threads().items()]
+        return [each for each in found if self.with_middleware or not each[2].of_the_middleware]
 
     def wait_until_still(self, for_s: float, deadline_s: float) -> bool:
         """Wait until no thread has got a CPU for `for_s` seconds; False when it does not come to that in time.
@@ -109,20 +171,5 @@ class Threads:
 
     def close(self) -> None:
         """Close every file."""
-        for task in list(self._open):
-            self._close(task)
-
-    def _opened(self, task: str) -> tuple[int, int]:
-        stat = os.open(f"{task}/stat", os.O_RDONLY | os.O_CLOEXEC)
-        try:
-            self._open[task] = (stat, os.open(f"{task}/schedstat", os.O_RDONLY | os.O_CLOEXEC))
-        except OSError:
-            os.close(stat)
-            raise
-        if b"(" + MIDDLEWARE in os.pread(stat, 64, 0):
-            self._middleware.add(task)
-        return self._open[task]
-
-    def _close(self, task: str) -> None:
-        for descriptor in self._open.pop(task, ()):
-            os.close(descriptor)
+        while self._processes:
+            self._processes.popitem()[1].close()
