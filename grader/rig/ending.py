@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-import time
-from typing import TYPE_CHECKING
-
 from grader.recording import Ending
 from grader.rig.patience import Patience
 from grader.rig.story import TRACEBACK, is_rclpys_own, last_words, of_exit
 from grader.rig.student import Student
 
-if TYPE_CHECKING:
-    from grader.rig.spin import Spin
-
 #: How long a node may take to end after Ctrl-C, in CPU time and blocked time together.
 MAY_TAKE_S = 2.0
 
 
-def cut_short(student: Student, what: Spin, met: bool, sent: int) -> Ending:
-    """The ending of a program that ended by itself, after `sent` messages."""
+def cut_short(student: Student, file_name: str, source: str, met: bool, sent: int) -> Ending:
+    """The ending of a program that ended by itself, after `sent` messages; `met` is whether it had got so far."""
     exit_ = student.poll() or student.kill()
     log = student.output().text
-    why, line = of_exit(exit_, log, what.file_name, what.source)
+    why, line = of_exit(exit_, log, file_name, source)
     if exit_.limit:
         return Ending("over-limit", f"Your program was ended: {why}", line)
     if not met:
@@ -31,7 +25,7 @@ def cut_short(student: Student, what: Spin, met: bool, sent: int) -> Ending:
     return Ending("crashed", f"Your program ended at message {sent}: {why}", line)
 
 
-def interrupted(student: Student, what: Spin) -> Ending:
+def interrupted(student: Student, file_name: str, source: str) -> Ending:
     """Ask the program to end, as Ctrl-C does, and see how it takes it."""
     before = student.output().text.count(TRACEBACK)
     student.interrupt()
@@ -40,8 +34,7 @@ def interrupted(student: Student, what: Spin) -> Ending:
         patience.look()
         if patience.blocked + patience.cpu >= MAY_TAKE_S:
             return Ending("completed", interrupted=True, ended_in_time=False)
-    time.sleep(0)
     log = student.output().text
-    broke = log.count(TRACEBACK) > before and not is_rclpys_own(log, what.file_name, what.source)
+    broke = log.count(TRACEBACK) > before and not is_rclpys_own(log, file_name, source)
     words = last_words(log, "") if broke else None
     return Ending("completed", interrupted=True, traceback=words.error if words else "")

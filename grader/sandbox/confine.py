@@ -10,7 +10,7 @@ from pathlib import Path
 from . import kernel, landlock, seccomp, view
 from .level import Isolation
 from .limits import Limits, apply
-from .program import Program
+from .program import Place, Program
 from .view import USER_ID
 
 _DESCRIPTORS = 1024
@@ -33,15 +33,6 @@ class Start:
     limits: Limits
     core: int | None
     plan: tuple[view.Step, ...] = ()
-
-
-@dataclass(frozen=True)
-class Place:
-    """The folders of a student's program, as it sees them: its files, its home, and for temporary files."""
-
-    folder: str
-    home: str
-    temporary: str
 
 
 def confine(

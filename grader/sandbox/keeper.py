@@ -19,9 +19,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from . import bubblewrap, kernel, landlock, limits, namespaces, open_room, room, view
-from .confine import Place, Start, confine
+from .confine import Start, confine
 from .level import Isolation
-from .program import SUBMISSION, Program
+from .program import SUBMISSION, Place, Program
 
 
 @dataclass(frozen=True)

@@ -14,13 +14,10 @@ import stat
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from . import kernel, view
+from .program import Place
 from .user_namespace import dedicated_user
-
-if TYPE_CHECKING:
-    from .confine import Place
 
 _CREATE_RULESET, _ADD_RULE, _RESTRICT_SELF = 444, 445, 446
 _ASK_VERSION = 1

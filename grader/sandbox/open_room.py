@@ -12,8 +12,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .confine import Place
 from .processes import descendants
+from .program import Place
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What is started in a sandbox: a student's files, how they are run, and what they may see."""
+"""What is started in a sandbox: a student's files, how they are run, where they lie, and what they may see."""
 
 from __future__ import annotations
 
@@ -47,3 +47,12 @@ class Program:
             raise ValueError(f"the main file {self.main!r} is not among the files: {', '.join(self.files) or 'none'}")
         if absolute and not any(Path(self.main).is_relative_to(shown) for shown in self.readonly):
             raise ValueError(f"the main file {self.main} lies in none of the readonly folders")
+
+
+@dataclass(frozen=True)
+class Place:
+    """The folders of a student's program, as it sees them: its files, its home, and for temporary files."""
+
+    folder: str
+    home: str
+    temporary: str

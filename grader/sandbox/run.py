@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from . import view
-from .confine import Place
-from .program import Program
+from .program import Place, Program
 
 
 def run(program: Program, place: Place) -> None:
