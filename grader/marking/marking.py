@@ -76,6 +76,8 @@ class Marking:
         entry = self._entry(handed_in, Entry(handed_in.student, handed_in.file.name, grade))
         key = "" if grade.outcome == "host-error" else self._key(submission)
         self.results.write(entry, key, feedback_page(entry, self.exercise, marked.plot), marked.plot)
+        # What was recorded is in the page now; kept for a whole class, it would fill the memory.
+        self.entries[entry.student.id] = entry = replace(entry, grade=replace(grade, recordings={}, references={}))
         return entry
 
     def _unchanged(self, handed_in: HandedIn, kept: Entry, key: str) -> Entry:
