@@ -1,0 +1,42 @@
+"""However large a class, what was recorded of one student is let go of before the next."""
+
+from __future__ import annotations
+
+import gc
+from pathlib import Path
+
+import pytest
+from small_class import SmallClass
+
+from grader.crew import Crew
+from grader.deadline import Adjusting
+from grader.exercise import load
+from grader.grading import Options, grading_of
+from grader.intake import take_in
+from grader.marking.here import Here
+from grader.marking.marking import Marking
+from grader.marking.results import Results
+from grader.recording import Recording
+from grader.submission import read
+
+
+def test_recordings_of_graded_students_do_not_stay_in_memory(
+    small_class: SmallClass, cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SPINBOOK_CACHE", str(cache))
+    exercise = load(small_class.exercise)
+    intake = take_in(small_class.submissions, exercise.name, tmp_path)
+    submissions = {one.student.id: read(str(one.file.path), exercise) for one in intake.handed_in}
+    with Results(small_class.folder / "results") as results, Crew() as crew:
+        grading = grading_of(exercise, Options(), crew)
+        marking = Marking(exercise, Here(grading, 2), results, Adjusting())
+        plan = marking.plan(intake, submissions, lambda who: True)
+        before = recordings()
+        graded = list(marking.run(plan, submissions))
+        assert len(graded) == len(marking.entries) == 6
+        assert recordings() == before
+
+
+def recordings() -> int:
+    gc.collect()
+    return sum(isinstance(one, Recording) for one in gc.get_objects())
