@@ -78,15 +78,15 @@ class Rig:
 
     def run(self, began: float) -> Recording:
         """The whole run, from the first sign of the node to its end."""
-        student = self._student, self._what.file_name, self._what.source
+        program = self._student, self._what.file_name, self._what.source
         try:
             self._meet()
             self._lockstep()
-            ending = interrupted(*student) if self._what.scenario.interrupt else Ending("completed")
+            ending = interrupted(*program) if self._what.scenario.interrupt else Ending("completed")
         except Stopped as stopped:
             ending = Ending(stopped.outcome, stopped.story)
         except Gone:
-            ending = cut_short(*student, self._met, len(self._publishers.sent))
+            ending = cut_short(*program, self._met, len(self._publishers.sent))
         self._fence.close()
         end_points = self._end_points or self._graph.end_points()
         self._student.kill()  # before the last look at what has come: it may never stop publishing
