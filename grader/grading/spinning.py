@@ -1,19 +1,18 @@
-"""Spins one program through all scenarios: several at once, each time one after another in the same rig's process."""
+"""Spins one program through all scenarios: several at once, each hand one after another."""
 
 from __future__ import annotations
 
 import os
-import queue
-import threading
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
-from grader.crew import Crew, Hand
+from grader.crew import Crew
 from grader.crew.environment import PROFILE, STUDENTS
 from grader.crew.jobs import SpinJob
 from grader.exercise import Exercise
+from grader.grading.helping import Helping
 from grader.grading.options import Options
+from grader.grading.spins import Spins
 from grader.recording import Ending, Recording
 from grader.sandbox import Isolation
 from grader.scenario import Scenario
@@ -31,6 +30,8 @@ class Spinner:
     isolation: Isolation
     options: Options
     crew: Crew
+    helping: Helping = field(default_factory=Helping, compare=False)
+    """Through which others may help, beside the `options.parallel` hands that there are for each submission."""
 
     def spin(self, submission: Submission) -> dict[str, Recording]:
         """The recording of each scenario. Raises `HostFault` when one can't be had.
@@ -38,34 +39,20 @@ class Spinner:
         The first scenario decides whether the program works at all; if it does not, nothing else is spun, and every
         recording ends as that one does.
         """
-        gave_up = threading.Event()
         jobs = [self.job(submission, scenario, i) for i, scenario in enumerate(self.scenarios)]
         # The longest first, so that none is left over at the end; the very first is needed at once.
-        rest = sorted(jobs[1:], key=lambda job: -len(job.scenario.messages))
-        free: queue.SimpleQueue[Hand] = queue.SimpleQueue()
-
-        def do(job: SpinJob) -> Recording:
-            hand = free.get()
-            try:
-                recording: Recording = hand.do(job, gave_up)
-                return recording
-            finally:
-                free.put(hand)
-
-        with ExitStack() as hands, ThreadPoolExecutor(self.options.parallel) as pool:
+        spins = Spins((jobs[0], *sorted(jobs[1:], key=lambda job: -len(job.scenario.messages))), self.crew)
+        with ThreadPoolExecutor(self.options.parallel) as pool, self.helping.wanted(spins):
             for _ in range(self.options.parallel):
-                free.put(hands.enter_context(self.crew.hand()))
+                pool.submit(spins.work)
             try:
-                futures = {job.scenario.name: pool.submit(do, job) for job in (jobs[0], *rest)}
-                first: Recording = futures[self.scenarios[0].name].result()
+                first = spins.recording(self.scenarios[0].name)
                 if first.ending.outcome != "completed":
                     return {scenario.name: _likewise(first, scenario) for scenario in self.scenarios}
                 self.crew.prepare_to_judge()
-                return {scenario.name: futures[scenario.name].result() for scenario in self.scenarios}
+                return {scenario.name: spins.recording(scenario.name) for scenario in self.scenarios}
             finally:
-                gave_up.set()
-                for future in futures.values():
-                    future.cancel()
+                spins.give_up()
 
     def only(self, scenario: str) -> Spinner:
         """The same, with one scenario alone."""

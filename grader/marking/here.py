@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from grader.grading.grading import Grading
+from grader.grading.helping import Helping
 from grader.marking.key import key_of
 from grader.marking.marks import Marked
 from grader.marking.picture import picture
@@ -22,7 +23,10 @@ def at_once() -> int:
 
 @dataclass(frozen=True)
 class Here:
-    """One crew on this machine. Each submission goes through its scenarios one after the other, on one core."""
+    """One crew on this machine. Each submission goes through its scenarios one after the other, on one core.
+
+    Once no submission waits any more, whoever is done helps with the scenarios of those under way.
+    """
 
     grading: Grading
     jobs: int
@@ -38,13 +42,13 @@ class Here:
         done: queue.SimpleQueue[Marked | BaseException] = queue.SimpleQueue()
         for item in submissions.items():
             waiting.put(item)
-        given_up = threading.Event()
-        hands = [
-            threading.Thread(target=self._work, args=(number, waiting, done, given_up), daemon=True)
-            for number in range(min(self.jobs, len(submissions)))
+        given_up, helping = threading.Event(), Helping()
+        threads = [
+            threading.Thread(target=self._work, args=(number, waiting, done, given_up, helping), daemon=True)
+            for number in range(self.jobs if submissions else 0)
         ]
-        for hand in hands:
-            hand.start()
+        for thread in threads:
+            thread.start()
         try:
             for _ in submissions:
                 marked = done.get()
@@ -53,6 +57,9 @@ class Here:
                 yield marked
         finally:
             given_up.set()
+            helping.close()
+        for thread in threads:  # nothing is under way any more, if this is reached
+            thread.join()
 
     def _work(
         self,
@@ -60,14 +67,17 @@ class Here:
         waiting: queue.SimpleQueue[tuple[str, Submission]],
         done: queue.SimpleQueue[Marked | BaseException],
         given_up: threading.Event,
+        helping: Helping,
     ) -> None:
         cores = sorted(os.sched_getaffinity(0))
-        options = replace(self.grading.spinner.options, parallel=1, core=cores[number % len(cores)])
-        grading = replace(self.grading, spinner=replace(self.grading.spinner, options=options))
+        core = cores[number % len(cores)]
+        options = replace(self.grading.spinner.options, parallel=1, core=core)
+        grading = replace(self.grading, spinner=replace(self.grading.spinner, options=options, helping=helping))
         while not given_up.is_set():
             try:
                 who, submission = waiting.get_nowait()
             except queue.Empty:
+                helping.help(core)
                 return
             try:
                 grade = grading.grade(submission)

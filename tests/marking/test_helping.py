@@ -1,0 +1,41 @@
+"""The end of a class takes no longer than it must."""
+
+from __future__ import annotations
+
+import threading
+
+from small_class import ROOT
+
+from grader.crew import Crew, Hand
+from grader.exercise import load
+from grader.grading import Options, grading_of
+from grader.marking.here import Here
+from grader.submission import read
+
+
+class Counting(Crew):
+    """Knows how many threads have asked for a hand."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.threads: set[int] = set()
+
+    def hand(self) -> Hand:
+        self.threads.add(threading.get_ident())
+        return super().hand()
+
+
+def test_whoever_has_no_submission_left_helps_with_the_last_one() -> None:
+    exercise = load(ROOT / "exercises" / "joint_velocity")
+    submission = read(str(ROOT / "solutions" / "joint_velocity" / "mistakes" / "degrees.py"), exercise)
+    grades = []
+    for jobs in (1, 4):
+        with Counting() as crew:
+            grading = grading_of(exercise, Options(), crew)
+            crew.threads.clear()
+            (marked,) = Here(grading, jobs).mark({"ada": submission})
+            assert len(crew.threads) == jobs + 1, "all of them for the spins, and one for the checks"
+        grades.append(marked.grade)
+    alone, helped = grades
+    assert helped.outcome == alone.outcome == "graded"
+    assert helped.verdicts == alone.verdicts
