@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from grader.crew.crew import PREPARE_TO_JUDGE, PROCESS
 from grader.exercise import ExerciseError
 from grader.sandbox import Nursery
+from grader.sandbox.fork import fork
 
 if TYPE_CHECKING:
     from grader.crew.hand import Connection
@@ -41,7 +42,7 @@ def main() -> None:
             if command == PREPARE_TO_JUDGE:
                 import grader.checking.judging  # noqa: F401
             elif command == PROCESS:
-                pid = os.fork()
+                pid = fork()
                 if pid == 0:
                     control.close()
                     _work(descriptors[0], nursery)

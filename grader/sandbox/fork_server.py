@@ -15,6 +15,7 @@ import socket
 import sys
 
 from . import type_support, view
+from .fork import fork
 from .keeper import Job, keep
 from .run import run
 
@@ -53,7 +54,7 @@ def serve(requests: int) -> Job | None:
         message, passed, _, _ = socket.recv_fds(listening, 64, _MOST_DESCRIPTORS)
         if not message:
             return None
-        if os.fork() == 0:
+        if fork() == 0:
             listening.detach()
             os.close(requests)
             request, control, output, *namespaces = passed

@@ -26,7 +26,7 @@ def test_a_mistake_is_told_with_when_and_where_drawn_and_recorded(tmp_path: Path
         "joint_velocity", str(SOLUTIONS / "mistakes" / "joints_by_index.py"),
         "--plot", str(tmp_path / "out.svg"), "--bag", str(tmp_path / "bags"), "--verbose",
     )  # fmt: skip
-    assert done.returncode == 1, done.stderr
+    assert (done.returncode, done.stderr) == (1, "")
     text = " ".join(done.stdout.split())
     for told in ("90 of 100 points", "Message 2 of 20 (0.10 s", "left_shoulder_roll", "expected velocity", "Hint:"):
         assert told in text
