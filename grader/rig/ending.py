@@ -6,6 +6,7 @@ from grader.recording import Ending
 from grader.rig.patience import Patience
 from grader.rig.story import TRACEBACK, is_rclpys_own, last_words, of_exit
 from grader.rig.student import Student
+from grader.rig.watch import Watch
 
 #: How long a node may take to end after Ctrl-C, in CPU time and blocked time together.
 MAY_TAKE_S = 2.0
@@ -25,11 +26,12 @@ def cut_short(student: Student, file_name: str, source: str, met: bool, sent: in
     return Ending("crashed", f"Your program ended at message {sent}: {why}", line)
 
 
-def interrupted(student: Student, file_name: str, source: str) -> Ending:
+def interrupted(watch: Watch, file_name: str, source: str) -> Ending:
     """Ask the program to end, as Ctrl-C does, and see how it takes it."""
+    student = watch.student
     before = student.output().text.count(TRACEBACK)
     student.interrupt()
-    patience = Patience(student, cpu_s=MAY_TAKE_S, blocked_s=MAY_TAKE_S)
+    patience = Patience(watch, cpu_s=MAY_TAKE_S, blocked_s=MAY_TAKE_S)
     while student.wait(0.02) is None:
         patience.look()
         if patience.blocked + patience.cpu >= MAY_TAKE_S:

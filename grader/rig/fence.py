@@ -23,9 +23,8 @@ from type_description_interfaces.srv import GetTypeDescription
 from grader.rig.call import Caller, Calls
 from grader.rig.graph import Graph
 from grader.rig.patience import Calm, Patience
-from grader.rig.quiet import Receivers, Threads
 from grader.rig.stopped import Stopped
-from grader.rig.student import Student
+from grader.rig.watch import Watch
 
 Hold = Literal["parameters", "type description", "quiet"]
 
@@ -69,10 +68,9 @@ class Fence:
     `hear` takes what they publish; it is called again and again, and may raise what ends the run.
     """
 
-    def __init__(self, node: Any, student: Student, receivers: Receivers, hear: Callable[[], None]) -> None:
-        self._node, self._student, self._receivers, self._hear = node, student, receivers, hear
+    def __init__(self, node: Any, watch: Watch, hear: Callable[[], None]) -> None:
+        self._node, self._watch, self._hear = node, watch, hear
         self._calls = Calls(node.context, ())
-        self._threads = Threads(student.pids)
         self._blocked = 0.0
         self._restless = 0
         self._wakes_itself = False
@@ -80,7 +78,7 @@ class Fence:
 
     def alive(self) -> None:
         """Raise `Gone` when the student's program has ended."""
-        if self._student.poll() is not None:
+        if self._watch.student.poll() is not None:
             raise Gone
 
     def take_hold(self, graph: Graph, nodes: list[str], no_more_to_come: Callable[[], bool]) -> None:
@@ -105,23 +103,23 @@ class Fence:
         if found:
             parameters = all(kind is GetParameters for _, kind, _ in found.values())
             self.hold = "parameters" if parameters else "type description"
-            self._threads.with_middleware = False
+            self._watch.threads.with_middleware = False
         self._wait_for(self._calls.ready, lambda: time.sleep(LOOK_S), 10.0)
 
     def look(self) -> None:
         """See whether the program has done anything since it was at rest; to be called before anything is published."""
-        self._wakes_itself = self._wakes_itself or self._threads.stirred()
+        self._wakes_itself = self._wakes_itself or self._watch.threads.stirred()
 
     def wait(self, times: int) -> None:
         """Wait until the nodes have handled what was published before this call. Raises `Stopped` or `Gone`."""
         self._calls.call(times if self._wakes_itself else 1)
         self._wait_for_answers(self._calls)
         self._rest()
-        self._receivers.wait()
+        self._watch.receivers.wait()
         self._hear()
 
     def _wait_for_answers(self, calls: Calls) -> None:
-        calm = Calm(self._student, self._receivers)
+        calm = Calm(self._watch)
 
         def pause() -> None:
             calls.wait(CHECK_S)
@@ -142,7 +140,7 @@ class Fence:
             self.alive()
             self._hear()
             # Most waits are over before this is needed the first time.
-            patience = patience or Patience(self._student, cpu_s)
+            patience = patience or Patience(self._watch, cpu_s)
             blocked = patience.blocked
             patience.check(ENDLESS.format(cpu_s), DEAF)
             self._blocked += patience.blocked - blocked
@@ -155,20 +153,16 @@ class Fence:
         self.alive()
         if self.hold == "quiet":
             self._rest_without_answers()
-        elif self._restless < RESTLESS_TIMES and not self._threads.wait_until_still(0.0, RESTLESS_S):
+        elif self._restless < RESTLESS_TIMES and not self._watch.threads.wait_until_still(0.0, RESTLESS_S):
             self._restless += 1
 
     def _rest_without_answers(self) -> None:
-        patience = Patience(self._student)
-        while not self._threads.wait_until_still(STILL_S, 0.1):
+        patience = Patience(self._watch)
+        while not self._watch.threads.wait_until_still(STILL_S, 0.1):
             self.alive()
             self._hear()
             if patience.ended() == "cpu":
                 raise Stopped("timed-out", ENDLESS.format(3.0))
-
-    def close(self) -> None:
-        """Let go of the student's program."""
-        self._threads.close()
 
     def call(self, kind: Any, name: str, request: Any) -> Any:
         """Call any service of the node and return its answer."""

@@ -10,10 +10,9 @@ from grader.rig.fence import CHECK_S, LOOK_S, Fence
 from grader.rig.graph import Graph
 from grader.rig.patience import Calm, Patience
 from grader.rig.publishers import ReferencePublishers
-from grader.rig.quiet import Receivers
 from grader.rig.recorder import Recorder
 from grader.rig.stopped import Stopped
-from grader.rig.student import Student
+from grader.rig.watch import Watch
 
 #: Importing large libraries takes computing time; nothing that a node needs takes this much.
 START_CPU_S, START_BLOCKED_S = 20.0, 3.0
@@ -28,16 +27,16 @@ NO_NODE_BLOCKED = (
 )
 
 
-def wait_for_nodes(graph: Graph, fence: Fence, student: Student, receivers: Receivers) -> list[str]:
+def wait_for_nodes(graph: Graph, fence: Fence, watch: Watch) -> list[str]:
     """The student's nodes, once there is one. Raises `Stopped` when none appears and `Gone` when the program ends."""
-    patience, calm = Patience(student), Calm(student, receivers)
+    patience, calm = Patience(watch), Calm(watch)
     due = time.monotonic() + CHECK_S
     while not (nodes := graph.nodes()):
         fence.alive()
         time.sleep(NODE_LOOK_S)
         if time.monotonic() < due:
             continue
-        if patience.cpu >= START_CPU_S and not student.at_limit():
+        if patience.cpu >= START_CPU_S and not watch.student.at_limit():
             raise Stopped("timed-out", NO_NODE_BUSY)
         if calm.look() >= START_BLOCKED_S:
             raise Stopped("timed-out", NO_NODE_BLOCKED)
@@ -55,10 +54,10 @@ BUSY_S = 5.0
 class Discovery:
     """Ends after `calm_s` seconds of calm: then all that there is, of the graph or on its way, must have been heard."""
 
-    def __init__(self, student: Student, receivers: Receivers, calm_s: float = TOLD_AGAIN_S) -> None:
+    def __init__(self, watch: Watch, calm_s: float = TOLD_AGAIN_S) -> None:
         self._calm_s = calm_s
-        self._calm = Calm(student, receivers)
-        self._patience = Patience(student)
+        self._calm = Calm(watch)
+        self._patience = Patience(watch)
         self._due = time.monotonic()
 
     def ended(self) -> bool:
@@ -88,7 +87,7 @@ def wait_until_connected(
 SENT_AGAIN_S = 0.4
 
 
-def let_in(student: Student, fence: Fence, receivers: Receivers, recorder: Recorder, topic: Topic, came: int) -> None:
+def let_in(watch: Watch, fence: Fence, recorder: Recorder, topic: Topic, came: int) -> None:
     """Wait until a publisher of `topic`, which the student's node has made only now, has found the recorder, if it ever
     will, and has sent again what it has already published: something other than the first `came` messages."""
 
@@ -99,7 +98,7 @@ def let_in(student: Student, fence: Fence, receivers: Receivers, recorder: Recor
         return recorder.since(came, topic)
 
     for done in (found, sent_again):
-        discovery = Discovery(student, receivers, SENT_AGAIN_S)
+        discovery = Discovery(watch, SENT_AGAIN_S)
         while not done() and not discovery.ended():
             fence.alive()
             time.sleep(LOOK_S)

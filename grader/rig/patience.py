@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import time
 
-from grader.rig.quiet import Receivers
 from grader.rig.stopped import Stopped
-from grader.rig.student import Student
+from grader.rig.watch import Watch
 
 #: The longest piece of time between two looks that counts: a rig that did not run itself saw nothing. Where a machine
 #: is not busy the looks come sooner than this.
@@ -20,10 +19,10 @@ class Patience:
     about to end, and its end tells which limit it was: that is waited for.
     """
 
-    def __init__(self, student: Student, cpu_s: float = 3.0, blocked_s: float = 3.0) -> None:
-        self._student = student
+    def __init__(self, watch: Watch, cpu_s: float = 3.0, blocked_s: float = 3.0) -> None:
+        self._student, self._threads = watch.student, watch.threads
         self._cpu_s, self._blocked_s = cpu_s, blocked_s
-        self._cpu_start = student.cpu_seconds()
+        self._cpu_start = watch.student.cpu_seconds()
         self._looked = time.monotonic()
         self.blocked = 0.0
 
@@ -35,7 +34,7 @@ class Patience:
     def look(self) -> None:
         """Count the time since the last look as blocked if none of the program's threads could run."""
         now = time.monotonic()
-        if self._student.runnable_threads() == 0:
+        if not self._threads.at_work():
             self.blocked += min(now - self._looked, LONGEST_LOOK_S)
         self._looked = now
 
@@ -60,15 +59,15 @@ class Calm:
     sufficient calm was not sent, or got lost.
     """
 
-    def __init__(self, student: Student, receivers: Receivers) -> None:
-        self._student, self._receivers = student, receivers
+    def __init__(self, watch: Watch) -> None:
+        self._threads, self._receivers = watch.threads, watch.receivers
         self._looked = time.monotonic()
         self.seconds = 0.0
 
     def look(self) -> float:
         """Count the time since the last look if there is calm. Returns what has been counted."""
         now = time.monotonic()
-        if not self._student.runnable_threads() and not self._receivers.at_work():
+        if not self._threads.at_work() and not self._receivers.at_work():
             self.seconds += min(now - self._looked, LONGEST_LOOK_S)
         self._looked = now
         return self.seconds

@@ -121,12 +121,15 @@ class Threads:
         self._processes: dict[int, _Process] = {}
         self._rested: Activity | None = None
         self.with_middleware = True
-        """Whether the middleware's own threads count. They don't where an answer of the program shows what they did."""
+        """Whether the middleware's own threads count as the program's activity. They don't where an answer of the
+        program shows what they did."""
 
     def activity(self) -> Activity | None:
         """What each thread has done so far; None where one of them runs or could run."""
         seen: Activity = {}
-        for process, name, thread in self._that_count():
+        for process, name, thread in self._all():
+            if thread.of_the_middleware and not self.with_middleware:
+                continue
             try:
                 if state(thread.stat) == b"R":
                     return None
@@ -135,7 +138,17 @@ class Threads:
                 process.ended(name)
         return seen
 
-    def _that_count(self) -> list[tuple[_Process, str, _Thread]]:
+    def at_work(self) -> bool:
+        """Whether one of them runs, waits for a CPU, or waits for the disk; the middleware's own count here, too."""
+        for process, name, thread in self._all():
+            try:
+                if state(thread.stat) in (b"R", b"D"):
+                    return True
+            except OSError:
+                process.ended(name)
+        return False
+
+    def _all(self) -> list[tuple[_Process, str, _Thread]]:
         pids = self._pids()
         for pid in self._processes.keys() - pids:
             self._processes.pop(pid).close()
@@ -144,7 +157,7 @@ class Threads:
             with contextlib.suppress(OSError):
                 process = self._processes[pid] = self._processes.get(pid) or _Process(pid)
                 found += [(process, name, thread) for name, thread in process.threads().items()]
-        return [each for each in found if self.with_middleware or not each[2].of_the_middleware]
+        return found
 
     def wait_until_still(self, for_s: float, deadline_s: float) -> bool:
         """Wait until no thread has got a CPU for `for_s` seconds; False when it does not come to that in time.

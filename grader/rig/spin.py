@@ -14,11 +14,12 @@ from grader.rig.fence import AFTER_CLOCK, AFTER_MESSAGES, Fence, Gone
 from grader.rig.graph import Graph
 from grader.rig.meeting import Discovery, let_in, wait_for_nodes, wait_until_connected
 from grader.rig.publishers import ReferencePublishers
-from grader.rig.quiet import Receivers
+from grader.rig.quiet import Receivers, Threads
 from grader.rig.recorder import Recorder
 from grader.rig.ros import Ros
 from grader.rig.stopped import Stopped
 from grader.rig.student import Student
+from grader.rig.watch import Watch
 from grader.scenario import Scenario
 from grader.scenario.scenario import SECOND, START
 
@@ -65,8 +66,8 @@ class Rig:
         self._publishers = ReferencePublishers(ros.node("joint_command_publisher"), what.scenario)
         self._recorder = Recorder(node, what.exercise.outputs, self._moment)
         self._graph = Graph(node, ros.names)
-        self._receivers = Receivers()
-        self._fence = Fence(node, student, self._receivers, self._recorder.hear)
+        self._watch = Watch(student, Threads(student.pids), Receivers())
+        self._fence = Fence(node, self._watch, self._recorder.hear)
         self._nodes: list[str] = []
         self._sim_time = False
         self._met = False
@@ -78,20 +79,19 @@ class Rig:
 
     def run(self, began: float) -> Recording:
         """The whole run, from the first sign of the node to its end."""
-        program = self._student, self._what.file_name, self._what.source
+        program = self._what.file_name, self._what.source
         try:
             self._meet()
             self._lockstep()
-            ending = interrupted(*program) if self._what.scenario.interrupt else Ending("completed")
+            ending = interrupted(self._watch, *program) if self._what.scenario.interrupt else Ending("completed")
         except Stopped as stopped:
             ending = Ending(stopped.outcome, stopped.story)
         except Gone:
-            ending = cut_short(*program, self._met, len(self._publishers.sent))
-        self._fence.close()
+            ending = cut_short(self._student, *program, self._met, len(self._publishers.sent))
         end_points = self._end_points or self._graph.end_points()
         self._student.kill()  # before the last look at what has come: it may never stop publishing
-        self._receivers.wait()
-        self._receivers.close()
+        self._watch.receivers.wait()
+        self._watch.close()
         self._recorder.take()
         return Recording(
             scenario=self._what.scenario.name,
@@ -108,8 +108,8 @@ class Rig:
         )
 
     def _meet(self) -> None:
-        self._nodes = wait_for_nodes(self._graph, self._fence, self._student, self._receivers)
-        discovery = Discovery(self._student, self._receivers)
+        self._nodes = wait_for_nodes(self._graph, self._fence, self._watch)
+        discovery = Discovery(self._watch)
         self._fence.take_hold(self._graph, self._nodes, discovery.ended)
         self._fence.wait(1)
         if self._fence.hold == "parameters":
@@ -143,7 +143,7 @@ class Rig:
         """A node may make a publisher only when it has something to publish; `came` messages had come before."""
         late = self._recorder.newcomers()
         for topic in late:
-            let_in(self._student, self._fence, self._receivers, self._recorder, topic, came)
+            let_in(self._watch, self._fence, self._recorder, topic, came)
         if late:
             self._fence.wait(AFTER_MESSAGES)
 

@@ -1,4 +1,4 @@
-"""What /proc tells about a student's processes: which there are, whether they run, and what they have used.
+"""What /proc tells about a student's processes: which there are, and what they have used.
 
 Source: proc(5). Processes end while they are looked at; what has ended counts nothing.
 """
@@ -50,12 +50,6 @@ def proportional_bytes(pid: int) -> int:
         if line.startswith(b"Pss:"):
             return int(line.split()[1]) * 1024
     return 0
-
-
-def runnable_threads(pid: int) -> int:
-    """The threads of a process that run, wait for a CPU, or wait for the disk."""
-    states = (_fields(f"/proc/{pid}/task/{thread}/stat")[:1] for thread in _names(f"/proc/{pid}/task"))
-    return sum(state in (["R"], ["D"]) for state in states)
 
 
 def _children(pid: int) -> set[int]:

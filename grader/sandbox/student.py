@@ -9,7 +9,6 @@ import signal
 import socket
 from types import TracebackType
 
-from . import processes
 from .level import SandboxError
 from .limits import Limits
 from .output import Output
@@ -76,10 +75,6 @@ class Student:
     def cpu_seconds(self) -> float:
         """What all its processes have used of the CPU, those that have ended included (s)."""
         return self._warden.cpu_seconds()
-
-    def runnable_threads(self) -> int:
-        """How many of its threads run or wait for a CPU now (of its children, those found within the last 50 ms)."""
-        return sum(processes.runnable_threads(pid) for pid in self.pids())
 
     def pids(self) -> tuple[int, ...]:
         """The numbers of its processes, as seen from outside the sandbox: its first, and others found within 50 ms."""

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator
 
 import pytest
+from small_class import wait_until
 
 from grader.rig.quiet import Threads
 
@@ -22,6 +23,8 @@ for order in sys.stdin:
         [thread.join() for thread in threading.enumerate() if thread is not threading.main_thread()]
         threading.Thread(target=threading.Event().wait, daemon=True).start()
     print("done", flush=True)
+    while order == "compute\\n":
+        pass
 """
 
 
@@ -59,6 +62,15 @@ def test_a_program_at_rest_has_not_stirred_until_it_does_something(program: Prog
     assert not threads.stirred()
     program.do("nothing")
     assert threads.stirred()
+    threads.close()
+
+
+def test_a_program_is_at_work_while_it_computes_and_not_while_it_waits(program: Program) -> None:
+    threads = Threads(program.pids)
+    assert threads.wait_until_still(0.0, 10.0)
+    assert not threads.at_work()
+    program.do("compute")
+    wait_until(threads.at_work, 10.0)
     threads.close()
 
 
