@@ -29,6 +29,8 @@ def for_domain(domain: int, environment: Mapping[str, str]) -> dict[str, str]:
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT" if is_fast_dds else "LOCALHOST",
         "RCUTILS_CONSOLE_OUTPUT_FORMAT": environment.get("RCUTILS_CONSOLE_OUTPUT_FORMAT", LOG_FORMAT),
         "RCUTILS_COLORIZED_OUTPUT": environment.get("RCUTILS_COLORIZED_OUTPUT", "0"),
+        # Jupyter asks for colours of every program; Python obeys from 3.13 on.
+        "PYTHON_COLORS": environment.get("PYTHON_COLORS", "0"),
         "PYTHONUNBUFFERED": "1",
     }
     if is_fast_dds:

@@ -76,7 +76,8 @@ place = os.environ.get({place!r}, {place!r})
 written = 0
 try:
     for n in range(10000):
-        written += open(f'{{place}}/{{n}}', 'wb').write(bytes(100_000))
+        with open(f'{{place}}/{{n}}', 'wb', buffering=0) as file:
+            written += file.write(bytes(100_000))
 finally:
     print(written, flush=True)
 """
