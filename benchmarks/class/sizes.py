@@ -3,9 +3,8 @@
     python benchmarks/class/sizes.py 10 100 200
 
 The class is one of right solutions and mistakes alone, so that its make-up is the same in each size. What is made once
-for an exercise (the solution's recordings, the signatures of known mistakes) is there already. A small class takes
-longer a student, for at its beginning and its end the machine has little to do: what it costs, the CPU seconds tell,
-those of the whole machine.
+for an exercise (the solution's recordings, the signatures of known mistakes) is there already. The CPU seconds are
+those of the whole machine; where a class of another size took more of them, the machine was slower, too.
 """
 
 from __future__ import annotations
