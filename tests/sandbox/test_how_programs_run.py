@@ -7,6 +7,7 @@ import signal
 import pytest
 from sandbox_rig import Rig
 
+from grader.rig.quiet import Threads
 from grader.sandbox import Exit, Isolation, Nursery, Program
 
 PROGRAMS = {
@@ -102,17 +103,21 @@ def test_an_interrupt_is_what_ctrl_c_is(any_rig: Rig) -> None:
     assert text.rstrip().endswith("KeyboardInterrupt")
 
 
-def watch_cpu(nursery: Nursery, level: Isolation) -> tuple[float, int, int]:
+def watch_cpu(nursery: Nursery, level: Isolation) -> tuple[bool, float, int, int]:
     busy = Program("n.py", {"n.py": b"print('ready')\nwhile True: pass"})
     with nursery.start(busy, level, core=0) as student:
         while student.cpu_seconds() < 0.3:
             assert student.wait(0.001) is None
-        return student.cpu_seconds(), student.processes(), student.pid
+        threads = Threads(student.pids)
+        runs = any(threads.at_work() for _ in range(100))
+        threads.close()
+        return runs, student.cpu_seconds(), student.processes(), student.pid
 
 
 def test_the_rig_sees_what_the_program_uses(any_rig: Rig) -> None:
-    cpu_s, processes, pid = any_rig.do(watch_cpu)
+    runs, cpu_s, processes, pid = any_rig.do(watch_cpu)
 
+    assert runs
     assert cpu_s >= 0.3
     assert processes == 1
     assert pid > 1
