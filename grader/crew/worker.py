@@ -29,7 +29,7 @@ def main() -> None:
     control = socket.socket(fileno=int(sys.argv[1]))
     with Nursery() as nursery:
         import grader.crew.jobs
-        import grader.rig.spin
+        import grader.rig.spin  # noqa: F401  # for every process that is forked from this one
         from grader.crew.warmth import warm
 
         warm()
@@ -40,7 +40,9 @@ def main() -> None:
             if not command:
                 break
             if command == PREPARE_TO_JUDGE:
-                import grader.checking.judging  # noqa: F401
+                from grader.checking.judging import load_pytest
+
+                load_pytest()
             elif command == PROCESS:
                 pid = fork()
                 if pid == 0:

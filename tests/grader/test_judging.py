@@ -1,0 +1,35 @@
+"""What judging costs besides the checks themselves."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+EXERCISE = Path(__file__).parents[2] / "exercises" / "joint_velocity"
+
+LOADED_BEFORE = """
+import signal, sys, threading
+from pathlib import Path
+from grader.checking.judging import load_pytest
+from grader.checking.listing import listed
+from grader.exercise import load
+
+def handlers():
+    return [signal.getsignal(number) for number in signal.valid_signals()], threading.excepthook, sys.excepthook
+
+exercise, before = load(Path(sys.argv[1])), handlers()
+load_pytest()
+assert handlers() == before and threading.active_count() == 1, "the process is not as it was"
+loaded = set(sys.modules)
+listed(exercise)
+print(*sorted(name for name in set(sys.modules) - loaded if name.startswith("_pytest")))
+"""
+
+
+def test_a_process_that_has_loaded_pytest_loads_nothing_more_of_it_for_the_checks_and_is_otherwise_as_it_was() -> None:
+    run = subprocess.run(
+        [sys.executable, "-c", LOADED_BEFORE, str(EXERCISE)], capture_output=True, text=True, timeout=120
+    )
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.strip() == ""
