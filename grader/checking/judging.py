@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import functools
 import io
 import os
 import sys
@@ -39,7 +38,6 @@ def judge(
     return tuple(checks.verdicts.values())
 
 
-@functools.cache
 def load_pytest() -> None:
     """Have pytest import all that it is made of, by a session without a test: it does that as it starts, once in a
     process. One that is forked from this one has it, and judges in two thirds of the time."""

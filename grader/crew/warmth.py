@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import gc
 
 from grader.crew.environment import PROFILE
@@ -19,6 +20,19 @@ def warm() -> None:
     for package in PACKAGES:
         type_support.load(package)
     view.steps((PROFILE,), (), 0)
+    _share()
+
+
+@functools.cache
+def warm_to_judge() -> None:
+    """The same for what judging needs besides."""
+    from grader.checking.judging import load_pytest
+
+    load_pytest()
+    _share()
+
+
+def _share() -> None:
     # Collected later, in each fork, it would be copied there.
     gc.collect()
     gc.freeze()

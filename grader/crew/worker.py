@@ -30,7 +30,7 @@ def main() -> None:
     with Nursery() as nursery:
         import grader.crew.jobs
         import grader.rig.spin  # noqa: F401  # for every process that is forked from this one
-        from grader.crew.warmth import warm
+        from grader.crew.warmth import warm, warm_to_judge
 
         warm()
         working: set[int] = set()
@@ -40,9 +40,7 @@ def main() -> None:
             if not command:
                 break
             if command == PREPARE_TO_JUDGE:
-                from grader.checking.judging import load_pytest
-
-                load_pytest()
+                warm_to_judge()
             elif command == PROCESS:
                 pid = fork()
                 if pid == 0:
