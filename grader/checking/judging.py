@@ -7,6 +7,7 @@ import io
 import os
 import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -16,12 +17,6 @@ from grader.checking.run import Run
 from grader.checking.verdict import Verdict
 from grader.exercise import Exercise, ExerciseError
 from grader.recording import Recording
-
-#: What every run of pytest is told: to change no module, to read no settings, and to leave out what is not needed.
-_ALONE = (
-    *("--assert=plain", "-c", os.devnull, "-p", "no:cacheprovider", "-p", "no:terminal"),
-    *("-p", "no:unraisableexception"),  # which looks for garbage at the end, for longer than the checks take
-)
 
 
 def judge(
@@ -41,12 +36,8 @@ def judge(
 def load_pytest() -> None:
     """Have pytest import all that it is made of, by a session without a test: it does that as it starts, once in a
     process. One that is forked from this one has it, and judges in two thirds of the time."""
-    with contextlib.ExitStack() as around:
-        around.enter_context(contextlib.suppress(OSError))  # without a folder to look into, it goes without
-        around.enter_context(contextlib.redirect_stdout(io.StringIO()))
-        around.enter_context(_nothing_from_outside())
-        empty = around.enter_context(tempfile.TemporaryDirectory())
-        pytest.main([*_ALONE, "--capture=no", "--rootdir", empty, empty])
+    with contextlib.suppress(OSError), tempfile.TemporaryDirectory() as empty:  # without a folder, it goes without
+        _session("--capture=no", "--rootdir", empty, empty)
 
 
 def run_pytest(exercise: Exercise, runs: dict[str, Run], checks: Checks) -> None:
@@ -56,18 +47,26 @@ def run_pytest(exercise: Exercise, runs: dict[str, Run], checks: Checks) -> None
     """
     if not exercise.check_files:
         raise ExerciseError(exercise.folder / "checks.py", "there is no such file", "Write at least one check.")
-    arguments = [
-        *(*_ALONE, "--import-mode=importlib", "--rootdir", str(exercise.folder)),
-        *("-o", "python_files=*.py", "--capture=fd"),
+    code = _session(
+        *("--import-mode=importlib", "--rootdir", str(exercise.folder), "-o", "python_files=*.py", "--capture=fd"),
         *(str(file) for file in exercise.check_files),
-    ]
-    with _nothing_from_outside(), contextlib.redirect_stdout(io.StringIO()):
-        code = pytest.main(arguments, plugins=[checks, fixtures_of(runs)])
+        plugins=[checks, fixtures_of(runs)],
+    )
     if checks.problem:
         raise checks.problem
     if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
         file: Path = exercise.check_files[0]
         raise ExerciseError(file, f"pytest ended with {pytest.ExitCode(code).name}", "Are there any checks in it?")
+
+
+def _session(*arguments: str, plugins: Sequence[object] = ()) -> int:
+    """Run pytest so that it changes no module, reads no settings, prints nothing and leaves out what is not needed."""
+    alone = (
+        *("--assert=plain", "-c", os.devnull, "-p", "no:cacheprovider", "-p", "no:terminal"),
+        *("-p", "no:unraisableexception"),  # which looks for garbage at the end, for longer than the checks take
+    )
+    with _nothing_from_outside(), contextlib.redirect_stdout(io.StringIO()):
+        return pytest.main([*alone, *arguments], plugins=plugins)
 
 
 @contextlib.contextmanager
