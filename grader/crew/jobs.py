@@ -36,13 +36,14 @@ class SpinJob:
     def run(self, nursery: Nursery, ready: Callable[[], None]) -> Recording:
         """The recording of the spin."""
         from grader.crew.domain import domain_for
-        from grader.rig.spin import Spin, spin
+        from grader.rig.spin import spin
+        from grader.runner.task import Task
 
         enter(self.isolation)
         ready()
         domain = domain_for(self.isolation)
         program = replace(self.program, environment={**self.program.environment, "ROS_DOMAIN_ID": str(domain)})
-        what = Spin(self.exercise, self.scenario, domain, self.file_name, self.source, self.pace)
+        what = Task(self.exercise, self.scenario, self.file_name, self.source, self.pace, domain)
         return spin(what, lambda: nursery.start(program, self.isolation, self.limits, self.core))
 
 
