@@ -123,7 +123,8 @@ class Process:
         self.seen: list[tuple[int, bytes, bytes]] = []
         self.number = self.now = self.handled = self._count = 0
         self._lock = threading.RLock()
-        self.raw.send(hello(pid, os.getpid()), *([frame(b"J")] if joins else []))
+        self.raw.send(hello(pid, os.getpid()))
+        self._joins = joins
         self._thread = threading.Thread(target=self._run, daemon=True)
 
     def start(self) -> Process:
@@ -171,6 +172,8 @@ class Process:
     def _handle(self, kind: bytes, payload: bytes) -> None:
         if kind == b"W":
             _, self.number, self.now, _ = struct.unpack("<IIqq", payload)
+            if self._joins:
+                self.raw.send(frame(b"J"))
         elif kind == b"T":
             (until,) = struct.unpack("<q", payload[:8])
             while self.wakes and self.wakes[0][0] <= until:
