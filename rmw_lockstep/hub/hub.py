@@ -75,6 +75,7 @@ class Hub:
         self.patience = patience
         self._use = Use(limits or Limits())
         self._until, self._epoch = begin, epoch
+        self._instant = begin
         self._standstills = 0
         self._awaited = False
         self._due = 0.0
@@ -166,6 +167,8 @@ class Hub:
         """Send what is queued and take what comes, for 20 ms at most, whether or not the program is idle."""
         self._flush()
         self._take()
+        if self._is_idle():
+            self._router.deliver()
         self._flush()
 
     def is_idle(self) -> bool:
@@ -214,26 +217,38 @@ class Hub:
     def _go_on(self) -> bool:
         """Let the idle program's time go on to the next wake-up of any process. False when it is where it is to be.
 
-        No process gets ahead of the others: what one sends at its wake-up, another may get before it wakes itself. Those
-        that do not wake get there first: what wakes may end, and a parent that waits for its end goes on at once.
+        No process gets ahead of the others: what one sends at its wake-up, another may get before it wakes itself.
         """
-        behind = [link for link in self.links if link.now < self._until]
-        if not behind:
+        if self._reach_instant():
+            return True
+        if self._router.deliver():
+            return True
+        if all(link.now >= self._until for link in self.links):
             self._standstills = 0
             return False
-        target = min([self._until, *(link.next for link in self.links if link.next is not None)])
-        behind = [link for link in behind if link.now < target]
-        resting = [link for link in behind if link.next is None or link.next > target]
-        for link in resting or behind:
-            self._grant_further(link, target)
+        self._instant = min([self._until, *(link.next for link in self.links if link.next is not None)])
+        return self._reach_instant()
+
+    def _reach_instant(self) -> bool:
+        """Let the time of those go on that are behind the present instant: first of all who do not wake then, and after
+        them the others, one after another. False when all are there.
+
+        A process that is woken may end, and so wake its parent, whose clock must show the time by then.
+        """
+        behind = [link for link in self.links if link.now < self._instant]
+        if not behind:
+            return False
+        resting = [link for link in behind if link.next is None or link.next > self._instant]
+        for link in resting or [min(behind, key=lambda link: link.pid_inside)]:
+            self._see_progress(link)
+            self._grant(link, self._instant)
         return True
 
-    def _grant_further(self, link: Link, until: int) -> None:
-        """Grant time to a process, and see that its time goes on with it. Raises `Violation`."""
-        self._standstills = self._standstills + 1 if link.granted == until else 0
+    def _see_progress(self, link: Link) -> None:
+        """Raise `Violation` when a process's time stays where it is."""
+        self._standstills = self._standstills + 1 if link.granted == self._instant else 0
         if self._standstills > MOST_STANDSTILLS:
             raise Violation("protocol", "a process is granted time again and again, and its time does not go on")
-        self._grant(link, until)
 
     # --- connections
 
@@ -243,7 +258,7 @@ class Hub:
         self._awaited = False
         if not links or not all(link.is_idle for link in links if link.began):
             return False
-        if self._accept() or self._welcome() or self._router.deliver():
+        if self._accept() or self._welcome():
             return False
         if not all(link.began for link in links):
             return False
