@@ -1,4 +1,4 @@
-"""The two clocks of a run: simulated time, which ROS 2 shows, and the computer's time, which Python and the system show.
+"""The two clocks of a run: simulated time, which ROS 2 shows, and the computer's time, which Python shows.
 
 The grader is a simulator that runs at 80 % of real time, as simulators do. So a program that measures with the
 computer's clock is off by the factor 1.25, visibly and each time the same; and a program that keeps up in real life

@@ -108,6 +108,12 @@ def welcomed(raw: Raw, hub: Hub) -> Raw:
     return raw
 
 
+def busy(hub: Hub) -> None:
+    """Something has been sent to the program, so what it said of itself is no longer true."""
+    for link in hub.links:
+        link.idle = None
+
+
 class Process:
     """An honest process. It does what `on` says for each kind of frame, and wakes at the times in `wakes`.
 
