@@ -159,9 +159,9 @@ class Hub:
                 return
 
     def interrupted(self) -> None:
-        """What the program said of itself is no longer true: it was sent a signal."""
+        """What the program said of itself is no longer true: it was sent a signal. Ask it again."""
         for link in self.links:
-            link.idle = None
+            link.queue(frames.ASK)
 
     def pause(self) -> None:
         """Send what is queued and take what comes, for 20 ms at most, whether or not the program is idle."""
