@@ -31,8 +31,11 @@ from rmw_lockstep.ros import Ros, installed_ros
 _COMPILE = ("-std=c++17", "-O2", "-fPIC", "-fvisibility=hidden", "-pthread", "-Wall", "-Wextra", "-c")
 _LINK = ("-shared", "-s", "-pthread", "-Wl,-z,defs")
 
-#: liblockstep is loaded into every program. It brings its own C++ library and keeps that to itself.
-_ALONE = ("-static-libstdc++", "-static-libgcc", "-Wl,--exclude-libs,ALL", "-ldl")
+#: liblockstep is loaded into every program. It brings its own C++ library, and shows only what the map names.
+_ALONE = (
+    *("-static-libstdc++", "-static-libgcc", "-Wl,--exclude-libs,ALL", "-ldl"),
+    f"-Wl,--version-script={SOURCES / 'lockstep/exports.map'}",
+)
 
 #: Compilers that run at once: each takes some 300 MB.
 _AT_ONCE = 2
@@ -55,7 +58,7 @@ def build() -> Library | Unavailable:
     """
     found = library()
     ros = installed_ros()
-    if isinstance(found, Library) or ros is None:
+    if isinstance(found, Library) or ros is None or not sources():
         return found
     if compiler() is None:
         return _NO_COMPILER

@@ -83,6 +83,8 @@ def library() -> Library | Unavailable:
     ros = installed_ros()
     if ros is None:
         return Unavailable("ROS 2's headers are not installed here", "Install ROS 2: make setup")
+    if not sources():
+        return Unavailable(f"its C++ sources are not in {SOURCES}", "Install the package again.")
     for folder in _folders(ros):
         if (folder / DESCRIPTION).exists():
             return Library(folder, ros.prefix)
@@ -112,7 +114,9 @@ def places() -> Iterator[Path]:
 def sources() -> list[Path]:
     """Every C++ file, in a fixed order."""
     found = (SOURCES / folder for folder in ("lockstep", "src"))
-    return sorted(file for folder in found for file in folder.rglob("*") if file.suffix in (".cpp", ".hpp", ".h"))
+    return sorted(
+        file for folder in found for file in folder.rglob("*") if file.suffix in (".cpp", ".hpp", ".h", ".map")
+    )
 
 
 @cache

@@ -17,11 +17,12 @@ import signal
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NoReturn
 
 from . import bubblewrap, kernel, landlock, limits, namespaces, open_room, room, view
 from .confine import Start, confine
 from .level import Isolation
-from .program import SUBMISSION, Place, Program
+from .program import HUB, SUBMISSION, Place, Program
 
 
 @dataclass(frozen=True)
@@ -39,8 +40,8 @@ def keep(start: Start, control: int, output: int, rig_namespaces: Sequence[int])
         start: what to start.
         control: the socket to the rig.
         output: where the student's standard output and error go.
-        rig_namespaces: the user namespace that the rig has made for its students, and its own user and network
-            namespace; empty for the levels without.
+        rig_namespaces: the user namespace that the rig has made for its students, and for those without a hub its own
+            user and network namespace; empty for the levels without.
     """
     reported = False
     try:
@@ -68,14 +69,26 @@ def keep(start: Start, control: int, output: int, rig_namespaces: Sequence[int])
     os._exit(0)
 
 
+def refuse(control: int, reason: str) -> NoReturn:
+    """Answers a rig that no student can be started, and exits."""
+    _tell(control, {"event": "failed", "reason": reason})
+    os._exit(0)
+
+
 def _build(start: Start, users: int) -> tuple[room.Room | open_room.OpenRoom, Place]:
     program = start.program
     if start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
         builder = bubblewrap if start.isolation is Isolation.BUBBLEWRAP else namespaces
-        house = builder.build(start.plan, users)
+        if program.hub:
+            program.hub.chmod(0o666)  # its folder is closed to others; a student sees the socket alone
+        house = builder.build(start.plan, users, network=not program.hub)
         room.place(program.files)
-        return house, Place(SUBMISSION, view.HOME, "/tmp")
-    place = open_room.make_place(program.files, _owner(start.isolation))
+        return house, Place(SUBMISSION, view.HOME, "/tmp", HUB if program.hub else None)
+    owner = _owner(start.isolation)
+    if program.hub and owner is not None and os.geteuid() == 0:
+        program.hub.parent.chmod(0o711)
+        os.chown(program.hub, owner, owner)
+    place = open_room.make_place(program.files, owner, program.hub)
     return open_room.OpenRoom(Path(place.folder).parent), place
 
 
