@@ -34,7 +34,9 @@ def show(grade: Grade, exercise: Exercise, console: Console, verbose: bool = Fal
             console.print(Text(first, style=style), *(Text(line) for line in rest), sep="\n", soft_wrap=True)
         else:
             console.print(Text(f"{grade.score:g} of {grade.points:g} points", style=style))
-    console.print(Text(f"isolation: {grade.isolation}", style="dim"))
+    console.print(
+        Text(f"isolation: {grade.isolation}, middleware: {grade.versions.get('middleware', 'fastdds')}", style="dim")
+    )
     if verbose:
         console.print(Text("the node's log:", style="bold"))
         console.print(Text(printable(grade.log) or "(nothing)"), soft_wrap=True)
