@@ -88,6 +88,9 @@ def library() -> Library | Unavailable:
     for folder in _folders(ros):
         if (folder / DESCRIPTION).exists():
             return Library(folder, ros.prefix)
+    built_by_colcon = _built_by_colcon() if ros.chooses_at_run_time else None
+    if built_by_colcon:
+        return Library(built_by_colcon, ros.prefix)
     return Unavailable("it has not been compiled for this ROS 2", "Compile it: python -m rmw_lockstep.build")
 
 
@@ -149,6 +152,14 @@ def key(ros: Ros) -> str:
 def description(ros: Ros) -> dict[str, object]:
     """What decides whether libraries that were compiled elsewhere fit here."""
     return {"sources": sources_digest(), "machine": platform.machine(), "ros": dict(ros.versions)}
+
+
+def _built_by_colcon() -> Path | None:
+    """The lib/ of a sourced workspace into which CMakeLists.txt beside this file has installed the libraries."""
+    for prefix in filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
+        if Path(prefix, "share", IDENTIFIER, "package.xml").exists():
+            return Path(prefix, "lib")
+    return None
 
 
 def _prebuilt() -> Path | None:

@@ -51,13 +51,8 @@ class Spins:
         Raises `HostFault` where the machine or we are at fault, `Stopped` when no more are to be made.
         """
         spinner = self._grading.spinner
-        key = (
-            submission.digest,
-            scenario.digest,
-            str(spinner.isolation),
-            spinner.exercise.outputs,
-            engine(spinner.middleware),
-        )
+        made_by = (str(spinner.isolation), engine(spinner.middleware))
+        key = (submission.digest, scenario.digest, spinner.exercise.outputs, *made_by)
         file = self._folder / f"{hashlib.sha256(repr(key).encode()).hexdigest()[:32]}.spin.gz"
         try:
             kept = from_json(gzip.decompress(file.read_bytes()).decode())[scenario.name]
@@ -98,7 +93,7 @@ def tidy(exercise: str) -> None:
 
 @cache
 def engine(middleware: Middleware, also: tuple[str, ...] = ()) -> str:
-    """A digest of all of ours that decides what a recording holds, and of Python's, ROS's and the middleware's versions.
+    """A digest of all of ours that decides what a recording holds, and the versions of Python, ROS and the middleware.
 
     `also` names further files and folders, by their paths below grader/.
     """

@@ -1,4 +1,7 @@
-"""The worker process, `python -m grader.crew.worker FD MIDDLEWARE…`: has rclpy in its memory and forks the processes for jobs."""
+"""The worker process: has rclpy in its memory and forks the processes for jobs.
+
+python -m grader.crew.worker DESCRIPTOR MIDDLEWARE…
+"""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from grader.sandbox import Isolation, Limits, Middleware
 
 @dataclass(frozen=True)
 class Options:
-    """How to grade. `isolation` None means the strongest that works here, `middleware` None lockstep where it can be had.
+    """How to grade. `isolation` None means the strongest that works here, `middleware` None lockstep if it can be had.
 
     `seed` chooses the numbers of scenarios that have chance in them. `pace` is 1.0 for the pace of real time, None for
     as fast as it goes.

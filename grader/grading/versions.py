@@ -21,9 +21,7 @@ def versions(middleware: Middleware) -> dict[str, str]:
         "python": platform.python_version(),
         "rclpy": _version("ros-jazzy-rclpy", "rclpy"),
         "middleware": str(middleware),
-        "rmw": _lockstep()
-        if middleware is Middleware.LOCKSTEP
-        else _version("ros-rmw-fastrtps-cpp", "rmw_fastrtps_cpp"),
+        "rmw": _lockstep() if middleware is Middleware.LOCKSTEP else _fast_dds(),
         "grader": digest_of(sorted(GRADER.rglob("*.py")))[:12],
     }
 
@@ -42,6 +40,10 @@ def _lockstep() -> str:
     """A digest of the middleware, its end in C++ and its hub in Python."""
     folder = GRADER.with_name("rmw_lockstep")
     return digest_of([*sources(), *sorted(folder.rglob("*.py"))])[:12]
+
+
+def _fast_dds() -> str:
+    return _version("ros-rmw-fastrtps-cpp", "rmw_fastrtps_cpp")
 
 
 def _version(*names: str) -> str:

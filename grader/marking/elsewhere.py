@@ -47,16 +47,14 @@ def mark(parcel: Parcel, options: Options, key: str, who: str, submission: Submi
     `key` is that of whoever asks: where grades would depend on something else here, there is none, and it is told.
     """
     bench = _bench(parcel, options)
-    exercise = bench.grading.spinner.exercise
+    spinner = bench.grading.spinner
     if bench.key != key:
-        told = (
-            f"a worker of the cluster grades otherwise than this machine: {versions(bench.grading.spinner.middleware)}"
-        )
-        return Marked(who, fault(bench.grading.spinner, submission, told), None)
+        told = f"a worker of the cluster grades otherwise than this machine: {versions(spinner.middleware)}"
+        return Marked(who, fault(spinner, submission, told), None)
     with own_core() as core:
-        spinner = replace(bench.grading.spinner, options=replace(options, parallel=1, core=core))
+        spinner = replace(spinner, options=replace(options, parallel=1, core=core))
         grade = replace(bench.grading, spinner=spinner).grade(submission)
-    return Marked(who, replace(grade, recordings={}, references={}), picture(grade, exercise))
+    return Marked(who, replace(grade, recordings={}, references={}), picture(grade, spinner.exercise))
 
 
 def _bench(parcel: Parcel, options: Options) -> Bench:
