@@ -1,6 +1,1 @@
-"""A ROS 2 middleware (RMW) without a network, in which one hub knows when every program has nothing left to do.
-
-README.md says what it is for, PROTOCOL.md how programs and the hub talk.
-"""
-
-from __future__ import annotations
+"""A ROS 2 middleware without a network: programs run in the time of a hub, which knows when they are idle."""
