@@ -52,6 +52,8 @@ def keep(start: Start, control: int, output: int, rig_namespaces: Sequence[int])
         users, *rig = rig_namespaces or (-1,)
         for namespace in rig:
             _join(namespace)
+        if start.program.hub:
+            _admit_student_alone(start.program.hub, _owner(start.isolation))
         house, place = _build(start, users)
         child = _fork_student(start, place, house, beside, output)
         if isinstance(child, Job):
@@ -79,17 +81,24 @@ def _build(start: Start, users: int) -> tuple[room.Room | open_room.OpenRoom, Pl
     program = start.program
     if start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
         builder = bubblewrap if start.isolation is Isolation.BUBBLEWRAP else namespaces
-        if program.hub:
-            program.hub.chmod(0o666)  # its folder is closed to others; a student sees the socket alone
         house = builder.build(start.plan, users, network=not program.hub)
         room.place(program.files)
         return house, Place(SUBMISSION, view.HOME, "/tmp", HUB if program.hub else None)
     owner = _owner(start.isolation)
-    if program.hub and owner is not None and os.geteuid() == 0:
-        program.hub.parent.chmod(0o711)
-        os.chown(program.hub, owner, owner)
     place = open_room.make_place(program.files, owner, program.hub)
     return open_room.OpenRoom(Path(place.folder).parent), place
+
+
+def _admit_student_alone(hub: Path, owner: int | None) -> None:
+    """Lets the student use the hub's socket, and no other user of this machine.
+
+    With namespaces it gets the socket alone, without the folder. Without, and as root, it is another user.
+    """
+    other_user = owner is not None and owner != os.geteuid()
+    hub.parent.chmod(0o711 if other_user else 0o700)
+    hub.chmod(0o600 if other_user else 0o666)
+    if other_user:
+        os.chown(hub, owner or 0, -1)
 
 
 def _fork_student(
