@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 from grader.exercise import Exercise
 from grader.recording import Recording
-from grader.sandbox import Isolation, Limits, Nursery, Program, enter
+from grader.sandbox import Isolation, Limits, Middleware, Nursery, Program, enter
 from grader.scenario import Scenario
 
 
@@ -27,6 +27,7 @@ class SpinJob:
     scenario: Scenario
     program: Program
     isolation: Isolation
+    middleware: Middleware
     limits: Limits
     source: str
     file_name: str

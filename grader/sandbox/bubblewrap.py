@@ -27,8 +27,10 @@ def find() -> str | None:
     return shutil.which("bwrap")
 
 
-def build(plan: Sequence[Step], user_namespace: int) -> Room:
+def build(plan: Sequence[Step], user_namespace: int, *, network: bool) -> Room:
     """Makes the namespaces and their root, and moves this process into them (all but the pid namespace's children).
+
+    With `network` the network stays the one that this process is in; otherwise there is none, not even loopback.
 
     Raises:
         OSError: if bubblewrap could not be run or ended early; the text has what it said.
@@ -37,13 +39,14 @@ def build(plan: Sequence[Step], user_namespace: int) -> Room:
     if program is None:
         raise OSError("bubblewrap (bwrap) is not installed")
     texts = {step.path: _memory_file(step.content.encode()) for step in plan if step.action == "text"}
-    filters = [_memory_file(seccomp.program())] if seccomp.supported() else []
+    filters = [_memory_file(seccomp.program(network=network))] if seccomp.supported() else []
     # Not on the command line, which the student can read and which would tell it what is hidden from it.
     arguments = _memory_file(b"".join(os.fsencode(option) + b"\0" for option in _options(plan, texts)))
     information, information_end = os.pipe()
     process = subprocess.Popen(
         [
             *(program, "--userns", str(user_namespace), "--unshare-pid", "--unshare-ipc", "--unshare-uts"),
+            *(() if network else ("--unshare-net",)),
             *("--hostname", "student", "--cap-drop", "ALL", "--die-with-parent", "--info-fd", str(information_end)),
             *(option for number in filters for option in ("--seccomp", str(number))),
             *("--args", str(arguments), "--", "cat"),
@@ -69,7 +72,9 @@ def build(plan: Sequence[Step], user_namespace: int) -> Room:
     holders = frozenset(map(int, Path(f"/proc/{init}/task/{init}/children").read_text().split()))
     for holder in (init, *holders):
         _starve(holder)
-    _join(init, user_namespace)
+    _join(init, user_namespace, ("ipc", "uts", "pid", "mnt") if network else ("net", "ipc", "uts", "pid", "mnt"))
+    if not network:
+        kernel.take_loopback_down()  # which bubblewrap has brought up
     return Room(init, holders, builder=process)
 
 
@@ -80,7 +85,7 @@ def _options(plan: Sequence[Step], texts: dict[str, int]) -> Iterator[str]:
         elif step.action == "scratch":
             yield from ("--perms", "1777", "--size", str(step.size), "--tmpfs", step.path)
         elif step.action == "bind":
-            yield from ("--ro-bind", step.path, step.path)
+            yield from ("--ro-bind", step.content or step.path, step.path)
         elif step.action == "mask":
             yield from ("--ro-bind", "/dev/null", step.path) if Path(step.path).is_file() else ("--tmpfs", step.path)
         elif step.action == "device":
@@ -102,9 +107,9 @@ def _starve(holder: int) -> None:
     resource.prlimit(holder, resource.RLIMIT_AS, (_HOLDER_BYTES, _HOLDER_BYTES))
 
 
-def _join(init: int, user_namespace: int) -> None:
-    """Moves this process into the namespaces of bubblewrap's first process."""
-    opened = {name: os.open(f"/proc/{init}/ns/{name}", os.O_RDONLY) for name in ("ipc", "uts", "pid", "mnt")}
+def _join(init: int, user_namespace: int, names: Sequence[str]) -> None:
+    """Moves this process into these namespaces of bubblewrap's first process."""
+    opened = {name: os.open(f"/proc/{init}/ns/{name}", os.O_RDONLY) for name in names}
     kernel.setns(user_namespace, kernel.CLONE_NEWUSER)
     for namespace in opened.values():
         kernel.setns(namespace)

@@ -66,7 +66,8 @@ def confine(
     if isolation is Isolation.NONE:
         return
     hidden = (*view.own_packages(), *start.program.hidden)
-    filters = seccomp.program(no_signals=_signals_leave(isolation)) if seccomp.supported() else None
+    network = start.program.hub is None
+    filters = seccomp.program(network=network, no_signals=_signals_leave(isolation)) if seccomp.supported() else None
     user = USER_ID if isolation is not Isolation.LANDLOCK else Path(place.home).stat().st_uid
     kernel.drop_bounding_capabilities()
     if os.geteuid() != user:
