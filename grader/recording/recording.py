@@ -73,8 +73,8 @@ class Ending:
 class Recording:
     """One spin of one node through one scenario.
 
-    `hold` tells how it was known that the node had handled a message. "lockstep": the middleware said so. The others are
-    for Fast DDS: by its parameter services, by its type description service, or by waiting until it was quiet.
+    `hold` tells how it was known that the node had handled a message. "lockstep": the middleware said so. The others
+    are for Fast DDS: by its parameter services, by its type description service, or by waiting until it was quiet.
     `seconds` is how long the run took in real time, and `lockstep_seconds` the part of it from the first message to the
     last.
     """

@@ -31,7 +31,7 @@ class LocalProgram:
     """See `grader.runner.student.Student`."""
 
     def __init__(self, file: Path, environment: Mapping[str, str]) -> None:
-        self._output = tempfile.TemporaryFile()
+        self._output = tempfile.TemporaryFile()  # noqa: SIM115 - closed with this object
         self._process = subprocess.Popen(
             [sys.executable, str(file), *ARGUMENTS],
             env={**os.environ, **environment},
