@@ -38,8 +38,8 @@ class ReferencePublishers:
         """Whether the student's program subscribes to the message's topic."""
         return bool(self._ready[message.topic, message.publisher].matched)
 
-    def publish(self, message: Message) -> None:
-        """Queue the next message."""
+    def publish(self, message: Message) -> int:
+        """Queue the next message. Returns its number among all that the hub has published."""
         former = self._speaking[message.topic]
         if former != message.publisher:
             self._ready.pop((message.topic, former)).close()
@@ -48,6 +48,7 @@ class ReferencePublishers:
         publisher = self._ready[message.topic, message.publisher]
         self.stages.append(publisher.publish(self._serialized[len(self.sent)]))
         self.sent.append(Sent(message.at, message.topic, message.type, message.fields, heard))
+        return self.stages[-1]
 
     @property
     def heard(self) -> bool:

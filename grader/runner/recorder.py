@@ -41,16 +41,15 @@ class Recorder:
 
         return node.subscription(topic.name, topic.type, ACCEPT_ANY, keep)
 
-    def received(self, clocks: Clocks | None, start: int, stages: Sequence[int]) -> tuple[Received, ...]:
+    def received(self, clocks: Clocks, stages: Sequence[int]) -> tuple[Received, ...]:
         """What has come, in order. Raises `Stopped` for bytes that are no message.
 
-        `start` is the number of the hub's publication that began simulated time, `stages` has that of each message
-        sent; see `Heard.stage`.
+        `stages` has the number of each message sent, among all that the hub has published; see `Heard.stage`.
         """
         found = []
         for number, heard in in_canonical_order(self._heard):
             topic = self._topics[number]
-            at = clocks.simulated(heard.now) if clocks and heard.stage >= start else 0
+            at = clocks.simulated(heard.now, heard.stage)
             after = bisect_right(stages, heard.stage)
             found.append(Received(at, after, topic.name, topic.type, _fields(heard.cdr, message_class(topic.type))))
         return tuple(found)

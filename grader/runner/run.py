@@ -14,7 +14,7 @@ from pathlib import Path
 
 from grader.recording import Ending, EndPoint, Received, Recording
 from grader.runner.budget import Allowance, Budget, Gone
-from grader.runner.clocks import PACES, Clocks, clock_message
+from grader.runner.clocks import Clocks, clock_message
 from grader.runner.ending import cut_short
 from grader.runner.graph import end_points, nodes
 from grader.runner.interrupting import interrupted
@@ -80,9 +80,8 @@ class Run:
         self._publishers = ReferencePublishers(hub.node("joint_command_publisher"), task.scenario)
         self._parameters = Parameters(hub, rig)
         self._budget = Budget(student, self._pids, STARTING)
-        self._clocks: Clocks | None = None
-        self._start_stage = 0
-        self._now = 0
+        self._clocks = Clocks(task.scenario.computer_time)
+        self._is_up = False
         self._nodes: tuple[str, ...] = ()
         self._end_points: tuple[EndPoint, ...] = ()
         self._sim_time = False
@@ -112,7 +111,7 @@ class Run:
             received=received,
             nodes=self._nodes,
             end_points=self._end_points,
-            hold="lockstep" if self._clocks else "none",
+            hold="lockstep" if self._is_up else "none",
             uses_sim_time=self._sim_time,
             ending=ending,
             log=self._student.output().text,
@@ -134,7 +133,7 @@ class Run:
             return Ending("over-limit", story_of(violation))
         except Gone:
             self._see_that_it_was_the_program()
-            return cut_short(self._student, *program, self._clocks is not None, len(self._publishers.sent))
+            return cut_short(self._student, *program, self._is_up, len(self._publishers.sent))
 
     def _see_that_it_was_the_program(self) -> None:
         """Raise what says otherwise."""
@@ -151,7 +150,7 @@ class Run:
         except Stopped as stopped:
             ending = _first(ending, Ending(stopped.outcome, stopped.story))
         try:
-            received = self._recorder.received(self._clocks, self._start_stage, self._publishers.stages)
+            received = self._recorder.received(self._clocks, self._publishers.stages)
         except Stopped as stopped:
             return _first(ending, Ending(stopped.outcome, stopped.story)), ()
         return ending, received
@@ -162,10 +161,9 @@ class Run:
         self._budget.begin(STEP)
         self._sim_time = self._parameters.use_sim_time(hub.now + SOON)
         self._nodes = nodes(hub.graph)
-        self._clocks = Clocks(hub.now, PACES[self._task.scenario.computer_time])
         self._set_clock(START)
-        self._start_stage = hub.published
         hub.wait_until_idle()
+        self._is_up = True
 
     def _lockstep(self) -> None:
         began = time.monotonic()
@@ -175,25 +173,23 @@ class Run:
             self._go_to(message.at)
             if not self._publishers.is_heard(message):
                 self._hub.wait_until_idle()  # whether anybody hears it is known only then
-            self._publishers.publish(message)
+            self._clocks.set(message.at, self._hub.now, self._publishers.publish(message))
             self._hub.wait_until_idle()
             self._see_that_it_listens(message)
         self._end_points = end_points(self._hub.graph)
-        self._go_to(self._now + AFTERWARDS)
+        self._go_to(self._clocks.at + AFTERWARDS)
         self._hub.wait_until_idle()
         self._lockstep_seconds = time.monotonic() - began
 
     def _go_to(self, at: int) -> None:
         """Let both clocks go on to the simulated time `at`; what was due before happens before."""
-        if at > self._now:
-            assert self._clocks
-            self._hub.advance(self._clocks.computer(at))
+        self._hub.advance(self._clocks.computer(at))
+        if at > self._clocks.at:
             self._set_clock(at)
-            self._hub.barrier()
+        self._hub.barrier()
 
     def _set_clock(self, at: int) -> None:
-        self._now = at
-        self._clock.publish(clock_message(at))
+        self._clocks.set(at, self._hub.now, self._clock.publish(clock_message(at)))
 
     def _see_that_it_listens(self, message: Message) -> None:
         """Raise `Stopped` when the program neither waits in ROS 2 nor is about to go on, and answers no call either."""
