@@ -154,9 +154,9 @@ class Hub:
                 return
 
     def interrupted(self) -> None:
-        """What the program said of itself is no longer true: it was sent a signal."""
+        """What the program said of itself is no longer true: it was sent a signal. Ask it again."""
         for link in self.links:
-            link.idle = None
+            link.queue(frames.ASK)
 
     def pause(self) -> None:
         """Send what is queued and take what comes, for 20 ms at most, whether or not the program is idle."""
@@ -219,11 +219,19 @@ class Hub:
             return False
         wakes = [link.next for link in self.links if link.next is not None]
         target = min([self._until, *wakes])
-        for link in behind:
-            if link.now < target:
-                self._see_progress(link, target)
-                self._grant(link, target)
+        for link in self._next_to_go_on([link for link in behind if link.now < target], target):
+            self._see_progress(link, target)
+            self._grant(link, target)
         return True
+
+    @staticmethod
+    def _next_to_go_on(behind: list[Link], target: int) -> list[Link]:
+        """Whose time goes on to `target` now: first of all who will not wake then, and after them one after another.
+
+        A process that is woken may end, or say something, and so wake another, whose clock must show the time by then.
+        """
+        asleep = [link for link in behind if link.next is None or link.next > target]
+        return asleep or behind[:1]
 
     def _see_progress(self, link: Link, target: int) -> None:
         self._standstills = self._standstills + 1 if link.granted == target else 0

@@ -36,12 +36,14 @@ int poll_until(const pollfd * files, nfds_t count, int64_t deadline, const sigse
   sleeper.event = event.get();
   sleeper.files = files;
   sleeper.file_count = count;
-  int found;
+  int found, fault;
   {
     Asleep asleep(sleeper);
     found = real::ppoll()(out.data(), out.size(), nullptr, mask);
+    fault = errno;
   }
   if (sleeper.awake) event.clear();
+  if (found < 0) errno = fault;
   if (found > 0 && out.back().revents) --found;
   out.pop_back();
   return found;

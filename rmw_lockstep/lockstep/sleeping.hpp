@@ -35,6 +35,9 @@ private:
 // Sleep until the steady clock shows `deadline`. Returns 0, or EINTR when a signal came first.
 int sleep_until(int64_t deadline, bool holds_interpreter = false);
 
+// The last reading of the clock was not the program's own, and depends on chance.
+void discount_reading();
+
 // Wait on a word of memory, at most for a real time; returns what the futex call set errno to, 0 if it woke.
 int futex_wait(std::atomic<uint32_t> & word, uint32_t while_it_is, bool shared = false, const timespec * most = nullptr);
 
