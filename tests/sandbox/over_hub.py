@@ -23,11 +23,10 @@ needs_lockstep = pytest.mark.skipif(
 
 @dataclass(frozen=True)
 class HubRun:
-    """How a program ended, what it printed, and how many processes the hub saw at once."""
+    """How a program ended, and what it printed."""
 
     exit: Exit | None
     text: str
-    processes: int
 
 
 class _Over(Exception):
@@ -47,13 +46,10 @@ def in_the_rig(nursery: Nursery, level: Isolation, program: Program, limits: Lim
     """The same, in the rig's process."""
     folder = Path(tempfile.mkdtemp(prefix="spinbook-hub-"))
     deadline = time.monotonic() + timeout_s
-    processes = 0
     try:
         with Hub(folder) as hub, nursery.start(replace(program, hub=hub.path), level, limits) as student:
 
             def look() -> None:
-                nonlocal processes
-                processes = max(processes, len(hub.links))
                 if student.poll() is not None or time.monotonic() > deadline:
                     raise _Over
 
@@ -64,6 +60,6 @@ def in_the_rig(nursery: Nursery, level: Isolation, program: Program, limits: Lim
                     look()
                     hub.advance(hub.now + SECOND)
             except _Over:
-                return HubRun(student.poll(), student.output().text, processes)
+                return HubRun(student.poll(), student.output().text)
     finally:
         shutil.rmtree(folder, ignore_errors=True)

@@ -45,29 +45,26 @@ def test_a_sleep_takes_no_time(either_rig: Rig) -> None:
     assert run_over_hub(either_rig, code).text == "3600.0\n"
 
 
-def test_a_program_that_it_starts_itself_reaches_the_hub_too(confined_rig: Rig) -> None:
-    code = f"import subprocess, sys\nsubprocess.run([sys.executable, '-c', {NAME_IT!r}], check=True)"
+def test_a_program_that_it_starts_itself_lives_in_the_time_of_the_hub_too(confined_rig: Rig) -> None:
+    child = f"{NAME_IT}; import time; began = time.time(); time.sleep(3600); print(time.time() - began)"
+    code = f"import subprocess, sys\nsubprocess.run([sys.executable, '-c', {child!r}], check=True)"
 
-    run = run_over_hub(confined_rig, code)
-
-    assert run.text == "rmw_lockstep_cpp\n"
-    assert run.processes == 2
+    assert run_over_hub(confined_rig, code).text == "rmw_lockstep_cpp\n3600.0\n"
 
 
 def test_it_has_unix_sockets_and_no_others(confined_rig: Rig) -> None:
     code = """
-families = ('AF_INET', 'AF_INET6', 'AF_NETLINK', 'AF_PACKET', 'AF_VSOCK', 'AF_ALG', 'AF_BLUETOOTH', 'AF_CAN', 'AF_UNIX')
-made = []
-for family in families:
+made = set()
+for family in range(1, 64):
     for kind in (socket.SOCK_STREAM, socket.SOCK_DGRAM, socket.SOCK_RAW):
         try:
-            socket.socket(getattr(socket, family), kind).close()
-            made.append(family)
+            socket.socket(family, kind).close()
+            made.add(family)
         except OSError:
             pass
-print(json.dumps(sorted(set(made))))"""
+print(json.dumps(sorted(made)))"""
 
-    assert answer(confined_rig, code) == ["AF_UNIX"]
+    assert answer(confined_rig, code) == [socket.AF_UNIX]
 
 
 def test_a_program_that_it_starts_itself_has_no_others_either(confined_rig: Rig) -> None:
