@@ -35,26 +35,29 @@ LONGEST_PATH = 107
 #: How often `patience` is called while the hub waits (s).
 TICK_S = 0.02
 
+#: After how many of these a new process begins also while others are not idle.
+PATIENCE_TICKS = 10
+
 #: How often a process may be granted time without its time going on.
 MOST_STANDSTILLS = 100
 
 
-def _be_patient() -> None:
-    """Wait for ever."""
+def _do_nothing() -> None:
+    """Wait for ever, and take notice of no end."""
 
 
 class Hub:
     """Use it as a context manager, from one thread.
 
     `main` is the number of the program's first process, as this process sees it, once it is known: the program is not
-    idle while that one is not connected.
+    idle while that one is not connected. `before_end` is called before what a process had is taken out of the graph.
     """
 
     def __init__(
         self,
         folder: Path,
         limits: Limits | None = None,
-        patience: Callable[[], None] = _be_patient,
+        patience: Callable[[], None] = _do_nothing,
         begin: int = BEGIN,
         epoch: int = EPOCH,
     ) -> None:
@@ -68,13 +71,15 @@ class Hub:
         if len(str(self.path).encode()) > LONGEST_PATH:
             raise ValueError(f"{self.path} is too long for a socket: at most {LONGEST_PATH} bytes")
         self.main: int | None = None
+        self.before_end: Callable[[], None] = _do_nothing
         self.patience = patience
         self._use = Use(limits or Limits())
         self._until, self._epoch = begin, epoch
-        self._confirmed = begin
+        self._instant = begin
         self._standstills = 0
         self._awaited = False
         self._due = 0.0
+        self._ticks = 0
         self._router = Router(self._use, lambda: self._epoch + self._until, epoch)
         self._poll = select.poll()
         self._listener = self._listen(folder)
@@ -162,6 +167,8 @@ class Hub:
         """Send what is queued and take what comes, for 20 ms at most, whether or not the program is idle."""
         self._flush()
         self._take()
+        if self._is_idle():
+            self._router.deliver()
         self._flush()
 
     def is_idle(self) -> bool:
@@ -170,7 +177,7 @@ class Hub:
 
     def drain(self, at_most_s: float = 1.0) -> None:
         """Take all that processes sent before they ended; to be called when the program is dead. Raises `Violation`."""
-        self.patience = _be_patient
+        self.patience = _do_nothing
         deadline = time.monotonic() + at_most_s
         self._accept()
         while self.links and time.monotonic() < deadline:
@@ -212,29 +219,34 @@ class Hub:
 
         No process gets ahead of the others: what one sends at its wake-up, another may get before it wakes itself.
         """
-        behind = [link for link in self.links if link.now < self._until]
-        self._confirmed = max(self._confirmed, min(link.now for link in self.links))
-        if not behind:
+        if self._reach_instant():
+            return True
+        if self._router.deliver():
+            return True
+        if all(link.now >= self._until for link in self.links):
             self._standstills = 0
             return False
-        wakes = [link.next for link in self.links if link.next is not None]
-        target = min([self._until, *wakes])
-        for link in self._next_to_go_on([link for link in behind if link.now < target], target):
-            self._see_progress(link, target)
-            self._grant(link, target)
+        self._instant = min([self._until, *(link.next for link in self.links if link.next is not None)])
+        return self._reach_instant()
+
+    def _reach_instant(self) -> bool:
+        """Let the time of those go on that are behind the present instant: first of all who do not wake then, and after
+        them the others, one after another. False when all are there.
+
+        A process that is woken may end, and so wake its parent, whose clock must show the time by then.
+        """
+        behind = [link for link in self.links if link.now < self._instant]
+        if not behind:
+            return False
+        resting = [link for link in behind if link.next is None or link.next > self._instant]
+        for link in resting or [min(behind, key=lambda link: link.pid_inside)]:
+            self._see_progress(link)
+            self._grant(link, self._instant)
         return True
 
-    @staticmethod
-    def _next_to_go_on(behind: list[Link], target: int) -> list[Link]:
-        """Whose time goes on to `target` now: first of all who will not wake then, and after them one after another.
-
-        A process that is woken may end, or say something, and so wake another, whose clock must show the time by then.
-        """
-        asleep = [link for link in behind if link.next is None or link.next > target]
-        return asleep or behind[:1]
-
-    def _see_progress(self, link: Link, target: int) -> None:
-        self._standstills = self._standstills + 1 if link.granted == target else 0
+    def _see_progress(self, link: Link) -> None:
+        """Raise `Violation` when a process's time stays where it is."""
+        self._standstills = self._standstills + 1 if link.granted == self._instant else 0
         if self._standstills > MOST_STANDSTILLS:
             raise Violation("protocol", "a process is granted time again and again, and its time does not go on")
 
@@ -244,9 +256,11 @@ class Hub:
         """Whether every process is, the children that they name included."""
         links = self.links
         self._awaited = False
-        if not links or not all(link.is_idle for link in links):
+        if not links or not all(link.is_idle for link in links if link.began):
             return False
-        if self._accept():
+        if self._accept() or self._welcome():
+            return False
+        if not all(link.began for link in links):
             return False
         if self.main is not None and all(link.pid != self.main for link in links):
             return False
@@ -275,7 +289,7 @@ class Hub:
             except Violation:
                 connection.close()
                 raise
-            link = Link(connection, self._use.connections, self._confirmed, self._router.published, self._use)
+            link = Link(connection, self._use.connections, self._use)
             link.wait_at_most(TICK_S)
             self.links.append(link)
             self._poll.register(connection, select.POLLIN)
@@ -283,6 +297,17 @@ class Hub:
     def _flush(self) -> None:
         for link in self.links:
             link.flush()
+
+    def _welcome(self) -> bool:
+        """Let those begin who have said HELLO, at the time of the others. Whether there was anybody.
+
+        A new process waits until the others are idle: then its parent's time is known.
+        """
+        waiting = sorted((one for one in self.links if one.hello and not one.began), key=lambda one: one.pid_inside)
+        now = max((link.now for link in self.links if link.began), default=self._until)
+        for link in waiting:
+            self._router.welcome(link, now)
+        return bool(waiting)
 
     def _take(self) -> None:
         """Wait for whatever comes, for 20 ms at most, and take it. Raises `Violation`, and what `patience` raises."""
@@ -294,7 +319,10 @@ class Hub:
         now = time.monotonic()
         if now >= self._due:
             self._due = now + TICK_S
+            self._ticks += 1
             self._accept()
+            if not self._ticks % PATIENCE_TICKS:
+                self._welcome()  # somebody may compute until the new process has done something
             for link in self._missing_children():
                 link.queue(frames.ASK)
             self.patience()
@@ -318,6 +346,7 @@ class Hub:
             self._end(link)
 
     def _end(self, link: Link) -> None:
+        self.before_end()
         self._poll.unregister(link.socket)
         link.close()
         self._router.forget(link)

@@ -24,15 +24,14 @@ _WAIT = struct.Struct("ll")
 class Link:
     """One process. `number` is what its identities begin with; `pid` is its number as the hub sees it."""
 
-    def __init__(self, sock: socket.socket, number: int, now: int, published: int, use: Use) -> None:
-        """`now` is the time that the process begins with, `published` how much the hub had published before."""
+    def __init__(self, sock: socket.socket, number: int, use: Use) -> None:
         self.socket, self.number = sock, number
         self.pid, self.uid = self._peer()
         self.hello: Hello | None = None
-        self.joined = False
+        self.began = self.joined = False
         self.sent = 0
         self.handled = 0
-        self.now = self.granted = now
+        self.now = self.granted = 0
         self.idle: Idle | None = None
         self.last_idle: Idle | None = None
         self.threads: set[int] = set()
@@ -45,12 +44,23 @@ class Link:
         self._rest = b""
         self._marks_at: list[int] = []
         self._marks: list[int] = []
+        self._first_mark = 0
+
+    def begin(self, now: int, published: int) -> None:
+        """The process begins at the time `now` (ns), when the hub has published so many messages."""
+        self.began = True
+        self.now = self.granted = now
         self._first_mark = published
 
     def _peer(self) -> tuple[int, int]:
         credentials = self.socket.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size)
         pid, uid, _ = _CREDENTIALS.unpack(credentials)
         return pid, uid
+
+    @property
+    def pid_inside(self) -> int:
+        """The number of the process as it sees it itself: in the order in which the program's processes were made."""
+        return self.hello.pid if self.hello else 0
 
     def wait_at_most(self, seconds: float) -> None:
         """How long `read` waits. A blocking read with a time-out is one system call, where `settimeout` takes two."""

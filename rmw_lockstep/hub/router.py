@@ -42,6 +42,7 @@ class Router:
         self._numbers = count(1)
         self._ends: dict[int, End] = {}
         self._routes: dict[int, Route] = {}
+        self._held: list[tuple[int, Link, bytes]] = []
         self._handlers: dict[int, Callable[[Link, bytes], None]] = {
             ord("I"): self._idle,
             ord("D"): self._data,
@@ -57,7 +58,7 @@ class Router:
 
     def handle(self, link: Link, kind: int, payload: bytes) -> None:
         """Take one frame of a process. Raises `Violation`."""
-        if link.hello is None:
+        if not link.began:
             self._hello(link, kind, payload)
             return
         handler = self._handlers.get(kind)
@@ -66,10 +67,14 @@ class Router:
         handler(link, payload)
 
     def _hello(self, link: Link, kind: int, payload: bytes) -> None:
-        if kind != ord("H"):
-            raise Violation("protocol", "the first frame of a process is not HELLO")
+        if kind != ord("H") or link.hello:
+            raise Violation("protocol", "a process sends something other than HELLO before it gets WELCOME")
         link.hello = frames.hello(payload)
-        link.queue(frames.to_welcome(link.number, link.now, self._epoch))
+
+    def welcome(self, link: Link, now: int) -> None:
+        """Let a process that has said HELLO begin, at the time `now`."""
+        link.begin(now, self.published)
+        link.queue(frames.to_welcome(link.number, now, self._epoch))
 
     def _idle(self, link: Link, payload: bytes) -> None:
         link.believe(frames.idle(payload))
@@ -151,10 +156,28 @@ class Router:
         self.graph.remove(number)
         self._routes.clear()
 
-    def _broadcast(self, frame: bytes, but: Link | None = None) -> None:
+    def _broadcast(self, frame: bytes, origin: Link | None = None) -> None:
         for link in self.links:
-            if link is not but and link.joined:
-                link.queue(frame)
+            if link is not origin and link.joined:
+                self._pass_on(origin, link, frame)
+
+    def _pass_on(self, origin: Link | None, to: Link, frame: bytes) -> None:
+        """What one process sends to another is held until all are idle: see `deliver`."""
+        if origin is None:
+            to.queue(frame)
+        else:
+            self._held.append((origin.pid_inside, to, frame))
+
+    def deliver(self) -> bool:
+        """Pass on what processes sent to one another, one sender after the other. Whether there was anything.
+
+        Processes run at the same time, so without this it would be chance whose message another one gets first.
+        """
+        held, self._held = sorted(self._held, key=lambda one: one[0]), []
+        for _, to, frame in held:
+            if to in self.links:
+                to.queue(frame)
+        return bool(held)
 
     def forget(self, link: Link) -> None:
         """A process has ended, and with it all that it had."""
@@ -179,7 +202,7 @@ class Router:
                 stage = link.stage(handled)
                 subscription.take(Heard(publisher, route.node, now, stage, handled, data.thread, data.cdr))
         for other in route.links:
-            other.queue(frames.to_data(publisher.id, data.only, data.source_time, data.cdr))
+            self._pass_on(link, other, frames.to_data(publisher.id, data.only, data.source_time, data.cdr))
 
     def _own(self, link: Link, number: int, kind: int) -> EndPoint:
         end_point = self.graph.end_points.get(number) if number in link.end_points else None
@@ -207,16 +230,18 @@ class Router:
             if isinstance(own, Server):
                 own.serve(client.id, call.number, call.cdr)
             elif server.process != link.number:
-                self._ask(server, client.id, call.number, call.source_time, call.cdr)
+                self._ask(link, server, client.id, call.number, call.source_time, call.cdr)
 
-    def _ask(self, server: EndPoint, client: int, number: int, source_time: int, cdr: bytes) -> None:
+    def _ask(
+        self, origin: Link | None, server: EndPoint, client: int, number: int, source_time: int, cdr: bytes
+    ) -> None:
         link = self._link(server.process)
         if link is None:
             return
         if len(link.requests) >= MOST_REQUESTS:
             raise Violation("messages", "unanswered requests", found=len(link.requests) + 1, limit=MOST_REQUESTS)
         link.requests.add((client, number))
-        link.queue(frames.to_request(server.id, client, number, source_time, cdr))
+        self._pass_on(origin, link, frames.to_request(server.id, client, number, source_time, cdr))
 
     def _response(self, link: Link, payload: bytes) -> None:
         call = frames.call(payload)
@@ -231,12 +256,12 @@ class Router:
             return
         other = self._link(call.client >> 32)
         if other is not None and call.client in other.end_points:
-            other.queue(frames.to_response(call.client, call.number, call.source_time, call.cdr))
+            self._pass_on(link, other, frames.to_response(call.client, call.number, call.source_time, call.cdr))
 
     def _alive(self, link: Link, payload: bytes) -> None:
         publisher = self._own(link, frames.identity(payload), PUBLISHER)
         for other in self._route(publisher).links:
-            other.queue(frames.to_gone(b"L", publisher.id))
+            self._pass_on(link, other, frames.to_gone(b"L", publisher.id))
 
     def _link(self, number: int) -> Link | None:
         return next((link for link in self.links if link.number == number), None)
@@ -297,7 +322,7 @@ class Router:
         """Queue a request; False when nobody serves it."""
         servers = self.matched(client.end_point)
         for server in servers:
-            self._ask(server, client.end_point.id, number, self._calendar(), cdr)
+            self._ask(None, server, client.end_point.id, number, self._calendar(), cdr)
         return bool(servers)
 
     def respond(self, client: int, number: int, cdr: bytes) -> None:

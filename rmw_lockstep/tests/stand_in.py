@@ -108,6 +108,12 @@ def welcomed(raw: Raw, hub: Hub) -> Raw:
     return raw
 
 
+def busy(hub: Hub) -> None:
+    """Something has been sent to the program, so what it said of itself is no longer true."""
+    for link in hub.links:
+        link.idle = None
+
+
 class Process:
     """An honest process. It does what `on` says for each kind of frame, and wakes at the times in `wakes`.
 
@@ -123,7 +129,8 @@ class Process:
         self.seen: list[tuple[int, bytes, bytes]] = []
         self.number = self.now = self.handled = self._count = 0
         self._lock = threading.RLock()
-        self.raw.send(hello(pid, os.getpid()), *([frame(b"J")] if joins else []))
+        self.raw.send(hello(pid, os.getpid()))
+        self._joins = joins
         self._thread = threading.Thread(target=self._run, daemon=True)
 
     def start(self) -> Process:
@@ -171,6 +178,8 @@ class Process:
     def _handle(self, kind: bytes, payload: bytes) -> None:
         if kind == b"W":
             _, self.number, self.now, _ = struct.unpack("<IIqq", payload)
+            if self._joins:
+                self.raw.send(frame(b"J"))
         elif kind == b"T":
             (until,) = struct.unpack("<q", payload[:8])
             while self.wakes and self.wakes[0][0] <= until:

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from stand_in import Process, Raw, Waits, data, end_point, frame, hello, idle, node, response, welcomed
+from stand_in import Process, Raw, Waits, busy, data, end_point, frame, hello, idle, node, response, welcomed
 
 from rmw_lockstep.hub import BEGIN, PUBLISHER, SUBSCRIPTION, Hub, Limits, Qos, Violation
 
@@ -86,7 +86,7 @@ def begin(raw: Raw, hub: Hub) -> Raw:
 )  # fmt: skip
 def test_a_frame_that_breaks_a_rule_ends_it(hub: Hub, raw: Raw, sent: bytes) -> None:
     begin(raw, hub)
-    hub.interrupted()
+    busy(hub)
     raw.send(sent)
     assert reason(hub)[0] == "protocol"
 
@@ -99,7 +99,7 @@ def test_the_first_frame_has_to_be_a_hello_of_this_version(hub: Hub, raw: Raw, s
 
 def test_a_message_that_is_too_long_is_told_by_its_length_before_it_is_read(hub: Hub, raw: Raw) -> None:
     begin(raw, hub)
-    hub.interrupted()
+    busy(hub)
     raw.send(struct.pack("<IB", 500_000_000, ord("D")))
     assert reason(hub) == ("message", "a message of 500,000,000 bytes")
 
@@ -209,7 +209,7 @@ def test_a_wake_up_that_never_comes_nearer_does_not_stop_time(hub: Hub, process:
 def test_a_socket_that_is_handed_on_and_used_by_two_is_one_process(hub: Hub, raw: Raw) -> None:
     begin(raw, hub)
     twin = socket.socket(fileno=os.dup(raw.socket.fileno()))
-    hub.interrupted()
+    busy(hub)
     raw.send(frame(b"?")[:3])
     twin.sendall(idle(1))
     assert reason(hub)[0] in ("protocol", "frames"), "what the two send is mixed up"
@@ -220,7 +220,7 @@ def test_descriptors_that_are_sent_along_do_not_stay_open_here(hub: Hub, raw: Ra
     begin(raw, hub)
     before = len(os.listdir("/proc/self/fd"))  # noqa: PTH208
     passed = array.array("i", [raw.socket.fileno()] * 3)
-    hub.interrupted()
+    busy(hub)
     raw.socket.sendmsg([idle(1, BEGIN)], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, passed)])
     hub.wait_until_idle()
     assert len(os.listdir("/proc/self/fd")) == before  # noqa: PTH208
@@ -234,7 +234,7 @@ def test_half_a_frame_and_nothing_more_is_waited_for_only_as_long_as_the_owner_l
         raise Enough
 
     begin(raw, hub)
-    hub.interrupted()
+    busy(hub)
     raw.send(struct.pack("<IB", 1_000, ord("D")))
     hub.patience = enough
     with pytest.raises(Enough):
