@@ -46,7 +46,6 @@ def build(plan: Sequence[Step], user_namespace: int, *, network: bool) -> Room:
     process = subprocess.Popen(
         [
             *(program, "--userns", str(user_namespace), "--unshare-pid", "--unshare-ipc", "--unshare-uts"),
-            *(() if network else ("--unshare-net",)),
             *("--hostname", "student", "--cap-drop", "ALL", "--die-with-parent", "--info-fd", str(information_end)),
             *(option for number in filters for option in ("--seccomp", str(number))),
             *("--args", str(arguments), "--", "cat"),
@@ -72,9 +71,9 @@ def build(plan: Sequence[Step], user_namespace: int, *, network: bool) -> Room:
     holders = frozenset(map(int, Path(f"/proc/{init}/task/{init}/children").read_text().split()))
     for holder in (init, *holders):
         _starve(holder)
-    _join(init, user_namespace, ("ipc", "uts", "pid", "mnt") if network else ("net", "ipc", "uts", "pid", "mnt"))
+    _join(init, user_namespace)
     if not network:
-        kernel.take_loopback_down()  # which bubblewrap has brought up
+        kernel.unshare(kernel.CLONE_NEWNET)  # not by bubblewrap, which brings loopback up
     return Room(init, holders, builder=process)
 
 
@@ -107,9 +106,9 @@ def _starve(holder: int) -> None:
     resource.prlimit(holder, resource.RLIMIT_AS, (_HOLDER_BYTES, _HOLDER_BYTES))
 
 
-def _join(init: int, user_namespace: int, names: Sequence[str]) -> None:
-    """Moves this process into these namespaces of bubblewrap's first process."""
-    opened = {name: os.open(f"/proc/{init}/ns/{name}", os.O_RDONLY) for name in names}
+def _join(init: int, user_namespace: int) -> None:
+    """Moves this process into the namespaces of bubblewrap's first process."""
+    opened = {name: os.open(f"/proc/{init}/ns/{name}", os.O_RDONLY) for name in ("ipc", "uts", "pid", "mnt")}
     kernel.setns(user_namespace, kernel.CLONE_NEWUSER)
     for namespace in opened.values():
         kernel.setns(namespace)

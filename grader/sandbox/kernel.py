@@ -148,14 +148,5 @@ def drop_capabilities() -> None:
 
 def bring_loopback_up() -> None:
     """Makes 127.0.0.1 of this network namespace work: netdevice(7)."""
-    _change_loopback(_IFF_UP)
-
-
-def take_loopback_down() -> None:
-    """Leaves this network namespace without any address: netdevice(7)."""
-    _change_loopback(0)
-
-
-def _change_loopback(flags: int) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:
-        fcntl.ioctl(any_socket, _SIOCSIFFLAGS, struct.pack("16sh14x", b"lo", flags))
+        fcntl.ioctl(any_socket, _SIOCSIFFLAGS, struct.pack("16sh14x", b"lo", _IFF_UP))

@@ -93,7 +93,19 @@ LOCKSTEP_API int lockstep_connect(const char * path) { return core().connect(pat
 
 namespace {
 
+// Looked up before any other thread runs. Later, a thread that holds a lock of its own (LTTng's, which rclpy starts)
+// would wait here for the loader, while the loader's constructors wait for that lock.
+void find_real_functions() {
+  using namespace lockstep::real;
+  clock_gettime(), gettimeofday(), time(), clock_nanosleep();
+  sem_trywait(), sem_wait(), sem_timedwait(), clocked_sem_wait();
+  pthread_cond_wait(), pthread_cond_timedwait(), pthread_cond_broadcast(), pthread_cond_clockwait();
+  poll(), ppoll(), select(), pselect(), epoll_wait(), epoll_pwait();
+  lockstep::real::fork(), posix_spawn(), posix_spawnp();
+}
+
 __attribute__((constructor)) void begin() {
+  find_real_functions();
   if (const char * path = getenv("RMW_LOCKSTEP_SOCKET")) core().connect(path);
 }
 

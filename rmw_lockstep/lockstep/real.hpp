@@ -13,12 +13,18 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <initializer_list>
+
 namespace lockstep::real {
 
 // `version` is asked for first: without it, dlsym may find a condition variable of 2002 (GLIBC_2.2.5 on x86_64).
+// Where this library is not preloaded, it comes after the C library, which is then the first to have the name.
 inline void * find(const char * name, const char * version = nullptr) {
-  void * found = version ? dlvsym(RTLD_NEXT, name, version) : nullptr;
-  return found ? found : dlsym(RTLD_NEXT, name);
+  for (void * where : {RTLD_NEXT, RTLD_DEFAULT}) {
+    if (void * found = version ? dlvsym(where, name, version) : nullptr) return found;
+    if (void * found = dlsym(where, name)) return found;
+  }
+  return nullptr;
 }
 
 #define LOCKSTEP_REAL(name, version)                                     \

@@ -79,17 +79,27 @@ void append(char * reason, size_t size, const std::string & text) {
   snprintf(reason, size, "%s", all.c_str());
 }
 
-bool unknown(int policy, int unknown_value) { return policy == unknown_value; }
+bool undecided(rmw_qos_reliability_policy_t policy) {
+  return policy == RMW_QOS_POLICY_RELIABILITY_SYSTEM_DEFAULT || policy == RMW_QOS_POLICY_RELIABILITY_UNKNOWN;
+}
 
-// Whether something is not settled yet, so that nobody can tell what it will come to.
-bool undecided(const rmw_qos_profile_t & offered, const rmw_qos_profile_t & requested) {
-  const bool reliability = (offered.reliability == RMW_QOS_POLICY_RELIABILITY_SYSTEM_DEFAULT ||
-                            unknown(offered.reliability, RMW_QOS_POLICY_RELIABILITY_UNKNOWN)) &&
-                           requested.reliability == RMW_QOS_POLICY_RELIABILITY_RELIABLE;
-  const bool durability = (offered.durability == RMW_QOS_POLICY_DURABILITY_SYSTEM_DEFAULT ||
-                           unknown(offered.durability, RMW_QOS_POLICY_DURABILITY_UNKNOWN)) &&
-                          requested.durability == RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL;
-  return reliability || durability;
+bool undecided(rmw_qos_durability_policy_t policy) {
+  return policy == RMW_QOS_POLICY_DURABILITY_SYSTEM_DEFAULT || policy == RMW_QOS_POLICY_DURABILITY_UNKNOWN;
+}
+
+// The policies that may mismatch, for what one end leaves to its default cannot be known before it is there. Where that
+// is so, both profiles are changed to the default that matches.
+std::vector<rmw_qos_policy_kind_t> settle_undecided(rmw_qos_profile_t & offered, rmw_qos_profile_t & requested) {
+  std::vector<rmw_qos_policy_kind_t> found;
+  const bool reliability = (undecided(offered.reliability) && reliable(requested)) ||
+                           (undecided(requested.reliability) && !reliable(offered));
+  const bool durability = (undecided(offered.durability) && lasting(requested)) ||
+                          (undecided(requested.durability) && !lasting(offered));
+  if (durability) found.push_back(RMW_QOS_POLICY_DURABILITY);
+  if (reliability) found.push_back(RMW_QOS_POLICY_RELIABILITY);
+  if (undecided(offered.reliability)) offered.reliability = RMW_QOS_POLICY_RELIABILITY_RELIABLE;
+  if (undecided(offered.durability)) offered.durability = RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL;
+  return found;
 }
 
 }  // namespace
@@ -102,16 +112,18 @@ extern "C" RMW_PUBLIC rmw_ret_t rmw_qos_profile_check_compatible(
     return RMW_RET_INVALID_ARGUMENT;
   }
   if (reason && size) reason[0] = 0;
-  const auto found = mismatches(offered, requested);
-  *compatibility = RMW_QOS_COMPATIBILITY_OK;
-  if (found.empty() && !undecided(offered, requested)) return RMW_RET_OK;
-  const bool error = !found.empty();
-  *compatibility = error ? RMW_QOS_COMPATIBILITY_ERROR : RMW_QOS_COMPATIBILITY_WARNING;
-  if (reason && size) {
-    append(reason, size, error ? "" : "WARNING: what the publisher offers depends on its default;");
-    for (const auto kind : found)
-      append(reason, size, std::string("ERROR: the publisher offers less than the subscription requests: ") +
-                               rmw_qos_policy_kind_to_str(kind) + ";");
-  }
+  rmw_qos_profile_t offer = offered, request = requested;
+  const auto possible = settle_undecided(offer, request);
+  const auto certain = mismatches(offer, request);
+  *compatibility = !certain.empty()   ? RMW_QOS_COMPATIBILITY_ERROR
+                   : !possible.empty() ? RMW_QOS_COMPATIBILITY_WARNING
+                                       : RMW_QOS_COMPATIBILITY_OK;
+  if (!reason || !size) return RMW_RET_OK;
+  for (const auto kind : certain)
+    append(reason, size, std::string("ERROR: the publisher offers less than the subscription requests: ") +
+                             rmw_qos_policy_kind_to_str(kind) + ";");
+  for (const auto kind : possible)
+    append(reason, size, std::string("WARNING: it depends on a default whether this matches: ") +
+                             rmw_qos_policy_kind_to_str(kind) + ";");
   return RMW_RET_OK;
 }

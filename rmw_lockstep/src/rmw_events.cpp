@@ -79,8 +79,9 @@ RMW_LOCKSTEP_API rmw_ret_t rmw_take_event(const rmw_event_t * event, void * info
   REQUIRE(taken);
   Lock lock;
   Events & events = of(event).events;
-  *taken = std::exchange(events.pending[event->event_type], false);
-  if (*taken) hand_over(events, event->event_type, info);
+  events.pending[event->event_type] = false;
+  hand_over(events, event->event_type, info);  // also where nothing has happened, as Fast DDS does
+  *taken = true;
   return RMW_RET_OK;
 }
 
