@@ -10,6 +10,7 @@ import shutil
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from grader.recording import Ending, EndPoint, Received, Recording
@@ -168,7 +169,7 @@ class Run:
     def _lockstep(self) -> None:
         began = time.monotonic()
         for message in self._task.scenario.messages:
-            self._budget.begin(STEP)
+            self._budget.begin(self._allowance(message.at))
             self._keep_pace(began, message.at)
             self._go_to(message.at)
             if not self._publishers.is_heard(message):
@@ -180,6 +181,11 @@ class Run:
         self._go_to(self._clocks.at + AFTERWARDS)
         self._hub.wait_until_idle()
         self._lockstep_seconds = time.monotonic() - began
+
+    def _allowance(self, at: int) -> Allowance:
+        """What the program may take until simulated time `at`: it may compute as long as time goes by meanwhile."""
+        passes = (self._clocks.computer(at) - self._hub.now) / SECOND
+        return STEP if passes < 1.0 else replace(STEP, cpu_s=STEP.cpu_s + passes)
 
     def _go_to(self, at: int) -> None:
         """Let both clocks go on to the simulated time `at`; what was due before happens before."""
