@@ -87,7 +87,6 @@ class Run:
         self._end_points: tuple[EndPoint, ...] = ()
         self._sim_time = False
         self._asks_in_vain = False
-        self._connected = False
         self._lockstep_seconds = 0.0
         hub.main = student.pid
         hub.patience = self._budget.look
@@ -97,8 +96,10 @@ class Run:
         return {link.pid for link in self._hub.links}.union(self._student.pids())
 
     def _remember_end_points(self) -> None:
-        self._connected = True
-        self._end_points = end_points(self._hub.graph) or self._end_points
+        """What a program had before it crashed; not what was left when it had taken most of it down itself."""
+        found = end_points(self._hub.graph)
+        if len(found) >= len(self._end_points):
+            self._end_points = found
 
     def run(self, began: float) -> Recording:
         """The whole run, from the first sign of the program to its end."""
@@ -165,6 +166,7 @@ class Run:
         self._set_clock(START)
         hub.wait_until_idle()
         self._is_up = True
+        self._remember_end_points()
 
     def _lockstep(self) -> None:
         began = time.monotonic()
@@ -174,7 +176,7 @@ class Run:
             self._go_to(message.at)
             if not self._publishers.is_heard(message):
                 self._hub.wait_until_idle()  # whether anybody hears it is known only then
-            self._clocks.set(message.at, self._hub.now, self._publishers.publish(message))
+            self._clocks.set(message.at, self._hub.now, self._publishers.publish(message), message=True)
             self._hub.wait_until_idle()
             self._see_that_it_listens(message)
         self._end_points = end_points(self._hub.graph)
