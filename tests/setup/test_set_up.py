@@ -216,9 +216,7 @@ def test_the_middleware_is_compiled_once_and_again_when_its_sources_have_changed
 
 
 def test_where_it_can_not_be_compiled_set_up_succeeds_and_says_what_is_weaker(checkout: Checkout) -> None:
-    checkout.tell(
-        "compiling-fails", "No middleware: g++ is not installed. Install it: sudo ...\n"
-    )
+    checkout.tell("compiling-fails", "No middleware: g++ is not installed. Install it: sudo ...\n")
 
     code, said = checkout.set_up()
 
