@@ -114,7 +114,8 @@ def grade(
         middleware=Middleware(middleware) if middleware else None,
     )
     try:
-        warn_of_weaker(options)
+        if warning := choose_middleware(options.middleware).warning:
+            click.echo(warning, err=True)
         found = load(_folder(exercise))
         if out:
             sys.exit(_class(found, Order(Path(submission), out, options, jobs, regrade, overrides, scheduler)))
@@ -147,12 +148,6 @@ def _class(exercise: Exercise, order: Order) -> int:
 def _graded(exercise: Exercise, submission: Submission, options: Options) -> Grade:
     with Crew(options.middleware) as crew:
         return grading_of(exercise, options, crew).grade(submission)
-
-
-def warn_of_weaker(options: Options) -> None:
-    """Say on stderr what is weaker than it could be. Raises `MiddlewareUnavailable`."""
-    if warning := choose_middleware(options.middleware).warning:
-        click.echo(warning, err=True)
 
 
 def _write(result: Grade, exercise: Exercise, plot: Path | None, bag: Path | None) -> None:

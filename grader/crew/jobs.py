@@ -58,6 +58,7 @@ class SpinJob:
         from grader.crew.domain import domain_for
         from grader.rig.spin import spin
 
+        nursery.prepare(self.middleware)  # before, so that it stays outside of what is entered now
         enter(self.isolation)
         ready()
         domain = domain_for(self.isolation)

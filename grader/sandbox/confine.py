@@ -77,7 +77,7 @@ def confine(
     kernel.prctl(kernel.PR_SET_NO_NEW_PRIVS, 1)
     kernel.prctl(kernel.PR_SET_DUMPABLE, 1)  # lost with the change of user; without it /proc/self is closed
     if isolation is Isolation.LANDLOCK:
-        landlock.restrict(place, start.program.readonly, hidden)
+        landlock.restrict(place, start.program.readonly, hidden, processes=not network)
     if filters is not None:
         seccomp.install(filters)
 

@@ -43,6 +43,7 @@ bool preloaded() { return dlsym(RTLD_DEFAULT, "clock_nanosleep") == reinterpret_
 
 int Core::connect(const std::string & path) {
   if (connected_) return EALREADY;
+  if (!threads_.count()) return ENOSYS;  // without /proc/self/task it would seem to have no other threads
   socket_ = open_socket(path);
   if (socket_ < 0) return errno;
   path_ = path;
