@@ -59,14 +59,14 @@ class SpinJob:
 
     def _over_fast_dds(self, nursery: Nursery, ready: Callable[[], None]) -> Recording:
         from grader.crew.domain import domain_for
-        from grader.rig.spin import spin
+        from grader.runner.fastdds.run import run
 
         nursery.prepare(self.middleware)  # before, so that it stays outside of what is entered now
         enter(self.isolation)
         ready()
         domain = domain_for(self.isolation)
         program = replace(self.program, environment={**self.program.environment, "ROS_DOMAIN_ID": str(domain)})
-        return spin(
+        return run(
             replace(self._task, domain=domain),
             lambda: nursery.start(program, self.isolation, self.limits, self.core),
         )

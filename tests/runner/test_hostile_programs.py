@@ -81,15 +81,15 @@ def test_a_program_that_goes_silent_is_waited_for_three_seconds(run_program: Run
 
 
 def test_a_lie_about_being_idle_harms_only_the_liar(run_program: RunProgram) -> None:
-    lie = "connection = own()\nfor handled in range(200):\n    connection.sendall(idle(handled))\n    self.answer(9.0)\nconnection.detach()"
-    recording = run_program(attack(lie))
+    lie = "for handled in range(200):\n    connection.sendall(idle(handled))\n    self.answer(9.0)\n"
+    recording = run_program(attack(f"connection = own()\n{lie}connection.detach()"))
     assert [received.fields["data"] for received in recording.received][:3] == [2, 4, 6]
     assert recording.ending.outcome in ("completed", "over-limit")
 
 
 def test_a_connection_that_is_handed_on_to_a_child_is_one_process(run_program: RunProgram) -> None:
-    code = "connection = own()\nif os.fork() == 0:\n    connection.sendall(idle(3) * 50)\n    os._exit(0)\nconnection.detach()"
-    recording = run_program(attack(code))
+    child = "if os.fork() == 0:\n    connection.sendall(idle(3) * 50)\n    os._exit(0)\n"
+    recording = run_program(attack(f"connection = own()\n{child}connection.detach()"))
     assert recording.ending.outcome in ("completed", "over-limit", "timed-out")
     assert [received.fields["data"] for received in recording.received][:2] == [2, 4]
 
