@@ -15,7 +15,7 @@ import array, os, socket, struct, threading, time
 frame = lambda kind, payload=b'': struct.pack('<IB', len(payload) + 1, kind[0]) + payload
 text = lambda value: struct.pack('<I', len(value)) + value
 hello = frame(b'H', struct.pack('<IIIB', 1, os.getpid(), 1, 1))
-idle = lambda handled: frame(b'I', struct.pack('<QqqIIIBH', handled, 0, -1, 1, 0, 0, 0, 0))
+idle = lambda handled: frame(b'I', struct.pack('<QqqIIIBQH', handled, 0, -1, 1, 0, 0, 0, 0, 0))
 def own():
     for number in range(3, 100):
         try:
