@@ -23,7 +23,7 @@ from grader.scenario import Scenario
 from grader.submission import Submission
 
 #: The parts of the grader that decide what a recording holds.
-SPINNING = ("crew", "exercise", "recording", "rig", "sandbox", "scenario", "submission")
+SPINNING = ("crew", "exercise", "recording", "runner", "sandbox", "scenario", "submission")
 SPINNING_FILES = ("grading/spinning.py", "loopback.xml")
 
 #: What nobody has asked for since is thrown away.

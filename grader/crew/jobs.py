@@ -35,6 +35,8 @@ class SpinJob:
     file_name: str
     core: int | None = None
     pace: float | None = None
+    data_bytes: int = 8_000_000
+    """What the program may publish in all messages together, over lockstep."""
 
     def run(self, nursery: Nursery, ready: Callable[[], None]) -> Recording:
         """The recording of the spin."""
@@ -47,23 +49,24 @@ class SpinJob:
 
     def _over_lockstep(self, nursery: Nursery, ready: Callable[[], None]) -> Recording:
         from grader.runner.run import run
+        from rmw_lockstep.hub import Limits as HubLimits
 
         def start(hub: Path) -> Student:
             return nursery.start(replace(self.program, hub=hub), self.isolation, self.limits, self.core)
 
         ready()
-        return run(self._task, start)
+        return run(self._task, start, HubLimits(data_bytes=self.data_bytes))
 
     def _over_fast_dds(self, nursery: Nursery, ready: Callable[[], None]) -> Recording:
         from grader.crew.domain import domain_for
-        from grader.rig.spin import spin
+        from grader.runner.fastdds.run import run
 
         nursery.prepare(self.middleware)  # before, so that it stays outside of what is entered now
         enter(self.isolation)
         ready()
         domain = domain_for(self.isolation)
         program = replace(self.program, environment={**self.program.environment, "ROS_DOMAIN_ID": str(domain)})
-        return spin(
+        return run(
             replace(self._task, domain=domain),
             lambda: nursery.start(program, self.isolation, self.limits, self.core),
         )

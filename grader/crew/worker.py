@@ -32,7 +32,7 @@ def main() -> None:
     control = socket.socket(fileno=int(sys.argv[1]))
     with Nursery([Middleware(name) for name in sys.argv[2:]]) as nursery:
         import grader.crew.jobs
-        import grader.rig.spin
+        import grader.runner.fastdds.run
         import grader.runner.run  # noqa: F401  # for every process that is forked from this one
         from grader.crew.warmth import warm, warm_to_judge
 

@@ -20,6 +20,10 @@ from grader.submission import Submission
 
 ARGUMENTS = ("--ros-args", "-p", "use_sim_time:=true")
 
+#: What a submission may publish in all scenarios together (bytes), of which each gets an equal part, but not less than
+#: this. As Python's objects, in the memory of the grader, it takes about ten times as much.
+MOST_BYTES, LEAST_BYTES = 24_000_000, 1_000_000
+
 
 @dataclass(frozen=True)
 class Spinner:
@@ -86,6 +90,7 @@ class Spinner:
             file_name=submission.file_name,
             core=cores[number % len(cores)] if self.options.core is None else self.options.core,
             pace=self.options.pace,
+            data_bytes=max(LEAST_BYTES, MOST_BYTES // len(self.scenarios)),
         )
 
 

@@ -51,6 +51,7 @@ class Budget:
         """A new step begins."""
         self._allowance = allowance
         self._cpu_start: float | None = None
+        self._ran: int | None = None
         self.blocked = 0.0
 
     @property
@@ -76,7 +77,8 @@ class Budget:
         if self._cpu_start is None:
             self._cpu_start = self._student.cpu_seconds()
             return
-        if not at_work(self._pids()):
+        before, self._ran = self._ran, ran(self._pids())
+        if self._ran is not None and self._ran == before:
             self.blocked += passed
         self._check()
 
@@ -97,21 +99,27 @@ class Budget:
             )
 
 
-def at_work(pids: Collection[int]) -> bool:
-    """Whether a thread of one of these processes runs, waits for a CPU, or waits for the disk."""
-    return any(_state(stat) in (b"R", b"D") for pid in pids for stat in _threads(pid))
+#: What liblockstep calls its own thread, which looks at the others again and again while the process is not idle.
+KEEPER = b"(lockstep"
+
+
+def ran(pids: Collection[int]) -> int | None:
+    """For how long the threads of these processes have run (ns); None while one runs, could, or waits for the disk."""
+    total = 0
+    for thread in (thread for pid in pids for thread in _threads(pid)):
+        with contextlib.suppress(OSError):  # it has just ended
+            # The state follows the program's name, which may hold any character but ends with the last bracket.
+            name, _, rest = (thread / "stat").read_bytes().rpartition(b") ")
+            if name.endswith(KEEPER):
+                continue
+            if rest[:1] in (b"R", b"D"):
+                return None
+            total += int((thread / "schedstat").read_bytes().split()[0])
+    return total
 
 
 def _threads(pid: int) -> list[Path]:
     folder = Path(f"/proc/{pid}/task")
     with contextlib.suppress(OSError):
-        return [folder / name / "stat" for name in os.listdir(folder)]  # noqa: PTH208 - names alone
+        return [folder / name for name in os.listdir(folder)]  # noqa: PTH208 - names alone
     return []
-
-
-def _state(stat: Path) -> bytes:
-    """The state of a thread, such as R, S or D; nothing when it has ended."""
-    with contextlib.suppress(OSError):
-        # It follows the program's name, which may hold any character but ends with the last bracket.
-        return stat.read_bytes().rpartition(b") ")[2][:1]
-    return b""

@@ -36,8 +36,3 @@ def deaf_to_the_clock(hub: Hub) -> list[str]:
     """Nodes that do not take their time from /clock. A node of rclpy subscribes to it when `use_sim_time` is true."""
     listening = {one.node for one in hub.graph.of_program("/clock", SUBSCRIPTION)}
     return [node.full_name for node in hub.graph.program_nodes() if node.id not in listening]
-
-
-def has(graph: Graph, service: str, kind: int) -> bool:
-    """Whether the student's program has an end point of this kind for a service."""
-    return any(graph.of_program(service, kind))

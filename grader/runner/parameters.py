@@ -7,11 +7,11 @@ from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.serialization import serialize_message
 
 from grader.runner.graph import deaf_to_the_clock
-from rmw_lockstep.hub import Hub, HubNode
+from rmw_lockstep.hub import SERVER, Hub, HubNode
 
 
 class Parameters:
-    """Calls made through a node of the hub's. `wait` is called until there is an answer; False: none will come."""
+    """Calls made through a node of the hub's."""
 
     def __init__(self, hub: Hub, node: HubNode) -> None:
         self._hub, self._node = hub, node
@@ -43,6 +43,8 @@ class Parameters:
         return not deaf_to_the_clock(self._hub)
 
     def answers(self, node: str, until: int) -> bool:
-        """Whether a node answers a call."""
+        """Whether a node answers a call; one without parameter services is believed to."""
+        if not self._hub.graph.of_program(f"{node}/get_parameters", SERVER):
+            return True
         request = serialize_message(GetParameters.Request(names=["use_sim_time"]))
         return self.call(f"{node}/get_parameters", "rcl_interfaces/srv/GetParameters", request, until)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from rclpy.serialization import deserialize_message
@@ -29,17 +30,33 @@ class Recorder:
     def __init__(self, node: HubNode, topics: Sequence[Topic]) -> None:
         self._topics = tuple(topics)
         self._heard: list[tuple[int, Heard]] = []
+        self._paused = False
         for number, topic in enumerate(self._topics):
             self._subscribe(node, number, topic)
 
     def _subscribe(self, node: HubNode, number: int, topic: Topic) -> Subscription:
         def keep(heard: Heard) -> None:
+            if self._paused:
+                return
             self._heard.append((number, heard))
             if len(self._heard) > MOST_MESSAGES:
                 self._heard.pop()
                 raise Stopped("over-limit", f"Your node published more than {MOST_MESSAGES:,} messages.")
 
         return node.subscription(topic.name, topic.type, ACCEPT_ANY, keep)
+
+    @contextlib.contextmanager
+    def paused(self) -> Iterator[None]:
+        """Keep nothing meanwhile."""
+        self._paused = True
+        try:
+            yield
+        finally:
+            self._paused = False
+
+    def has_heard_since(self, stage: int) -> bool:
+        """Whether anything has come since number `stage` of what the hub has published."""
+        return any(heard.stage >= stage for _, heard in self._heard)
 
     def received(self, clocks: Clocks, stages: Sequence[int]) -> tuple[Received, ...]:
         """What has come, in order. Raises `Stopped` for bytes that are no message.

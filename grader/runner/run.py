@@ -182,6 +182,7 @@ class Run:
         self._end_points = end_points(self._hub.graph)
         self._go_to(self._clocks.at + AFTERWARDS)
         self._hub.wait_until_idle()
+        self._see_that_it_still_answers()
         self._lockstep_seconds = time.monotonic() - began
 
     def _allowance(self, at: int) -> Allowance:
@@ -207,9 +208,22 @@ class Run:
         wakes = hub.next
         if wakes is not None and wakes - hub.now <= SOON:
             return
-        if not all(self._parameters.answers(node, hub.now) for node in self._nodes):
-            raise Stopped("timed-out", DEAF)
+        self._ask(until=hub.now)
         self._asks_in_vain = True  # an executor that waits in a way of its own, such as rclpy's EventsExecutor
+
+    def _see_that_it_still_answers(self) -> None:
+        """Raise `Stopped` when the program has answered no message at the end, does not wait in ROS 2, and answers no
+        call in the next seconds either: such as one that is busy with looking at the clock."""
+        heard = [
+            stage for stage, sent in zip(self._publishers.stages, self._publishers.sent, strict=True) if sent.heard
+        ]
+        if heard and not self._hub.in_ros and not self._recorder.has_heard_since(heard[-1]):
+            with self._recorder.paused():
+                self._ask(until=self._hub.now + SOON)
+
+    def _ask(self, until: int) -> None:
+        if not all(self._parameters.answers(node, until) for node in self._nodes):
+            raise Stopped("timed-out", DEAF)
 
     def _keep_pace(self, began: float, at: int) -> None:
         if self._task.pace:

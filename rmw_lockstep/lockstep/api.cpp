@@ -55,12 +55,15 @@ LOCKSTEP_API void lockstep_wake(lockstep_waiter * waiter) {
 }
 
 LOCKSTEP_API void lockstep_block_until(const volatile int * done) {
+  ++core().awaited;
+  core().poke();
   while (!*done && core().connected()) {
     core().unlock();
     const timespec moment{0, 50'000};
     real::clock_nanosleep()(CLOCK_MONOTONIC, 0, &moment, nullptr);
     core().lock();
   }
+  --core().awaited;
 }
 
 }  // extern "C"

@@ -145,6 +145,11 @@ void Core::step() {
     const uint8_t * frame = front(size);
     const char kind = frame ? static_cast<char>(frame[0]) : 0;
     const bool gate = kind == 'T' || kind == '|';
+    if (gate && awaited) {  // a thread waits for what is behind it: see lockstep_block_until
+      time_runs_ = false;
+      pop();
+      continue;
+    }
     if (frame && !time_runs_ && !gate) {
       if (kind == '?') asked_ = true;
       else if (participant_) participant_->frame(frame, size);
@@ -240,6 +245,7 @@ void Core::reset_in_child(bool connect_again) {
   mutex_ = PTHREAD_MUTEX_INITIALIZER;
   entering_ = calling_ = 0;
   contending = 0;
+  awaited = 0;
   sleepers_.clear();
   children_.clear();
   later_.clear();

@@ -65,8 +65,13 @@ public:
   void wake_up(Sleeper & sleeper);
   void wake(Sleeper & sleeper, bool due);
 
+  void poke();                     // the library's own thread is to look again
+
   // Threads of Python that wait for its global lock are about to run.
   std::atomic<int> contending{0};
+
+  // How many threads wait for a frame that is on its way, and may be behind a time or a barrier. With the lock held.
+  int awaited = 0;
 
   // In the parent, and in the child, of a fork. A child that is about to become another program does not connect.
   void forked(pid_t child);
@@ -79,7 +84,6 @@ private:
   void send(const uint8_t * frame, size_t size);
   void keep();                     // the library's own thread
   static void * keep_of(void * core);
-  void poke();
   bool receive();
   void lost();
   void step();                     // handle what may be handled now

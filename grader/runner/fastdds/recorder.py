@@ -11,7 +11,7 @@ from rclpy.serialization import deserialize_message
 
 from grader.exercise.interface import Topic
 from grader.recording import Received
-from grader.rig.ros import ACCEPT, ACCEPT_ANY
+from grader.runner.fastdds.ros import ACCEPT, ACCEPT_ANY
 from grader.runner.message import message_class, to_fields
 from grader.runner.stopped import Stopped
 
@@ -86,7 +86,7 @@ class Recorder:
         """Whether the student's node publishes every topic, in a way that reaches this recorder."""
         return all(subscription.get_publisher_count() for subscription in self._subscriptions.values())
 
-    def newcomers(self) -> list[Topic]:
+    def new_publishers(self) -> list[Topic]:
         """Topics that have got a publisher since this was asked the last time.
 
         A publisher of another type counts as none: nothing of it can ever reach this recorder.

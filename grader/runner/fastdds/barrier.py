@@ -1,6 +1,6 @@
 """Knows when a node has handled everything that was published so far.
 
-A fence is a call of a service that the node's own executor answers, and the rest of the program's threads after it.
+A barrier is a call of a service that the node's own executor answers, and the rest of the program's threads after it.
 What is published comes to the node before the call does, and wakes a program that waits for nothing else, so its
 executor finds the message first; when all threads rest after the answer, what the message set off is over, too.
 
@@ -20,10 +20,10 @@ from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters
 from type_description_interfaces.srv import GetTypeDescription
 
-from grader.rig.call import Caller, Calls
-from grader.rig.graph import Graph
-from grader.rig.patience import Calm, Patience
-from grader.rig.watch import Watch
+from grader.runner.fastdds.budget import IdleTime, TimeBudget
+from grader.runner.fastdds.call import Caller, Calls
+from grader.runner.fastdds.graph import Graph
+from grader.runner.fastdds.watch import Watch
 from grader.runner.stopped import Stopped
 
 Hold = Literal["parameters", "type description", "quiet"]
@@ -48,7 +48,7 @@ SLEEPY = "Your node waits and sleeps instead of answering: {0:g} s in this scena
 #: How often is looked whether the student's program is still alive and well, while an answer is waited for.
 CHECK_S = 0.02
 
-#: After so much calm a call that has had no answer is repeated.
+#: After so much idle time a call that has had no answer is repeated.
 AGAIN_S = 0.5
 
 #: How often is looked for what the graph may show at any time.
@@ -62,7 +62,7 @@ class Gone(Exception):
     """Raised when the student's program has ended by itself."""
 
 
-class Fence:
+class Barrier:
     """Holds the rig until the student's nodes have handled what was published.
 
     `hear` takes what they publish; it is called again and again, and may raise what ends the run.
@@ -81,7 +81,7 @@ class Fence:
         if self._watch.student.poll() is not None:
             raise Gone
 
-    def take_hold(self, graph: Graph, nodes: list[str], no_more_to_come: Callable[[], bool]) -> None:
+    def choose_method(self, graph: Graph, nodes: list[str], no_more_to_come: Callable[[], bool]) -> None:
         """Find a service of each node to call; create these clients last, for their answers prove that all earlier
         end points of the rig are known to the node. `no_more_to_come` says when all there is must be in the graph."""
         found: dict[str, tuple[str, Any, Any]] = {}
@@ -108,7 +108,7 @@ class Fence:
 
     def look(self) -> None:
         """See whether the program has done anything since it was at rest; to be called before anything is published."""
-        self._wakes_itself = self._wakes_itself or self._watch.threads.stirred()
+        self._wakes_itself = self._wakes_itself or self._watch.threads.has_run()
 
     def wait(self, times: int) -> None:
         """Wait until the nodes have handled what was published before this call. Raises `Stopped` or `Gone`."""
@@ -119,19 +119,19 @@ class Fence:
         self._hear()
 
     def _wait_for_answers(self, calls: Calls) -> None:
-        calm = Calm(self._watch)
+        idle_time = IdleTime(self._watch)
 
         def pause() -> None:
             calls.wait(CHECK_S)
-            if not calls.answered() and calm.look() >= AGAIN_S:
+            if not calls.answered() and idle_time.look() >= AGAIN_S:
                 calls.call_again()
-                calm.seconds = 0.0
+                idle_time.seconds = 0.0
 
         self._wait_for(calls.answered, pause)
 
     def _wait_for(self, done: Callable[[], bool], pause: Callable[[], None], cpu_s: float = 3.0) -> None:
         """Pause until `done`. Raises `Stopped` or `Gone` when it can't be waited for any longer."""
-        patience: Patience | None = None
+        budget: TimeBudget | None = None
         due = time.monotonic() + CHECK_S
         while not done():
             pause()
@@ -140,10 +140,10 @@ class Fence:
             self.alive()
             self._hear()
             # Most waits are over before this is needed the first time.
-            patience = patience or Patience(self._watch, cpu_s)
-            blocked = patience.blocked
-            patience.check(ENDLESS.format(cpu_s), DEAF)
-            self._blocked += patience.blocked - blocked
+            budget = budget or TimeBudget(self._watch, cpu_s)
+            blocked = budget.blocked
+            budget.check(ENDLESS.format(cpu_s), DEAF)
+            self._blocked += budget.blocked - blocked
             if self._blocked > MOST_BLOCKED_S:
                 raise Stopped("timed-out", SLEEPY.format(MOST_BLOCKED_S))
             due = time.monotonic() + CHECK_S
@@ -153,15 +153,15 @@ class Fence:
         self.alive()
         if self.hold == "quiet":
             self._rest_without_answers()
-        elif self._restless < RESTLESS_TIMES and not self._watch.threads.wait_until_still(0.0, RESTLESS_S):
+        elif self._restless < RESTLESS_TIMES and not self._watch.threads.wait_until_idle(0.0, RESTLESS_S):
             self._restless += 1
 
     def _rest_without_answers(self) -> None:
-        patience = Patience(self._watch)
-        while not self._watch.threads.wait_until_still(STILL_S, 0.1):
+        budget = TimeBudget(self._watch)
+        while not self._watch.threads.wait_until_idle(STILL_S, 0.1):
             self.alive()
             self._hear()
-            if patience.ended() == "cpu":
+            if budget.ended() == "cpu":
                 raise Stopped("timed-out", ENDLESS.format(3.0))
 
     def call(self, kind: Any, name: str, request: Any) -> Any:

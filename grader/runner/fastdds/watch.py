@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from grader.rig.quiet import Receivers, Threads
+from grader.runner.fastdds.idle import Receivers, Threads
 from grader.runner.student import Student
 
 

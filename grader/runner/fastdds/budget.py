@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 
-from grader.rig.watch import Watch
+from grader.runner.fastdds.watch import Watch
 from grader.runner.stopped import Stopped
 
 #: The longest piece of time between two looks that counts: a rig that did not run itself saw nothing. Where a machine
@@ -12,7 +12,7 @@ from grader.runner.stopped import Stopped
 LONGEST_LOOK_S = 0.025
 
 
-class Patience:
+class TimeBudget:
     """Ends when the program has used `cpu_s` of CPU time, or was blocked for `blocked_s`, since this was made.
 
     A program that waits for a CPU on a busy machine uses up neither. One that has run into a limit of its sandbox is
@@ -46,17 +46,17 @@ class Patience:
         return "cpu" if self.cpu >= self._cpu_s and not self._student.at_limit() else None
 
     def check(self, busy: str, blocked: str) -> None:
-        """Raise `Stopped` with one of the two stories once the patience has ended."""
+        """Raise `Stopped` with one of the two stories once the budget has ended."""
         which = self.ended()
         if which:
             raise Stopped("timed-out", busy if which == "cpu" else blocked)
 
 
-class Calm:
+class IdleTime:
     """The time in which neither the program nor the rig has anything to do but wait (s), since this was made.
 
     What is on its way between the two, on a busy machine, is work for one of them. So what has not come after
-    sufficient calm was not sent, or got lost.
+    sufficient idle time was not sent, or got lost.
     """
 
     def __init__(self, watch: Watch) -> None:
@@ -65,7 +65,7 @@ class Calm:
         self.seconds = 0.0
 
     def look(self) -> float:
-        """Count the time since the last look if there is calm. Returns what has been counted."""
+        """Count the time since the last look if all is idle. Returns what has been counted."""
         now = time.monotonic()
         if not self._threads.at_work() and not self._receivers.at_work():
             self.seconds += min(now - self._looked, LONGEST_LOOK_S)

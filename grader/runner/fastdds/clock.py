@@ -6,7 +6,7 @@ from typing import Any
 
 from rosgraph_msgs.msg import Clock as ClockMessage
 
-from grader.rig.ros import OFFER
+from grader.runner.fastdds.ros import OFFER
 from grader.scenario.scenario import SECOND
 
 

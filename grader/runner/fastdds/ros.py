@@ -1,7 +1,7 @@
 """The rig's own part of the ROS graph: one participant, and the nodes in it.
 
-The rig has no executor. It publishes, calls services (`grader.rig.call`) and takes what has come
-(`grader.rig.recorder`) in the order that it decides on itself; waiting by executor costs a rig more than all else.
+The grader's end has no executor. It publishes, calls services (see `call`) and takes what has come (see `recorder`) in
+the order that it decides on itself; waiting by executor costs more than all else.
 """
 
 from __future__ import annotations

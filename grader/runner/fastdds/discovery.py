@@ -5,13 +5,13 @@ from __future__ import annotations
 import time
 
 from grader.exercise.interface import Topic
-from grader.rig.clock import Clock
-from grader.rig.fence import CHECK_S, LOOK_S, Fence
-from grader.rig.graph import Graph
-from grader.rig.patience import Calm, Patience
-from grader.rig.publishers import ReferencePublishers
-from grader.rig.recorder import Recorder
-from grader.rig.watch import Watch
+from grader.runner.fastdds.barrier import CHECK_S, LOOK_S, Barrier
+from grader.runner.fastdds.budget import IdleTime, TimeBudget
+from grader.runner.fastdds.clock import Clock
+from grader.runner.fastdds.graph import Graph
+from grader.runner.fastdds.publishers import ReferencePublishers
+from grader.runner.fastdds.recorder import Recorder
+from grader.runner.fastdds.watch import Watch
 from grader.runner.stopped import Stopped
 
 #: Importing large libraries takes computing time; nothing that a node needs takes this much.
@@ -27,18 +27,18 @@ NO_NODE_BLOCKED = (
 )
 
 
-def wait_for_nodes(graph: Graph, fence: Fence, watch: Watch) -> list[str]:
+def wait_for_nodes(graph: Graph, barrier: Barrier, watch: Watch) -> list[str]:
     """The student's nodes, once there is one. Raises `Stopped` when none appears and `Gone` when the program ends."""
-    patience, calm = Patience(watch), Calm(watch)
+    budget, idle_time = TimeBudget(watch), IdleTime(watch)
     due = time.monotonic() + CHECK_S
     while not (nodes := graph.nodes()):
-        fence.alive()
+        barrier.alive()
         time.sleep(NODE_LOOK_S)
         if time.monotonic() < due:
             continue
-        if patience.cpu >= START_CPU_S and not watch.student.at_limit():
+        if budget.cpu >= START_CPU_S and not watch.student.at_limit():
             raise Stopped("timed-out", NO_NODE_BUSY)
-        if calm.look() >= START_BLOCKED_S:
+        if idle_time.look() >= START_BLOCKED_S:
             raise Stopped("timed-out", NO_NODE_BLOCKED)
         due = time.monotonic() + CHECK_S
     return nodes
@@ -52,42 +52,42 @@ BUSY_S = 5.0
 
 
 class Discovery:
-    """Ends after `calm_s` seconds of calm: then all that there is, of the graph or on its way, must have been heard."""
+    """Ends after `idle_s` idle seconds: then all that there is, of the graph or on its way, must have been heard."""
 
-    def __init__(self, watch: Watch, calm_s: float = TOLD_AGAIN_S) -> None:
-        self._calm_s = calm_s
-        self._calm = Calm(watch)
-        self._patience = Patience(watch)
+    def __init__(self, watch: Watch, idle_s: float = TOLD_AGAIN_S) -> None:
+        self._idle_s = idle_s
+        self._idle_time = IdleTime(watch)
+        self._budget = TimeBudget(watch)
         self._due = time.monotonic()
 
     def ended(self) -> bool:
-        """Whether it has; to be asked again and again. It looks as often as the calm needs, and no more."""
+        """Whether it has; to be asked again and again. It looks as often as that needs, and no more."""
         if time.monotonic() < self._due:
             return False
         self._due = time.monotonic() + CHECK_S
-        return self._calm.look() >= self._calm_s or self._patience.cpu >= BUSY_S
+        return self._idle_time.look() >= self._idle_s or self._budget.cpu >= BUSY_S
 
 
 def wait_until_connected(
-    discovery: Discovery, fence: Fence, clock: Clock, publishers: ReferencePublishers, recorder: Recorder
+    discovery: Discovery, barrier: Barrier, clock: Clock, publishers: ReferencePublishers, recorder: Recorder
 ) -> None:
     """Wait until every topic has found its other end, or until it is clear that some never will.
 
     A topic of another name or type never does; the checks tell that from the graph.
     """
     while not (publishers.heard and recorder.hears and clock.heard):
-        fence.alive()
+        barrier.alive()
         if discovery.ended():
             return
         time.sleep(LOOK_S)
         recorder.adapt()
 
 
-#: What was published before its two ends knew one another is sent again within this time of calm.
+#: What was published before its two ends knew one another is sent again within this much idle time.
 SENT_AGAIN_S = 0.4
 
 
-def let_in(watch: Watch, fence: Fence, recorder: Recorder, topic: Topic, came: int) -> None:
+def wait_for_publisher(watch: Watch, barrier: Barrier, recorder: Recorder, topic: Topic, came: int) -> None:
     """Wait until a publisher of `topic`, which the student's node has made only now, has found the recorder, if it ever
     will, and has sent again what it has already published: something other than the first `came` messages."""
 
@@ -100,7 +100,7 @@ def let_in(watch: Watch, fence: Fence, recorder: Recorder, topic: Topic, came: i
     for done in (found, sent_again):
         discovery = Discovery(watch, SENT_AGAIN_S)
         while not done() and not discovery.ended():
-            fence.alive()
+            barrier.alive()
             time.sleep(LOOK_S)
             recorder.adapt()
             recorder.hear()

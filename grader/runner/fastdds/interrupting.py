@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from grader.recording import Ending
-from grader.rig.patience import Patience
-from grader.rig.watch import Watch
 from grader.runner.ending import MAY_TAKE_S
+from grader.runner.fastdds.budget import TimeBudget
+from grader.runner.fastdds.watch import Watch
 from grader.runner.story import TRACEBACK, is_rclpys_own, last_words
 
 
@@ -14,10 +14,10 @@ def interrupted(watch: Watch, file_name: str, source: str) -> Ending:
     student = watch.student
     before = student.output().text.count(TRACEBACK)
     student.interrupt()
-    patience = Patience(watch, cpu_s=MAY_TAKE_S, blocked_s=MAY_TAKE_S)
+    budget = TimeBudget(watch, cpu_s=MAY_TAKE_S, blocked_s=MAY_TAKE_S)
     while student.wait(0.02) is None:
-        patience.look()
-        if patience.blocked + patience.cpu >= MAY_TAKE_S:
+        budget.look()
+        if budget.blocked + budget.cpu >= MAY_TAKE_S:
             return Ending("completed", interrupted=True, ended_in_time=False)
     log = student.output().text
     broke = log.count(TRACEBACK) > before and not is_rclpys_own(log, file_name, source)
