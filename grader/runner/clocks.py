@@ -15,9 +15,10 @@ from grader.scenario.scenario import SECOND, ComputerTime
 #: How much of the computer's time goes by for so much simulated time, by a scenario's `computer_time`.
 PACES: dict[ComputerTime, tuple[int, int]] = {"apart": (5, 4), "simulated": (1, 1)}
 
-#: How much of the computer's time goes by between two messages at the same simulated time (ns): in real life, too, a
-#: computer's clock never shows the same twice.
-BETWEEN_MESSAGES = 100_000
+#: How much of the computer's time goes by from one message to the next at least (ns), however near they are in
+#: simulated time: a simulator gets slower when much happens, and so does not run away from a node that looks for one
+#: message every few milliseconds. And no clock shows the same twice.
+BETWEEN_MESSAGES = 10_000_000
 
 _CLOCK = struct.Struct("<4siI")
 
@@ -33,11 +34,13 @@ class Clocks:
         self._computer, self._simulated = PACES[computer_time]
         self._stages: list[int] = []
         self._moments: list[tuple[int, int]] = []
+        self._earliest = 0
 
-    def set(self, at: int, now: int, stage: int) -> None:
-        """From number `stage` on, both clocks go on from here."""
+    def set(self, at: int, now: int, stage: int, *, message: bool = False) -> None:
+        """From number `stage` on, which may be a message, both clocks go on from here."""
         self._stages.append(stage)
         self._moments.append((at, now))
+        self._earliest = now + BETWEEN_MESSAGES if message else max(now, self._earliest)
 
     @property
     def at(self) -> int:
@@ -47,11 +50,11 @@ class Clocks:
     def computer(self, at: int) -> int:
         """The computer's time at the simulated time `at`; rounded up, so that `simulated` gives exactly `at` again.
 
-        Later than when it was set last, also if `at` is not.
+        Later than when a message was published last, also if `at` is not.
         """
         begun_at, began = self._moments[0]
         now = began - (begun_at - at) * self._computer // self._simulated
-        return max(now, self._moments[-1][1] + BETWEEN_MESSAGES)
+        return max(now, self._earliest)
 
     def simulated(self, now: int, stage: int) -> int:
         """The simulated time when the computer's clock shows `now` and number `stage` is the last to have come.
@@ -62,7 +65,8 @@ class Clocks:
         if not found:
             return 0
         at, began = self._moments[found - 1]
-        return at + (now - began) * self._simulated // self._computer
+        then = at + (now - began) * self._simulated // self._computer
+        return min(then, self._moments[found][0]) if found < len(self._moments) else then
 
 
 def clock_message(at: int) -> bytes:

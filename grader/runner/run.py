@@ -10,6 +10,7 @@ import shutil
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from grader.recording import Ending, EndPoint, Received, Recording
@@ -86,7 +87,6 @@ class Run:
         self._end_points: tuple[EndPoint, ...] = ()
         self._sim_time = False
         self._asks_in_vain = False
-        self._connected = False
         self._lockstep_seconds = 0.0
         hub.main = student.pid
         hub.patience = self._budget.look
@@ -96,8 +96,10 @@ class Run:
         return {link.pid for link in self._hub.links}.union(self._student.pids())
 
     def _remember_end_points(self) -> None:
-        self._connected = True
-        self._end_points = end_points(self._hub.graph) or self._end_points
+        """What a program had before it crashed; not what was left when it had taken most of it down itself."""
+        found = end_points(self._hub.graph)
+        if len(found) >= len(self._end_points):
+            self._end_points = found
 
     def run(self, began: float) -> Recording:
         """The whole run, from the first sign of the program to its end."""
@@ -164,22 +166,28 @@ class Run:
         self._set_clock(START)
         hub.wait_until_idle()
         self._is_up = True
+        self._remember_end_points()
 
     def _lockstep(self) -> None:
         began = time.monotonic()
         for message in self._task.scenario.messages:
-            self._budget.begin(STEP)
+            self._budget.begin(self._allowance(message.at))
             self._keep_pace(began, message.at)
             self._go_to(message.at)
             if not self._publishers.is_heard(message):
                 self._hub.wait_until_idle()  # whether anybody hears it is known only then
-            self._clocks.set(message.at, self._hub.now, self._publishers.publish(message))
+            self._clocks.set(message.at, self._hub.now, self._publishers.publish(message), message=True)
             self._hub.wait_until_idle()
             self._see_that_it_listens(message)
         self._end_points = end_points(self._hub.graph)
         self._go_to(self._clocks.at + AFTERWARDS)
         self._hub.wait_until_idle()
         self._lockstep_seconds = time.monotonic() - began
+
+    def _allowance(self, at: int) -> Allowance:
+        """What the program may take until simulated time `at`: it may compute as long as time goes by meanwhile."""
+        passes = (self._clocks.computer(at) - self._hub.now) / SECOND
+        return STEP if passes < 1.0 else replace(STEP, cpu_s=STEP.cpu_s + passes)
 
     def _go_to(self, at: int) -> None:
         """Let both clocks go on to the simulated time `at`; what was due before happens before."""

@@ -42,11 +42,16 @@ struct Call {
   unsigned long argument[6] = {};
 };
 
-// proc_pid_syscall(5): the number and six arguments, or "running".
-bool read_call(int file, Call & call) {
+enum class Sleeps { in_call, elsewhere, no_more };
+
+// proc_pid_syscall(5): the number and six arguments; -1 outside of a call; or "running" as soon as it is to run again.
+Sleeps read_call(int file, Call & call) {
   const std::string text = text_of(file);
-  return sscanf(text.c_str(), "%ld %lx %lx %lx %lx %lx %lx", &call.number, &call.argument[0], &call.argument[1],
-                &call.argument[2], &call.argument[3], &call.argument[4], &call.argument[5]) == 7;
+  if (text.compare(0, 7, "running") == 0) return Sleeps::no_more;
+  const int found = sscanf(
+    text.c_str(), "%ld %lx %lx %lx %lx %lx %lx", &call.number, &call.argument[0], &call.argument[1], &call.argument[2],
+    &call.argument[3], &call.argument[4], &call.argument[5]);
+  return found == 7 ? Sleeps::in_call : Sleeps::elsewhere;
 }
 
 bool negative(unsigned long timeout) { return static_cast<int>(timeout) < 0; }
@@ -135,7 +140,10 @@ Threads::Look Threads::look(const std::vector<pid_t> & known, bool children) {
   for (auto & [number, thread] : threads_) {
     if (skipped(number)) continue;
     Call call;
-    if (thread.call >= 0 && read_call(thread.call, call)) timed |= !without_timeout(call, children);
+    const Sleeps sleeps = thread.call >= 0 ? read_call(thread.call, call) : Sleeps::elsewhere;
+    // One whose time has come waits for a CPU, and has not got any yet.
+    if (sleeps == Sleeps::no_more) return Look::busy;
+    if (sleeps == Sleeps::in_call) timed |= !without_timeout(call, children);
     if (text_of(thread.schedule) != thread.before) return Look::busy;
   }
   return timed ? Look::timed : Look::asleep;
