@@ -32,7 +32,7 @@ _END_POINT = struct.Struct("<QBQ")
 _QOS = struct.Struct("<BIBBBqqq")
 _DATA = struct.Struct("<QQqQqI")
 _CALL = struct.Struct("<QqqQqI")
-_IDLE = struct.Struct("<QqqIIIBH")
+_IDLE = struct.Struct("<QqqIIIBQH")
 _OUT_DATA = struct.Struct("<QQq")
 _OUT_REQUEST = struct.Struct("<QQqq")
 _OUT_RESPONSE = struct.Struct("<Qqq")
@@ -115,7 +115,10 @@ class Call(NamedTuple):
 
 
 class Idle(NamedTuple):
-    """A process has nothing to do. `next` is when it will wake by itself (ns), or -1 for never."""
+    """A process has nothing to do. `next` is when it will wake by itself (ns), or -1 for never.
+
+    `runs`, in the answer to ASK, differs from an answer before if any of its threads has run in between; otherwise 0.
+    """
 
     handled: int
     now: int
@@ -124,6 +127,7 @@ class Idle(NamedTuple):
     in_time: int
     others: int
     flags: int
+    runs: int
     children: tuple[int, ...]
 
 
@@ -182,11 +186,11 @@ def call(payload: bytes) -> Call:
 
 def idle(payload: bytes) -> Idle:
     """An IDLE."""
-    handled, now, next_, in_ros, in_time, others, flags, count = _first(_IDLE, payload)
+    handled, now, next_, in_ros, in_time, others, flags, runs, count = _first(_IDLE, payload)
     if len(payload) != _IDLE.size + 4 * count:
         raise Violation("protocol", "an IDLE of a wrong length")
     children = struct.unpack_from(f"<{count}I", payload, _IDLE.size) if count else ()
-    return Idle(handled, now, next_, in_ros, in_time, others, flags, children)
+    return Idle(handled, now, next_, in_ros, in_time, others, flags, runs, children)
 
 
 def _first(form: struct.Struct, payload: bytes) -> tuple[int, ...]:

@@ -78,6 +78,7 @@ class Hub:
         self._instant = begin
         self._standstills = 0
         self._awaited = False
+        self._runs: dict[int, int] = {}
         self._due = 0.0
         self._ticks = 0
         self._router = Router(self._use, lambda: self._epoch + self._until, epoch)
@@ -265,7 +266,22 @@ class Hub:
         if self.main is not None and all(link.pid != self.main for link in links):
             return False
         self._awaited = bool(self._missing_children())
-        return not self._awaited
+        return not self._awaited and self._is_confirmed()
+
+    def _is_confirmed(self) -> bool:
+        """Whether each of several processes has said so twice, and none of their threads has run in between.
+
+        One may wake another in a way that is not seen here, such as a pipe, after the other has said that it is idle.
+        """
+        if len(self.links) == 1:
+            return True
+        runs = {link.number: link.idle.runs for link in self.links if link.idle}
+        if all(runs.values()) and runs == self._runs:
+            return True
+        self._runs = runs
+        for link in self.links:
+            link.queue(frames.ASK)
+        return False
 
     def _missing_children(self) -> list[Link]:
         """The processes that name a child which is not connected: not yet, no more, or never."""

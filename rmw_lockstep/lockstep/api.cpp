@@ -14,7 +14,7 @@ LOCKSTEP_API uint32_t lockstep_process() { return core().process(); }
 LOCKSTEP_API void lockstep_lock() { core().lock(); }
 LOCKSTEP_API void lockstep_unlock() { core().unlock(); }
 LOCKSTEP_API void lockstep_participate(const lockstep_participant * participant) { core().participate(participant); }
-LOCKSTEP_API void lockstep_send(const uint8_t * frame, size_t size) { core().send(frame, size); }
+LOCKSTEP_API void lockstep_send(const uint8_t * frame, size_t size) { core().tell(frame, size); }
 LOCKSTEP_API lockstep_moment lockstep_here() { return core().here(); }
 LOCKSTEP_API void lockstep_sent_output() { core().sent_output(); }
 LOCKSTEP_API uint64_t lockstep_rests() { return rests; }

@@ -61,6 +61,13 @@ void Core::call_later(void (*function)(const void *, size_t), const void * data,
   later_.push_back({function, data, count});
 }
 
+// The thread that tells may fall asleep where this library does not see it, so the keeper has to look.
+void Core::tell(const uint8_t * frame, size_t size) {
+  send(frame, size);
+  changed_ = true;
+  poke();
+}
+
 lockstep_moment Core::here() { return {handled_, now(), static_cast<uint32_t>(thread_number())}; }
 
 // ---- sleeping
@@ -139,7 +146,8 @@ void Core::step() {
     const char kind = frame ? static_cast<char>(frame[0]) : 0;
     const bool gate = kind == 'T' || kind == '|';
     if (frame && !time_runs_ && !gate) {
-      if (kind != '?' && participant_) participant_->frame(frame, size);
+      if (kind == '?') asked_ = true;
+      else if (participant_) participant_->frame(frame, size);
       pop();
       continue;
     }
@@ -199,12 +207,13 @@ void Core::announce() {
     next = std::min(next, sleeper->deadline);
     timed += sleeper->deadline != NEVER;
   }
+  const uint64_t runs = asked_ ? threads_.runs(keeper_) : 0;
   std::vector<uint8_t> frame;
   {
     Writer writer(frame, 'I');
     writer.put<uint64_t>(handled_).put<int64_t>(now()).put<int64_t>(next == NEVER ? -1 : next);
     writer.put<uint32_t>(participant_ ? participant_->waiting() : 0).put<uint32_t>(timed).put<uint32_t>(others_);
-    writer.put<uint8_t>(flags_);
+    writer.put<uint8_t>(flags_).put<uint64_t>(runs);
     children_.erase(std::remove_if(children_.begin(), children_.end(), [](pid_t child) {
       siginfo_t info{};
       const int result = waitid(P_PID, child, &info, WEXITED | WNOWAIT | WNOHANG);
@@ -214,14 +223,17 @@ void Core::announce() {
     writer.put<uint16_t>(count);
     for (uint16_t i = 0; i < count; ++i) writer.put<uint32_t>(children_[i]);
   }
-  changed_ = false;
+  changed_ = asked_ = false;
   send(frame.data(), frame.size());
 }
 
 // ---- processes
 
 void Core::forked(pid_t child) {
-  if (child > 0 && connected_) children_.push_back(child);
+  if (child <= 0 || !connected_) return;
+  children_.push_back(child);
+  changed_ = true;
+  poke();
 }
 
 void Core::reset_in_child(bool connect_again) {
@@ -239,7 +251,7 @@ void Core::reset_in_child(bool connect_again) {
   const bool was_connected = connected_;
   connected_ = false;
   handled_ = 0;
-  time_runs_ = false;
+  time_runs_ = asked_ = false;
   if (participant_) participant_->reset();
   if (was_connected && connect_again) connect(std::string(path_));
 }

@@ -54,7 +54,8 @@ public:
 
   // All below: with the lock held.
   void participate(const lockstep_participant * participant) { participant_ = participant; }
-  void send(const uint8_t * frame, size_t size);
+  // What the hub is told of the graph, or a message: it takes the process for busy from then on.
+  void tell(const uint8_t * frame, size_t size);
   void sent_output() { sent_output_ = true; }
   lockstep_moment here();
   void call_later(void (*function)(const void *, size_t), const void * data, size_t count);
@@ -75,6 +76,7 @@ private:
   struct Later { void (*function)(const void *, size_t); const void * data; size_t count; };
   enum class Idle { yes, no, look_again };
 
+  void send(const uint8_t * frame, size_t size);
   void keep();                     // the library's own thread
   static void * keep_of(void * core);
   void poke();
@@ -113,6 +115,7 @@ private:
   size_t in_at_ = 0;
   uint64_t handled_ = 0;
   bool changed_ = false;           // since the process said that it was idle
+  bool asked_ = false;             // whether it still is
   bool time_runs_ = false, stop_at_output_ = false, sent_output_ = false;
   int64_t until_ = 0;
 };

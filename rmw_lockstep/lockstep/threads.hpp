@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -21,6 +22,8 @@ public:
   unsigned count();
   // Looks at every thread but those in `known`, whose sleep is certain otherwise. `children`: whether there are any.
   Look look(const std::vector<pid_t> & known, bool children);
+  // A number that is another one if any thread but `keeper` has run since it was asked for the last time.
+  uint64_t runs(pid_t keeper);
   void forget();
 
 private:

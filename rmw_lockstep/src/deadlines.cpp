@@ -59,7 +59,7 @@ void Graph::subscription_got(EndPoint & subscription, uint64_t id) {
   if (!publisher || known == subscription.publishers.end()) return;
   Alive & alive = known->second;
   if (by_hand(*publisher)) alive.until = after(publisher->qos.liveliness_lease_duration);
-  if (nanoseconds(subscription.qos.deadline) != FOREVER && publisher->asserted | !by_hand(*publisher))
+  if (nanoseconds(subscription.qos.deadline) != FOREVER && (publisher->asserted || !by_hand(*publisher)))
     subscription.next_deadline = after(subscription.qos.deadline);
   if (alive.alive) return;
   auto & status = subscription.events.liveliness_changed;

@@ -47,8 +47,9 @@ EndPoint & Graph::add(std::unique_ptr<EndPoint> owned) {
   end_points_[end_point.id] = std::move(owned);
   timed_ += has_times(end_point);
   if (end_point.local) announce(end_point);
-  for (EndPoint * other : named(end_point.name)) match(end_point, *other);
+  const auto others = named(end_point.name);
   by_name_[end_point.name].push_back(&end_point);
+  for (EndPoint * other : others) match(end_point, *other);
   changed();
   return end_point;
 }
@@ -131,10 +132,9 @@ void Graph::match(EndPoint & one, EndPoint & other) {
   matched_changed(publisher, 1);
   matched_changed(subscription, 1);
   if (subscription.local) {
-    Alive & alive = subscription.publishers[publisher.id];
+    subscription.publishers[publisher.id] = {};
     if (publisher.qos.liveliness != RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC || publisher.asserted)
       subscription_got(subscription, publisher.id);
-    (void)alive;
   }
   if (publisher.local) replay(publisher, subscription);
 }

@@ -56,7 +56,7 @@ def response(client: int, number: int, cdr: bytes = b"") -> bytes:
 
 
 def idle(handled: int, now: int = 0, next_: int = -1, flags: int = 0, children: tuple[int, ...] = ()) -> bytes:
-    payload = struct.pack("<QqqIIIBH", handled, now, next_, 1, 0, 0, flags, len(children))
+    payload = struct.pack("<QqqIIIBQH", handled, now, next_, 1, 0, 0, flags, 1, len(children))
     return frame(b"I", payload + struct.pack(f"<{len(children)}I", *children))
 
 

@@ -50,7 +50,7 @@ def begin(raw: Raw, hub: Hub) -> Raw:
         frame(b"X"),
         frame(b"T", struct.pack("<qB", 2**62, 0)),
         frame(b"I", b"short"),
-        frame(b"I", struct.pack("<QqqIIIBH", 1, 0, 0, 1, 0, 0, 0, 500)),
+        frame(b"I", struct.pack("<QqqIIIBQH", 1, 0, 0, 1, 0, 0, 0, 0, 500)),
         frame(b"N", struct.pack("<QI", 1 << 32 | 9, 2**31)),
         hello(),
         node(2 << 32 | 1, "of_another"),

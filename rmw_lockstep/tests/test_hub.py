@@ -80,7 +80,7 @@ def test_what_a_process_had_is_gone_with_it(hub: Hub, process: Make) -> None:
     while hub.graph.nodes:
         hub.pause()
     hub.wait_until_idle()
-    assert other.kinds() in ("WgNEen", "WNEgen")
+    assert other.kinds().replace("?", "") in ("WgNEen", "WNEgen")
 
 
 def test_a_message_is_recorded_with_its_moment(hub: Hub, process: Make) -> None:
