@@ -18,7 +18,7 @@ from importlib import metadata
 from pathlib import Path
 
 import spinbook
-from spinbook.handout.archive import zipped
+from interface_compiler.archive import zipped
 from spinbook.problem import Problem, SpinbookError
 
 #: What `spinbook new` starts from has solutions and hidden checks in it; courses may still use them.

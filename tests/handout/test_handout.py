@@ -13,7 +13,7 @@ import yaml
 
 from grader.exercise import load
 from handout.conftest import CHAPTER, NOTE, ROOT, HandedOut, append, copy_course
-from spinbook.handout.archive import zipped
+from interface_compiler.archive import zipped
 from spinbook.handout.comments import without_comments
 from spinbook.handout.leaks import leaks
 from spinbook.handout.notebook import for_students
