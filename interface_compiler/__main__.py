@@ -10,7 +10,13 @@ from interface_compiler.wheel import install
 
 
 def main() -> int:
-    """Install the standard packages that are missing or out of date; 3 if this machine can't compile them."""
+    """Install the standard packages that are missing or out of date; 3 if this machine can't compile them.
+
+    With the word `needs`, only name the packages of Debian and Ubuntu that a compiler needs.
+    """
+    if sys.argv[1:] == ["needs"]:
+        print(*toolchain.debian_packages())
+        return 0
     if reason := toolchain.missing():
         print(reason, file=sys.stderr)
         return 3

@@ -25,8 +25,7 @@ def missing_headers() -> str | None:
         return (
             f"Interfaces are compiled with Python.h, not found in {headers()}: install a Python that has its headers."
         )
-    debian = f"python{sys.version_info.major}.{sys.version_info.minor}-dev"
-    return f"Interfaces are compiled with Python.h, not found here: {_install(debian, 'python3-devel')}"
+    return f"Interfaces are compiled with Python.h, not found here: {_install(_python_dev(), 'python3-devel')}"
 
 
 def missing() -> str | None:
@@ -37,6 +36,12 @@ def missing() -> str | None:
             "run `spinbook package`, then `colcon build` in the workspace, and source its install/setup.bash."
         )
     return " ".join(filter(None, (missing_compiler(), missing_headers()))) or None
+
+
+def debian_packages() -> list[str]:
+    """What Debian and Ubuntu call that which is missing."""
+    packages = ["g++"] if missing_compiler() else []
+    return packages + ([_python_dev()] if missing_headers() and sys.base_prefix == "/usr" else [])
 
 
 def headers() -> Path:
@@ -52,6 +57,10 @@ def sourced_ros() -> Path | None:
         if entry and (Path(entry) / "share" / "rosidl_adapter").is_dir():
             return Path(entry)
     return None
+
+
+def _python_dev() -> str:
+    return f"python{sys.version_info.major}.{sys.version_info.minor}-dev"
 
 
 def _install(debian: str, fedora: str) -> str:
