@@ -17,10 +17,10 @@ from typing import Any
 
 import pytest
 import rclpy
+from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Twist
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
-from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
@@ -97,6 +97,10 @@ class Outside:
         while not condition():
             assert time.monotonic() < end, f"never: {what}"
             self._executor.spin_once(timeout_sec=0.05)
+
+    def moment(self) -> None:
+        """Spin until something comes, for 0.1 s at most."""
+        self._executor.spin_once(timeout_sec=0.1)
 
     def hear(self, kind: type, topic: str) -> list[Any]:
         """A list to which everything on a topic is added."""
