@@ -78,8 +78,8 @@ def _build(course: Course, chapter: Path, notebook: Path, known: Surroundings) -
     return Built(chapter, notebook, tuple(problems), fresh=True)
 
 
-def _sorted(known: Surroundings) -> tuple[str, list[str], list[str]]:
-    return known.package, sorted(known.modules), sorted(known.exercises)
+def _sorted(known: Surroundings) -> tuple[str, list[str], list[str], list[str]]:
+    return known.package, sorted(known.modules), sorted(known.exercises), sorted(known.interfaces)
 
 
 def _read_record(file: Path) -> Mapping[str, Any]:
