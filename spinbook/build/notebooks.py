@@ -44,7 +44,7 @@ def build_notebooks(course: Course) -> Iterator[Built]:
     record = course.build_folder / ".cache" / "notebooks.json"
     before = _read_record(record)
     known = surroundings(course)
-    common = digest(code_digest("chapter", "build", "course"), repr(course), repr(_sorted(known)))
+    common = digest(code_digest("chapter", "build", "course", "interfaces"), repr(course), repr(_sorted(known)))
     parts = ("exercises", "solutions")
     exercise_files = files_digest(
         (file for part in parts for file in (course.root / part).rglob("*") if file.is_file()), course.root

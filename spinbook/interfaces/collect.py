@@ -7,12 +7,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from interface_compiler import prefixes
+from interface_compiler.checks import check
 from interface_compiler.definition import Definition, Fault, read_folder
 from spinbook.chapter.definition_title import interface_path, is_someone_elses
 from spinbook.chapter.markdown import outline
 from spinbook.chapter.source import read_source
 from spinbook.course.course import Course
-from spinbook.problem import Problem
+from spinbook.problem import Problem, SpinbookError
 
 #: The course's folder with definitions: interfaces/PACKAGE/{msg,srv,action}/.
 FOLDER = "interfaces"
@@ -42,6 +44,15 @@ def collect(course: Course) -> Collected:
             known.add((item.full_name, item.text))
             definitions.append(item)
     return Collected(tuple(definitions), tuple(problems(faults)))
+
+
+def checked(course: Course) -> Collected:
+    """The same, of a course whose definitions have no faults. Raises SpinbookError with each fault there is."""
+    collected = collect(course)
+    faults = check(collected.definitions, prefixes.interfaces(prefixes.installed()))
+    if found := [*collected.problems, *problems(faults)]:
+        raise SpinbookError(*found)
+    return collected
 
 
 def problems(faults: Iterable[Fault]) -> Iterator[Problem]:
