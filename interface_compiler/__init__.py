@@ -13,6 +13,7 @@ and `grader` never imports `spinbook`. It imports neither.
     building    makes a prefix of packages, in a process of its own
     store       compiled packages, kept for as long as nothing changes
     activation  lets this process and its children import compiled packages
+    near        what was compiled for a course before
     wheel       compiled packages as a wheel
     shipped     the definitions that come with Spinbook
 """

@@ -57,7 +57,7 @@ def classify(
         return Classified(fence, FenceKind.STATIC, "it says `static`"), problems
     if interface := interface_path(fence.title or "", interface_package):
         package = interface.partition("/")[0]
-        if is_someone_elses(package):
+        if is_someone_elses(package, interface_package):
             why = f"it shows an interface of {package}, which is installed"
             return Classified(fence, FenceKind.STATIC, why), problems
         return Classified(fence, FenceKind.INTERFACE, name=interface), problems

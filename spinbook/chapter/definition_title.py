@@ -23,8 +23,10 @@ def interface_path(title: str, package: str) -> str | None:
     return f"{match['package'] or package}/{match['kind']}/{match['name']}.{match['kind']}"
 
 
-def is_someone_elses(package: str) -> bool:
-    """Whether a package is installed and no course's: a chapter only shows what is in it."""
+def is_someone_elses(package: str, own: str) -> bool:
+    """Whether a package is installed and no course's: a chapter only shows what is in it. `own` is this course's."""
+    if package == own:
+        return False
     if package in (*shipped.standard(), *shipped.optional()):
         return True
     prefix = prefixes.prefix_of(package, prefixes.installed())

@@ -78,7 +78,8 @@ def _in_chapter(course: Course, file: Path) -> Iterator[Definition]:
         fence = span.fence
         if fence is None or fence.has("static"):
             continue
-        path = interface_path(fence.title or "", f"{course.package.name}_interfaces")
-        if path and not is_someone_elses(path.partition("/")[0]):
+        own = f"{course.package.name}_interfaces"
+        path = interface_path(fence.title or "", own)
+        if path and not is_someone_elses(path.partition("/")[0], own):
             package, kind, name = path.split("/")
             yield Definition(package, kind, name.rpartition(".")[0], fence.code, file, fence.first_code_line)

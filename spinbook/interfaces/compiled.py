@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from interface_compiler import store
-from interface_compiler.definition import CompileError, DefinitionError
+from interface_compiler import activation, prefixes, store
+from interface_compiler.definition import CompileError, DefinitionError, by_package
+from interface_compiler.near import make_current, use
 from interface_compiler.store import Compiled
 from spinbook.course.course import FILE, Course
 from spinbook.interfaces.collect import Collected, collect, problems
-from spinbook.interfaces.near import make_current, use
 from spinbook.problem import Problem, SpinbookError
 
 
@@ -27,7 +27,7 @@ def compile_course(course: Course, collected: Collected | None = None) -> Compil
     collected = collected or collect(course)
     if collected.problems:
         raise SpinbookError(*collected.problems)
-    if not collected.definitions:
+    if not collected.definitions or _are_sourced(collected):
         return None
     try:
         compiled = store.ensure(collected.definitions, folder_of(course))
@@ -39,3 +39,11 @@ def compile_course(course: Course, collected: Collected | None = None) -> Compil
     make_current(folder_of(course), compiled.prefix)
     use(compiled.prefix, folder_of(course))
     return compiled
+
+
+def _are_sourced(collected: Collected) -> bool:
+    """Whether a sourced workspace has them all, built by colcon from the same text."""
+    places = [prefix for prefix in prefixes.installed() if prefix not in activation.active()]
+    return all(
+        store.is_installed(package, members, places) for package, members in by_package(collected.definitions).items()
+    )

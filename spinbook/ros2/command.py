@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from spinbook.interfaces.near import use_near
+from interface_compiler.near import use_near
 from spinbook.ros2 import stopping
 from spinbook.ros2.groups import Entry, Menu
 from spinbook.ros2.real import hand_over

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from interface_compiler import activation, prefixes, store
 from interface_compiler.definition import CompileError, Definition, DefinitionError
+from interface_compiler.near import current, make_current, use, use_near
 from spinbook.chapter.definition_title import interface_path, is_someone_elses
-from spinbook.interfaces.near import current, make_current, use, use_near
 from spinbook.package.write_interfaces import write_interface_packages, written_definitions
 from spinbook.runtime.failure import CellFailed
 from spinbook.runtime.session import Session
@@ -24,11 +24,12 @@ def begin(session: Session) -> None:
 
 def run(session: Session, title: str, text: str) -> None:
     """Define an interface: `title` is `msg/NAME.msg` or `PACKAGE/msg/NAME.msg`. Raises CellFailed."""
-    path = interface_path(title, f"{session.package.name}_interfaces")
+    own = f"{session.package.name}_interfaces"
+    path = interface_path(title, own)
     if path is None:
         raise CellFailed(f"`{title}` names no interface. Write msg/NAME.msg, srv/NAME.srv or action/NAME.action.")
     package, kind, file = path.split("/")
-    if is_someone_elses(package):
+    if is_someone_elses(package, own):
         raise CellFailed(f"The package {package} is installed: choose another one for your own interfaces.")
     item = Definition(package, kind, file.rpartition(".")[0], text, Path(title))
     members = [item, *(other for other in _others(session, package) if other.full_name != item.full_name)]

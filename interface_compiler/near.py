@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from interface_compiler import activation
-from spinbook.written import write_if_changed
 
-#: The file that makes a folder a course: `spinbook.course.course.FILE`, without loading what reads it.
+#: The file that makes a folder a course.
 _COURSE = "course.toml"
 #: Names the prefix that is the newest, in the store's folder.
 _CURRENT = "current"
@@ -15,7 +15,9 @@ _CURRENT = "current"
 
 def make_current(folder: Path, prefix: Path) -> None:
     """Note which of a store's prefixes is in use, for processes that begin later."""
-    write_if_changed(folder / _CURRENT, prefix.name + "\n")
+    new = folder / f".{_CURRENT}-{os.getpid()}"
+    new.write_text(prefix.name + "\n", encoding="utf-8")
+    new.replace(folder / _CURRENT)
 
 
 def use(prefix: Path, folder: Path) -> None:
