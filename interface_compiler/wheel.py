@@ -19,6 +19,7 @@ from pathlib import Path
 
 from interface_compiler import shipped, store
 from interface_compiler.archive import zipped
+from interface_compiler.checks import dependencies
 from interface_compiler.definition import CompileError, Definition
 from interface_compiler.prefixes import PYTHON, RESOURCES
 
@@ -73,6 +74,15 @@ def install(package: str) -> bool:
         file.write_bytes(content)
         _pip_install([file])
     return True
+
+
+def needed(package: str) -> list[str]:
+    """The packages that one of these needs, each after those that it needs itself."""
+    found: list[str] = []
+    for name in sorted(dependencies(shipped.definitions(package))[package]):
+        if name in (*shipped.standard(), *shipped.optional()):
+            found += [each for each in (*needed(name), name) if each not in found]
+    return found
 
 
 def is_installed(package: str, definitions: Sequence[Definition]) -> bool:
