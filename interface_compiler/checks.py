@@ -84,7 +84,8 @@ def _unknown(reference: Reference, definition: Definition, known: Known) -> Iter
             found = f"`{reference.written}` needs the package {package}, which is not installed."
             yield Fault(*place, found, f"Compile it, once: spinbook interfaces add {package}")
             return
-        close = difflib.get_close_matches(package, known, n=1)
+        having = [owner for owner, names in known.items() if f"msg/{name}" in names]
+        close = difflib.get_close_matches(package, having, n=1)
         fix = f"Did you mean {close[0]}/{name}?" if close else "Install it, or add its definitions to interfaces/."
         yield Fault(*place, f"`{reference.written}`: there is no package `{package}`.", fix)
     elif f"srv/{name}" in known[package] or f"action/{name}" in known[package]:

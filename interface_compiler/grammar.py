@@ -76,6 +76,11 @@ class _LineReader:
         self._reading = reading
         self._line = 0
         self._names: dict[str, int] = {}
+        #: Constants without a comment, in earlier parts and in this one -> line.
+        self._bare: dict[tuple[str, str, str], int] = {}
+        self._bare_here: dict[tuple[str, str, str], int] = {}
+        self._commented = False
+        self._at_top = True
 
     def read_all(self) -> None:
         separators = []
@@ -83,10 +88,16 @@ class _LineReader:
             self._line = number
             if raw == "---":
                 separators.append(self._line)
-                self._names = {}
+                self._begin_part()
             else:
                 self._read(raw.replace("\t", " "))
         self._count(separators)
+
+    def _begin_part(self) -> None:
+        self._names = {}
+        self._bare.update(self._bare_here)
+        self._bare_here = {}
+        self._commented, self._at_top = False, True
 
     def _count(self, separators: list[int]) -> None:
         kind, wanted = self._definition.kind, KINDS[self._definition.kind]
@@ -105,9 +116,14 @@ class _LineReader:
         self._reading.faults.append(Fault(self._definition.file, self._line, found, fix))
 
     def _read(self, raw: str) -> None:
-        text = raw.partition("#")[0].strip()
+        text, hash_sign, _ = raw.partition("#")
+        text = text.strip()
         if not text:
+            # Comments at the top of a part are about the part; others about what follows.
+            self._commented = bool(hash_sign) and not self._at_top
+            self._at_top = self._at_top and bool(hash_sign)
             return
+        commented, self._commented, self._at_top = self._commented or bool(hash_sign), False, False
         if text.strip("-") == "" and len(text) > 1:
             fix = "A separator is exactly three dashes at the left margin, with no space behind."
             self._fault(f"`{text}` is not a separator.", fix)
@@ -117,7 +133,10 @@ class _LineReader:
         if not rest:
             self._fault(f"`{text}` has no name.", f"Write a type and a name, such as: {written} value")
         elif "=" in rest and not re.match(r"\w+\s+[\"'\[]", rest):
-            self._constant(written, *(part.strip() for part in rest.split("=", 1)))
+            name, value = (part.strip() for part in rest.split("=", 1))
+            self._constant(written, name, value)
+            if not commented:
+                self._must_be_distinct(written, name, value)
         else:
             name, _, default = rest.partition(" ")
             self._field(raw, written, name, default.strip())
@@ -131,6 +150,14 @@ class _LineReader:
             self._fault(f"`{name}` can't be a constant's name.", fix)
         elif self._is_new(name):
             self._value(written, name, value, "value")
+
+    def _must_be_distinct(self, *constant: str) -> None:
+        """ROS's parser takes two constants for one if all of them is the same, and its C code does not compile."""
+        written, name, value = constant
+        if (written, name, value) in self._bare:
+            found = f"`{name}={value}` is in line {self._bare[written, name, value]} too, and ROS 2 mixes the two up."
+            self._fault(found, "Write a comment behind one of them: then they differ.")
+        self._bare_here[written, name, value] = self._line
 
     def _field(self, raw: str, written: str, name: str, default: str) -> None:
         known = self._type(written)

@@ -62,6 +62,16 @@ def test_a_wrong_line_is_told_with_its_number_and_the_remedy(line: str, found: s
     assert fix in fault.fix
 
 
+def test_a_constant_that_is_the_same_in_two_parts_needs_a_comment() -> None:
+    text = "int32 goal\n---\nuint8 NONE=0\nuint8 code\n---\nuint8 NONE=0{}\nuint8 state\n"
+
+    (fault,) = faults(definition("action/Go.action", text.format("")))
+
+    assert fault.line == 6
+    assert "`NONE=0` is in line 3 too" in fault.found
+    assert faults(definition("action/Go.action", text.format(" # nothing yet"))) == []
+
+
 def test_a_field_twice_names_the_first_ones_line() -> None:
     (fault,) = faults(definition("msg/Thing.msg", "int32 a\nint32 b\n\nfloat64 a\n"))
 
