@@ -85,7 +85,9 @@ def compile_package(generated: Generated, work: Path, dependencies: Sequence[Dep
         CompileError: if gcc fails.
     """
     units = _units(generated, work)
-    flags = [*_FLAGS, f"-ffile-prefix-map={work}=.", *_includes(generated, dependencies, wheels)]
+    # Assertions in the code name its file: without the folder, so that the result is the same wherever it is made.
+    places = [f"-ffile-prefix-map={folder}=." for folder in (work, generated.python)]
+    flags = [*_FLAGS, *places, *_includes(generated, dependencies, wheels)]
     objects = [work / f"{number}.o" for number in range(len(units))]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         done = pool.map(lambda unit, target: _compile(unit, target, flags, generated.package), units, objects)

@@ -23,6 +23,8 @@ from interface_compiler.prefixes import PYTHON, RESOURCES
 
 #: Wheels whose version decides how the code turns out.
 _WHEELS = ("ros-rosidl-adapter", "ros-rosidl-generator-py", "ros-rosidl-typesupport-fastrtps-c", "ros-fastcdr")
+#: The files of this folder that decide it, too.
+_OWN = ("generating.py", "compiling.py", "building.py", "dispatch.cpp.in")
 #: Prefixes that a store keeps: notebooks that are open may still use one of an earlier text.
 _KEPT = 8
 _KEY = "spinbook-key"
@@ -113,8 +115,8 @@ def keys(definitions: Sequence[Definition]) -> dict[str, str]:
 
 @functools.cache
 def _machine() -> str:
-    """What decides the result besides the definitions: the compiler of this folder, Python, and ROS's generators."""
-    own = sorted(file for file in Path(__file__).parent.iterdir() if file.suffix in (".py", ".in"))
+    """What decides the result besides the definitions: how it is made here, Python, and ROS's generators."""
+    own = [Path(__file__).with_name(name) for name in _OWN]
     told = [sysconfig.get_config_var("EXT_SUFFIX") or "", *(file.read_text(encoding="utf-8") for file in own)]
     for wheel in _WHEELS:
         with contextlib.suppress(metadata.PackageNotFoundError):

@@ -65,7 +65,7 @@ def install(package: str) -> bool:
     Raises KeyError for a package that does not come with it, and CompileError where it can't be compiled or installed.
     """
     definitions = shipped.definitions(package)
-    if is_installed(package, definitions):
+    if _is_current(package, definitions):
         return False
     with tempfile.TemporaryDirectory(prefix="spinbook-") as temporary:
         compiled = store.ensure(definitions, Path(temporary))
@@ -85,7 +85,7 @@ def needed(package: str) -> list[str]:
     return found
 
 
-def is_installed(package: str, definitions: Sequence[Definition]) -> bool:
+def _is_current(package: str, definitions: Sequence[Definition]) -> bool:
     """Whether this environment has the wheel of just these definitions, made by just this compiler."""
     try:
         version = metadata.version(_project(package))

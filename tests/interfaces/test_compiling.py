@@ -15,6 +15,7 @@ from interface_compiler import prefixes, store, toolchain
 from interface_compiler.activation import extend
 from interface_compiler.definition import CompileError, DefinitionError
 from interface_compiler.store import Compiled, ensure, find
+from interface_compiler.wheel import wheel
 
 POINT = definition("msg/Point.msg", "float64 x 1.5\n", "small_interfaces")
 
@@ -88,6 +89,12 @@ def test_a_package_may_use_another_ones_messages(tmp_path: Path) -> None:
         "print(deserialize_message(serialize_message(path), Path) == path)"
     )
     assert run(code, compiled) == "True\n"
+
+
+def test_the_same_definitions_give_the_same_wheel_wherever_it_is_made(tmp_path: Path) -> None:
+    first, second = (wheel("small_interfaces", ensure([POINT], tmp_path / name).prefix) for name in ("one", "two"))
+
+    assert first == second
 
 
 def test_two_who_want_the_same_wait_for_one_another(tmp_path: Path) -> None:
