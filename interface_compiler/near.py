@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 from interface_compiler import activation
+from interface_compiler.prefixes import PYTHON
 
 #: The file that makes a folder a course.
 _COURSE = "course.toml"
@@ -27,12 +28,13 @@ def use(prefix: Path, folder: Path) -> None:
 
 
 def current(folder: Path) -> Path | None:
-    """The prefix that was made current in a store, if it is there."""
+    """The prefix that was made current in a store, if it is there and for this version of Python."""
     try:
-        prefix = folder.resolve() / (folder / _CURRENT).read_text(encoding="utf-8").strip()
+        name = (folder / _CURRENT).read_text(encoding="utf-8").strip()
     except OSError:
         return None
-    return prefix if prefix.is_dir() and prefix.name else None
+    prefix = folder.resolve() / name
+    return prefix if name and (prefix / PYTHON).is_dir() else None
 
 
 def use_near(start: Path) -> Path | None:

@@ -31,7 +31,19 @@ class Site:
 
 
 #: What Spinbook's own code makes of a course, down to the outputs of its notebooks.
-_CODE = ("site", "chapter", "build", "course", "runtime", "ros2", "turtlesim", "package", "graph", "animation")
+_CODE = (
+    "site",
+    "chapter",
+    "build",
+    "course",
+    "runtime",
+    "ros2",
+    "turtlesim",
+    "package",
+    "graph",
+    "animation",
+    "interfaces",
+)
 
 
 def unchanged_site(course: Course, *, as_it_ran: bool) -> Site | None:
