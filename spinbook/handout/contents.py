@@ -20,6 +20,7 @@ from spinbook.handout.leaks import leaks
 from spinbook.handout.notebook import for_students
 from spinbook.handout.secrets import Secret, hidden_names, secrets
 from spinbook.handout.wheel import wheel
+from spinbook.interfaces.compiled import compile_course
 from spinbook.problem import Problem, SpinbookError
 from spinbook.update.base import base_files
 
@@ -38,6 +39,8 @@ def handout(course: Course) -> Handout:
 
     Raises SpinbookError where a chapter or an exercise has an error, or where a secret would be handed out.
     """
+    # First: exercises may be on the course's own messages.
+    compile_course(course)
     notebooks = _notebooks(course)
     files = dict(notebooks)
     exercises = [_load(course, name) for name in sorted(_used(course, notebooks))]
