@@ -30,8 +30,7 @@ def doctor(checks: tuple[str, ...], as_json: bool) -> None:
       middleware   logs         message      environment
       memory       kernel       colcon       compiler
       namespaces   sandbox      bubblewrap   lockstep
-      ros2
-      browser
+      ros2         browser
 
     \b
       ✓  works
