@@ -69,13 +69,26 @@ def _runnable(cell: Cell) -> dict[str, Any]:
     metadata: dict[str, Any] = {"kind": cell.kind.value, "line": cell.line}
     if cell.kind is CellKind.NODE:
         metadata["node"] = cell.name
-        spin_class = f" --class {cell.spin_class}" if cell.spin_class else ""
-        source = f"%%node {cell.name}{_bounds(cell)}{spin_class}\n{cell.source}"
+        source = f"%%node {cell.name}{_bounds(cell)}{_how(cell)}\n{cell.source}"
+        if cell.before:
+            metadata["above"] = cell.before.count("\n")
+    elif cell.kind is CellKind.PART:
+        source = f"%%part {cell.name}{'' if cell.runs_in_kernel else ' --keep'}\n{cell.source}"
     elif cell.kind is CellKind.SHELL:
         source = "\n".join(_shell_line(command, cell) for command in cell.commands)
     else:
         source = cell.source
     return _code(cell.id, source, metadata, ["raises-exception"] if cell.raises else [])
+
+
+def _how(cell: Cell) -> str:
+    """The options that say how a node's code is started and made whole."""
+    words = [f"--class {name}" for name in cell.spin_classes]
+    words += ["--main"] if cell.runs_main else []
+    words += [f"--as {package}/{executable}" for package, executable in cell.executables]
+    if cell.before:
+        words.append(" ".join(["--after", *cell.after]) if cell.after else "--usual-imports")
+    return "".join(f" {word}" for word in words)
 
 
 def _bounds(cell: Cell) -> str:

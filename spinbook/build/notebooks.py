@@ -14,6 +14,7 @@ from spinbook.build.notebook import notebook_json
 from spinbook.build.reading import surroundings
 from spinbook.chapter.read import Surroundings, read_chapter
 from spinbook.course.course import Course
+from spinbook.course.obstacles import strict
 from spinbook.problem import Problem, Severity
 from spinbook.written import write_if_changed
 
@@ -29,13 +30,20 @@ class Built:
     """False where the chapter was not read again, because nothing that it depends on has changed."""
 
     @property
+    def name(self) -> str:
+        """What the chapter is called."""
+        return self.notebook.name.removesuffix(".ipynb")
+
+    @property
     def failed(self) -> bool:
         """Whether an error stopped it; what was built before is still there."""
         return any(problem.is_error for problem in self.problems)
 
 
-def build_notebooks(course: Course) -> Iterator[Built]:
+def build_notebooks(course: Course, *, is_strict: bool = False) -> Iterator[Built]:
     """Build `build/notebooks/CHAPTER.ipynb` for each chapter, in the course's order.
+
+    `is_strict` makes it an error that something is shown and not run.
 
     A chapter with an error leaves the notebook of its last good build as it was. Notebooks of chapters that the course
     no longer lists are removed.
@@ -44,33 +52,38 @@ def build_notebooks(course: Course) -> Iterator[Built]:
     record = course.build_folder / ".cache" / "notebooks.json"
     before = _read_record(record)
     known = surroundings(course)
-    common = digest(code_digest("chapter", "build", "course"), repr(course), repr(_sorted(known)))
+    common = digest(code_digest("chapter", "build", "course"), repr(course), repr(_sorted(known)), str(is_strict))
     parts = ("exercises", "solutions")
     exercise_files = files_digest(
         (file for part in parts for file in (course.root / part).rglob("*") if file.is_file()), course.root
     )
     after: dict[str, Any] = {}
     for chapter in course.chapters:
-        notebook = folder / f"{chapter.stem}.ipynb"
+        notebook = folder / f"{known.names[chapter]}.ipynb"
         key = digest(common, exercise_files, files_digest([course.root / chapter], course.root))
         entry = before.get(chapter.as_posix())
         if entry and entry["key"] == key and notebook.exists():
             built = Built(chapter, notebook, tuple(_problem(p) for p in entry["problems"]), fresh=False)
         else:
-            built = _build(course, chapter, notebook, known)
+            built = _build(course, chapter, notebook, known, is_strict)
         if not built.failed:
-            after[chapter.as_posix()] = {"key": key, "problems": [_plain(problem) for problem in built.problems]}
+            after[chapter.as_posix()] = {
+                "key": key,
+                "notebook": notebook.name,
+                "problems": [_plain(problem) for problem in built.problems],
+            }
         yield built
-    for gone in set(before) - {chapter.as_posix() for chapter in course.chapters}:
-        (folder / f"{Path(gone).stem}.ipynb").unlink(missing_ok=True)
-        (course.build_folder / "executed" / f"{Path(gone).stem}.ipynb").unlink(missing_ok=True)
+    names = {f"{name}.ipynb" for name in known.names.values()}
+    for name in {entry.get("notebook", "") for entry in before.values()} - names - {""}:
+        (folder / name).unlink(missing_ok=True)
+        (course.build_folder / "executed" / name).unlink(missing_ok=True)
     write_if_changed(record, json.dumps(after, indent=1, sort_keys=True) + "\n")
 
 
-def _build(course: Course, chapter: Path, notebook: Path, known: Surroundings) -> Built:
+def _build(course: Course, chapter: Path, notebook: Path, known: Surroundings, is_strict: bool) -> Built:
     reading = read_chapter(course.root, chapter, known)
-    problems = list(reading.problems)
-    if reading.chapter is not None:
+    problems = [strict(problem) for problem in reading.problems] if is_strict else list(reading.problems)
+    if reading.chapter is not None and not any(problem.is_error for problem in problems):
         try:
             write_if_changed(notebook, notebook_json(reading.chapter, course))
         except ExerciseError as error:
@@ -78,8 +91,8 @@ def _build(course: Course, chapter: Path, notebook: Path, known: Surroundings) -
     return Built(chapter, notebook, tuple(problems), fresh=True)
 
 
-def _sorted(known: Surroundings) -> tuple[str, list[str], list[str]]:
-    return known.package, sorted(known.modules), sorted(known.exercises)
+def _sorted(known: Surroundings) -> tuple[str, list[str], list[str], list[tuple[Path, str]]]:
+    return known.package, sorted(known.modules), sorted(known.exercises), sorted(known.names.items())
 
 
 def _read_record(file: Path) -> Mapping[str, Any]:
@@ -97,8 +110,10 @@ def _plain(problem: Problem) -> dict[str, Any]:
         "found": problem.found,
         "mend": problem.mend,
         "severity": problem.severity.value,
+        "group": problem.group,
     }
 
 
 def _problem(plain: Mapping[str, Any]) -> Problem:
-    return Problem(Path(plain["file"]), plain["line"], plain["found"], plain["mend"], Severity(plain["severity"]))
+    severity = Severity(plain["severity"])
+    return Problem(Path(plain["file"]), plain["line"], plain["found"], plain["mend"], severity, plain["group"])

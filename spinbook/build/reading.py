@@ -2,29 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
-from pathlib import Path
 
-from spinbook.chapter.read import Reading, Surroundings, read_chapter
+from spinbook.chapter.read import Reading, Surroundings, modules_of, read_chapter
 from spinbook.course.course import Course
-
-_TITLE = re.compile(rb"""^[`~]{3,}.*\btitle=["']?(\w+)\.py\b""", re.MULTILINE)
 
 
 def surroundings(course: Course) -> Surroundings:
     """What any chapter of the course may refer to: modules of every chapter are found by their fences' titles."""
     modules: set[str] = set()
     for file in course.chapters:
-        modules |= {name.decode() for name in _TITLE.findall(_bytes(course.root / file))}
-    return Surroundings(course.package.name, frozenset(modules), course.exercises)
-
-
-def _bytes(file: Path) -> bytes:
-    try:
-        return file.read_bytes()
-    except OSError:
-        return b""
+        modules |= modules_of(course.root, file)
+    return Surroundings(course.package.name, frozenset(modules), course.exercises, course.names)
 
 
 def read_all(course: Course) -> Iterator[Reading]:

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import ast
 import builtins
+import contextlib
+import functools
+import importlib.util
 import re
 import symtable
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 #: A line that is IPython's and not Python's: `%plot …`, `!ls`, `%%time`.
 _MAGIC = re.compile(r"^(\s*)([%!].*)$")
+#: What setup.py writes under console_scripts.
+_ENTRY_POINT = re.compile(r"[\w.-]+\s*=\s*[\w.]+:\w+")
 _SPINS = frozenset({"spin", "spin_once", "spin_until_future_complete"})
 _ALWAYS_THERE = frozenset(dir(builtins)) | {
     "__name__",
@@ -57,11 +63,40 @@ class PythonCode:
     """Names it uses at its top level, or in what runs from there, that neither it nor Python defines -> line."""
     fragment: str | None = None
     """Why it can't stand alone although each line is Python, if so."""
+    relative_imports: Mapping[str, int] = field(default_factory=dict)
+    """`.module` of each `from .module import name` -> line."""
+    star_import: bool = False
+    """Whether `from module import *` may bind any name."""
+    calls_main: bool = False
+    """Whether its top level calls `main()` outside a guard."""
+    starts_ros: bool = False
+    """Whether it calls rclpy.init or makes a node."""
+    loops: bool = False
+    """Whether its top level loops without end."""
+    programs: Mapping[str, int] = field(default_factory=dict)
+    """Programs that it starts through os.system, subprocess or `!…` -> line."""
+    asks: int = 0
+    """The line on which it waits for somebody to type; 0: it does not."""
+    alone: tuple[str, ...] = ()
+    """The Node classes that nothing in the code makes or derives from, and that need no arguments."""
+    lacking: Mapping[str, int] = field(default_factory=dict)
+    """Attributes of `self` that a Node class uses and nothing sets -> line."""
 
     @property
     def is_node(self) -> bool:
         """Whether it is a program of its own: it spins, or is a Node that can be spun."""
-        return (self.spins or bool(self.node_classes)) and not (self.is_setup_script or self.is_launch_file)
+        is_program = self.spins or self.starts_ros or self.loops or bool(self.node_classes)
+        return is_program and not (self.is_setup_script or self.is_launch_file)
+
+    @property
+    def runs_main(self) -> bool:
+        """Whether it has a `main` that somebody else has to call, as `ros2 run` does."""
+        return self.has_main and not self.has_main_guard and not self.calls_main
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether it is a program that starts by itself or by its `main`."""
+        return self.has_main or self.has_main_guard or self.spins or self.loops
 
 
 def blank_magics(code: str) -> str:
@@ -74,6 +109,17 @@ def has_magics(code: str) -> bool:
     return any(_MAGIC.match(line) for line in code.split("\n"))
 
 
+def programs_in_magics(code: str) -> dict[str, int]:
+    """The programs that a snippet starts with `!program` or `%program` -> line."""
+    found: dict[str, int] = {}
+    for number, line in enumerate(code.split("\n"), start=1):
+        if match := _MAGIC.match(line):
+            for word in re.split(r"[\s;&|!%]+", match.group(2)):
+                found.setdefault(word.rsplit("/", 1)[-1], number)
+    return found
+
+
+@functools.lru_cache(maxsize=4096)
 def inspect(code: str) -> PythonCode:
     """Read a piece of Python.
 
@@ -112,11 +158,14 @@ def _only_inside_function(code: str) -> str | None:
 
 def _facts(tree: ast.Module, code: str) -> PythonCode:
     imports: dict[str, int] = {}
+    optional = _optional_imports(tree)
     interfaces: dict[tuple[str, str], int] = {}
     node_classes: list[str] = []
     ros_name: str | None = None
     spins = setup = launch = guard = False
     for item in ast.walk(tree):
+        if item in optional:
+            continue
         if isinstance(item, ast.Import):
             for alias in item.names:
                 imports.setdefault(alias.name, item.lineno)
@@ -132,12 +181,20 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
             spins = spins or name in _SPINS
             setup = setup or (name == "setup" and _imports_setuptools(tree))
             ros_name = ros_name or _node_name(item, name)
+        elif (
+            isinstance(item, ast.Constant)
+            and isinstance(item.value, str)
+            and _ENTRY_POINT.fullmatch(item.value.strip())
+        ):
+            setup = True
         elif isinstance(item, ast.FunctionDef) and item.name == "generate_launch_description":
             launch = True
     for statement in tree.body:
         if isinstance(statement, ast.If) and "__main__" in ast.dump(statement.test):
             guard = True
     defines, needs = _names(tree, code)
+    classes = {item.name: item for item in ast.walk(tree) if isinstance(item, ast.ClassDef)}
+    calls = [item for item in ast.walk(tree) if isinstance(item, ast.Call)]
     return PythonCode(
         imports=imports,
         interfaces=interfaces,
@@ -150,7 +207,151 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
         is_launch_file=launch,
         defines=defines,
         needs=needs,
+        relative_imports={
+            "." * i.level + (i.module or ""): i.lineno
+            for i in ast.walk(tree)
+            if isinstance(i, ast.ImportFrom) and i.level
+        },
+        star_import=any(
+            alias.name == "*" for i in ast.walk(tree) if isinstance(i, ast.ImportFrom) for alias in i.names
+        ),
+        calls_main=any(_calls_main(statement) for statement in tree.body),
+        starts_ros=any(_starts_ros(call) for call in calls),
+        loops=any(_loops(statement) for statement in _at_top(tree)),
+        programs=programs_started(calls),
+        asks=next((call.lineno for call in calls if isinstance(call.func, ast.Name) and call.func.id == "input"), 0),
+        alone=tuple(name for name in node_classes if _can_stand_alone(name, classes, tree)),
+        lacking=_lacking(tree, node_classes, classes),
     )
+
+
+def _optional_imports(tree: ast.Module) -> set[ast.AST]:
+    """Imports whose absence the code itself deals with, or that only a type checker reads."""
+    found: set[ast.AST] = set()
+    for item in ast.walk(tree):
+        caught = isinstance(item, ast.Try) and any(
+            handler.type is None or "Error" in ast.dump(handler.type) or "Exception" in ast.dump(handler.type)
+            for handler in item.handlers
+        )
+        if caught or (isinstance(item, ast.If) and "TYPE_CHECKING" in ast.dump(item.test)):
+            assert isinstance(item, ast.Try | ast.If)
+            found |= {i for i in item.body if isinstance(i, ast.Import | ast.ImportFrom)}
+    return found
+
+
+def _calls_main(statement: ast.stmt) -> bool:
+    value = statement.value if isinstance(statement, ast.Expr) else None
+    return isinstance(value, ast.Call) and isinstance(value.func, ast.Name) and value.func.id == "main"
+
+
+def _starts_ros(call: ast.Call) -> bool:
+    dotted = ast.unparse(call.func)
+    return dotted in {"rclpy.init", "rclpy.create_node"}
+
+
+def _at_top(tree: ast.Module) -> list[ast.stmt]:
+    """The statements that run at once, those in `try`, `with` and `if` among them."""
+    found: list[ast.stmt] = []
+    todo = list(tree.body)
+    while todo:
+        statement = todo.pop(0)
+        found.append(statement)
+        if isinstance(statement, ast.Try | ast.With | ast.If):
+            todo += statement.body
+    return found
+
+
+def _loops(statement: ast.stmt) -> bool:
+    """`while True`, `while rclpy.ok()`, and servers that never return."""
+    if isinstance(statement, ast.While):
+        test = statement.test
+        endless = isinstance(test, ast.Constant) and bool(test.value)
+        leaves = any(isinstance(item, ast.Break | ast.Return) for item in ast.walk(statement))
+        return (endless and not leaves) or ast.unparse(test).endswith("rclpy.ok()")
+    value = statement.value if isinstance(statement, ast.Expr) else None
+    return isinstance(value, ast.Call) and _last_name(value.func) in {"serve_forever", "run_forever", "mainloop"}
+
+
+_SHELLS = frozenset({"os.system", "os.popen", "subprocess.run", "subprocess.call", "subprocess.Popen"}) | {
+    "subprocess.check_call",
+    "subprocess.check_output",
+    "subprocess.getoutput",
+}
+
+
+def programs_started(calls: list[ast.Call]) -> dict[str, int]:
+    """The programs that calls of os.system and subprocess name -> line."""
+    found: dict[str, int] = {}
+    for call in calls:
+        if ast.unparse(call.func) in _SHELLS and call.args:
+            words = [
+                item.value
+                for item in ast.walk(call.args[0])
+                if isinstance(item, ast.Constant) and isinstance(item.value, str)
+            ]
+            for word in (part for text in words for part in re.split(r"[\s;&|]+", text)):
+                found.setdefault(word.rsplit("/", 1)[-1], call.lineno)
+    return found
+
+
+def _can_stand_alone(name: str, classes: Mapping[str, ast.ClassDef], tree: ast.Module) -> bool:
+    own = classes[name]
+    inside = set(ast.walk(own))
+    used = any(isinstance(i, ast.Name) and i.id == name for i in ast.walk(tree) if i not in inside)
+    init = next((i for i in own.body if isinstance(i, ast.FunctionDef) and i.name == "__init__"), None)
+    if used or init is None:
+        return not used
+    given = len(init.args.args) - 1 - len(init.args.defaults)
+    required = [a for a, d in zip(init.args.kwonlyargs, init.args.kw_defaults, strict=True) if d is None]
+    return given <= 0 and not required
+
+
+def _lacking(tree: ast.Module, names: list[str], classes: Mapping[str, ast.ClassDef]) -> dict[str, int]:
+    """The attributes of `self` that these classes read and nothing in the code or in rclpy's Node defines."""
+    known = node_attributes()
+    if not known:
+        return {}
+    stored = {i.attr for i in ast.walk(tree) if isinstance(i, ast.Attribute) and not isinstance(i.ctx, ast.Load)}
+    if any(isinstance(i, ast.Call) and _last_name(i.func) == "setattr" for i in ast.walk(tree)):
+        return {}
+    found: dict[str, int] = {}
+    for name in names:
+        if any(_last_name(base) not in {"Node", "LifecycleNode", "object", "ABC"} for base in classes[name].bases):
+            continue
+        bound = {
+            i.name for i in classes[name].body if isinstance(i, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
+        }
+        bound |= {
+            t.id
+            for i in ast.walk(classes[name])
+            if isinstance(i, ast.Assign | ast.AnnAssign)
+            for t in (i.targets if isinstance(i, ast.Assign) else [i.target])
+            if isinstance(t, ast.Name)
+        }
+        for item in ast.walk(classes[name]):
+            reads = isinstance(item, ast.Attribute) and isinstance(item.value, ast.Name) and item.value.id == "self"
+            if reads and isinstance(item, ast.Attribute) and item.attr not in known | stored | bound:
+                found.setdefault(item.attr, item.lineno)
+    return found
+
+
+@functools.cache
+def node_attributes() -> frozenset[str]:
+    """What every rclpy Node has, read from rclpy's source; empty where there is no rclpy."""
+    try:
+        spec = importlib.util.find_spec("rclpy")
+    except (ImportError, ValueError):
+        return frozenset()
+    names: set[str] = set(dir(object))
+    for folder in (spec.submodule_search_locations or []) if spec else []:
+        for file in ("node.py", "lifecycle/node.py", "lifecycle/managed_entity.py"):
+            with contextlib.suppress(OSError, SyntaxError):
+                for item in ast.walk(ast.parse(Path(folder, file).read_text(encoding="utf-8"))):
+                    if isinstance(item, ast.FunctionDef | ast.AsyncFunctionDef):
+                        names.add(item.name)
+                    elif isinstance(item, ast.Attribute) and not isinstance(item.ctx, ast.Load):
+                        names.add(item.attr)
+    return frozenset(names) if len(names) > 60 else frozenset()
 
 
 def _last_name(expression: ast.expr) -> str:
@@ -203,6 +404,8 @@ def _names(tree: ast.Module, code: str) -> tuple[frozenset[str], dict[str, int]]
 
     collect(table)
     missing = used - defined - _ALWAYS_THERE
+    if any(isinstance(i, ast.ImportFrom) and any(a.name == "*" for a in i.names) for i in ast.walk(tree)):
+        missing = set()
     lines: dict[str, int] = {}
     for item in ast.walk(tree):
         if isinstance(item, ast.Name) and item.id in missing:

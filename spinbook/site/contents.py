@@ -119,7 +119,7 @@ def _exercises(course: Course, chapters: list[Chapter]) -> dict[str, Exercise]:
 
 def _pages_of_files(course: Course, exercises: Mapping[str, Exercise]) -> dict[str, str]:
     """The course's files that have pages, and what is staged for them: Sphinx makes the address."""
-    pages = {chapter.as_posix(): f"{names.chapter_page(chapter)}.ipynb" for chapter in course.chapters}
+    pages = {file.as_posix(): f"{names.chapter_page(name)}.ipynb" for file, name in course.names.items()}
     pages |= {f"exercises/{name}/task.md": f"{names.exercise_page(name)}.md" for name in exercises}
     if course.glossary:
         pages[course.glossary.as_posix()] = f"{names.GLOSSARY}.md"
@@ -153,7 +153,7 @@ def _chapter(
     drawings: _Drawings,
     contents: Contents,
 ) -> Page:
-    name = names.chapter_page(chapter.file)
+    name = names.chapter_page(chapter.name)
     ran = _ran(course, chapter)
     folder = chapter.file.parent.as_posix()
     prose = {
@@ -168,7 +168,7 @@ def _chapter(
     contents.lines[name] = [cell["metadata"]["spinbook"]["line"] for cell in notebook["cells"]]
     for cell in chapter.nodes:
         contents.taught.append(cell.source)
-        contents.files[f"{DOWNLOADS}/{cell.module}"] = cell.source.rstrip("\n") + "\n"
+        contents.files[f"{DOWNLOADS}/{cell.module}"] = cell.whole.rstrip("\n") + "\n"
     source = links.repository.link(chapter.file, 1)
     return Page(
         name, chapter.title, "chapter", ".ipynb", as_text(notebook), source, chapter.name, summary=chapter.summary
@@ -203,7 +203,7 @@ def _exercise(exercise: Exercise, chapter: Chapter, links: Links, drawings: _Dra
     about = {
         "points": f"{exercise.points:g}",
         "file": exercise.file_name,
-        "chapter": {"title": chapter.title, "page": names.chapter_page(chapter.file)},
+        "chapter": {"title": chapter.title, "page": names.chapter_page(chapter.name)},
     }
     notebook = names.exercise_notebook(exercise.name)
     source = links.repository.link(Path(folder, "task.md"), 1)
