@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,7 @@ from grader.exercise import ExerciseError
 from spinbook.build.digest import code_digest, digest, files_digest
 from spinbook.build.notebook import notebook_json
 from spinbook.build.reading import surroundings
-from spinbook.chapter.read import Surroundings, read_chapter
+from spinbook.chapter.read import Surroundings, forget_chapters, read_chapter
 from spinbook.course.course import Course
 from spinbook.course.obstacles import strict
 from spinbook.problem import Problem, Severity
@@ -28,6 +28,8 @@ class Built:
     problems: tuple[Problem, ...]
     fresh: bool
     """False where the chapter was not read again, because nothing that it depends on has changed."""
+    uses: tuple[str, ...] = ()
+    """The files of the course that it includes or shows."""
 
     @property
     def name(self) -> str:
@@ -51,6 +53,7 @@ def build_notebooks(course: Course, *, is_strict: bool = False) -> Iterator[Buil
     folder = course.build_folder / "notebooks"
     record = course.build_folder / ".cache" / "notebooks.json"
     before = _read_record(record)
+    forget_chapters()
     known = surroundings(course)
     common = digest(code_digest("chapter", "build", "course"), repr(course), repr(_sorted(known)), str(is_strict))
     parts = ("exercises", "solutions")
@@ -60,18 +63,17 @@ def build_notebooks(course: Course, *, is_strict: bool = False) -> Iterator[Buil
     after: dict[str, Any] = {}
     for chapter in course.chapters:
         notebook = folder / f"{known.names[chapter]}.ipynb"
-        key = digest(common, exercise_files, files_digest([course.root / chapter], course.root))
         entry = before.get(chapter.as_posix())
+        own = digest(common, exercise_files, files_digest([course.root / chapter], course.root))
+        key = _key(own, entry["uses"] if entry else [], course)
         if entry and entry["key"] == key and notebook.exists():
-            built = Built(chapter, notebook, tuple(_problem(p) for p in entry["problems"]), fresh=False)
+            built = Built(chapter, notebook, tuple(_problem(p) for p in entry["problems"]), False, tuple(entry["uses"]))
         else:
             built = _build(course, chapter, notebook, known, is_strict)
         if not built.failed:
-            after[chapter.as_posix()] = {
-                "key": key,
-                "notebook": notebook.name,
-                "problems": [_plain(problem) for problem in built.problems],
-            }
+            problems = [_plain(problem) for problem in built.problems]
+            record_of = {"key": _key(own, built.uses, course), "notebook": notebook.name, "uses": list(built.uses)}
+            after[chapter.as_posix()] = {**record_of, "problems": problems}
         yield built
     names = {f"{name}.ipynb" for name in known.names.values()}
     for name in {entry.get("notebook", "") for entry in before.values()} - names - {""}:
@@ -88,7 +90,13 @@ def _build(course: Course, chapter: Path, notebook: Path, known: Surroundings, i
             write_if_changed(notebook, notebook_json(reading.chapter, course))
         except ExerciseError as error:
             problems.append(Problem(chapter, None, str(error), "Mend the exercise, or take it out of the chapter."))
-    return Built(chapter, notebook, tuple(problems), fresh=True)
+    uses = tuple(file.as_posix() for file in reading.chapter.uses) if reading.chapter else ()
+    return Built(chapter, notebook, tuple(problems), fresh=True, uses=uses)
+
+
+def _key(own: str, uses: Sequence[str], course: Course) -> str:
+    """What a chapter's notebook depends on: the chapter, all chapters' surroundings, the files that it shows."""
+    return digest(own, files_digest((course.root / file for file in uses), course.root))
 
 
 def _sorted(known: Surroundings) -> tuple[str, list[str], list[str], list[tuple[Path, str]]]:
@@ -100,7 +108,8 @@ def _read_record(file: Path) -> Mapping[str, Any]:
         record = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
-    return record if isinstance(record, dict) else {}
+    is_ours = isinstance(record, dict) and all("uses" in entry for entry in record.values())
+    return record if is_ours else {}
 
 
 def _plain(problem: Problem) -> dict[str, Any]:

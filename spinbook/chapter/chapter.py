@@ -81,6 +81,8 @@ class Chapter:
     summary: str
     cells: tuple[Cell, ...]
     static_fences: tuple[StaticFence, ...] = ()
+    uses: tuple[Path, ...] = ()
+    """The files of the course that it includes or shows, relative to the course."""
 
     @property
     def nodes(self) -> Iterator[Cell]:

@@ -9,7 +9,7 @@ import functools
 import importlib.util
 import re
 import symtable
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -81,6 +81,8 @@ class PythonCode:
     """The Node classes that nothing in the code makes or derives from, and that need no arguments."""
     lacking: Mapping[str, int] = field(default_factory=dict)
     """Attributes of `self` that a Node class uses and nothing sets -> line."""
+    fails_at_once: str = ""
+    """The first of those that `__init__` uses itself."""
 
     @property
     def is_node(self) -> bool:
@@ -157,13 +159,14 @@ def _only_inside_function(code: str) -> str | None:
 
 
 def _facts(tree: ast.Module, code: str) -> PythonCode:
+    everything = list(ast.walk(tree))
     imports: dict[str, int] = {}
-    optional = _optional_imports(tree)
+    optional = _optional_imports(everything)
     interfaces: dict[tuple[str, str], int] = {}
     node_classes: list[str] = []
     ros_name: str | None = None
     spins = setup = launch = guard = False
-    for item in ast.walk(tree):
+    for item in everything:
         if item in optional:
             continue
         if isinstance(item, ast.Import):
@@ -192,9 +195,10 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
     for statement in tree.body:
         if isinstance(statement, ast.If) and "__main__" in ast.dump(statement.test):
             guard = True
-    defines, needs = _names(tree, code)
-    classes = {item.name: item for item in ast.walk(tree) if isinstance(item, ast.ClassDef)}
-    calls = [item for item in ast.walk(tree) if isinstance(item, ast.Call)]
+    defines, needs = _names(everything, code)
+    classes = {item.name: item for item in everything if isinstance(item, ast.ClassDef)}
+    calls = [item for item in everything if isinstance(item, ast.Call)]
+    lacking = _lacking(everything, node_classes, classes)
     return PythonCode(
         imports=imports,
         interfaces=interfaces,
@@ -209,26 +213,27 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
         needs=needs,
         relative_imports={
             "." * i.level + (i.module or ""): i.lineno
-            for i in ast.walk(tree)
+            for i in everything
             if isinstance(i, ast.ImportFrom) and i.level
         },
         star_import=any(
-            alias.name == "*" for i in ast.walk(tree) if isinstance(i, ast.ImportFrom) for alias in i.names
+            alias.name == "*" for i in everything if isinstance(i, ast.ImportFrom) for alias in i.names
         ),
         calls_main=any(_calls_main(statement) for statement in tree.body),
         starts_ros=any(_starts_ros(call) for call in calls),
         loops=any(_loops(statement) for statement in _at_top(tree)),
         programs=programs_started(calls),
         asks=next((call.lineno for call in calls if isinstance(call.func, ast.Name) and call.func.id == "input"), 0),
-        alone=tuple(name for name in node_classes if _can_stand_alone(name, classes, tree)),
-        lacking=_lacking(tree, node_classes, classes),
+        alone=tuple(name for name in node_classes if _can_stand_alone(name, classes, everything)),
+        lacking=lacking,
+        fails_at_once=_used_by_init(lacking, node_classes, classes),
     )
 
 
-def _optional_imports(tree: ast.Module) -> set[ast.AST]:
+def _optional_imports(everything: Sequence[ast.AST]) -> set[ast.AST]:
     """Imports whose absence the code itself deals with, or that only a type checker reads."""
     found: set[ast.AST] = set()
-    for item in ast.walk(tree):
+    for item in everything:
         caught = isinstance(item, ast.Try) and any(
             handler.type is None or "Error" in ast.dump(handler.type) or "Exception" in ast.dump(handler.type)
             for handler in item.handlers
@@ -294,10 +299,10 @@ def programs_started(calls: list[ast.Call]) -> dict[str, int]:
     return found
 
 
-def _can_stand_alone(name: str, classes: Mapping[str, ast.ClassDef], tree: ast.Module) -> bool:
+def _can_stand_alone(name: str, classes: Mapping[str, ast.ClassDef], everything: Sequence[ast.AST]) -> bool:
     own = classes[name]
     inside = set(ast.walk(own))
-    used = any(isinstance(i, ast.Name) and i.id == name for i in ast.walk(tree) if i not in inside)
+    used = any(isinstance(i, ast.Name) and i.id == name and i not in inside for i in everything)
     init = next((i for i in own.body if isinstance(i, ast.FunctionDef) and i.name == "__init__"), None)
     if used or init is None:
         return not used
@@ -306,13 +311,13 @@ def _can_stand_alone(name: str, classes: Mapping[str, ast.ClassDef], tree: ast.M
     return given <= 0 and not required
 
 
-def _lacking(tree: ast.Module, names: list[str], classes: Mapping[str, ast.ClassDef]) -> dict[str, int]:
+def _lacking(everything: Sequence[ast.AST], names: list[str], classes: Mapping[str, ast.ClassDef]) -> dict[str, int]:
     """The attributes of `self` that these classes read and nothing in the code or in rclpy's Node defines."""
-    known = node_attributes()
+    known = node_attributes() if names else frozenset()
     if not known:
         return {}
-    stored = {i.attr for i in ast.walk(tree) if isinstance(i, ast.Attribute) and not isinstance(i.ctx, ast.Load)}
-    if any(isinstance(i, ast.Call) and _last_name(i.func) == "setattr" for i in ast.walk(tree)):
+    stored = {i.attr for i in everything if isinstance(i, ast.Attribute) and not isinstance(i.ctx, ast.Load)}
+    if any(isinstance(i, ast.Call) and _last_name(i.func) == "setattr" for i in everything):
         return {}
     found: dict[str, int] = {}
     for name in names:
@@ -333,6 +338,15 @@ def _lacking(tree: ast.Module, names: list[str], classes: Mapping[str, ast.Class
             if reads and isinstance(item, ast.Attribute) and item.attr not in known | stored | bound:
                 found.setdefault(item.attr, item.lineno)
     return found
+
+
+def _used_by_init(lacking: Mapping[str, int], names: list[str], classes: Mapping[str, ast.ClassDef]) -> str:
+    for name in names:
+        for item in classes[name].body:
+            if isinstance(item, ast.FunctionDef) and item.name == "__init__":
+                used = {i.attr for i in ast.walk(item) if isinstance(i, ast.Attribute)}
+                return next((attribute for attribute in lacking if attribute in used), "")
+    return ""
 
 
 @functools.cache
@@ -382,7 +396,7 @@ def _node_name(call: ast.Call, function: str) -> str | None:
     return first.value if isinstance(first, ast.Constant) and isinstance(first.value, str) else None
 
 
-def _names(tree: ast.Module, code: str) -> tuple[frozenset[str], dict[str, int]]:
+def _names(everything: Sequence[ast.AST], code: str) -> tuple[frozenset[str], dict[str, int]]:
     """The names that the code defines, and those it uses and does not define, by Python's own symbol table."""
     table = symtable.symtable(code, "<chapter>", "exec")
     defined = {s.get_name() for s in table.get_symbols() if s.is_assigned() or s.is_imported() or s.is_namespace()}
@@ -404,10 +418,10 @@ def _names(tree: ast.Module, code: str) -> tuple[frozenset[str], dict[str, int]]
 
     collect(table)
     missing = used - defined - _ALWAYS_THERE
-    if any(isinstance(i, ast.ImportFrom) and any(a.name == "*" for a in i.names) for i in ast.walk(tree)):
+    if any(isinstance(i, ast.ImportFrom) and any(a.name == "*" for a in i.names) for i in everything):
         missing = set()
     lines: dict[str, int] = {}
-    for item in ast.walk(tree):
+    for item in everything:
         if isinstance(item, ast.Name) and item.id in missing:
             lines[item.id] = min(item.lineno, lines.get(item.id, item.lineno))
     return frozenset(defined), {name: lines.get(name, 1) for name in sorted(missing)}

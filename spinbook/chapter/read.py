@@ -15,9 +15,9 @@ from spinbook.chapter.chapter import Chapter, StaticFence
 from spinbook.chapter.classify import Classified, FenceKind, first_look, with_language
 from spinbook.chapter.fence import Fence
 from spinbook.chapter.source import Source, read_source
-from spinbook.course.blocks import Block, Kind, read_blocks
+from spinbook.course.blocks import Block, Kind, Line, read_blocks
 from spinbook.course.files import is_elsewhere, locate, read_included
-from spinbook.course.layout import Layout
+from spinbook.course.layout import Layout, Piece
 from spinbook.course.own_packages import OwnPackages, own_packages, told_files
 from spinbook.course.programs import Programs
 from spinbook.course.shells import Shells
@@ -51,6 +51,7 @@ class _Parsed:
     source: Source | None
     blocks: tuple[Block, ...]
     problems: tuple[Problem, ...]
+    included: tuple[Path, ...] = ()
 
     @property
     def fences(self) -> Iterator[Block]:
@@ -69,13 +70,15 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> Reading:
     problems += [*found, *title_problems, *_references(parsed, surroundings, root, file)]
     problems.sort(key=lambda problem: (problem.line or 0, problem.found))
     by_line = {item.fence.line: item for item in classified}
-    cells = make_cells(_layout(by_line, surroundings).pieces(parsed.blocks), by_line)
+    pieces = _layout(by_line, surroundings).pieces(parsed.blocks)
+    cells = make_cells([*_heading(parsed, title), *pieces], by_line)
     chapter = Chapter(
         name=surroundings.names.get(file, file.stem),
         file=file,
         title=title,
         summary=str(parsed.source.front_matter.get("summary", "")),
         cells=cells,
+        uses=_uses(parsed, root, file),
         static_fences=tuple(
             StaticFence(item.fence.line, item.fence.language, item.why, item.sign)
             for item in classified
@@ -100,14 +103,21 @@ def _parse(root: Path, file: Path) -> _Parsed:
     return _parsed(root, file, changed)
 
 
+def forget_chapters() -> None:
+    """Read every chapter's file again when it is asked for: what it includes may have changed."""
+    _parsed.cache_clear()
+    locate.cache_clear()
+
+
 @functools.lru_cache(maxsize=512)
 def _parsed(root: Path, file: Path, changed: int) -> _Parsed:
     source, problems = read_source(root / file, file)
     if source is None:
         return _Parsed(None, (), tuple(problems))
     folder = file.parent.as_posix()
-    blocks = read_blocks(source.text, lambda name: read_included(root, folder, name))
-    return _Parsed(source, blocks, tuple(problems))
+    included: list[Path] = []
+    blocks = read_blocks(source.text, lambda name: read_included(root, folder, name, included))
+    return _Parsed(source, blocks, tuple(problems), tuple(included))
 
 
 def _classify(parsed: _Parsed, file: Path, surroundings: Surroundings) -> tuple[list[Classified], list[Problem]]:
@@ -192,13 +202,22 @@ def _references(parsed: _Parsed, surroundings: Surroundings, root: Path, file: P
             yield Problem(file, line, found, mend, Severity.WARNING, group="files that are not there")
 
 
-def _links(text: str) -> Iterator[tuple[str, int]]:
-    """Targets of links and images -> line, counted from 1."""
+def _uses(parsed: _Parsed, root: Path, file: Path) -> tuple[Path, ...]:
+    """The files of the course that the chapter includes, or links to."""
+    assert parsed.source is not None
+    folder = file.parent.as_posix()
+    targets = (target for target, _ in _links(parsed.source.text) if not is_elsewhere(target))
+    found = {place for target in targets if (place := locate(root, folder, target))}
+    return tuple(sorted(found | set(parsed.included)))
+
+
+@functools.lru_cache(maxsize=512)
+def _links(text: str) -> tuple[tuple[str, int], ...]:
+    """Targets of links and images, each with its line, counted from 1."""
     if "](" not in text and "]:" not in text:
-        return
-    for token in MarkdownIt("commonmark").enable("table").parse(text):
-        if token.type == "inline":
-            yield from _links_in(token)
+        return ()
+    tokens = MarkdownIt("commonmark").enable("table").parse(text)
+    return tuple(found for token in tokens if token.type == "inline" for found in _links_in(token))
 
 
 def _links_in(token: Token) -> Iterator[tuple[str, int]]:
@@ -209,6 +228,14 @@ def _links_in(token: Token) -> Iterator[tuple[str, int]]:
         target = str(child.attrs.get("href") or child.attrs.get("src") or "")
         if target:
             yield target, line
+
+
+def _heading(parsed: _Parsed, title: str) -> list[Piece]:
+    """The title as the chapter's heading, where it is only in the front matter, as Docusaurus and Jekyll want it."""
+    headings = [block.lines for block in parsed.blocks if block.kind is Kind.HEADING]
+    if any(lines[0].text.lstrip().startswith("# ") or len(lines) > 1 for lines in headings):
+        return []
+    return [Piece(Line(f"# {title}", 1), heading=True), Piece(Line("", 1))]
 
 
 def _title(parsed: _Parsed, file: Path) -> tuple[str, list[Problem]]:

@@ -179,6 +179,7 @@ def _read(text: str, line: int) -> Command | NotRunnable:
         return NotRunnable(text, line, "a quotation mark is never closed")
     if not words:
         return Command(CommandKind.NOTE, f"# {text}", (), line)
+    text = _without_comment(text)
     outside_quotes = re.sub(r"\"[^\"]*\"|'[^']*'", "", text)
     program = words[0]
     if program in _MOVING_ABOUT:
@@ -193,6 +194,19 @@ def _read(text: str, line: int) -> Command | NotRunnable:
         return _ros2(text, words, line)
     kind = CommandKind.COLCON if program == "colcon" else CommandKind.PLOT
     return Command(kind, text, words, line)
+
+
+def _without_comment(text: str) -> str:
+    """A command without the comment behind it."""
+    quote = ""
+    for index, letter in enumerate(text):
+        if quote:
+            quote = "" if letter == quote else quote
+        elif letter in "\"'":
+            quote = letter
+        elif letter == "#" and text[index - 1].isspace():
+            return text[:index].rstrip()
+    return text
 
 
 def _ros2(text: str, words: tuple[str, ...], line: int) -> Command | NotRunnable:

@@ -73,14 +73,15 @@ def _upwards(folder: str) -> list[str]:
     return ["/".join(parts[:count]) for count in range(len(parts), -1, -1)]
 
 
-def read_included(root: Path, folder: str, name: str) -> str | None:
-    """The text of a file that a chapter includes; None if it is not in the course."""
+def read_included(root: Path, folder: str, name: str, included: list[Path]) -> str | None:
+    """The text of a file that a chapter includes, which is added to `included`; None if it is not in the course."""
     name, _, section = name.partition(":")
     places = [folder, *_upwards(folder)]
     for place in places:
         full = posixpath.normpath(posixpath.join(place, name.lstrip("/")))
         file = root / full
         if not full.startswith("..") and file.is_file() and file.resolve().is_relative_to(root.resolve()):
+            included.append(Path(full))
             try:
                 return _section(file.read_text(encoding="utf-8"), section)
             except (OSError, UnicodeDecodeError):

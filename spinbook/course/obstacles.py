@@ -22,6 +22,10 @@ _WORDS = {
         "commands start programs that no fence shows",
     ),
     "packages that no fence shows": ("command builds what no cell makes", "commands build what no cell makes"),
+    "names that nothing makes": (
+        "command asks for a name that nothing makes",
+        "commands ask for names that nothing makes",
+    ),
     "C++ packages": ("command makes a package for C++", "commands make packages for C++"),
 }
 

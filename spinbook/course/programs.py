@@ -57,6 +57,8 @@ class Programs:
                 return _static(item, "it is a fragment: nothing makes a node of its class")
         if code.lacking and code.is_complete:
             self._lacking(item, code)
+            if code.fails_at_once:
+                return _static(item, f"`self.{code.fails_at_once}` is set nowhere in it")
         if missing := missing_imports(_facts(joined, code), self.own):
             return self._missing(item, missing, joined)
         name, named = self._name(item)
@@ -97,11 +99,13 @@ class Programs:
         return _static(item, f"it uses {names}, which nothing above defines")
 
     def _lacking(self, item: Classified, code: PythonCode) -> None:
-        name, line = next(iter(code.lacking.items()))
+        name = code.fails_at_once or next(iter(code.lacking))
+        line = code.lacking[name]
+        severity = Severity.NOT_RUN if code.fails_at_once else Severity.WARNING
         found = f"`self.{name}` is used and set nowhere."
         mend = "Set it in `__init__`, or check its name: the node fails where it is used."
         at = item.fence.first_code_line + line - 1
-        self.problems.append(Problem(self.file, at, found, mend, Severity.WARNING))
+        self.problems.append(Problem(self.file, at, found, mend, severity))
 
     def _missing(self, item: Classified, missing: Sequence[Missing], joined: Joined) -> Classified:
         above = joined.before.count("\n")

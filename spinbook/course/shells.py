@@ -15,6 +15,14 @@ from spinbook.course.own_packages import OwnPackages, created_package
 from spinbook.problem import Problem, Severity
 from spinbook.ros2 import executables, prefixes
 
+#: Commands that fail for a name which nothing has: noun -> verbs.
+_ASKING = {
+    "topic": {"echo", "info", "hz", "bw", "delay", "type"},
+    "service": {"call", "type", "info"},
+    "node": {"info"},
+    "action": {"info", "send_goal"},
+    "param": {"list", "get", "set", "describe", "dump", "delete"},
+}
 _TYPE = re.compile(r"(\w+)/(msg|srv|action)/(\w+)")
 
 
@@ -25,6 +33,26 @@ class _Refused:
     why: str
     mend: str
     group: str
+
+
+class _Said:
+    """The text of all that runs so far: a name that a program gives is somewhere in it."""
+
+    def __init__(self) -> None:
+        self._text = ""
+
+    def add(self, text: str) -> None:
+        """Hear what runs. turtlesim's own names are known."""
+        self._text += text.lower()
+        if "turtlesim" in text:
+            self._text += _TURTLESIM
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._text
+
+
+_TURTLESIM = " turtlesim turtle1 turtle2 cmd_vel pose color_sensor spawn kill clear reset set_pen teleport_absolute "
+_TURTLESIM += "teleport_relative rotate_absolute background_r background_g background_b "
 
 
 @dataclass
@@ -41,6 +69,7 @@ class Shells:
     has_exercise: bool = False
     problems: list[Problem] = field(default_factory=list)
     _created: set[str] = field(default_factory=set)
+    _said: _Said = field(default_factory=_Said)
     _nodes: dict[str, int] = field(default_factory=dict)
     """The chapter's nodes so far -> their number among the fences."""
 
@@ -52,12 +81,17 @@ class Shells:
                 self._nodes[item.name] = number
             elif item.kind is FenceKind.SHELL:
                 out[number] = self._fence(item, out)
+            elif item.kind is not FenceKind.STATIC:
+                self._said.add(item.whole)
+            if item.kind is FenceKind.NODE:
+                self._said.add(item.whole)
         return out
 
     def _fence(self, item: Classified, out: list[Classified]) -> Classified:
         for command in item.commands:
             refused = self._refused(command, out)
             if refused is None:
+                self._said.add(command.text if "pub" in command.words or "run" in command.words else "")
                 continue
             line = item.fence.first_code_line + command.line - 1
             found = f"{refused.why} (`{command.text}`)."
@@ -74,7 +108,7 @@ class Shells:
             return self._run(*command.runs, out)
         if command.words[1:3] == ("pkg", "create"):
             return self._create(command)
-        return self._types(command)
+        return self._types(command) or self._named(command)
 
     def _run(self, package: str, executable: str, out: list[Classified]) -> _Refused | None:
         if package == self.package and executable in self.modules:
@@ -148,6 +182,18 @@ class Shells:
             mend = "Node cells above it make what it builds."
             return _Refused(f"no cell above makes {what} to build", mend, "packages that no fence shows")
         return None
+
+    def _named(self, command: Command) -> _Refused | None:
+        """A topic, service or node that no program of the chapter has a name for: asking for it fails."""
+        words = [word for word in command.words[3:] if not word.startswith("-")]
+        if command.words[1] not in _ASKING or command.words[2] not in _ASKING[command.words[1]] or self.has_exercise:
+            return None
+        name = words[0].strip("/").rsplit("/", 1)[-1].lower() if words else ""
+        typed = command.words[1:3] == ("topic", "echo") and len(words) > 1
+        if not name or typed or name in {"rosout", "parameter_events"} or name in self._said:
+            return None
+        mend = "Show what makes it in a fence above."
+        return _Refused(f"nothing above makes `{words[0]}`", mend, "names that nothing makes")
 
     def _types(self, command: Command) -> _Refused | None:
         """Types of interfaces that a command names."""

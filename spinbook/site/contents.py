@@ -40,7 +40,8 @@ DOWNLOADS = "downloads"
 class Contents:
     """The site before it is built.
 
-    `pages` are in reading order, the home page first. `files` go into the site as they are, `branch` into the
+    `pages` are in reading order, the home page first. `pictures` are those that the text shows: path in the site ->
+    content. `files` go into the site as they are, `branch` into the
     branch of notebooks: path -> text. `origins` says for a staged page which file an author would mend, and `lines`
     for a chapter's page the first line of each of its cells. `taught` is the code of the chapters' nodes.
     """
@@ -48,6 +49,7 @@ class Contents:
     pages: list[Page] = field(default_factory=list)
     files: dict[str, str | bytes] = field(default_factory=dict)
     branch: dict[str, str] = field(default_factory=dict)
+    pictures: dict[str, bytes] = field(default_factory=dict)
     openers: dict[str, list[dict[str, str]]] = field(default_factory=dict)
     terms: tuple[Term, ...] = ()
     origins: dict[str, Path] = field(default_factory=dict)
@@ -93,6 +95,8 @@ def read_contents(course: Course) -> Contents:
     for code, picture in drawings.pictures.items():
         if picture is not None:
             contents.files |= drawing_files(code, picture)
+    contents.pictures |= links.pictures
+    contents.files |= links.pictures
     return contents
 
 
@@ -230,7 +234,7 @@ def _glossary(course: Course, contents: Contents) -> None:
 def _closing_pages(course: Course, repository: Repository, first: str, contents: Contents) -> Iterator[Page]:
     if course.glossary is not None:
         text = (course.root / course.glossary).read_text(encoding="utf-8")
-        links = Links(_pages_of_files(course, {}), repository)
+        links = Links(_pages_of_files(course, {}), repository, contents.pictures)
         text = rich(text, links, course.glossary.parent.as_posix(), "", lambda code: "")
         source = repository.link(course.glossary, 1)
         summary = "The words of the course, each explained in a sentence or two."
