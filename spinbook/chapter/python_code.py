@@ -212,13 +212,9 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
         defines=defines,
         needs=needs,
         relative_imports={
-            "." * i.level + (i.module or ""): i.lineno
-            for i in everything
-            if isinstance(i, ast.ImportFrom) and i.level
+            "." * i.level + (i.module or ""): i.lineno for i in everything if isinstance(i, ast.ImportFrom) and i.level
         },
-        star_import=any(
-            alias.name == "*" for i in everything if isinstance(i, ast.ImportFrom) for alias in i.names
-        ),
+        star_import=any(alias.name == "*" for i in everything if isinstance(i, ast.ImportFrom) for alias in i.names),
         calls_main=any(_calls_main(statement) for statement in tree.body),
         starts_ros=any(_starts_ros(call) for call in calls),
         loops=any(_loops(statement) for statement in _at_top(tree)),

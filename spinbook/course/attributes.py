@@ -159,8 +159,9 @@ def in_words(name: str) -> str:
 def words_of(name: str, properties: str) -> list[str]:
     """The sentences among a component's properties, as a quotation; nothing where it has none."""
     found = [(double or single).replace('\\"', '"') for double, single in _QUOTED.findall(properties)]
-    found = [text for text in found if " " in text]
-    return [f"> **{in_words(name)}**", ">", *(f"> - {text}" for text in found), ""] if found else []
+    title = pairs(properties).get("title", "")
+    found = [text for text in found if " " in text and text != title]
+    return [f"> **{title or in_words(name)}**", ">", *(f"> - {text}" for text in found), ""] if found else []
 
 
 def plain(html: str) -> str:

@@ -145,6 +145,8 @@ class _Reader:
     ) -> list[Block]:
         """A directive of MyST."""
         options, skipped = attributes.options([line.text for line in body])
+        while skipped < len(body) and not body[skipped].text.strip():
+            skipped += 1
         inner = body[skipped:]
         if name in attributes.CODE:
             info = f"{argument} " + " ".join(f'{key}="{value}"' for key, value in options.items())
@@ -209,9 +211,10 @@ class _Reader:
             return self._directive(name, argument, lines, inner, ends)
         if name in attributes.UNSEEN:
             return [Block(Kind.DROPPED, lines)]
-        kind, style, title = attributes.container(name, argument, colon=not token.info.strip().startswith("{"))
+        is_myst = token.info.strip().startswith("{") and not token.info.strip().startswith("{.")
+        kind, style, title = attributes.container(name, argument, colon=not is_myst)
         title = title or options.get("title", "")
-        if style and not title and argument and token.info.strip().startswith("{"):
+        if style and not title and argument and is_myst:
             inner[:skipped] = [Line(argument, lines[0].number), Line("", lines[0].number)]
             skipped = 0
         return [Block(Kind(kind or "group"), lines, self.inside(inner[skipped:]), title, style)]
