@@ -21,7 +21,7 @@ class Problem:
 
     `found` says what is there, `mend` what was expected and what to do. `line` counts from 1, and is None where the
     whole file is meant. Problems of one `group` have one cause, such as a package that is not installed: a report
-    counts them.
+    counts them. `alone` says that nothing else stands in the way there.
     """
 
     file: Path
@@ -30,6 +30,7 @@ class Problem:
     mend: str
     severity: Severity = Severity.ERROR
     group: str = ""
+    alone: bool = True
 
     @property
     def is_error(self) -> bool:

@@ -120,9 +120,12 @@ def _plain(problem: Problem) -> dict[str, Any]:
         "mend": problem.mend,
         "severity": problem.severity.value,
         "group": problem.group,
+        "alone": problem.alone,
     }
 
 
 def _problem(plain: Mapping[str, Any]) -> Problem:
     severity = Severity(plain["severity"])
-    return Problem(Path(plain["file"]), plain["line"], plain["found"], plain["mend"], severity, plain["group"])
+    return Problem(
+        Path(plain["file"]), plain["line"], plain["found"], plain["mend"], severity, plain["group"], plain["alone"]
+    )

@@ -48,23 +48,29 @@ class Obstacle:
         return tuple(dict.fromkeys(problem.file for problem in self.problems))
 
     @property
+    def unlocks(self) -> int:
+        """At how many places nothing else stands in the way."""
+        return len({(problem.file, problem.line) for problem in self.problems if problem.alone})
+
+    @property
     def in_words(self) -> str:
         """One line: how often, and what would help."""
         places = {(problem.file, problem.line) for problem in self.problems}
         one, many = _WORDS.get(self.group, (f"fence needs {self.group}", f"fences need {self.group}"))
         count = len(places)
+        only = f", {self.unlocks} of them nothing else," if self.unlocks < count else ""
         where = f" in {len(self.chapters)} chapters" if len(self.chapters) > 1 else f" in {self.chapters[0]}"
-        return f"{count:4} {one if count == 1 else many}{where}. {self.problems[0].mend}"
+        return f"{count:4} {one if count == 1 else many}{only}{where}. {self.problems[0].mend}"
 
 
 def obstacles(problems: Iterable[Problem]) -> list[Obstacle]:
-    """The causes that several places may share, what is not run because of them first, the most frequent first."""
+    """The causes that several places may share: those first that would unlock most, those last that block nothing."""
     groups: dict[str, list[Problem]] = {}
     for problem in problems:
         if problem.group:
             groups.setdefault(problem.group, []).append(problem)
     found = [Obstacle(group, tuple(of)) for group, of in groups.items()]
-    return sorted(found, key=lambda item: (not item.blocks, -len(item.problems), item.group))
+    return sorted(found, key=lambda item: (not item.blocks, -item.unlocks, -len(item.problems), item.group))
 
 
 def by_itself(problems: Iterable[Problem]) -> Iterator[Problem]:

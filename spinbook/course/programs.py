@@ -109,10 +109,13 @@ class Programs:
 
     def _missing(self, item: Classified, missing: Sequence[Missing], joined: Joined) -> Classified:
         above = joined.before.count("\n")
-        for one in missing[:3]:
-            line = item.fence.first_code_line + max(one.line - above, 1) - 1
-            self.problems.append(Problem(self.file, line, one.found, one.mend, Severity.NOT_RUN, group=one.package))
         packages = list(dict.fromkeys(one.package for one in missing))
+        for one in missing:
+            line = item.fence.first_code_line + max(one.line - above, 1) - 1
+            alone = len(packages) == 1
+            self.problems.append(
+                Problem(self.file, line, one.found, one.mend, Severity.NOT_RUN, group=one.package, alone=alone)
+            )
         names = ", ".join(f"`{name}`" for name in packages)
         if packages == ["relative imports"]:
             return _static(item, "it imports relative to a package")

@@ -199,7 +199,7 @@ class Shells:
         """Types of interfaces that a command names."""
         for package, kind, name in _TYPE.findall(command.text):
             known = interfaces_of(f"{package}.{kind}")
-            if package not in ros_packages() and package not in executables.BUILT_IN:
+            if package not in ros_packages():
                 mend = "Install it, or show its .msg, .srv and .action files in the chapter."
                 return _Refused(f"it needs `{package}`, not installed here", mend, package)
             if known and name not in known:

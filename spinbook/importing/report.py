@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, select_autoescape
+from markupsafe import Markup, escape
 
 from spinbook.chapter.chapter import CellKind, Chapter
 from spinbook.course.course import Course
@@ -20,12 +21,13 @@ _PLACES = 12
 def report_page(course: Course, chapters: Sequence[Chapter], problems: Sequence[Problem]) -> str:
     """The page as HTML, complete in itself."""
     environment = Environment(loader=PackageLoader("spinbook.importing", "."), autoescape=select_autoescape(["j2"]))
+    environment.filters["code"] = _code
     rows = [_row(chapter, course) for chapter in chapters]
     causes = [
         {"words": item.in_words, "blocks": item.blocks, "places": _places(item.problems), "more": len(item.problems)}
         for item in obstacles(problems)
     ]
-    single = [problem for problem in by_itself(problems)]
+    single = list(by_itself(problems))
     return environment.get_template("report.html.j2").render(
         title=course.title,
         rows=rows,
@@ -37,6 +39,12 @@ def report_page(course: Course, chapters: Sequence[Chapter], problems: Sequence[
         nodes=sum(row["nodes"] for row in rows),
         empty=sum(not row["runs"] for row in rows),
     )
+
+
+def _code(text: str) -> Markup:
+    """Text with what is between backticks as code."""
+    parts = [escape(part) for part in text.split("`")]
+    return Markup("").join(Markup("<code>{}</code>").format(p) if i % 2 else p for i, p in enumerate(parts))
 
 
 def _row(chapter: Chapter, course: Course) -> dict[str, Any]:
