@@ -134,7 +134,7 @@ def _classify(parsed: _Parsed, file: Path, surroundings: Surroundings) -> tuple[
     items = programs.decide(items)
     modules = surroundings.modules | {item.name for item in items if item.kind is FenceKind.NODE and item.name}
     exercise = any(block.kind is Kind.EXERCISE for top in parsed.blocks for block in top.walk())
-    shells = Shells(file, surroundings.package, modules, packages, exercise)
+    shells = Shells(file, surroundings.package, modules, packages, programs.told, exercise)
     items = shells.decide(items)
     return items, problems + programs.problems + shells.problems
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 
-#: What `ros2` can do without a ROS installation: noun -> verbs. `run` takes no verb.
+#: What `ros2` can do without a ROS installation: noun -> verbs. `run` and `launch` take no verb.
 ROS2 = {
     "topic": {"list", "echo", "hz", "bw", "delay", "info", "pub", "type", "find"},
     "node": {"list", "info"},
@@ -23,6 +23,7 @@ ROS2 = {
     "pkg": {"list", "executables", "prefix", "create"},
     "daemon": {"status", "start", "stop"},
     "run": set(),
+    "launch": set(),
 }
 _MOVING_ABOUT = frozenset({"cd", "source", ".", "export", "unset", "clear"})
 #: Looking at files and making them: harmless to leave out beside a command that runs.

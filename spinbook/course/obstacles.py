@@ -26,6 +26,7 @@ _WORDS = {
         "command asks for a name that nothing makes",
         "commands ask for names that nothing makes",
     ),
+    "launch files": ("command launches a file that no fence shows", "commands launch files that no fence shows"),
     "C++ packages": ("command makes a package for C++", "commands make packages for C++"),
 }
 

@@ -46,6 +46,9 @@ class Programs:
         code = item.code
         assert code is not None
         joined = self._joined(item, out)
+        if item.fence.has("raises"):
+            # Failing is the lesson.
+            return self._made(number, item, joined)
         if joined.missing:
             return self._undefined(item, code, joined.missing)
         if not code.is_complete and code.node_classes and not code.calls_main:
@@ -61,6 +64,9 @@ class Programs:
                 return _static(item, f"`self.{code.fails_at_once}` is set nowhere in it")
         if missing := missing_imports(_facts(joined, code), self.own):
             return self._missing(item, missing, joined)
+        return self._made(number, item, joined)
+
+    def _made(self, number: int, item: Classified, joined: Joined) -> Classified:
         name, named = self._name(item)
         if joined.used:
             self._used[number] = tuple(self._pieces[i] for i in joined.used)
@@ -76,6 +82,8 @@ class Programs:
         code = item.code
         assert code is not None
         missing = [name for name in code.needs if name not in self._defined]
+        if item.fence.has("raises"):
+            return item
         if missing:
             names = ", ".join(f"`{name}`" for name in missing)
             return _static(

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from spinbook.chapter.classify import Classified, FenceKind
 from spinbook.chapter.imports import interfaces_of, ros_packages
 from spinbook.chapter.terminal import Command, CommandKind
+from spinbook.course.launch_files import launched_nodes
 from spinbook.course.own_packages import OwnPackages, created_package
 from spinbook.problem import Problem, Severity
 from spinbook.ros2 import executables, prefixes
@@ -59,16 +60,19 @@ _TURTLESIM += "teleport_relative rotate_absolute background_r background_g backg
 class Shells:
     """The shell fences of one chapter.
 
-    `package` is the course's own, `modules` what the course's node cells make, `own` the chapter's packages.
+    `package` is the course's own, `modules` what the course's node cells make, `own` the chapter's packages, `told` which
+    file the text before a fence names.
     """
 
     file: Path
     package: str
     modules: frozenset[str]
     own: OwnPackages
+    told: Mapping[int, str] = field(default_factory=dict)
     has_exercise: bool = False
     problems: list[Problem] = field(default_factory=list)
     _created: set[str] = field(default_factory=set)
+    _launch_files: dict[str, str] = field(default_factory=dict)
     _said: _Said = field(default_factory=_Said)
     _nodes: dict[str, int] = field(default_factory=dict)
     """The chapter's nodes so far -> their number among the fences."""
@@ -83,11 +87,15 @@ class Shells:
                 out[number] = self._fence(item, out)
             elif item.kind is not FenceKind.STATIC:
                 self._said.add(item.whole)
+            if item.code is not None and item.code.is_launch_file:
+                name = item.fence.title or self.told.get(item.fence.line) or f"launch file {number}"
+                self._launch_files[name.rsplit("/", 1)[-1]] = item.fence.code
             if item.kind is FenceKind.NODE:
                 self._said.add(item.whole)
         return out
 
     def _fence(self, item: Classified, out: list[Classified]) -> Classified:
+        item = replace(item, commands=tuple(part for command in item.commands for part in self._launched(command)))
         for command in item.commands:
             refused = self._refused(command, out)
             if refused is None:
@@ -106,6 +114,8 @@ class Shells:
             return None
         if command.runs is not None:
             return self._run(*command.runs, out)
+        if command.words[1:2] == ("launch",):
+            return _Refused("no fence above is its launch file", "Show it in a fence above.", "launch files")
         if command.words[1:3] == ("pkg", "create"):
             return self._create(command)
         return self._types(command) or self._named(command)
@@ -158,6 +168,20 @@ class Shells:
         unnamed = [number for number in self._nodes.values() if not out[number].named]
         is_own = package in self.own.names and module is not None
         return unnamed[-1] if is_own and len(unnamed) == 1 else None
+
+    def _launched(self, command: Command) -> list[Command]:
+        """`ros2 launch` of a launch file above as a comment, and the commands that start its nodes."""
+        if command.kind is not CommandKind.ROS2 or command.words[1:2] != ("launch",):
+            return [command]
+        files = [word for word in command.words[2:] if word.endswith(".py")]
+        code = self._launch_files.get(files[0].rsplit("/", 1)[-1] if files else "", "")
+        if not code and len(self._launch_files) == 1 and files:
+            (code,) = self._launch_files.values()
+        nodes = launched_nodes(code) if code else []
+        if not nodes:
+            return [command]
+        note = Command(CommandKind.NOTE, f"# {command.text} starts:", (), command.line)
+        return [note, *(node.command(command.line) for node in nodes)]
 
     def _create(self, command: Command) -> _Refused | None:
         name, build_type = created_package(command.words)

@@ -6,6 +6,7 @@ package does. `--class` spins Node classes that come without a main, all in one 
 
 from __future__ import annotations
 
+import contextlib
 import inspect
 import runpy
 import sys
@@ -41,18 +42,14 @@ def _call(start: Any) -> Any:
 def _spin(classes: Sequence[Any]) -> None:
     """Make a node of each class and spin them until Ctrl-C."""
     rclpy.init()
-    nodes = [make() for make in classes]
-    executor = SingleThreadedExecutor()
-    for node in nodes:
-        executor.add_node(node)
-    try:
-        executor.spin()
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        for node in nodes:
-            node.destroy_node()
-        rclpy.try_shutdown()
+    together = SingleThreadedExecutor()
+    made = [make() for make in classes]
+    with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+        if all(together.add_node(one) for one in made):
+            together.spin()
+    for one in made:
+        one.destroy_node()
+    rclpy.try_shutdown()
 
 
 if __name__ == "__main__":

@@ -238,3 +238,26 @@ def test_an_import_that_the_code_can_do_without_is_not_missed(tmp_path: Path) ->
     code = "try:\n    import no_such_package\nexcept ImportError:\n    no_such_package = None\n"
 
     assert [cell.kind for cell in cells(read(tmp_path, code))] == [CellKind.SNIPPET]
+
+
+def test_a_launch_file_of_the_chapter_starts_its_nodes(tmp_path: Path) -> None:
+    launch = (
+        '```python title="arm.launch.py"\n'
+        "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n\n\n"
+        "def generate_launch_description():\n    return LaunchDescription([\n"
+        "        Node(package='arm', executable='gripper', name='left', parameters=[{'rate': 2.0, 'loud': True}],\n"
+        "             remappings=[('chatter', 'left/chatter')]),\n    ])\n```\n"
+    )
+
+    shell = cells(read(tmp_path, GRIPPER, launch, "```bash\nros2 launch arm arm.launch.py\n```\n"))[-1]
+
+    assert [command.text for command in shell.commands] == [
+        "# ros2 launch arm arm.launch.py starts:",
+        "ros2 run arm gripper --ros-args -r __node:=left -r chatter:=left/chatter -p rate:=2.0 -p loud:=true",
+    ]
+
+
+def test_a_launch_file_from_elsewhere_is_shown_only(tmp_path: Path) -> None:
+    chapter = read(tmp_path, "```bash\nros2 launch nav2_bringup navigation.launch.py\n```\n")
+
+    assert chapter.static_fences[0].sign == "no fence above is its launch file."
