@@ -57,6 +57,8 @@ class Joined:
     before: str = ""
     used: tuple[int, ...] = ()
     missing: Mapping[str, int] | None = None
+    amends: str = ""
+    """The class of an earlier piece to which the code only adds methods."""
 
     @property
     def whole(self) -> str:
@@ -87,10 +89,11 @@ def join(code: str, pieces: Sequence[str]) -> Joined:
     Raises CodeError where `code` is not Python.
     """
     needs = dict(inspect(code).needs)
+    amended, base = _amended(code, pieces)
     missing: dict[str, int] = {}
     taken: dict[int, set[int]] = {}
     imports: dict[str, None] = {}
-    todo, seen = list(needs), set(needs)
+    todo, seen = [*needs, *filter(None, [amended])], set(needs)
     while todo:
         name = todo.pop(0)
         found = _binding(name, pieces)
@@ -109,9 +112,27 @@ def join(code: str, pieces: Sequence[str]) -> Joined:
         seen.update(more)
         todo += more
     before = _above(imports, taken, pieces)
+    if amended:
+        # The class below then goes on from the one above.
+        before += f"{base} = {amended}\n\n\n"
     if code.lstrip().startswith("from __future__") and before:
         return Joined(code, missing=needs)
-    return Joined(code, before, tuple(sorted(taken)), missing)
+    return Joined(code, before, tuple(sorted(taken)), missing, amended)
+
+
+def _amended(code: str, pieces: Sequence[str]) -> tuple[str, str]:
+    """(class, its base) of a class in `code` that an earlier piece began, and that adds methods to it; else ("", "")."""
+    facts = inspect(code)
+    for item in ast.parse(code).body if facts.lacking else ():
+        if not isinstance(item, ast.ClassDef) or item.name not in facts.node_classes:
+            continue
+        found = _binding(item.name, pieces)
+        methods = {inner.name for inner in item.body if isinstance(inner, ast.FunctionDef)}
+        if found and "__init__" not in methods and isinstance(item.bases[0], ast.Name):
+            text = "\n".join(_piece(pieces[found[0]]).text(i) for i in found[1])
+            if all(name in text for name in facts.lacking):
+                return item.name, item.bases[0].id
+    return "", ""
 
 
 def _above(imports: Iterable[str], taken: Mapping[int, set[int]], pieces: Sequence[str]) -> str:

@@ -52,13 +52,13 @@ class Programs:
         if joined.missing:
             return self._undefined(item, code, joined.missing)
         if not code.is_complete and code.node_classes and not code.calls_main:
-            if code.lacking:
+            if code.lacking and not joined.amends:
                 names = ", ".join(f"`self.{name}`" for name in list(code.lacking)[:3])
                 verb = "is" if len(code.lacking) == 1 else "are"
                 return _static(item, f"it is a fragment: {names} {verb} set nowhere in it")
             if not code.alone and not _is_file(item):
                 return _static(item, "it is a fragment: nothing makes a node of its class")
-        if code.lacking and code.is_complete:
+        if code.lacking and code.is_complete and not joined.amends:
             self._lacking(item, code)
             if code.fails_at_once:
                 return _static(item, f"`self.{code.fails_at_once}` is set nowhere in it")
@@ -74,7 +74,7 @@ class Programs:
 
     def _joined(self, item: Classified, out: Sequence[Classified]) -> Joined:
         assert item.code is not None
-        if not item.code.needs:
+        if not item.code.needs and not item.code.lacking:
             return Joined(item.fence.code)
         return join(item.fence.code, [out[i].fence.code for i in self._pieces])
 

@@ -60,8 +60,8 @@ _TURTLESIM += "teleport_relative rotate_absolute background_r background_g backg
 class Shells:
     """The shell fences of one chapter.
 
-    `package` is the course's own, `modules` what the course's node cells make, `own` the chapter's packages, `told` which
-    file the text before a fence names.
+    `package` is the course's own, `modules` what the course's node cells make, `own` the chapter's packages, `told`
+    which file the text before a fence names.
     """
 
     file: Path

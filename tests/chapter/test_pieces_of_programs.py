@@ -261,3 +261,21 @@ def test_a_launch_file_from_elsewhere_is_shown_only(tmp_path: Path) -> None:
     chapter = read(tmp_path, "```bash\nros2 launch nav2_bringup navigation.launch.py\n```\n")
 
     assert chapter.static_fences[0].sign == "no fence above is its launch file."
+
+
+def test_methods_are_added_to_the_class_above(tmp_path: Path) -> None:
+    begun = f"{IMPORTS}{TALKER}        self.count = 0\n\n    def shout(self):\n        pass\n"
+    added = "class Talker(Node):\n    # ...\n\n    def beat(self):\n        self.count += 1\n        self.shout()\n"
+
+    *_, node = cells(read(tmp_path, begun, added))
+
+    assert (node.kind, node.after, node.spin_classes) == (CellKind.NODE, ("talker",), ("Talker",))
+    assert node.before.rstrip().endswith("Node = Talker")
+
+
+def test_where_failing_is_the_lesson_it_may_fail(tmp_path: Path) -> None:
+    fences = [f"```python {more}raises\nimport rclpy\nrclpy.spin(undefined)\n```\n" for more in ("", 'title="a.py" ')]
+
+    chapter = read(tmp_path, *fences, "```python raises\nundefined\n```\n")
+
+    assert [cell.raises for cell in cells(chapter)] == [True, True, True]
