@@ -20,6 +20,11 @@ else:
 
 #: The same as yaml.SafeLoader; the one in C is ten times faster.
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+#: What Jekyll puts before addresses, ahead of reading Markdown: `{{ site.baseurl }}/a`, `{{ "/a" | relative_url }}`.
+_LIQUID = re.compile(
+    r"""\{\{-?\s*(?:site\.(?:baseurl|url)|["']([^"'{}]*)["']\s*\|\s*(?:relative|absolute)_url)\s*-?\}\}"""
+    r"""|\{%-?\s*(?:link|post_url)\s+(\S+)\s*-?%\}"""
+)
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\x80-\x9f\u2028\u2029]")
 
 
@@ -76,7 +81,7 @@ def read_source(file: Path, shown_as: Path) -> tuple[Source | None, list[Problem
             found = f"control character U+{ord(control.group()):04X} in column {control.start() + 1}."
             mend = "Delete it; it can't be seen, and notebooks and browsers reject it. Here it is left out."
             problems.append(Problem(shown_as, number, found, mend, Severity.WARNING))
-    text = _CONTROL.sub("", text)
+    text = _LIQUID.sub(lambda match: match[1] or (f"/{match[2]}" if match[2] else ""), _CONTROL.sub("", text))
     front_matter, body, front_problems = _split_front_matter(text, shown_as)
     return Source(body, front_matter), problems + front_problems
 

@@ -40,6 +40,8 @@ _PAIR = re.compile(r"""([A-Za-z_][\w-]*)\s*[=:]\s*(?:\{?\s*"([^"]*)"\s*\}?|\{?\s
 _EXERCISE = re.compile(r"^<!--\s*exercise:\s*([\w-]+)\s*-->")
 _OPTION = re.compile(r"^:([\w-]+):\s*(.*)$")
 _SNIPPET = re.compile(r"\s*(?:#|//)?\s*-+8<-+\s+[\"'](.+?)[\"']\s*$")
+_PROPERTY = re.compile(r"\s+([\w-]+)=\{((?:[^{}]|\{[^{}]*\})*)\}")
+_PATH = re.compile(r"""(["'`])([^"'`]+)\1""")
 _QUOTED = re.compile(r"\"((?:[^\"\\]|\\.){12,})\"|'((?:[^'\\]|\\.){12,})'")
 
 
@@ -162,6 +164,18 @@ def words_of(name: str, properties: str) -> list[str]:
     title = pairs(properties).get("title", "")
     found = [text for text in found if " " in text and text != title]
     return [f"> **{title or in_words(name)}**", ">", *(f"> - {text}" for text in found), ""] if found else []
+
+
+def as_html(tag: str) -> str:
+    """An MDX tag as HTML: properties that are a path keep it, those that are code are left out."""
+    return _PROPERTY.sub(lambda match: _property(match[1], match[2]), tag).replace(" className=", " class=")
+
+
+def _property(name: str, code: str) -> str:
+    path = _PATH.search(code)
+    if name in {"src", "href"} and path:
+        return f' {name}="{path[2]}"'
+    return f' {name}="{code.strip()}"' if code.strip().isdigit() else ""
 
 
 def plain(html: str) -> str:

@@ -232,6 +232,9 @@ class _Reader:
         inner = (Line(token.info, lines[0].number),)
         return [Block(Kind.ADMONITION, lines, (Block(Kind.TEXT, inner),), style=token.tag)]
 
+    def _jsx(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        return [Block(Kind.TEXT, lines, new=(Line(token.content, lines[0].number),))]
+
     def _kramdown(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
         return [Block(Kind.DROPPED, lines, style=attributes.kramdown_style(token.info))]
 

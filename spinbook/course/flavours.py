@@ -21,6 +21,8 @@ from markdown_it.rules_block import StateBlock
 from mdit_py_plugins.admon import admon_plugin
 from mdit_py_plugins.container import container_plugin
 
+from spinbook.course import attributes
+
 Rule = Callable[[StateBlock, int, int, bool], bool]
 
 #: What such a line may end: a paragraph, a quotation, a list.
@@ -46,6 +48,7 @@ def parser() -> MarkdownIt:
     md.block.ruler.before("container_any", "spinbook_line", _line, _ALT)
     md.block.ruler.before("container_any", "spinbook_tab", _tab, _ALT)
     md.block.ruler.before("html_block", "spinbook_tag", _tag, _ALT)
+    md.block.ruler.before("html_block", "spinbook_jsx", _jsx, _ALT)
     md.block.ruler.at("html_block", _html_before_fence(md), _ALT)
     return md
 
@@ -147,6 +150,22 @@ def _tag(state: StateBlock, start: int, end: int, silent: bool) -> bool:
     closed = opening.endswith("/") or (rest and not is_summary)
     kind = "tag_close" if match[1] else "tag_self" if closed else "tag_open"
     _push(state, kind, start, stop, match[2], opening[match.end() :].strip(" /\n"), text[close:])
+    return True
+
+
+def _jsx(state: StateBlock, start: int, end: int, silent: bool) -> bool:
+    """A tag of HTML with properties as MDX writes them: `<img src={require('./a.png').default} style={{…}} />`."""
+    text = _text(state, start)
+    if not re.match(r"<[a-z]", text) or _is_code(state, start):
+        return False
+    stop = start + 1
+    while (close := _tag_end(text)) < 0 and stop < min(end, start + 20):
+        text += " " + _text(state, stop)
+        stop += 1
+    if close < 0 or "={" not in text[:close]:
+        return False
+    if not silent:
+        _push(state, "jsx", start, stop, content=attributes.as_html(text[:close]) + text[close:])
     return True
 
 

@@ -121,7 +121,7 @@ def join(code: str, pieces: Sequence[str]) -> Joined:
 
 
 def _amended(code: str, pieces: Sequence[str]) -> tuple[str, str]:
-    """(class, its base) of a class in `code` that an earlier piece began, and that adds methods to it; else ("", "")."""
+    """(class, its base) of a class in `code` that only adds methods to that of an earlier piece; else ("", "")."""
     facts = inspect(code)
     for item in ast.parse(code).body if facts.lacking else ():
         if not isinstance(item, ast.ClassDef) or item.name not in facts.node_classes:

@@ -113,6 +113,7 @@ def test_pictures_are_in_the_notebook_and_on_the_site(course: Course, name: str)
         ("docusaurus", "MkDocs", "mkdocs{}#a-node"),
         ("docusaurus", "the folder", "github{}"),
         ("jekyll", "docsify", "docsify{}"),
+        ("jekyll", "GitHub", "github{}"),
         ("github", "MyST", "myst{}"),
         ("quarto", "VitePress", "gitbook{}"),
     ],
@@ -126,6 +127,11 @@ def test_titles_of_links_and_references_stay_and_links_in_code_are_left_alone(co
     assert '[GitHub](github.ipynb "The same")' in prose(course, "docsify")
     assert '[again]: mkdocs.ipynb "MkDocs"' in prose(course, "github")
     assert "`[not a link](../myst.md)`" in prose(course, "github")
+
+
+def test_pictures_of_mdx_and_jekyll_are_found(course: Course) -> None:
+    assert '<img src="attachment:img-graph.png" alt="Again" />' in prose(course, "docusaurus")
+    assert "![again](attachment:img-logo.png)" in prose(course, "jekyll")
 
 
 def test_titles_in_the_front_matter_become_headings(course: Course) -> None:
