@@ -166,17 +166,29 @@ def _chapter(
         if cell.kind is CellKind.PROSE
     }
     cards = {name: ExerciseCard(name, exercise.title, exercise.points) for name, exercise in exercises.items()}
-    notebook = chapter_notebook(chapter, ran, prose, cards, links.repository, _graph(course, chapter))
+    downloads = _downloads(chapter, contents)
+    notebook = chapter_notebook(chapter, ran, prose, cards, links.repository, downloads, _graph(course, chapter))
     contents.files |= stills(chapter, ran)
     contents.origins[name] = chapter.file
     contents.lines[name] = [cell["metadata"]["spinbook"]["line"] for cell in notebook["cells"]]
-    for cell in chapter.nodes:
-        contents.taught.append(cell.source)
-        contents.files[f"{DOWNLOADS}/{cell.module}"] = cell.whole.rstrip("\n") + "\n"
+    contents.taught += [cell.source for cell in chapter.nodes]
     source = links.repository.link(chapter.file, 1)
     return Page(
         name, chapter.title, "chapter", ".ipynb", as_text(notebook), source, chapter.name, summary=chapter.summary
     )
+
+
+def _downloads(chapter: Chapter, contents: Contents) -> dict[str, str]:
+    """Put the programs of a chapter's nodes into the site: cell -> file. One name may stand for several programs."""
+    places: dict[str, str] = {}
+    for cell in chapter.nodes:
+        code = cell.whole.rstrip("\n") + "\n"
+        place = f"{DOWNLOADS}/{cell.module}"
+        if contents.files.get(place, code) != code:
+            place = f"{DOWNLOADS}/{chapter.name}/{cell.id}/{cell.module}"
+        contents.files[place] = code
+        places[cell.id] = place
+    return places
 
 
 def _ran(course: Course, chapter: Chapter) -> Ran:

@@ -8,8 +8,8 @@ from typing import Any
 from docutils import nodes
 from sphinx.transforms import SphinxTransform
 
-_LANGUAGES = {"shell": "bash", "node": "python"}
-_KINDS = {"shell": "Terminal", "node": "Node", "snippet": "Notebook"}
+_LANGUAGES = {"shell": "bash", "node": "python", "part": "python"}
+_KINDS = {"shell": "Terminal", "node": "Node", "snippet": "Notebook", "part": "Part of a node"}
 
 
 class DescribeCells(SphinxTransform):
@@ -44,6 +44,7 @@ def _describe(cell: nodes.container, about: dict[str, Any]) -> None:
 def _head(kind: str, about: dict[str, Any]) -> str:
     file = about.get("file", "")
     name = f'<span class="cell-file">{escape(file)}</span>' if file else ""
+    name += f'<span class="cell-kind">{escape(about["after"])}</span>' if about.get("after") else ""
     of = file or f"this {_KINDS.get(kind, 'cell').lower()} block"
     source = (
         f'<a class="cell-source" href="{escape(about["source"])}" '
@@ -52,7 +53,7 @@ def _head(kind: str, about: dict[str, Any]) -> str:
         else ""
     )
     download = (
-        f'<a class="cell-download" href="../downloads/{escape(file)}" download aria-label="Download {escape(file)}">'
+        f'<a class="cell-download" href="../{escape(about["download"])}" download aria-label="Download {escape(file)}">'
         "Download</a>"
         if file
         else ""
