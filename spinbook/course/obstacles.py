@@ -27,6 +27,7 @@ _WORDS = {
         "commands ask for names that nothing makes",
     ),
     "launch files": ("command launches a file that no fence shows", "commands launch files that no fence shows"),
+    "files of parameters": ("command reads a file of parameters", "commands read files of parameters"),
     "C++ packages": ("command makes a package for C++", "commands make packages for C++"),
 }
 

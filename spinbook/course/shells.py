@@ -112,6 +112,9 @@ class Shells:
             return self._colcon(command)
         if command.kind is not CommandKind.ROS2:
             return None
+        if "--params-file" in command.words:
+            mend = "Give the parameters with -p NAME:=VALUE."
+            return _Refused("it reads a file of parameters, which is not here", mend, "files of parameters")
         if command.runs is not None:
             return self._run(*command.runs, out)
         if command.words[1:2] == ("launch",):

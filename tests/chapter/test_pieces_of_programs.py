@@ -204,6 +204,7 @@ def test_a_node_knows_what_ros2_run_calls_it(tmp_path: Path) -> None:
         ("ros2 topic pub /a nav2_msgs/msg/Route {}", "needs `nav2_msgs`"),
         ("ros2 topic echo /scan", "nothing above makes `/scan`"),
         ("ros2 topic echo ...", "stands for other commands"),
+        ("ros2 run arm hand --ros-args --params-file p.yaml", "reads a file of parameters"),
     ],
 )
 def test_foreign_commands_are_shown_with_a_word(tmp_path: Path, command: str, why: str) -> None:
