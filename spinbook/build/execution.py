@@ -24,7 +24,7 @@ from spinbook.written import write_if_changed
 DEADLINE_S = 300.0
 _TO_SAY_SO_S = 20.0
 #: What of Spinbook a notebook's cells use.
-_USED_BY_CELLS = ("check", "graph", "runtime", "ros2", "turtlesim", "package")
+_USED_BY_CELLS = ("check", "course", "graph", "runtime", "ros2", "turtlesim", "package")
 
 
 @dataclass(frozen=True)

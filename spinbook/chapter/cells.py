@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from spinbook.chapter.chapter import Cell, CellKind
 from spinbook.chapter.classify import Classified, FenceKind
 from spinbook.chapter.terminal import CommandKind
-from spinbook.course.blocks import Kind, Line
+from spinbook.course.block import Kind, Line
 from spinbook.course.layout import Piece
 
 #: nbformat allows 64 characters of [A-Za-z0-9_-].

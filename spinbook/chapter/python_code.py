@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import ast
 import builtins
-import contextlib
 import functools
-import importlib.util
 import re
 import symtable
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
+
+from spinbook.course.node_classes import attributes_lacking, can_stand_alone, last_name, used_by_init
 
 #: A line that is IPython's and not Python's: `%plot …`, `!ls`, `%%time`.
 _MAGIC = re.compile(r"^(\s*)([%!].*)$")
@@ -177,10 +176,10 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
             for alias in item.names:
                 interfaces.setdefault((item.module, alias.name), item.lineno)
         elif isinstance(item, ast.ClassDef):
-            if any(_last_name(base) in {"Node", "LifecycleNode"} for base in item.bases):
+            if any(last_name(base) in {"Node", "LifecycleNode"} for base in item.bases):
                 node_classes.append(item.name)
         elif isinstance(item, ast.Call):
-            name = _last_name(item.func)
+            name = last_name(item.func)
             spins = spins or name in _SPINS
             setup = setup or (name == "setup" and _imports_setuptools(tree))
             ros_name = ros_name or _node_name(item, name)
@@ -198,7 +197,7 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
     defines, needs = _names(everything, code)
     classes = {item.name: item for item in everything if isinstance(item, ast.ClassDef)}
     calls = [item for item in everything if isinstance(item, ast.Call)]
-    lacking = _lacking(everything, node_classes, classes)
+    lacking = attributes_lacking(everything, node_classes, classes)
     return PythonCode(
         imports=imports,
         interfaces=interfaces,
@@ -220,9 +219,9 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
         loops=any(_loops(statement) for statement in _at_top(tree)),
         programs=programs_started(calls),
         asks=next((call.lineno for call in calls if isinstance(call.func, ast.Name) and call.func.id == "input"), 0),
-        alone=tuple(name for name in node_classes if _can_stand_alone(name, classes, everything)),
+        alone=tuple(name for name in node_classes if can_stand_alone(name, classes, everything)),
         lacking=lacking,
-        fails_at_once=_used_by_init(lacking, node_classes, classes),
+        fails_at_once=used_by_init(lacking, node_classes, classes),
     )
 
 
@@ -270,7 +269,7 @@ def _loops(statement: ast.stmt) -> bool:
         leaves = any(isinstance(item, ast.Break | ast.Return) for item in ast.walk(statement))
         return (endless and not leaves) or ast.unparse(test).endswith("rclpy.ok()")
     value = statement.value if isinstance(statement, ast.Expr) else None
-    return isinstance(value, ast.Call) and _last_name(value.func) in {"serve_forever", "run_forever", "mainloop"}
+    return isinstance(value, ast.Call) and last_name(value.func) in {"serve_forever", "run_forever", "mainloop"}
 
 
 _SHELLS = frozenset({"os.system", "os.popen", "subprocess.run", "subprocess.call", "subprocess.Popen"}) | {
@@ -295,81 +294,6 @@ def programs_started(calls: list[ast.Call]) -> dict[str, int]:
     return found
 
 
-def _can_stand_alone(name: str, classes: Mapping[str, ast.ClassDef], everything: Sequence[ast.AST]) -> bool:
-    own = classes[name]
-    inside = set(ast.walk(own))
-    used = any(isinstance(i, ast.Name) and i.id == name and i not in inside for i in everything)
-    init = next((i for i in own.body if isinstance(i, ast.FunctionDef) and i.name == "__init__"), None)
-    if used or init is None:
-        return not used
-    given = len(init.args.args) - 1 - len(init.args.defaults)
-    required = [a for a, d in zip(init.args.kwonlyargs, init.args.kw_defaults, strict=True) if d is None]
-    return given <= 0 and not required
-
-
-def _lacking(everything: Sequence[ast.AST], names: list[str], classes: Mapping[str, ast.ClassDef]) -> dict[str, int]:
-    """The attributes of `self` that these classes read and nothing in the code or in rclpy's Node defines."""
-    known = node_attributes() if names else frozenset()
-    if not known:
-        return {}
-    stored = {i.attr for i in everything if isinstance(i, ast.Attribute) and not isinstance(i.ctx, ast.Load)}
-    if any(isinstance(i, ast.Call) and _last_name(i.func) == "setattr" for i in everything):
-        return {}
-    found: dict[str, int] = {}
-    for name in names:
-        if any(_last_name(base) not in {"Node", "LifecycleNode", "object", "ABC"} for base in classes[name].bases):
-            continue
-        bound = {
-            i.name for i in classes[name].body if isinstance(i, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
-        }
-        bound |= {
-            t.id
-            for i in ast.walk(classes[name])
-            if isinstance(i, ast.Assign | ast.AnnAssign)
-            for t in (i.targets if isinstance(i, ast.Assign) else [i.target])
-            if isinstance(t, ast.Name)
-        }
-        for item in ast.walk(classes[name]):
-            reads = isinstance(item, ast.Attribute) and isinstance(item.value, ast.Name) and item.value.id == "self"
-            if reads and isinstance(item, ast.Attribute) and item.attr not in known | stored | bound:
-                found.setdefault(item.attr, item.lineno)
-    return found
-
-
-def _used_by_init(lacking: Mapping[str, int], names: list[str], classes: Mapping[str, ast.ClassDef]) -> str:
-    for name in names:
-        for item in classes[name].body:
-            if isinstance(item, ast.FunctionDef) and item.name == "__init__":
-                used = {i.attr for i in ast.walk(item) if isinstance(i, ast.Attribute)}
-                return next((attribute for attribute in lacking if attribute in used), "")
-    return ""
-
-
-@functools.cache
-def node_attributes() -> frozenset[str]:
-    """What every rclpy Node has, read from rclpy's source; empty where there is no rclpy."""
-    try:
-        spec = importlib.util.find_spec("rclpy")
-    except (ImportError, ValueError):
-        return frozenset()
-    names: set[str] = set(dir(object))
-    for folder in (spec.submodule_search_locations or []) if spec else []:
-        for file in ("node.py", "lifecycle/node.py", "lifecycle/managed_entity.py"):
-            with contextlib.suppress(OSError, SyntaxError):
-                for item in ast.walk(ast.parse(Path(folder, file).read_text(encoding="utf-8"))):
-                    if isinstance(item, ast.FunctionDef | ast.AsyncFunctionDef):
-                        names.add(item.name)
-                    elif isinstance(item, ast.Attribute) and not isinstance(item.ctx, ast.Load):
-                        names.add(item.attr)
-    return frozenset(names) if len(names) > 60 else frozenset()
-
-
-def _last_name(expression: ast.expr) -> str:
-    if isinstance(expression, ast.Attribute):
-        return expression.attr
-    return expression.id if isinstance(expression, ast.Name) else ""
-
-
 def _imports_setuptools(tree: ast.Module) -> bool:
     return any(
         (isinstance(s, ast.ImportFrom) and s.module in {"setuptools", "distutils.core"})
@@ -383,7 +307,7 @@ def _node_name(call: ast.Call, function: str) -> str | None:
         function == "__init__"
         and isinstance(call.func, ast.Attribute)
         and isinstance(call.func.value, ast.Call)
-        and _last_name(call.func.value.func) == "super"
+        and last_name(call.func.value.func) == "super"
     )
     if not (is_super_init or function in {"Node", "create_node"}):
         return None

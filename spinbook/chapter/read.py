@@ -15,7 +15,8 @@ from spinbook.chapter.chapter import Chapter, StaticFence
 from spinbook.chapter.classify import Classified, FenceKind, first_look, with_language
 from spinbook.chapter.fence import Fence
 from spinbook.chapter.source import Source, read_source
-from spinbook.course.blocks import Block, Kind, Line, read_blocks
+from spinbook.course.block import Block, Kind, Line
+from spinbook.course.blocks import read_blocks
 from spinbook.course.files import is_elsewhere, locate, read_included
 from spinbook.course.layout import Layout, Piece
 from spinbook.course.own_packages import OwnPackages, own_packages, told_files

@@ -5,74 +5,20 @@ Each level of the tree is read by itself, with the indentation of what holds it 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from enum import Enum
 
 from markdown_it.token import Token
 
 from spinbook.chapter.fence import Fence, directive, make_fence
 from spinbook.course import attributes
+from spinbook.course.block import Block, Kind, Line, as_fence, unquoted
 from spinbook.course.flavours import parser
+from spinbook.course.pairing import merged_callouts, paired
 
 #: Reads a file that a chapter includes: its text, or None if there is no such file.
 Include = Callable[[str], str | None]
 _DEEPEST = 12
-
-
-class Kind(Enum):
-    """What a block is. Those from ADMONITION on hold blocks."""
-
-    TEXT = "text"
-    HEADING = "heading"
-    FENCE = "fence"
-    EXERCISE = "exercise"
-    DROPPED = "dropped"
-    ADMONITION = "admonition"
-    TAB = "tab"
-    DETAILS = "details"
-    LIST = "list"
-    ITEM = "item"
-    QUOTE = "quote"
-    GROUP = "group"
-
-
-@dataclass(frozen=True)
-class Line:
-    """A line of the chapter, without the indentation of what holds it. `number` counts from 1 in the chapter."""
-
-    text: str
-    number: int
-
-
-@dataclass(frozen=True)
-class Block:
-    """One block. `lines` are as the author wrote them; `title` and `style` say what an admonition or a tab is called.
-
-    `new` are the lines that stand for it where the author's would not be understood; None: the author's will do.
-    """
-
-    kind: Kind
-    lines: tuple[Line, ...]
-    children: tuple[Block, ...] = ()
-    title: str = ""
-    style: str = ""
-    fence: Fence | None = None
-    closed: bool = True
-    new: tuple[Line, ...] | None = None
-    offset: int = 0
-    """How far the text of a list's item is indented."""
-
-    @property
-    def line(self) -> int:
-        """The chapter's line on which it begins."""
-        return self.lines[0].number if self.lines else 1
-
-    def walk(self) -> Iterator[Block]:
-        """This block and all that it holds, in order."""
-        yield self
-        for child in self.children:
-            yield from child.walk()
 
 
 @dataclass
@@ -99,7 +45,7 @@ class _Reader:
             found.extend(self._block(token, tokens, tuple(lines[start:at])))
         if at < len(lines):
             found.append(Block(Kind.TEXT, tuple(lines[at:])))
-        return _paired(_merged_callouts(found))
+        return paired(merged_callouts(found))
 
     def inside(self, lines: Sequence[Line]) -> tuple[Block, ...]:
         return _Reader(self.include, self.depth + 1).blocks(lines)
@@ -127,7 +73,7 @@ class _Reader:
             return self._directive(name, argument, lines, body, closed)
         fence = self._included(make_fence(token.info, token.content, lines[0].number))
         expanded = fence.code != token.content and "".join(f"{line.text}\n" for line in body) != fence.code
-        new = _as_fence(fence, lines) if expanded and not fence.skipped else None
+        new = as_fence(fence, lines) if expanded and not fence.skipped else None
         return [Block(Kind.FENCE, lines, fence=fence, closed=closed, new=new)]
 
     def _included(self, fence: Fence) -> Fence:
@@ -152,7 +98,7 @@ class _Reader:
             info = f"{argument} " + " ".join(f'{key}="{value}"' for key, value in options.items())
             fence = make_fence(f"{{code-cell}} {info}", "".join(f"{x.text}\n" for x in inner), lines[0].number)
             fence = self._included(replace(fence, skipped=skipped))
-            return [Block(Kind.FENCE, lines, fence=fence, closed=closed, new=_as_fence(fence, lines))]
+            return [Block(Kind.FENCE, lines, fence=fence, closed=closed, new=as_fence(fence, lines))]
         if name == "literalinclude":
             return [self._literal(argument, options, lines)]
         if name == "include":
@@ -191,7 +137,7 @@ class _Reader:
         language = options.get("language", "python" if argument.endswith(".py") else "text")
         title = f' title="{argument.rsplit("/", 1)[-1]}"' if argument.endswith(".py") else ""
         fence = make_fence(language + title, text.rstrip("\n") + "\n", lines[0].number)
-        return Block(Kind.FENCE, lines, fence=fence, new=_as_fence(fence, lines))
+        return Block(Kind.FENCE, lines, fence=fence, new=as_fence(fence, lines))
 
     def _snippet(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
         text = self.include(token.info)
@@ -278,12 +224,12 @@ class _Reader:
         if token.content:
             inner = token.content.rpartition("</")[0].strip()
             return [Block(Kind.TEXT, lines, new=(Line(inner, lines[0].number),))]
-        return [Block(Kind.DROPPED, lines, new=attributes_lines(token, lines))]
+        return [Block(Kind.DROPPED, lines, new=_words(token, lines))]
 
     def _blockquote_open(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
         if not any("```" in line.text or "~~~" in line.text for line in lines):
             return [Block(Kind.TEXT, lines)]
-        return [Block(Kind.QUOTE, lines, self.inside([_unquoted(line) for line in lines]))]
+        return [Block(Kind.QUOTE, lines, self.inside([unquoted(line) for line in lines]))]
 
     def _bullet_list_open(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
         if not any(
@@ -330,92 +276,11 @@ def _dedented(lines: Sequence[Line], indent: int) -> list[Line]:
     return out
 
 
-def _unquoted(line: Line) -> Line:
-    text = line.text.lstrip()
-    if not text.startswith(">"):
-        return Line(text, line.number)
-    return Line(text[1:].removeprefix(" "), line.number)
-
-
 def _is_closed(token: Token, lines: tuple[Line, ...]) -> bool:
     last = lines[-1].text.strip() if len(lines) > 1 else ""
     return set(last) == {token.markup[0]} and len(last) >= len(token.markup)
 
 
-def _as_fence(fence: Fence, lines: tuple[Line, ...]) -> tuple[Line, ...]:
-    number = lines[0].number
-    title = f' title="{fence.title}"' if fence.title else ""
-    code = [Line(text, number) for text in fence.code.rstrip("\n").split("\n")]
-    mark = "````" if "```" in fence.code else "```"
-    return (Line(f"{mark}{fence.language}{title}", number), *code, Line(mark, lines[-1].number))
-
-
-def attributes_lines(token: Token, lines: tuple[Line, ...]) -> tuple[Line, ...]:
+def _words(token: Token, lines: tuple[Line, ...]) -> tuple[Line, ...]:
     """What an MDX component without content shows: the words among its properties."""
     return tuple(Line(text, lines[0].number) for text in attributes.words_of(token.tag, token.info))
-
-
-def _merged_callouts(found: list[Block]) -> list[Block]:
-    """Kramdown's `{: .note }` before or behind a paragraph or quotation makes it an admonition."""
-    out: list[Block] = []
-    style = ""
-    for block in found:
-        if block.kind is Kind.DROPPED and block.style in attributes.STYLES:
-            if out and out[-1].kind in {Kind.TEXT, Kind.QUOTE} and out[-1].lines[-1].text.strip():
-                out[-1] = _called_out(out[-1], block.style)
-            else:
-                style = block.style
-            continue
-        if style and block.kind in {Kind.TEXT, Kind.QUOTE} and any(line.text.strip() for line in block.lines):
-            block, style = _called_out(block, style), ""
-        out.append(block)
-    return out
-
-
-def _called_out(block: Block, style: str) -> Block:
-    quoted = block.lines[0].text.lstrip().startswith(">")
-    lines = tuple(_unquoted(line) for line in block.lines) if quoted else block.lines
-    return Block(Kind.ADMONITION, block.lines, (Block(Kind.TEXT, lines),), style=style)
-
-
-def _paired(found: list[Block]) -> tuple[Block, ...]:
-    """Opening and closing tags become one block that holds what is between them."""
-    stack: list[tuple[Block | None, list[Block]]] = [(None, [])]
-    for block in found:
-        if block.kind is Kind.DROPPED and block.style == "open" and block.title in attributes.PAIRED:
-            stack.append((block, []))
-        elif block.kind is Kind.DROPPED and block.style == "close" and block.title in attributes.PAIRED:
-            if any(opened and opened.title == block.title for opened, _ in stack):
-                while True:
-                    opened, inner = stack.pop()
-                    assert opened is not None
-                    closing = block if opened.title == block.title else None
-                    stack[-1][1].append(_pair(opened, inner, closing))
-                    if closing:
-                        break
-        else:
-            stack[-1][1].append(block)
-    while len(stack) > 1:
-        # A tag that is never closed: what follows stays.
-        opened, inner = stack.pop()
-        assert opened is not None
-        stack[-1][1].extend([replace(opened, style="", title="", new=None), *inner])
-    return tuple(stack[0][1])
-
-
-def _pair(opened: Block, inner: list[Block], closing: Block | None) -> Block:
-    given = attributes.pairs(opened.new[0].text if opened.new else "")
-    words = opened.new[0].text if opened.new else ""
-    kind, style, title = attributes.paired(opened.title, given, words)
-    summary = next((block for block in inner if block.style == "summary"), None)
-    if summary and summary.new:
-        title = summary.new[0].text
-    lines = (*opened.lines, *(line for block in inner for line in block.lines), *(closing.lines if closing else ()))
-    inner = [block for block in inner if block is not summary]
-    if opened.title == "highlight":
-        code = "".join(f"{line.text}\n" for block in inner for line in block.lines)
-        fence = make_fence(words.split(" ")[0] or "text", code, opened.line)
-        return Block(Kind.FENCE, lines, fence=fence, new=_as_fence(fence, lines))
-    if opened.title == "details" and summary is None and "title" not in given:
-        title = "Details"
-    return Block(Kind(kind), lines, tuple(inner), title, style)

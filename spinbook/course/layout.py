@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from spinbook.course.attributes import STYLES
-from spinbook.course.blocks import Block, Kind, Line
+from spinbook.course.block import Block, Kind, Line
 
 _CHANGED = frozenset({Kind.ADMONITION, Kind.TAB, Kind.DETAILS, Kind.GROUP, Kind.DROPPED})
 _RESHAPED = frozenset({Kind.ADMONITION, Kind.TAB, Kind.GROUP})

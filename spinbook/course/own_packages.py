@@ -14,7 +14,7 @@ from markdown_it import MarkdownIt
 
 from spinbook.chapter.fence import Fence
 from spinbook.chapter.terminal import programs_of
-from spinbook.course.blocks import Block, Kind
+from spinbook.course.block import Block, Kind
 
 _ENTRY = re.compile(r"""["']\s*([\w.-]+)\s*=\s*([\w.]+):(\w+)\s*["']""")
 _PACKAGE_NAME = re.compile(r"""\b(?:package_name|name)\s*=\s*["']([a-z][a-z0-9_]*)["']""")

@@ -18,7 +18,7 @@ from spinbook.ros2 import executables, prefixes
 
 #: Commands that fail for a name which nothing has: noun -> verbs.
 _ASKING = {
-    "topic": {"echo", "info", "hz", "bw", "delay", "type"},
+    "topic": {"echo", "info", "type"},
     "service": {"call", "type", "info"},
     "node": {"info"},
     "action": {"info", "send_goal"},
