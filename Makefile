@@ -22,8 +22,8 @@ setup:   ## Make the virtual environment with every pinned dependency, or bring 
 	@PYTHON="$(PYTHON)" VENV="$(VENV)" sh setup.sh
 
 course: setup   ## Build, run and package the real course, make its site, and grade a class of twelve.
-	$(BIN)/spinbook build --execute
-	$(BIN)/spinbook site
+	$(BIN)/spinbook build --execute --strict
+	$(BIN)/spinbook site --strict
 	$(BIN)/spinbook package
 	$(BIN)/python benchmarks/class/grade_all.py --count 12 --seed 7 --out build/class
 	@echo

@@ -26,6 +26,7 @@ VERBS = {
     "submit": "spinbook.submit.command:submit",
     "update": "spinbook.update.command:update",
     "new": "spinbook.new.command:new",
+    "import": "spinbook.importing.command:import_book",
     "doctor": "spinbook.doctor.command:doctor",
 }
 
@@ -60,6 +61,7 @@ def spinbook() -> None:
       spinbook package            the chapters' nodes as a ROS 2 package
       spinbook grade EXERCISE F   what is right and wrong in a student's node
       spinbook new COURSE         a small course of your own that works at once, to go on from
+      spinbook import BOOK        a course from a book that exists (MkDocs, Docusaurus, Jupyter Book …)
       spinbook gradescope E       an autograder to upload to Gradescope
       spinbook handout            what students get: no solutions, no hidden checks
       spinbook audit              whether the exercises' checks catch what is wrong

@@ -1,4 +1,4 @@
-"""What is wrong in an author's file, told so that a person can mend it."""
+"""What is wrong in an author's file, told so that a person can fix it."""
 
 from __future__ import annotations
 
@@ -8,18 +8,20 @@ from pathlib import Path
 
 
 class Severity(str, Enum):
-    """An error stops the chapter it stands in; a warning is only told."""
+    """An error stops the chapter it is in; NOT_RUN says that something is shown and not run; a warning is only told."""
 
     ERROR = "error"
+    NOT_RUN = "not run"
     WARNING = "warning"
 
 
 @dataclass(frozen=True)
 class Problem:
-    """One thing to mend in one file.
+    """One thing to fix in one file.
 
-    `found` says what stands there, `mend` what was expected and what to do. `line` counts from 1, and is
-    None where the whole file is meant.
+    `found` says what is there, `mend` what was expected and what to do. `line` counts from 1, and is None where the
+    whole file is meant. Problems of one `group` have one cause, such as a package that is not installed: a report
+    counts them. `alone` says that nothing else stands in the way there.
     """
 
     file: Path
@@ -27,6 +29,8 @@ class Problem:
     found: str
     mend: str
     severity: Severity = Severity.ERROR
+    group: str = ""
+    alone: bool = True
 
     @property
     def is_error(self) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import os
 import sys
 from pathlib import Path
@@ -13,9 +14,10 @@ from rich.progress import Progress as Bars
 
 from spinbook.build.execution import DEADLINE_S, Executed, Job, Progress, execute
 from spinbook.build.notebooks import Built, build_notebooks
-from spinbook.course.course import Course, find_course
+from spinbook.course.course import FILE, Course, find_course
+from spinbook.course.obstacles import ranked
 from spinbook.interfaces.compiled import compile_course
-from spinbook.problem import SpinbookError
+from spinbook.problem import Problem, SpinbookError
 
 #: Nodes wait more than they compute: twice the cores keep a machine busy and responsive.
 _AT_ONCE = 2 * (os.cpu_count() or 1)
@@ -26,23 +28,32 @@ _AT_ONCE = 2 * (os.cpu_count() or 1)
 @click.option("--execute", "run", is_flag=True, help="Run every notebook, with real nodes, and keep its outputs.")
 @click.option("--jobs", type=click.IntRange(1, 50), default=_AT_ONCE, show_default=True, help="Notebooks run at once.")
 @click.option("--deadline", type=click.FloatRange(1), default=DEADLINE_S, show_default=True, help="Seconds a notebook.")
+@click.option("--strict", "is_strict", is_flag=True, help="It is an error that something is shown and not run.")
 @click.option("--again", is_flag=True, help="Run notebooks again that have not changed since a good run.")
 @click.argument("chapters", nargs=-1)
-def build(start: Path, run: bool, jobs: int, deadline: float, again: bool, chapters: tuple[str, ...]) -> None:
+def build(
+    start: Path, run: bool, jobs: int, deadline: float, is_strict: bool, again: bool, chapters: tuple[str, ...]
+) -> None:
     """Make a notebook of each chapter that course.toml lists, in build/notebooks/.
 
     With --execute each is run too, beside the others and unheard by them, and lies with its outputs in
     build/executed/. A chapter whose code has not changed since a good run is not run again. CHAPTERS, such as
     03-nodes-and-topics, run only those.
 
+    What can't run here is shown with a word that says why, and counted at the end; `spinbook lint` lists each place.
+    With --strict, as for the CI of your own course, it is an error.
+
     Exit code: 0 all is well, 1 a chapter has an error or a cell failed; the other chapters are built all the same.
     """
     course = find_course(start)
     console = Console(soft_wrap=True, highlight=False)
     compiled = _compile_interfaces(console, course)
-    built = list(build_notebooks(course))
+    built = list(build_notebooks(course, is_strict=is_strict))
+    unknown = _without_match(built, chapters)
     _report_built(console, built)
-    failed = not compiled or any(item.failed for item in built)
+    for problem in unknown:
+        console.print(str(problem), markup=False, style="red")
+    failed = not compiled or bool(unknown) or any(item.failed for item in built)
     if run and compiled:
         chosen = [item for item in built if not item.failed and _is_chosen(item, chapters)]
         try:
@@ -74,13 +85,33 @@ def _shown(course: Course, folder: str) -> str:
 
 
 def _is_chosen(item: Built, chapters: tuple[str, ...]) -> bool:
-    return not chapters or item.chapter.stem in {Path(name).stem for name in chapters}
+    return not chapters or any(name in {item.name, item.chapter.stem, *_paths(item.chapter)} for name in chapters)
+
+
+def _paths(chapter: Path) -> set[str]:
+    """How somebody in the course's folder or in a chapter's may name it."""
+    return {chapter.as_posix(), chapter.name, f"./{chapter.as_posix()}", chapter.with_suffix("").as_posix()}
+
+
+def _without_match(built: list[Built], chapters: tuple[str, ...]) -> list[Problem]:
+    """The names that no chapter has."""
+    known = [item.name for item in built]
+    problems = []
+    for name in chapters:
+        if not any(_is_chosen(item, (name,)) for item in built):
+            close = difflib.get_close_matches(name, known, n=1)
+            mend = f"Did you mean `{close[0]}`?" if close else f"The chapters are: {', '.join(known)}."
+            problems.append(Problem(FILE, None, f"there is no chapter `{name}`.", mend))
+    return problems
 
 
 def _report_built(console: Console, built: list[Built]) -> None:
-    for item in built:
-        for problem in item.problems:
+    problems = [problem for item in built for problem in item.problems]
+    for problem in problems:
+        if problem.is_error or not problem.group:
             console.print(str(problem), markup=False, style="red" if problem.is_error else None)
+    for line in ranked([problem for problem in problems if not problem.is_error]):
+        console.print(line, markup=False)
     made = sum(item.fresh and not item.failed for item in built)
     broken = sum(item.failed for item in built)
     console.print(
@@ -103,7 +134,7 @@ def _execute(
     )
     failed = False
     with Bars(*columns, console=console, transient=True) as bars:
-        tasks = {job.chapter: bars.add_task(job.chapter.stem, total=None, start=False, visible=False) for job in jobs}
+        tasks = {job.chapter: bars.add_task(job.name, total=None, start=False, visible=False) for job in jobs}
 
         def on_progress(progress: Progress) -> None:
             task = tasks[progress.chapter]
@@ -118,7 +149,7 @@ def _execute(
 
 
 def _report_executed(console: Console, executed: Executed) -> None:
-    name = executed.chapter.stem
+    name = executed.file.name.removesuffix(".ipynb")
     if executed.cached:
         console.print(f"  ✓ {name}: unchanged since its last run", markup=False)
     elif not executed.failures:

@@ -25,7 +25,7 @@ from spinbook.written import write_if_changed
 DEADLINE_S = 300.0
 _TO_SAY_SO_S = 20.0
 #: What of Spinbook a notebook's cells use.
-_USED_BY_CELLS = ("check", "graph", "runtime", "ros2", "turtlesim", "package", "interfaces")
+_USED_BY_CELLS = ("check", "course", "graph", "runtime", "ros2", "turtlesim", "package", "interfaces")
 
 
 @dataclass(frozen=True)
@@ -58,6 +58,11 @@ class Job:
     deadline_s: float = DEADLINE_S
 
     @property
+    def name(self) -> str:
+        """What the chapter is called; it may have dots."""
+        return self.notebook.name.removesuffix(".ipynb")
+
+    @property
     def executed(self) -> Path:
         """Where the notebook with its outputs goes."""
         return self.build_folder / "executed" / self.notebook.name
@@ -65,17 +70,17 @@ class Job:
     @property
     def graph(self) -> Path:
         """Where the node graph goes that was seen while it ran (spinbook.graph.model)."""
-        return self.executed.with_suffix(".graph.json")
+        return self.executed.with_name(f"{self.name}.graph.json")
 
     @property
     def record(self) -> Path:
         """What is remembered of the last good run."""
-        return self.build_folder / ".cache" / "executed" / f"{self.notebook.stem}.json"
+        return self.build_folder / ".cache" / "executed" / f"{self.name}.json"
 
     @property
     def folder(self) -> Path:
         """The folder in which it runs."""
-        return self.build_folder / "run" / self.notebook.stem
+        return self.build_folder / "run" / self.name
 
 
 def execute(
@@ -105,15 +110,15 @@ def _execute_one(job: Job, on_progress: Callable[[Progress], None], again: bool,
         _write_graph(job, remembered["graph"])
         return Executed(job.chapter, job.executed, (), 0.0, cached=True)
     started = time.monotonic()
-    raw = job.folder.with_suffix(".ipynb")
+    raw = job.folder.with_name(f"{job.name}.ipynb")
     ended = _run(job, raw, on_progress, given_up)
     ran = _read(raw) or notebook
     failures = find_failures(job.chapter, ran, ended)
     outputs = {cell["id"]: _tidy(cell, job) for cell in ran["cells"] if cell["cell_type"] == "code"}
     write_if_changed(job.executed, _with_outputs(notebook, outputs))
-    graph = _text(raw.with_suffix(".graph.json"))
+    graph = _text(_graph_of(raw))
     _write_graph(job, graph)
-    for file in (raw, raw.with_suffix(".graph.json")):
+    for file in (raw, _graph_of(raw)):
         file.unlink(missing_ok=True)
     job.record.unlink(missing_ok=True)
     if not failures:
@@ -121,11 +126,15 @@ def _execute_one(job: Job, on_progress: Callable[[Progress], None], again: bool,
     return Executed(job.chapter, job.executed, tuple(failures), time.monotonic() - started, cached=False)
 
 
+def _graph_of(raw: Path) -> Path:
+    return raw.with_name(raw.name.removesuffix(".ipynb") + ".graph.json")
+
+
 def _run(job: Job, raw: Path, on_progress: Callable[[Progress], None], given_up: threading.Event) -> dict[str, Any]:
     """Run the notebook's process. Returns what it said last of how it ended, {} if it ended well."""
     shutil.rmtree(job.folder, ignore_errors=True)
     job.folder.mkdir(parents=True)
-    for file in (raw, raw.with_suffix(".graph.json")):
+    for file in (raw, _graph_of(raw)):
         file.unlink(missing_ok=True)
     private = {"IPYTHONDIR": str(job.folder / ".ipython"), "ROS_LOG_DIR": str(job.folder / ".ros-log")}
     argv = [sys.executable, "-m", "spinbook.build.run_notebook", str(job.notebook), str(raw), str(job.deadline_s)]

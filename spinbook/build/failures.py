@@ -75,7 +75,8 @@ def _failure(chapter: Path, cell: dict[str, Any], error: dict[str, Any]) -> Cell
     node = cell["metadata"].get("spinbook", {}).get("node")
     if node:
         inside = re.findall(_IN_MODULE.format(module=re.escape(node)), printed)
-        line += int(inside[-1]) - 1 if inside else 0
+        above = cell["metadata"]["spinbook"].get("above", 0)
+        line += max(int(inside[-1]) - above, 1) - 1 if inside else 0
     elif inside := _IN_CELL.findall(traceback):
         line += next(int(number) for number in inside[0] if number) - 1
     is_ours = error["ename"] == "CellFailed"

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import json
-import re
 import shlex
 from collections.abc import Iterator
-from pathlib import Path
+from dataclasses import replace
 from typing import Any
 
 import nbformat
 
 from grader.exercise import load, starter
-from spinbook.build.portable import portable
+from spinbook.build.portable import Place, portable
 from spinbook.chapter.chapter import Cell, CellKind, Chapter
 from spinbook.chapter.terminal import Command, CommandKind
 from spinbook.course.course import Course
+from spinbook.course.flavours import parser
 
 _SETUP = """\
 # Run this cell first: it gives the notebook its commands, such as %%node, %ros2, %plot and %stop.
@@ -47,7 +47,7 @@ def _notebook(chapter: Chapter, course: Course) -> dict[str, Any]:
 def _cells(chapter: Chapter, course: Course) -> Iterator[dict[str, Any]]:
     setup = _SETUP.format(name=chapter.name, package=course.package.name, workspace=course.package.workspace)
     setup_cell = _code("spinbook-setup", setup, {"kind": "setup", "line": 1})
-    folder = chapter.file.parent.as_posix()
+    place = Place(course.root, chapter.file.parent.as_posix(), course.names, course.repository)
     waiting = True
     for cell in chapter.cells:
         # The chapter's heading comes first, then what makes its cells work.
@@ -55,7 +55,7 @@ def _cells(chapter: Chapter, course: Course) -> Iterator[dict[str, Any]]:
             waiting = False
             yield setup_cell
         if cell.kind is CellKind.PROSE:
-            yield _prose(cell.id, portable(cell.source, folder, course.repository), cell.line)
+            yield _prose(cell.id, cell.source, cell.line, place)
         elif cell.kind is CellKind.EXERCISE:
             yield from _exercise(cell, course)
         else:
@@ -69,8 +69,11 @@ def _runnable(cell: Cell) -> dict[str, Any]:
     metadata: dict[str, Any] = {"kind": cell.kind.value, "line": cell.line}
     if cell.kind is CellKind.NODE:
         metadata["node"] = cell.name
-        spin_class = f" --class {cell.spin_class}" if cell.spin_class else ""
-        source = f"%%node {cell.name}{_bounds(cell)}{spin_class}\n{cell.source}"
+        source = f"%%node {cell.name}{_bounds(cell)}{_how(cell)}\n{cell.source}"
+        if cell.before:
+            metadata["above"] = cell.before.count("\n")
+    elif cell.kind is CellKind.PART:
+        source = f"%%part {cell.name}{'' if cell.runs_in_kernel else ' --keep'}\n{cell.source}"
     elif cell.kind is CellKind.INTERFACE:
         metadata["interface"] = cell.name
         source = f"%%interface {cell.name}\n{cell.source}"
@@ -79,6 +82,16 @@ def _runnable(cell: Cell) -> dict[str, Any]:
     else:
         source = cell.source
     return _code(cell.id, source, metadata, ["raises-exception"] if cell.raises else [])
+
+
+def _how(cell: Cell) -> str:
+    """The options that say how a node's code is started and made whole."""
+    words = [f"--class {name}" for name in cell.spin_classes]
+    words += ["--main"] if cell.runs_main else []
+    words += [f"--as {package}/{executable}" for package, executable in cell.executables]
+    if cell.before:
+        words.append(" ".join(["--after", *cell.after]) if cell.after else "--usual-imports")
+    return "".join(f" {word}" for word in words)
 
 
 def _bounds(cell: Cell) -> str:
@@ -100,9 +113,8 @@ def _shell_line(command: Command, cell: Cell) -> str:
 
 def _exercise(cell: Cell, course: Course) -> Iterator[dict[str, Any]]:
     exercise = load(course.root / "exercises" / (cell.name or ""))
-    folder = Path("exercises", exercise.name).as_posix()
-    task = portable(_one_level_down(exercise.task), folder, course.repository)
-    yield _prose(f"{cell.id}-task", task, cell.line)
+    place = Place(course.root, f"exercises/{exercise.name}", course.names, course.repository)
+    yield _prose(f"{cell.id}-task", _one_level_down(exercise.task), cell.line, place)
     if exercise.solution_file is not None:
         module = exercise.file_name.removesuffix(".py")
         source = f"%%node {module}\n{starter(exercise.solution_file.read_text(encoding='utf-8'))}"
@@ -113,12 +125,20 @@ def _exercise(cell: Cell, course: Course) -> Iterator[dict[str, Any]]:
 
 
 def _one_level_down(task: str) -> str:
-    """A task's headings, one level below the chapter's section in which it stands."""
-    return re.sub(r"^(#{1,5}) ", r"#\1# ", task, flags=re.MULTILINE)
+    """A task's headings, one level below the chapter's section in which it is."""
+    lines = task.split("\n")
+    for token in parser().parse(task):
+        if token.type == "heading_open" and token.map and token.markup.startswith("#") and len(token.markup) < 6:
+            lines[token.map[0]] = lines[token.map[0]].replace("#", "###", 1)
+    return "\n".join(lines)
 
 
-def _prose(cell_id: str, source: str, line: int) -> dict[str, Any]:
-    return {"cell_type": "markdown", "id": cell_id, "metadata": {"spinbook": {"line": line}}, "source": source}
+def _prose(cell_id: str, prose: str, line: int, place: Place) -> dict[str, Any]:
+    place = replace(place, pictures={})
+    source = portable(prose, place)
+    metadata = {"spinbook": {"line": line}}
+    cell: dict[str, Any] = {"cell_type": "markdown", "id": cell_id, "metadata": metadata, "source": source}
+    return {**cell, "attachments": place.pictures} if place.pictures else cell
 
 
 def _code(cell_id: str, source: str, metadata: dict[str, Any], tags: list[str] | None = None) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,8 +12,9 @@ from grader.exercise import ExerciseError
 from spinbook.build.digest import code_digest, digest, files_digest
 from spinbook.build.notebook import notebook_json
 from spinbook.build.reading import surroundings
-from spinbook.chapter.read import Surroundings, read_chapter
+from spinbook.chapter.read import Surroundings, forget_chapters, read_chapter
 from spinbook.course.course import Course
+from spinbook.course.obstacles import strict
 from spinbook.problem import Problem, Severity
 from spinbook.written import write_if_changed
 
@@ -27,6 +28,13 @@ class Built:
     problems: tuple[Problem, ...]
     fresh: bool
     """False where the chapter was not read again, because nothing that it depends on has changed."""
+    uses: tuple[str, ...] = ()
+    """The files of the course that it includes or shows."""
+
+    @property
+    def name(self) -> str:
+        """What the chapter is called."""
+        return self.notebook.name.removesuffix(".ipynb")
 
     @property
     def failed(self) -> bool:
@@ -34,8 +42,10 @@ class Built:
         return any(problem.is_error for problem in self.problems)
 
 
-def build_notebooks(course: Course) -> Iterator[Built]:
+def build_notebooks(course: Course, *, is_strict: bool = False) -> Iterator[Built]:
     """Build `build/notebooks/CHAPTER.ipynb` for each chapter, in the course's order.
+
+    `is_strict` makes it an error that something is shown and not run.
 
     A chapter with an error leaves the notebook of its last good build as it was. Notebooks of chapters that the course
     no longer lists are removed.
@@ -43,43 +53,56 @@ def build_notebooks(course: Course) -> Iterator[Built]:
     folder = course.build_folder / "notebooks"
     record = course.build_folder / ".cache" / "notebooks.json"
     before = _read_record(record)
+    forget_chapters()
     known = surroundings(course)
-    common = digest(code_digest("chapter", "build", "course", "interfaces"), repr(course), repr(_sorted(known)))
+    code = code_digest("chapter", "build", "course", "interfaces")
+    common = digest(code, repr(course), repr(_sorted(known)), str(is_strict))
     parts = ("exercises", "solutions")
     exercise_files = files_digest(
         (file for part in parts for file in (course.root / part).rglob("*") if file.is_file()), course.root
     )
     after: dict[str, Any] = {}
     for chapter in course.chapters:
-        notebook = folder / f"{chapter.stem}.ipynb"
-        key = digest(common, exercise_files, files_digest([course.root / chapter], course.root))
+        notebook = folder / f"{known.names[chapter]}.ipynb"
         entry = before.get(chapter.as_posix())
+        own = digest(common, exercise_files, files_digest([course.root / chapter], course.root))
+        key = _key(own, entry["uses"] if entry else [], course)
         if entry and entry["key"] == key and notebook.exists():
-            built = Built(chapter, notebook, tuple(_problem(p) for p in entry["problems"]), fresh=False)
+            built = Built(chapter, notebook, tuple(_problem(p) for p in entry["problems"]), False, tuple(entry["uses"]))
         else:
-            built = _build(course, chapter, notebook, known)
+            built = _build(course, chapter, notebook, known, is_strict)
         if not built.failed:
-            after[chapter.as_posix()] = {"key": key, "problems": [_plain(problem) for problem in built.problems]}
+            problems = [_plain(problem) for problem in built.problems]
+            record_of = {"key": _key(own, built.uses, course), "notebook": notebook.name, "uses": list(built.uses)}
+            after[chapter.as_posix()] = {**record_of, "problems": problems}
         yield built
-    for gone in set(before) - {chapter.as_posix() for chapter in course.chapters}:
-        (folder / f"{Path(gone).stem}.ipynb").unlink(missing_ok=True)
-        (course.build_folder / "executed" / f"{Path(gone).stem}.ipynb").unlink(missing_ok=True)
+    names = {f"{name}.ipynb" for name in known.names.values()}
+    for name in {entry.get("notebook", "") for entry in before.values()} - names - {""}:
+        (folder / name).unlink(missing_ok=True)
+        (course.build_folder / "executed" / name).unlink(missing_ok=True)
     write_if_changed(record, json.dumps(after, indent=1, sort_keys=True) + "\n")
 
 
-def _build(course: Course, chapter: Path, notebook: Path, known: Surroundings) -> Built:
+def _build(course: Course, chapter: Path, notebook: Path, known: Surroundings, is_strict: bool) -> Built:
     reading = read_chapter(course.root, chapter, known)
-    problems = list(reading.problems)
-    if reading.chapter is not None:
+    problems = [strict(problem) for problem in reading.problems] if is_strict else list(reading.problems)
+    if reading.chapter is not None and not any(problem.is_error for problem in problems):
         try:
             write_if_changed(notebook, notebook_json(reading.chapter, course))
         except ExerciseError as error:
             problems.append(Problem(chapter, None, str(error), "Mend the exercise, or take it out of the chapter."))
-    return Built(chapter, notebook, tuple(problems), fresh=True)
+    uses = tuple(file.as_posix() for file in reading.chapter.uses) if reading.chapter else ()
+    return Built(chapter, notebook, tuple(problems), fresh=True, uses=uses)
 
 
-def _sorted(known: Surroundings) -> tuple[str, list[str], list[str], list[str]]:
-    return known.package, sorted(known.modules), sorted(known.exercises), sorted(known.interfaces)
+def _key(own: str, uses: Sequence[str], course: Course) -> str:
+    """What a chapter's notebook depends on: the chapter, all chapters' surroundings, the files that it shows."""
+    return digest(own, files_digest((course.root / file for file in uses), course.root))
+
+
+def _sorted(known: Surroundings) -> tuple[str, list[str], list[str], list[tuple[Path, str]], list[str]]:
+    names = sorted(known.names.items())
+    return known.package, sorted(known.modules), sorted(known.exercises), names, sorted(known.interfaces)
 
 
 def _read_record(file: Path) -> Mapping[str, Any]:
@@ -87,7 +110,8 @@ def _read_record(file: Path) -> Mapping[str, Any]:
         record = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
-    return record if isinstance(record, dict) else {}
+    is_ours = isinstance(record, dict) and all("uses" in entry for entry in record.values())
+    return record if is_ours else {}
 
 
 def _plain(problem: Problem) -> dict[str, Any]:
@@ -97,8 +121,13 @@ def _plain(problem: Problem) -> dict[str, Any]:
         "found": problem.found,
         "mend": problem.mend,
         "severity": problem.severity.value,
+        "group": problem.group,
+        "alone": problem.alone,
     }
 
 
 def _problem(plain: Mapping[str, Any]) -> Problem:
-    return Problem(Path(plain["file"]), plain["line"], plain["found"], plain["mend"], Severity(plain["severity"]))
+    severity = Severity(plain["severity"])
+    return Problem(
+        Path(plain["file"]), plain["line"], plain["found"], plain["mend"], severity, plain["group"], plain["alone"]
+    )

@@ -105,7 +105,7 @@ def main() -> None:
         with contextlib.suppress(KeyboardInterrupt):
             asyncio.run(run(notebook, Path.cwd(), deadline_s, watch))
     if watch.graph is not None:
-        write_if_changed(out.with_suffix(".graph.json"), watch.graph.to_json())
+        write_if_changed(out.with_name(out.name.removesuffix(".ipynb") + ".graph.json"), watch.graph.to_json())
     write_if_changed(out, json.dumps(notebook, ensure_ascii=False, indent=1, sort_keys=True) + "\n")
 
 

@@ -16,6 +16,7 @@ class CellKind(str, Enum):
     PROSE = "prose"
     NODE = "node"
     SNIPPET = "snippet"
+    PART = "part"
     SHELL = "shell"
     INTERFACE = "interface"
     EXERCISE = "exercise"
@@ -28,7 +29,10 @@ class Cell:
     `name` is a node's name (its file without .py), an exercise's, or an interface's, such as
     `my_interfaces/msg/Pose.msg`. `seconds` bounds how long it shows or runs
     (None: the runtime's default), `until` is a text in its log that ends that time early. `raises` says that failing
-    is the lesson. `spin_class` is the class to spin where a node's code only defines one.
+    is the lesson. `spin_classes` are the classes to spin where a node's code only defines them, `runs_main` says that
+    its `main` has to be called. `before` is the code above a node's that makes it whole, taken from the nodes and parts
+    that `after` names; a part is code that later nodes use, and with `runs_in_kernel` a snippet as well. `executables`
+    are what `ros2 run` calls a node: (package, executable).
     """
 
     kind: CellKind
@@ -39,13 +43,23 @@ class Cell:
     seconds: float | None = None
     until: str | None = None
     raises: bool = False
-    spin_class: str | None = None
+    spin_classes: tuple[str, ...] = ()
+    runs_main: bool = False
+    before: str = ""
+    after: tuple[str, ...] = ()
+    runs_in_kernel: bool = True
+    executables: tuple[tuple[str, str], ...] = ()
     commands: tuple[Command, ...] = ()
 
     @property
     def module(self) -> str:
         """The file name of a node's code."""
         return f"{self.name}.py"
+
+    @property
+    def whole(self) -> str:
+        """A node's program as it runs."""
+        return self.before + self.source
 
 
 @dataclass(frozen=True)
@@ -55,6 +69,8 @@ class StaticFence:
     line: int
     language: str
     why: str
+    sign: str = ""
+    """What readers are told below it; "" where nothing needs to be said."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +83,8 @@ class Chapter:
     summary: str
     cells: tuple[Cell, ...]
     static_fences: tuple[StaticFence, ...] = ()
+    uses: tuple[Path, ...] = ()
+    """The files of the course that it includes or shows, relative to the course."""
 
     @property
     def interfaces(self) -> Iterator[Cell]:

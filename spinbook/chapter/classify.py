@@ -1,25 +1,73 @@
-"""Says of every fence what it is: a node, a snippet, shell, or static, with the reason where it is not run."""
+"""What a fence is by itself: a program, a snippet, shell, or static, with the reason if it is not run."""
 
 from __future__ import annotations
 
+import difflib
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 
 from spinbook.chapter.definition_title import interface_path, is_someone_elses
 from spinbook.chapter.fence import ATTRIBUTES, Fence
-from spinbook.chapter.python_code import CodeError, PythonCode, has_magics, inspect
-from spinbook.chapter.terminal import Command, CommandKind, NotRunnable, read_commands
+from spinbook.chapter.python_code import CodeError, PythonCode, has_magics, inspect, programs_in_magics
+from spinbook.chapter.terminal import Command, CommandKind, NotRunnable, looks_like_shell, read_commands
 from spinbook.problem import Problem, Severity
+
+#: Programs that a chapter never runs here, wherever they are named: they change the machine, or fetch from elsewhere.
+NEVER_RUN = frozenset(
+    [
+        "sudo",
+        "su",
+        "apt",
+        "apt-get",
+        "aptitude",
+        "dpkg",
+        "snap",
+        "brew",
+        "yum",
+        "dnf",
+        "pacman",
+        "rm",
+        "rmdir",
+        "mv",
+        "dd",
+        "mkfs",
+        "git",
+        "pip",
+        "pip3",
+        "pipx",
+        "uv",
+        "conda",
+        "mamba",
+        "npm",
+        "yarn",
+        "curl",
+        "wget",
+        "ssh",
+        "scp",
+        "docker",
+        "podman",
+        "reboot",
+        "shutdown",
+        "poweroff",
+        "kill",
+        "pkill",
+        "killall",
+        "chown",
+        "systemctl",
+        "service",
+        "rosdep",
+    ]
+)
 
 
 class FenceKind(str, Enum):
-    """What a fence is."""
+    """What a fence is. A part is code that later programs of the chapter use."""
 
     NODE = "node"
     SNIPPET = "snippet"
+    PART = "part"
     SHELL = "shell"
     INTERFACE = "interface"
     STATIC = "static"
@@ -27,50 +75,91 @@ class FenceKind(str, Enum):
 
 @dataclass(frozen=True)
 class Classified:
-    """A fence and what it is. `why` says why a static one is not run; `name` is a node's or an interface's."""
+    """A fence and what it is. `why` says why a static one is not run; `sign` says it in a few words to readers.
+
+    `name` is a node's, a part's or an interface's. `before` is the code that is put above a node's so that it is
+    whole, `after` names the nodes and parts from which that code comes, `runs_in_kernel` says that a part also runs as
+    a snippet. `executables` are what `ros2 run` calls a node: (package, executable).
+    """
 
     fence: Fence
     kind: FenceKind
     why: str = ""
+    sign: str = ""
     name: str | None = None
     code: PythonCode | None = None
     commands: tuple[Command, ...] = ()
+    before: str = ""
+    after: tuple[str, ...] = ()
+    runs_in_kernel: bool = True
+    executables: tuple[tuple[str, str], ...] = ()
+    named: bool = True
+    """Whether the author named its file."""
 
     @property
-    def spin_class(self) -> str | None:
-        """The class that the runtime must spin, where the code defines a Node and never spins it."""
-        if self.kind is FenceKind.NODE and self.code and not self.code.spins and not self.code.has_main_guard:
-            return self.code.node_classes[-1] if self.code.node_classes else None
-        return None
+    def runs_main(self) -> bool:
+        """Whether the runtime must call the code's `main`."""
+        return self.kind is FenceKind.NODE and self.code is not None and self.code.runs_main
+
+    @property
+    def spin_classes(self) -> tuple[str, ...]:
+        """The classes that the runtime must spin, where the code defines Nodes and never spins them."""
+        code = self.code
+        if self.kind is not FenceKind.NODE or code is None or code.is_complete or code.calls_main:
+            return ()
+        return code.alone
+
+    @property
+    def whole(self) -> str:
+        """A node's program as it runs."""
+        return self.before + self.fence.code
 
 
-def classify(
-    fence: Fence, defined: Iterable[str], file: Path, interface_package: str = ""
-) -> tuple[Classified, list[Problem]]:
-    """Say what a fence is.
+def first_look(fence: Fence, file: Path, interface_package: str = "") -> tuple[Classified, list[Problem]]:
+    """Say what a fence is by itself. Python that can run is a snippet here, or a node if it is a program.
 
-    `defined` are the names that earlier snippets of the chapter left in the kernel; `file` is what problems name.
     `interface_package` is the package of an interface whose title does not name one.
     """
     problems = _unknown_attributes(fence, file)
     if fence.has("static"):
         return Classified(fence, FenceKind.STATIC, "it says `static`"), problems
     if interface := interface_path(fence.title or "", interface_package):
-        package = interface.partition("/")[0]
-        if is_someone_elses(package, interface_package):
-            why = f"it shows an interface of {package}, which is installed"
-            return Classified(fence, FenceKind.STATIC, why), problems
-        return Classified(fence, FenceKind.INTERFACE, name=interface), problems
+        return _interface(fence, interface, interface_package), problems
+    fence = with_language(fence)
     if fence.is_shell:
-        return _shell(fence, file, problems)
+        item, found = _shell(fence, file)
+        return item, problems + found
     if fence.is_python:
-        return _python(fence, frozenset(defined), file, problems)
+        item, found = _python(fence, file)
+        return item, problems + found
     what = f"`{fence.language}` is" if fence.language else "a fence without a language is"
     return Classified(fence, FenceKind.STATIC, f"{what} neither Python nor shell"), problems
 
 
+def _interface(fence: Fence, path: str, own: str) -> Classified:
+    """A definition that is compiled, or one of an installed package, which is shown."""
+    package = path.partition("/")[0]
+    if is_someone_elses(package, own):
+        return Classified(fence, FenceKind.STATIC, f"it shows an interface of {package}, which is installed")
+    return Classified(fence, FenceKind.INTERFACE, name=path)
+
+
+def with_language(fence: Fence) -> Fence:
+    """A fence without a language, with the one that its content surely is."""
+    if fence.language not in {"", "text", "plaintext"} or fence.attributes:
+        return fence
+    if looks_like_shell(fence.code):
+        return Fence("bash", fence.code, fence.line, fence.attributes, fence.skipped)
+    if not fence.language and re.search(
+        r"^(import|from) (rclpy|\w+(_msgs|_srvs|_interfaces))\b", fence.code, re.MULTILINE
+    ):
+        return Fence("python", fence.code, fence.line, fence.attributes, fence.skipped)
+    return fence
+
+
 def _unknown_attributes(fence: Fence, file: Path) -> list[Problem]:
-    unknown = [a for a in fence.attributes if a not in ATTRIBUTES]
+    """Attributes that are nearly one of ours; those of other book tools are no concern of ours."""
+    unknown = [a for a in fence.attributes if a not in ATTRIBUTES and difflib.get_close_matches(a, ATTRIBUTES, 1, 0.75)]
     if not unknown or not (fence.is_python or fence.is_shell):
         return []
     known = "; ".join(f"`{name}`: {meaning}" for name, meaning in ATTRIBUTES.items())
@@ -78,55 +167,77 @@ def _unknown_attributes(fence: Fence, file: Path) -> list[Problem]:
     return [Problem(file, fence.line, found, f"Known are {known}.", Severity.WARNING)]
 
 
-def _shell(fence: Fence, file: Path, problems: list[Problem]) -> tuple[Classified, list[Problem]]:
+def _shell(fence: Fence, file: Path) -> tuple[Classified, list[Problem]]:
     read = read_commands(fence.code)
     refused = [command for command in read if isinstance(command, NotRunnable)]
     commands = tuple(command for command in read if isinstance(command, Command))
     runnable = [command for command in commands if command.kind is not CommandKind.NOTE]
-    if not runnable:
-        why = refused[0].why if refused else "it holds no command that a notebook runs"
-        if refused and refused[0].text.startswith(("ros2 ", "colcon ", "rqt_plot ")):
-            problems.append(_not_run(fence, refused[0], file))
-        return Classified(fence, FenceKind.STATIC, why), problems
-    if refused:
-        problems.append(_not_run(fence, refused[0], file))
-        return Classified(fence, FenceKind.STATIC, refused[0].why), problems
-    return Classified(fence, FenceKind.SHELL, commands=commands), problems
+    if runnable and not refused:
+        return Classified(fence, FenceKind.SHELL, commands=commands), []
+    ros = next((command for command in refused if command.is_ros), None)
+    if runnable or ros:
+        shown = ros or refused[0]
+        return Classified(fence, FenceKind.STATIC, shown.why, f"{shown.why}."), [_not_run(fence, shown, file)]
+    why = refused[0].why if refused else "it holds no command that a notebook runs"
+    return Classified(fence, FenceKind.STATIC, why), []
 
 
 def _not_run(fence: Fence, command: NotRunnable, file: Path) -> Problem:
     line = fence.first_code_line + command.line - 1
     found = f"this shell fence is shown and not run: {command.why} (`{command.text}`)."
     mend = "Put what can run into a fence of its own, or write `static` behind the language to say that this is meant."
-    return Problem(file, line, found, mend, Severity.WARNING)
+    return Problem(file, line, found, mend, Severity.WARNING, group="a real shell")
 
 
-def _python(
-    fence: Fence, defined: frozenset[str], file: Path, problems: list[Problem]
-) -> tuple[Classified, list[Problem]]:
+def _python(fence: Fence, file: Path) -> tuple[Classified, list[Problem]]:
     try:
         code = inspect(fence.code)
     except CodeError as error:
-        line = fence.first_code_line + error.line - 1
-        mend = "Mend the code, or write `static` behind the language if it is only to be shown and not run."
-        problems.append(Problem(file, line, f"not Python: {error.message} (column {error.column}).", mend))
-        return Classified(fence, FenceKind.STATIC, "it is not Python"), problems
+        return _broken(fence, error, file)
     if why := _why_static(fence, code):
-        return Classified(fence, FenceKind.STATIC, why, code=code), problems
-    if fence.title or code.is_node:
-        name, name_problems = _node_name(fence, code, file)
-        problems.extend(name_problems)
-        if has_magics(fence.code):
-            found = "a node's code holds a notebook command (a line that begins with % or !)."
-            mend = "A node is a file of its own, which Python runs: put the command into another fence."
-            problems.append(Problem(file, fence.line, found, mend))
-        return Classified(fence, FenceKind.NODE, name=name, code=code), problems
-    missing = {name: line for name, line in code.needs.items() if name not in defined}
-    if missing:
-        names = ", ".join(f"`{name}`" for name in missing)
-        why = f"it uses {names}, which no earlier snippet of the chapter defines"
-        return Classified(fence, FenceKind.STATIC, why, code=code), problems
-    return Classified(fence, FenceKind.SNIPPET, code=code), problems
+        sign = f"{why}." if why.startswith("it is a fragment") else ""
+        return Classified(fence, FenceKind.STATIC, why, sign, code=code), []
+    if refused := _refused(fence, code):
+        return Classified(fence, FenceKind.STATIC, refused, f"{refused}.", code=code), []
+    if _is_file(fence) or code.is_node:
+        problems = _magics_in_node(fence, file)
+        if problems:
+            return Classified(
+                fence, FenceKind.STATIC, "it holds a notebook command", "it holds a notebook command.", code=code
+            ), problems
+        return Classified(fence, FenceKind.NODE, code=code), []
+    return Classified(fence, FenceKind.SNIPPET, code=code), []
+
+
+def _broken(fence: Fence, error: CodeError, file: Path) -> tuple[Classified, list[Problem]]:
+    line = fence.first_code_line + error.line - 1
+    mend = "Fix the code, or write `static` behind the language if it is only to be shown and not run."
+    found = f"not Python: {error.message} (column {error.column})."
+    problem = Problem(file, line, found, mend, Severity.NOT_RUN)
+    sign = f"line {error.line} is not valid Python ({error.message})."
+    return Classified(fence, FenceKind.STATIC, "it is not Python", sign), [problem]
+
+
+def _magics_in_node(fence: Fence, file: Path) -> list[Problem]:
+    if not has_magics(fence.code):
+        return []
+    found = "a node's code holds a notebook command (a line that begins with % or !)."
+    mend = "A node is a file of its own, which Python runs: put the command into another fence."
+    return [Problem(file, fence.line, found, mend, Severity.NOT_RUN)]
+
+
+def _refused(fence: Fence, code: PythonCode) -> str:
+    """Why Python that could run is not run here, if so."""
+    started = {**code.programs, **programs_in_magics(fence.code)}
+    if never := sorted(set(started) & NEVER_RUN):
+        return f"it runs `{never[0]}`"
+    if code.asks and not fence.has("raises"):
+        return "it waits for somebody to type"
+    return ""
+
+
+def _is_file(fence: Fence) -> bool:
+    return bool(fence.title and fence.title.endswith(".py"))
 
 
 def _why_static(fence: Fence, code: PythonCode) -> str:
@@ -138,22 +249,30 @@ def _why_static(fence: Fence, code: PythonCode) -> str:
         return "it is a setup.py"
     if code.is_launch_file:
         return "it is a launch file"
-    if fence.title and not fence.title.endswith(".py"):
+    if fence.title and re.fullmatch(r"[\w./-]+\.(?!py$)[a-z]{1,6}", fence.title):
         return f"`{fence.title}` is no Python file"
     return ""
 
 
-def _node_name(fence: Fence, code: PythonCode, file: Path) -> tuple[str, list[Problem]]:
-    if fence.title:
-        stem = fence.title.rsplit("/", 1)[-1].removesuffix(".py")
+def node_name(item: Classified, told: str, file: Path) -> tuple[str, bool, list[Problem]]:
+    """(a node's file without .py, whether the author named it, problems). `told` is the file that the text names."""
+    code = item.code
+    given = item.fence.title if item.fence.title and item.fence.title.endswith(".py") else told
+    if given:
+        stem = given.rsplit("/", 1)[-1].removesuffix(".py")
         if stem.isidentifier():
-            return stem, []
-        found = f"`{fence.title}` can't be a module: `{stem}` is no Python name."
-        return stem, [
-            Problem(file, fence.line, found, "Use letters, digits and underscores, such as joint_publisher.py.")
-        ]
-    name = code.ros_name or re.sub(r"(?<!^)(?=[A-Z])", "_", code.node_classes[0]).lower() if code.node_classes else None
-    name = name or code.ros_name or "node"
+            return stem, True, []
+        name = re.sub(r"\W+", "_", stem).strip("_") or "node"
+        name = name if name.isidentifier() else f"node_{name}"
+        found = f"`{given}` can't be a module: `{stem}` is not a Python name. It is called `{name}` here."
+        mend = "Use letters, digits and underscores, such as joint_publisher.py."
+        return name, True, [Problem(file, item.fence.line, found, mend, Severity.WARNING)]
+    assert code is not None
+    name = code.ros_name if code.ros_name and code.ros_name.isidentifier() else ""
+    name = name or (
+        re.sub(r"(?<!^)(?<![A-Z_])(?=[A-Z])", "_", code.node_classes[0]).lower() if code.node_classes else ""
+    )
+    name = name or "node"
     found = f"this fence is a node without a file name; it is called `{name}`."
     mend = f'Name its file: ```python title="{name}.py"'
-    return name, [Problem(file, fence.line, found, mend, Severity.WARNING)]
+    return name, False, [Problem(file, item.fence.line, found, mend, Severity.WARNING, group="a file name")]

@@ -9,6 +9,11 @@ from interface_compiler import prefixes, shipped, store
 _TITLE = re.compile(r"(?:(?P<package>\w+)/)?(?P<kind>msg|srv|action)/(?P<name>[\w-]+)\.(?P=kind)")
 
 
+def interface_package(package: str) -> str:
+    """The package of the interfaces that chapters define, where the nodes' package is `package`."""
+    return f"{package}_interfaces"
+
+
 def interface_path(title: str, package: str) -> str | None:
     """The path `PACKAGE/msg/NAME.msg` that a title stands for, or None where it is something else's.
 

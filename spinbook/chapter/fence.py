@@ -21,6 +21,7 @@ ATTRIBUTES = {
 }
 
 _ATTRIBUTE = re.compile(r"""([A-Za-z_][\w-]*)=(?:"([^"]*)"|'([^']*)'|(\S+))|(\S+)""")
+_DIRECTIVE = re.compile(r"\{([A-Za-z][\w:-]*)\}(.*)$")
 _OPTION = re.compile(r"^:([\w-]+):\s*(.*)$")
 
 PYTHON = frozenset({"python", "py", "python3", "ipython", "ipython3"})
@@ -65,31 +66,49 @@ class Fence:
         return self.attributes.get(flag, "false").lower() not in {"false", "no", "0"}
 
 
+def directive(info: str) -> tuple[str, str]:
+    """(name, argument) of MyST's `{name} argument`; ("", "") for a fence that is none, such as Pandoc's `{.python}`."""
+    match = _DIRECTIVE.match(info.strip())
+    if match is None or match[1].lower() in PYTHON | SHELL or info.strip().startswith("{code-cell}"):
+        return "", ""
+    return match[1].lower(), match[2].strip()
+
+
 def parse_info(info: str) -> tuple[str, dict[str, str]]:
     """Split an info string into its language and its attributes; a bare word is an attribute that is "true".
 
     >>> parse_info('python title="joint_publisher.py" raises')
     ('python', {'title': 'joint_publisher.py', 'raises': 'true'})
+    >>> parse_info('{.python .annotate title="a.py"}')
+    ('python', {'annotate': 'true', 'title': 'a.py'})
     """
     info = info.strip()
     myst = re.match(r"\{code-cell\}\s*(\S*)\s*(.*)$", info)
     if myst:
         language, rest = myst.group(1) or "python", myst.group(2)
+    elif info.startswith("{"):
+        # Pandoc's and MkDocs' `{.python title="…"}`, Quarto's `{python}`.
+        language, _, rest = info[1:].replace("}", " ").strip().partition(" ")
+        language, rest = language.lstrip("."), re.sub(r"(?<!\S)\.(?=\w)", "", rest)
     else:
         language, _, rest = info.partition(" ")
-    # ```python{title=...} and ```python {1,3} are written by people who come from other tools.
+    # ```python{title=...} and ```python {1,3} are written by people who come from other tools; so is ```python:a.py.
     language, brace, glued = language.partition("{")
-    if brace and language:
+    if brace:
         rest = glued.rstrip("}") + " " + rest
-    elif brace:
-        language = brace + glued
+    language, colon, file = language.partition(":")
+    if colon and file.endswith(".py"):
+        rest = f'title="{file}" {rest}'
     attributes: dict[str, str] = {}
     for key, double, single, plain, word in _ATTRIBUTE.findall(rest):
         if key:
             attributes[key] = double or single or plain.rstrip("}")
         elif re.fullmatch(r"[A-Za-z_][\w-]*", word):
             attributes[word] = "true"
-    return language.lower(), attributes
+    for name in ("filename", "file", "caption", "name"):
+        if "title" not in attributes and attributes.get(name, "").endswith(".py"):
+            attributes["title"] = attributes[name]
+    return language.rstrip(",").lower(), attributes
 
 
 def make_fence(info: str, content: str, line: int) -> Fence:
@@ -102,13 +121,11 @@ def make_fence(info: str, content: str, line: int) -> Fence:
     if info.strip().startswith("{code-cell}"):
         lines = content.splitlines(keepends=True)
         while skipped < len(lines) and (option := _OPTION.match(lines[skipped].rstrip("\n"))):
-            key, value = option.group(1), option.group(2).strip()
-            if key == "tags" and "raises-exception" in value:
-                attributes["raises"] = "true"
-            elif key == "caption" and value.endswith(".py"):
-                attributes["title"] = value
-            else:
-                attributes[key] = value or "true"
+            attributes[option.group(1)] = option.group(2).strip() or "true"
             skipped += 1
         content = "".join(lines[skipped:])
+    if "raises-exception" in attributes.get("tags", ""):
+        attributes["raises"] = "true"
+    if attributes.get("caption", "").endswith(".py"):
+        attributes["title"] = attributes["caption"]
     return Fence(language=language, code=content, line=line, attributes=attributes, skipped=skipped)

@@ -1,4 +1,4 @@
-"""Whether what a chapter imports or runs is there: packages, ROS interfaces, executables."""
+"""Whether what a program imports is here: packages, their modules, ROS interfaces."""
 
 from __future__ import annotations
 
@@ -7,92 +7,186 @@ import functools
 import importlib.util
 import re
 import sys
-from collections.abc import Iterable
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from interface_compiler import shipped
-from spinbook.chapter.classify import Classified
-from spinbook.chapter.terminal import CommandKind
-from spinbook.problem import Problem
+from spinbook.chapter.python_code import PythonCode
 from spinbook.ros2 import interface_files, prefixes
+
+#: What a module's name is in PyPI, where the two differ.
+_DISTRIBUTIONS = {
+    "cv2": "opencv-python",
+    "PIL": "pillow",
+    "yaml": "PyYAML",
+    "sklearn": "scikit-learn",
+    "serial": "pyserial",
+}
+#: Packages that exist, though not here: none is a misspelling of another.
+_REAL = frozenset(
+    [
+        "nav2_msgs",
+        "control_msgs",
+        "moveit_msgs",
+        "vision_msgs",
+        "tf2_msgs",
+        "shape_msgs",
+        "stereo_msgs",
+        "map_msgs",
+        "object_recognition_msgs",
+        "trajectory_msgs",
+        "visualization_msgs",
+        "diagnostic_msgs",
+        "actionlib_msgs",
+        "geographic_msgs",
+        "audio_common_msgs",
+        "cv_bridge",
+    ]
+)
+
+
+@dataclass(frozen=True)
+class Missing:
+    """Something that is not here. `package` is what would have to be installed."""
+
+    package: str
+    found: str
+    mend: str
+    line: int
 
 
 def missing_imports(
-    item: Classified, own_modules: frozenset[str], file: Path, own_interfaces: Iterable[str] = ()
-) -> list[Problem]:
-    """What a fence's Python imports and this environment does not have.
+    code: PythonCode, own: Mapping[str, frozenset[str]], own_interfaces: Collection[str] = ()
+) -> list[Missing]:
+    """What a program imports and this environment does not have.
 
-    `own_modules` are the course's: its package, and the modules that its node cells make; `own_interfaces` those
-    that it defines, such as `my_interfaces/msg/Pose`.
+    `own` are the chapter's and the course's packages, each with its modules; under "" the modules of both.
+    `own_interfaces` are those that the course defines, such as `my_interfaces/msg/Pose`.
     """
-    code = item.code
-    if code is None:
-        return []
-    problems = []
+    found = [_relative(module, line) for module, line in code.relative_imports.items()]
     for module, line in code.imports.items():
-        top = module.partition(".")[0]
-        if top not in own_modules and not _is_installed(top):
-            found = f"imports `{top}`, which is not installed here."
-            mend = (
-                f"{_similar(top, own_modules)}Install it and add it to the course's dependencies, "
-                "or write `static` behind the fence's language."
-            )
-            if top in (*shipped.standard(), *shipped.optional()):
-                mend = f"Compile it, once: spinbook interfaces add {top}"
-            problems.append(Problem(file, item.fence.first_code_line + line - 1, found, mend))
-    for (module, name), line in code.interfaces.items():
-        known = _own_names(module, own_interfaces) or interfaces_of(module)
-        if known and name != "*" and name not in known:
-            close = difflib.get_close_matches(name, known, n=1)
-            mend = f"Did you mean `{close[0]}`?" if close else f"It has {', '.join(sorted(known)[:8])} …"
-            found = f"`{module}` has no `{name}`."
-            problems.append(Problem(file, item.fence.first_code_line + line - 1, found, mend))
-    return problems
-
-
-def _own_names(module: str, own_interfaces: Iterable[str]) -> frozenset[str]:
-    """The names of a module such as `my_interfaces.msg` that the course defines itself."""
-    beginning = module.replace(".", "/") + "/"
-    return frozenset(name.removeprefix(beginning) for name in own_interfaces if name.startswith(beginning))
-
-
-def unknown_executables(item: Classified, package: str, executables: Iterable[str], file: Path) -> list[Problem]:
-    """Each `ros2 run PACKAGE EXECUTABLE` of a shell fence that nothing here provides.
-
-    `package` is the course's own, `executables` those that its node cells make.
-    """
-    problems = []
-    for command in item.commands:
-        words = [word for word in command.words[2:] if not word.startswith("-")]
-        if command.kind is not CommandKind.ROS2 or command.words[1] != "run" or not words:
+        top, _, rest = module.partition(".")
+        if module in own.get("", ()) or top in own.get("", ()):
             continue
-        line = item.fence.first_code_line + command.line - 1
-        name = words[0]
-        if name not in {package, "turtlesim"} and name not in ros_packages():
-            known = ", ".join(sorted({package, "turtlesim"}))
-            close = difflib.get_close_matches(name, [*ros_packages(), package, "turtlesim"], n=1)
-            mend = f"Did you mean `{close[0]}`?" if close else f"A chapter can run what these have: {known}."
-            problems.append(Problem(file, line, f"there is no package `{name}` here.", mend))
-        elif name == package and len(words) > 1 and words[1] not in executables:
-            found = f"the course's package `{package}` has no executable `{words[1]}`."
-            mend = f"Its node cells make these: {', '.join(sorted(executables)) or 'none'}."
-            problems.append(Problem(file, line, found, mend))
-    return problems
+        if top in own:
+            if rest and rest.partition(".")[0] not in own[top]:
+                found.append(_not_shown(module, own[top], line))
+        elif not _is_installed(top):
+            found.append(_not_installed(top, line))
+        elif rest and not _has_module(top, rest):
+            names = [name for (place, name) in code.interfaces if place == module]
+            found.append(_no_module(module, names, line))
+    for (module, name), line in code.interfaces.items():
+        known = own_names(module, own_interfaces) or interfaces_of(module)
+        if known and name != "*" and name not in known:
+            found.append(_no_interface(module, name, known, line))
+    return found
+
+
+def _relative(module: str, line: int) -> Missing:
+    stem = module.lstrip(".") or "module"
+    return Missing(
+        "relative imports",
+        f"imports `{module}`, relative to a package.",
+        f"A node's cell is a file of its own: write `import {stem}`, or `from PACKAGE import {stem}`.",
+        line,
+    )
+
+
+def _not_shown(module: str, modules: frozenset[str], line: int) -> Missing:
+    known = ", ".join(sorted(modules)) or "none"
+    mend = f"Show its file in a fence with a `title`. Modules that the chapters show: {known}."
+    return Missing(module.partition(".")[0], f"imports `{module}`, which no fence shows.", mend, line)
+
+
+def _not_installed(top: str, line: int) -> Missing:
+    if top in _DISTRIBUTIONS:
+        mend = f"Install it: pip install {_DISTRIBUTIONS[top]}"
+    elif close := _similar(top):
+        mend = f"Did you mean `{close}`?"
+    elif top.endswith(("_msgs", "_srvs", "_interfaces", "_actions")):
+        mend = remedy(top)
+    else:
+        mend = "Install it and add it to the course's dependencies, or write `static` behind the fence's language."
+    return Missing(top, f"imports `{top}`, which is not installed here.", mend, line)
+
+
+def remedy(package: str) -> str:
+    """How to get a package of interfaces that is not here."""
+    if package in (*shipped.standard(), *shipped.optional()):
+        return f"Compile it, once: spinbook interfaces add {package}"
+    return "It is a package of ROS interfaces: install it, or show its .msg, .srv and .action files in the chapter."
+
+
+def _no_module(module: str, names: list[str], line: int) -> Missing:
+    top, _, rest = module.partition(".")
+    there = sorted(name for name in _modules_in(top) if not name.startswith(("_", f"{top}_s_")))
+    close = difflib.get_close_matches(rest.partition(".")[0], there, n=1)
+    elsewhere = sorted(place for place, known in _all_interfaces().items() if known & set(names))
+    mend = f"Did you mean `{top}.{close[0]}`?" if close else f"It has {', '.join(there[:8])}."
+    if elsewhere and names:
+        mend = f"Did you mean `from {elsewhere[0]} import {names[0]}`?"
+    return Missing(module, f"imports `{module}`, and `{top}` has no such module.", mend, line)
+
+
+def _no_interface(module: str, name: str, known: frozenset[str], line: int) -> Missing:
+    close = difflib.get_close_matches(name, known, n=1)
+    if close:
+        mend = f"Did you mean `{close[0]}`?"
+    elif elsewhere := sorted(place for place, names in _all_interfaces().items() if name in names):
+        mend = f"Did you mean `from {elsewhere[0]} import {name}`?"
+    else:
+        mend = f"It has {', '.join(sorted(known)[:8])} …"
+    return Missing(f"{module}.{name}", f"`{module}` has no `{name}`.", mend, line)
 
 
 @functools.cache
 def _is_installed(module: str) -> bool:
-    if module in sys.stdlib_module_names:
-        return True
+    return module in sys.stdlib_module_names or _spec_of(module) is not None
+
+
+@functools.cache
+def _spec_of(module: str) -> object | None:
     try:
-        return importlib.util.find_spec(module) is not None
+        return importlib.util.find_spec(module)
     except (ImportError, ValueError):
-        return False
+        return None
 
 
-def _similar(module: str, own: frozenset[str]) -> str:
-    close = difflib.get_close_matches(module, [*own, *ros_packages(), "rclpy", "numpy", "matplotlib"], n=1, cutoff=0.75)
-    return f"Did you mean `{close[0]}`? " if close else ""
+@functools.cache
+def _folders(top: str) -> tuple[Path, ...]:
+    """The folders of an installed package; none where its modules can't be told from its files."""
+    if top in sys.stdlib_module_names:
+        return ()
+    return tuple(Path(folder) for folder in getattr(_spec_of(top), "submodule_search_locations", None) or ())
+
+
+@functools.cache
+def _modules_in(top: str) -> frozenset[str]:
+    names = {entry.name for folder in _folders(top) if folder.is_dir() for entry in folder.iterdir()}
+    return frozenset(name.partition(".")[0] for name in names)
+
+
+@functools.cache
+def _has_module(top: str, rest: str) -> bool:
+    """Whether a package has a module. Only packages of ROS: others may make modules while they are imported."""
+    if not _folders(top) or (top != "rclpy" and top not in ros_packages()):
+        return True
+    return rest.partition(".")[0] in _modules_in(top)
+
+
+def _similar(module: str) -> str:
+    if module in _REAL:
+        return ""
+    known = [*ros_packages(), "rclpy", "numpy", "matplotlib"]
+    close = difflib.get_close_matches(module, known, n=1, cutoff=0.8)
+    # Interface packages are called alike: control_msgs is not a misspelt sensor_msgs.
+    alike = close and module.rpartition("_")[2] == close[0].rpartition("_")[2] and "_" in module
+    stem = module.rpartition("_")[0]
+    if alike and not difflib.get_close_matches(stem, [close[0].rpartition("_")[0]], n=1, cutoff=0.8):
+        return ""
+    return close[0] if close else ""
 
 
 @functools.cache
@@ -110,3 +204,20 @@ def interfaces_of(module: str) -> frozenset[str]:
     package, kind = match.groups()
     interfaces = interface_files.interfaces_of(package) or []
     return frozenset(name.partition("/")[2] for name in interfaces if name.startswith(f"{kind}/"))
+
+
+def own_names(module: str, own_interfaces: Collection[str]) -> frozenset[str]:
+    """The names of a module such as `my_interfaces.msg` that the course defines itself."""
+    beginning = module.replace(".", "/") + "/"
+    return frozenset(name.removeprefix(beginning) for name in own_interfaces if name.startswith(beginning))
+
+
+@functools.cache
+def _all_interfaces() -> Mapping[str, frozenset[str]]:
+    """Module of interfaces -> its names, of all packages that are here."""
+    found: dict[str, set[str]] = {}
+    for package in ros_packages():
+        for interface in interface_files.interfaces_of(package) or []:
+            kind, _, name = interface.partition("/")
+            found.setdefault(f"{package}.{kind}", set()).add(name)
+    return {module: frozenset(names) for module, names in found.items()}

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import ast
 import builtins
+import functools
 import re
 import symtable
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+
+from spinbook.course.node_classes import attributes_lacking, can_stand_alone, last_name, used_by_init
 
 #: A line that is IPython's and not Python's: `%plot …`, `!ls`, `%%time`.
 _MAGIC = re.compile(r"^(\s*)([%!].*)$")
+#: What setup.py writes under console_scripts.
+_ENTRY_POINT = re.compile(r"[\w.-]+\s*=\s*[\w.]+:\w+")
 _SPINS = frozenset({"spin", "spin_once", "spin_until_future_complete"})
 _ALWAYS_THERE = frozenset(dir(builtins)) | {
     "__name__",
@@ -57,11 +62,42 @@ class PythonCode:
     """Names it uses at its top level, or in what runs from there, that neither it nor Python defines -> line."""
     fragment: str | None = None
     """Why it can't stand alone although each line is Python, if so."""
+    relative_imports: Mapping[str, int] = field(default_factory=dict)
+    """`.module` of each `from .module import name` -> line."""
+    star_import: bool = False
+    """Whether `from module import *` may bind any name."""
+    calls_main: bool = False
+    """Whether its top level calls `main()` outside a guard."""
+    starts_ros: bool = False
+    """Whether it calls rclpy.init or makes a node."""
+    loops: bool = False
+    """Whether its top level loops without end."""
+    programs: Mapping[str, int] = field(default_factory=dict)
+    """Programs that it starts through os.system, subprocess or `!…` -> line."""
+    asks: int = 0
+    """The line on which it waits for somebody to type; 0: it does not."""
+    alone: tuple[str, ...] = ()
+    """The Node classes that nothing in the code makes or derives from, and that need no arguments."""
+    lacking: Mapping[str, int] = field(default_factory=dict)
+    """Attributes of `self` that a Node class uses and nothing sets -> line."""
+    fails_at_once: str = ""
+    """The first of those that `__init__` uses itself."""
 
     @property
     def is_node(self) -> bool:
         """Whether it is a program of its own: it spins, or is a Node that can be spun."""
-        return (self.spins or bool(self.node_classes)) and not (self.is_setup_script or self.is_launch_file)
+        is_program = self.spins or self.starts_ros or self.loops or bool(self.node_classes)
+        return is_program and not (self.is_setup_script or self.is_launch_file)
+
+    @property
+    def runs_main(self) -> bool:
+        """Whether it has a `main` that somebody else has to call, as `ros2 run` does."""
+        return self.has_main and not self.has_main_guard and not self.calls_main
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether it is a program that starts by itself or by its `main`."""
+        return self.has_main or self.has_main_guard or self.spins or self.loops
 
 
 def blank_magics(code: str) -> str:
@@ -74,6 +110,17 @@ def has_magics(code: str) -> bool:
     return any(_MAGIC.match(line) for line in code.split("\n"))
 
 
+def programs_in_magics(code: str) -> dict[str, int]:
+    """The programs that a snippet starts with `!program` or `%program` -> line."""
+    found: dict[str, int] = {}
+    for number, line in enumerate(code.split("\n"), start=1):
+        if match := _MAGIC.match(line):
+            for word in re.split(r"[\s;&|!%]+", match.group(2)):
+                found.setdefault(word.rsplit("/", 1)[-1], number)
+    return found
+
+
+@functools.lru_cache(maxsize=4096)
 def inspect(code: str) -> PythonCode:
     """Read a piece of Python.
 
@@ -111,12 +158,16 @@ def _only_inside_function(code: str) -> str | None:
 
 
 def _facts(tree: ast.Module, code: str) -> PythonCode:
+    everything = list(ast.walk(tree))
     imports: dict[str, int] = {}
+    optional = _optional_imports(everything)
     interfaces: dict[tuple[str, str], int] = {}
     node_classes: list[str] = []
     ros_name: str | None = None
     spins = setup = launch = guard = False
-    for item in ast.walk(tree):
+    for item in everything:
+        if item in optional:
+            continue
         if isinstance(item, ast.Import):
             for alias in item.names:
                 imports.setdefault(alias.name, item.lineno)
@@ -125,19 +176,28 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
             for alias in item.names:
                 interfaces.setdefault((item.module, alias.name), item.lineno)
         elif isinstance(item, ast.ClassDef):
-            if any(_last_name(base) in {"Node", "LifecycleNode"} for base in item.bases):
+            if any(last_name(base) in {"Node", "LifecycleNode"} for base in item.bases):
                 node_classes.append(item.name)
         elif isinstance(item, ast.Call):
-            name = _last_name(item.func)
+            name = last_name(item.func)
             spins = spins or name in _SPINS
             setup = setup or (name == "setup" and _imports_setuptools(tree))
             ros_name = ros_name or _node_name(item, name)
+        elif (
+            isinstance(item, ast.Constant)
+            and isinstance(item.value, str)
+            and _ENTRY_POINT.fullmatch(item.value.strip())
+        ):
+            setup = True
         elif isinstance(item, ast.FunctionDef) and item.name == "generate_launch_description":
             launch = True
     for statement in tree.body:
         if isinstance(statement, ast.If) and "__main__" in ast.dump(statement.test):
             guard = True
-    defines, needs = _names(tree, code)
+    defines, needs = _names(everything, code)
+    classes = {item.name: item for item in everything if isinstance(item, ast.ClassDef)}
+    calls = [item for item in everything if isinstance(item, ast.Call)]
+    lacking = attributes_lacking(everything, node_classes, classes)
     return PythonCode(
         imports=imports,
         interfaces=interfaces,
@@ -150,13 +210,88 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
         is_launch_file=launch,
         defines=defines,
         needs=needs,
+        relative_imports={
+            "." * i.level + (i.module or ""): i.lineno for i in everything if isinstance(i, ast.ImportFrom) and i.level
+        },
+        star_import=any(alias.name == "*" for i in everything if isinstance(i, ast.ImportFrom) for alias in i.names),
+        calls_main=any(_calls_main(statement) for statement in tree.body),
+        starts_ros=any(_starts_ros(call) for call in calls),
+        loops=any(_loops(statement) for statement in _at_top(tree)),
+        programs=programs_started(calls),
+        asks=next((call.lineno for call in calls if isinstance(call.func, ast.Name) and call.func.id == "input"), 0),
+        alone=tuple(name for name in node_classes if can_stand_alone(name, classes, everything)),
+        lacking=lacking,
+        fails_at_once=used_by_init(lacking, node_classes, classes),
     )
 
 
-def _last_name(expression: ast.expr) -> str:
-    if isinstance(expression, ast.Attribute):
-        return expression.attr
-    return expression.id if isinstance(expression, ast.Name) else ""
+def _optional_imports(everything: Sequence[ast.AST]) -> set[ast.AST]:
+    """Imports whose absence the code itself deals with, or that only a type checker reads."""
+    found: set[ast.AST] = set()
+    for item in everything:
+        caught = isinstance(item, ast.Try) and any(
+            handler.type is None or "Error" in ast.dump(handler.type) or "Exception" in ast.dump(handler.type)
+            for handler in item.handlers
+        )
+        if caught or (isinstance(item, ast.If) and "TYPE_CHECKING" in ast.dump(item.test)):
+            assert isinstance(item, ast.Try | ast.If)
+            found |= {i for i in item.body if isinstance(i, ast.Import | ast.ImportFrom)}
+    return found
+
+
+def _calls_main(statement: ast.stmt) -> bool:
+    value = statement.value if isinstance(statement, ast.Expr) else None
+    return isinstance(value, ast.Call) and isinstance(value.func, ast.Name) and value.func.id == "main"
+
+
+def _starts_ros(call: ast.Call) -> bool:
+    dotted = ast.unparse(call.func)
+    return dotted in {"rclpy.init", "rclpy.create_node"}
+
+
+def _at_top(tree: ast.Module) -> list[ast.stmt]:
+    """The statements that run at once, those in `try`, `with` and `if` among them."""
+    found: list[ast.stmt] = []
+    todo = list(tree.body)
+    while todo:
+        statement = todo.pop(0)
+        found.append(statement)
+        if isinstance(statement, ast.Try | ast.With | ast.If):
+            todo += statement.body
+    return found
+
+
+def _loops(statement: ast.stmt) -> bool:
+    """`while True`, `while rclpy.ok()`, and servers that never return."""
+    if isinstance(statement, ast.While):
+        test = statement.test
+        endless = isinstance(test, ast.Constant) and bool(test.value)
+        leaves = any(isinstance(item, ast.Break | ast.Return) for item in ast.walk(statement))
+        return (endless and not leaves) or ast.unparse(test).endswith("rclpy.ok()")
+    value = statement.value if isinstance(statement, ast.Expr) else None
+    return isinstance(value, ast.Call) and last_name(value.func) in {"serve_forever", "run_forever", "mainloop"}
+
+
+_SHELLS = frozenset({"os.system", "os.popen", "subprocess.run", "subprocess.call", "subprocess.Popen"}) | {
+    "subprocess.check_call",
+    "subprocess.check_output",
+    "subprocess.getoutput",
+}
+
+
+def programs_started(calls: list[ast.Call]) -> dict[str, int]:
+    """The programs that calls of os.system and subprocess name -> line."""
+    found: dict[str, int] = {}
+    for call in calls:
+        if ast.unparse(call.func) in _SHELLS and call.args:
+            words = [
+                item.value
+                for item in ast.walk(call.args[0])
+                if isinstance(item, ast.Constant) and isinstance(item.value, str)
+            ]
+            for word in (part for text in words for part in re.split(r"[\s;&|]+", text)):
+                found.setdefault(word.rsplit("/", 1)[-1], call.lineno)
+    return found
 
 
 def _imports_setuptools(tree: ast.Module) -> bool:
@@ -172,7 +307,7 @@ def _node_name(call: ast.Call, function: str) -> str | None:
         function == "__init__"
         and isinstance(call.func, ast.Attribute)
         and isinstance(call.func.value, ast.Call)
-        and _last_name(call.func.value.func) == "super"
+        and last_name(call.func.value.func) == "super"
     )
     if not (is_super_init or function in {"Node", "create_node"}):
         return None
@@ -181,7 +316,7 @@ def _node_name(call: ast.Call, function: str) -> str | None:
     return first.value if isinstance(first, ast.Constant) and isinstance(first.value, str) else None
 
 
-def _names(tree: ast.Module, code: str) -> tuple[frozenset[str], dict[str, int]]:
+def _names(everything: Sequence[ast.AST], code: str) -> tuple[frozenset[str], dict[str, int]]:
     """The names that the code defines, and those it uses and does not define, by Python's own symbol table."""
     table = symtable.symtable(code, "<chapter>", "exec")
     defined = {s.get_name() for s in table.get_symbols() if s.is_assigned() or s.is_imported() or s.is_namespace()}
@@ -203,8 +338,10 @@ def _names(tree: ast.Module, code: str) -> tuple[frozenset[str], dict[str, int]]
 
     collect(table)
     missing = used - defined - _ALWAYS_THERE
+    if any(isinstance(i, ast.ImportFrom) and any(a.name == "*" for a in i.names) for i in everything):
+        missing = set()
     lines: dict[str, int] = {}
-    for item in ast.walk(tree):
+    for item in everything:
         if isinstance(item, ast.Name) and item.id in missing:
             lines[item.id] = min(item.lineno, lines.get(item.id, item.lineno))
     return frozenset(defined), {name: lines.get(name, 1) for name in sorted(missing)}

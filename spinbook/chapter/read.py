@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import functools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+
+from markdown_it import MarkdownIt
+from markdown_it.token import Token
 
 from spinbook.chapter.cells import make_cells
 from spinbook.chapter.chapter import Chapter, StaticFence
-from spinbook.chapter.classify import Classified, FenceKind, classify
-from spinbook.chapter.imports import missing_imports, unknown_executables
-from spinbook.chapter.markdown import Outline, outline
+from spinbook.chapter.classify import Classified, FenceKind, first_look, with_language
+from spinbook.chapter.definition_title import interface_package
+from spinbook.chapter.fence import Fence
 from spinbook.chapter.source import Source, read_source
+from spinbook.course.block import Block, Kind, Line
+from spinbook.course.blocks import read_blocks
+from spinbook.course.files import is_elsewhere, locate, read_included
+from spinbook.course.layout import Layout, Piece
+from spinbook.course.own_packages import OwnPackages, own_packages, told_files
+from spinbook.course.programs import Programs
+from spinbook.course.shells import Shells
 from spinbook.problem import Problem, Severity
 
 
@@ -20,13 +31,14 @@ class Surroundings:
     """What a chapter may refer to outside itself.
 
     `package` is the course's ROS package, `modules` the node modules of the course's other chapters, `exercises`
-    the exercises that exist, `interfaces` the messages, services and actions that the course defines, such as
-    `my_robot_interfaces/msg/JointLimits`.
+    the exercises that exist, `names` what chapters are called, by their file, `interfaces` the messages, services and
+    actions that the course defines, such as `my_robot_interfaces/msg/JointLimits`.
     """
 
     package: str
     modules: frozenset[str] = frozenset()
     exercises: frozenset[str] = frozenset()
+    names: Mapping[Path, str] = field(default_factory=dict)
     interfaces: frozenset[str] = frozenset()
 
 
@@ -38,30 +50,41 @@ class Reading:
     problems: tuple[Problem, ...]
 
 
+@dataclass(frozen=True)
+class _Parsed:
+    source: Source | None
+    blocks: tuple[Block, ...]
+    problems: tuple[Problem, ...]
+    included: tuple[Path, ...] = ()
+
+    @property
+    def fences(self) -> Iterator[Block]:
+        """The fences, in order."""
+        return (block for top in self.blocks for block in top.walk() if block.fence is not None)
+
+
 def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> Reading:
-    """Read the chapter at `root / file`. Never raises for what stands in it: every fault is a Problem."""
-    source, problems = read_source(root / file, file)
-    if source is None:
+    """Read the chapter at `root / file`. Never raises for what is in it: every fault is a Problem."""
+    parsed = _parse(root, file)
+    problems = list(parsed.problems)
+    if parsed.source is None:
         return Reading(None, tuple(problems))
-    outlined, outline_problems = outline(source.text, file)
-    problems += outline_problems
-    classified, fence_problems = _classify_all(outlined, file, interface_package(surroundings.package))
-    problems += fence_problems
-    problems += _two_of_one_name(classified, file)
-    problems += _references(classified, outlined, surroundings, root, file)
-    title, title_problems = _title(source, outlined, file)
-    problems += title_problems
+    classified, found = _classify(parsed, file, surroundings)
+    title, title_problems = _title(parsed, file)
+    problems += [*found, *title_problems, *_references(parsed, surroundings, root, file)]
     problems.sort(key=lambda problem: (problem.line or 0, problem.found))
-    if any(problem.is_error for problem in problems):
-        return Reading(None, tuple(problems))
+    by_line = {item.fence.line: item for item in classified}
+    pieces = _layout(by_line, surroundings).pieces(parsed.blocks)
+    cells = make_cells([*_heading(parsed, title), *pieces], by_line)
     chapter = Chapter(
-        name=file.stem,
+        name=surroundings.names.get(file, file.stem),
         file=file,
         title=title,
-        summary=str(source.front_matter.get("summary", "")),
-        cells=make_cells(source.text, outlined.spans, classified),
+        summary=str(parsed.source.front_matter.get("summary", "")),
+        cells=cells,
+        uses=_uses(parsed, root, file),
         static_fences=tuple(
-            StaticFence(item.fence.line, item.fence.language, item.why)
+            StaticFence(item.fence.line, item.fence.language, item.why, item.sign)
             for item in classified
             if item.kind is FenceKind.STATIC
         ),
@@ -69,25 +92,101 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> Reading:
     return Reading(chapter, tuple(problems))
 
 
-def interface_package(package: str) -> str:
-    """The package of the interfaces that chapters define, where the nodes' package is `package`."""
-    return f"{package}_interfaces"
+def fences_of(root: Path, file: Path) -> Iterator[Fence]:
+    """The fences of a chapter that are closed, in order; none where it can't be read."""
+    return (block.fence for block in _parse(root, file).fences if block.fence and block.closed)
 
 
-def _classify_all(outlined: Outline, file: Path, interfaces: str) -> tuple[list[Classified], list[Problem]]:
-    classified: list[Classified] = []
+def modules_of(root: Path, file: Path) -> frozenset[str]:
+    """The modules whose files a chapter shows: the titles of its fences."""
+    titles = (block.fence.title for block in _parse(root, file).fences if block.fence)
+    stems = (Path(title).name.removesuffix(".py") for title in titles if title and title.endswith(".py"))
+    return frozenset(stem for stem in stems if stem.isidentifier())
+
+
+def _parse(root: Path, file: Path) -> _Parsed:
+    try:
+        changed = (root / file).stat().st_mtime_ns
+    except OSError:
+        changed = 0
+    return _parsed(root, file, changed)
+
+
+def forget_chapters() -> None:
+    """Read every chapter's file again when it is asked for: what it includes may have changed."""
+    _parsed.cache_clear()
+    locate.cache_clear()
+
+
+@functools.lru_cache(maxsize=512)
+def _parsed(root: Path, file: Path, changed: int) -> _Parsed:
+    source, problems = read_source(root / file, file)
+    if source is None:
+        return _Parsed(None, (), tuple(problems))
+    folder = file.parent.as_posix()
+    included: list[Path] = []
+    blocks = read_blocks(source.text, lambda name: read_included(root, folder, name, included))
+    return _Parsed(source, blocks, tuple(problems), tuple(included))
+
+
+def _classify(parsed: _Parsed, file: Path, surroundings: Surroundings) -> tuple[list[Classified], list[Problem]]:
     problems: list[Problem] = []
-    defined: set[str] = set()
-    for span in outlined.spans:
-        if span.fence is None:
-            continue
-        item, found = classify(span.fence, defined, file, interfaces)
-        classified.append(item)
-        problems += found
-        problems += _bad_seconds(item, file)
-        if item.kind is FenceKind.SNIPPET and item.code:
-            defined |= item.code.defines
-    return classified, problems
+    items: list[Classified] = []
+    own = interface_package(surroundings.package)
+    for block in parsed.fences:
+        assert block.fence is not None
+        item, found = _unclosed(block, file) if not block.closed else first_look(block.fence, file, own)
+        bad = _bad_seconds(item, file)
+        items.append(replace(item, fence=_without_seconds(item.fence)) if bad else item)
+        problems += [*found, *bad]
+    packages = own_packages(with_language(item.fence) for item in items)
+    own_modules = _own(packages, surroundings, items)
+    programs = Programs(file, own_modules, told_files(parsed.blocks), surroundings.interfaces)
+    items = programs.decide(items)
+    modules = surroundings.modules | {item.name for item in items if item.kind is FenceKind.NODE and item.name}
+    exercise = any(block.kind is Kind.EXERCISE for top in parsed.blocks for block in top.walk())
+    shells = Shells(
+        file, surroundings.package, modules, packages, programs.told, exercise, interfaces=surroundings.interfaces
+    )
+    items = shells.decide(items)
+    return items, problems + programs.problems + shells.problems
+
+
+def _own(packages: OwnPackages, surroundings: Surroundings, items: Sequence[Classified]) -> dict[str, frozenset[str]]:
+    """Package of the chapter or the course -> the modules that fences show."""
+    titles = {Path(item.fence.title).name.removesuffix(".py") for item in items if item.fence.title}
+    modules = surroundings.modules | titles
+    nodes = dict.fromkeys([surroundings.package, *packages.names], modules)
+    return {"": modules, **nodes, **_kinds(surroundings)}
+
+
+def _kinds(surroundings: Surroundings) -> dict[str, frozenset[str]]:
+    """Package of the course's interfaces -> its modules, such as `msg`."""
+    pairs = [name.split("/")[:2] for name in surroundings.interfaces]
+    return {package: frozenset(kind for of, kind in pairs if of == package) for package, _ in pairs}
+
+
+def _unclosed(block: Block, file: Path) -> tuple[Classified, list[Problem]]:
+    assert block.fence is not None
+    found = f"the code fence that opens here (`{block.lines[0].text.strip()[:60]}`) is never closed."
+    mark = block.lines[0].text.strip()[:3]
+    problem = Problem(file, block.fence.line, found, f"Close it with a line of its own: {mark}", Severity.NOT_RUN)
+    return Classified(block.fence, FenceKind.STATIC, "its fence is never closed", "its fence is never closed."), [
+        problem
+    ]
+
+
+def _layout(by_line: Mapping[int, Classified], surroundings: Surroundings) -> Layout:
+    def runs(block: Block) -> bool:
+        if block.kind is Kind.EXERCISE:
+            return block.title in surroundings.exercises
+        return block.fence is not None and by_line[block.fence.line].kind is not FenceKind.STATIC
+
+    def sign(block: Block) -> str:
+        item = by_line[block.fence.line] if block.fence is not None else None
+        return f"<small>Not run here: {item.sign}</small>" if item and item.sign else ""
+
+    return Layout(runs, sign)
 
 
 def _bad_seconds(item: Classified, file: Path) -> list[Problem]:
@@ -99,60 +198,80 @@ def _bad_seconds(item: Classified, file: Path) -> list[Problem]:
             return []
     except ValueError:
         pass
-    return [
-        Problem(
-            file,
-            item.fence.line,
-            f"`seconds={given}` is no time.",
-            "Write a number of seconds, above 0 and up to 600.",
-        )
-    ]
+    mend = "Write a number of seconds, above 0 and up to 600. Until then it is left out."
+    return [Problem(file, item.fence.line, f"`seconds={given}` is not a time.", mend, Severity.WARNING)]
 
 
-def _two_of_one_name(classified: Sequence[Classified], file: Path) -> list[Problem]:
-    first: dict[str, int] = {}
-    problems = []
-    for item in classified:
-        if item.kind is not FenceKind.NODE or item.name is None:
-            continue
-        if item.name in first:
-            found = f"a second node is called `{item.name}`; the first one stands in line {first[item.name]}."
-            mend = "Give it another file name: starting one would stop the other, and the package can hold only one."
-            problems.append(Problem(file, item.fence.line, found, mend))
-        first.setdefault(item.name, item.fence.line)
-    return problems
+def _without_seconds(fence: Fence) -> Fence:
+    return replace(fence, attributes={key: value for key, value in fence.attributes.items() if key != "seconds"})
 
 
-def _references(
-    classified: Sequence[Classified], outlined: Outline, surroundings: Surroundings, root: Path, file: Path
-) -> list[Problem]:
-    nodes = {item.name for item in classified if item.kind is FenceKind.NODE and item.name}
-    modules = frozenset(nodes) | surroundings.modules
-    own = modules | {surroundings.package} | {name.partition("/")[0] for name in surroundings.interfaces}
-    problems = []
-    for item in classified:
-        if item.kind is not FenceKind.STATIC:
-            problems += missing_imports(item, own, file, surroundings.interfaces)
-            problems += unknown_executables(item, surroundings.package, modules, file)
-    for span in outlined.spans:
-        if span.exercise and span.exercise not in surroundings.exercises:
+def _references(parsed: _Parsed, surroundings: Surroundings, root: Path, file: Path) -> Iterator[Problem]:
+    for block in (inner for top in parsed.blocks for inner in top.walk() if inner.kind is Kind.EXERCISE):
+        if block.title not in surroundings.exercises:
             known = ", ".join(sorted(surroundings.exercises)) or "none yet"
-            found = f"there is no exercise `{span.exercise}`."
-            problems.append(Problem(file, span.start + 1, found, f"The folder exercises/ holds: {known}."))
-    for target, line in outlined.links:
-        path = target.partition("#")[0]
-        if path and not (root / file.parent / path).exists():
+            found = f"there is no exercise `{block.title}`."
+            mend = f"The folder exercises/ holds: {known}."
+            yield Problem(file, block.line, found, mend, Severity.NOT_RUN)
+    assert parsed.source is not None
+    folder = file.parent.as_posix()
+    for target, line in _links(parsed.source.text):
+        if not is_elsewhere(target) and "{" not in target and locate(root, folder, target) is None:
             found = f"a link leads to `{target}`, and there is no such file."
-            problems.append(
-                Problem(file, line, found, "Write the path relative to the chapter's folder.", Severity.WARNING)
-            )
-    return problems
+            mend = "Write the path relative to the chapter's folder."
+            yield Problem(file, line, found, mend, Severity.WARNING, group="files that are not there")
 
 
-def _title(source: Source, outlined: Outline, file: Path) -> tuple[str, list[Problem]]:
-    given = source.front_matter.get("title")
-    if outlined.heading:
-        return str(given or outlined.heading), []
+def _uses(parsed: _Parsed, root: Path, file: Path) -> tuple[Path, ...]:
+    """The files of the course that the chapter includes, or links to."""
+    assert parsed.source is not None
+    folder = file.parent.as_posix()
+    targets = (target for target, _ in _links(parsed.source.text) if not is_elsewhere(target))
+    found = {place for target in targets if (place := locate(root, folder, target))}
+    return tuple(sorted(found | set(parsed.included)))
+
+
+@functools.lru_cache(maxsize=512)
+def _links(text: str) -> tuple[tuple[str, int], ...]:
+    """Targets of links and images, each with its line, counted from 1."""
+    if "](" not in text and "]:" not in text:
+        return ()
+    tokens = MarkdownIt("commonmark").enable("table").parse(text)
+    return tuple(found for token in tokens if token.type == "inline" for found in _links_in(token))
+
+
+def _links_in(token: Token) -> Iterator[tuple[str, int]]:
+    line = (token.map or (0, 0))[0] + 1
+    for child in token.children or []:
+        if child.type in {"softbreak", "hardbreak"}:
+            line += 1
+        target = str(child.attrs.get("href") or child.attrs.get("src") or "")
+        if target:
+            yield target, line
+
+
+def _heading(parsed: _Parsed, title: str) -> list[Piece]:
+    """The title as the chapter's heading, where it is only in the front matter, as Docusaurus and Jekyll want it."""
+    headings = [block.lines for block in parsed.blocks if block.kind is Kind.HEADING]
+    if any(lines[0].text.lstrip().startswith("# ") or len(lines) > 1 for lines in headings):
+        return []
+    return [Piece(Line(f"# {title}", 1), heading=True), Piece(Line("", 1))]
+
+
+def _title(parsed: _Parsed, file: Path) -> tuple[str, list[Problem]]:
+    assert parsed.source is not None
+    front = parsed.source.front_matter
+    given = front.get("title") or front.get("sidebar_label")
+    heading = next((block for block in parsed.blocks if block.kind is Kind.HEADING), None)
+    if heading:
+        return str(given or _words(heading)), []
     mend = "Begin it with one line such as `# Nodes and Topics`."
-    severity = Severity.WARNING if given else Severity.ERROR
-    return str(given or file.stem), [Problem(file, 1, "the chapter has no heading.", mend, severity)]
+    named = file.stem if file.stem.lower() not in {"index", "readme"} else file.parent.name or file.stem
+    title = str(given or named.replace("-", " ").replace("_", " "))
+    return title, [] if given else [Problem(file, 1, "the chapter has no heading.", mend, Severity.WARNING)]
+
+
+def _words(heading: Block) -> str:
+    tokens = MarkdownIt("commonmark").parse("\n".join(line.text for line in heading.lines))
+    inline = next((token for token in tokens if token.type == "inline"), None)
+    return inline.content.partition(" {#")[0] if inline else ""

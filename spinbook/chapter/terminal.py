@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 
-#: What `ros2` can do without a ROS installation: noun -> verbs. `run` takes no verb.
+#: What `ros2` can do without a ROS installation: noun -> verbs. `run` and `launch` take no verb.
 ROS2 = {
     "topic": {"list", "echo", "hz", "bw", "delay", "info", "pub", "type", "find"},
     "node": {"list", "info"},
@@ -20,12 +20,35 @@ ROS2 = {
     "service": {"list", "call", "type", "find", "info"},
     "action": {"list", "info", "send_goal", "type"},
     "param": {"list", "get", "set", "describe", "dump", "delete"},
-    "pkg": {"list", "executables", "prefix"},
+    "pkg": {"list", "executables", "prefix", "create"},
     "daemon": {"status", "start", "stop"},
     "run": set(),
+    "launch": set(),
 }
 _MOVING_ABOUT = frozenset({"cd", "source", ".", "export", "unset", "clear"})
+#: Looking at files and making them: harmless to leave out beside a command that runs.
+_BESIDE = frozenset(
+    [
+        "mkdir",
+        "touch",
+        "ls",
+        "pwd",
+        "cat",
+        "nano",
+        "vim",
+        "vi",
+        "gedit",
+        "code",
+        "tree",
+        "chmod",
+        "echo",
+        "sleep",
+        "exit",
+    ]
+)
 _SHELL_SYNTAX = re.compile(r"[|;<>`]|&&|\$\(|(?<!\S)&(?!\S)|&$")
+_PROMPT = re.compile(r"^\s*(?:[\w.-]+@[\w.-]+:\S*)?[$#>]\s+(?=\S)")
+PROGRAMS = frozenset({"ros2", "colcon", "rqt_plot"})
 
 
 class CommandKind(Enum):
@@ -46,6 +69,13 @@ class Command:
     words: tuple[str, ...]
     line: int
 
+    @property
+    def runs(self) -> tuple[str, str] | None:
+        """(package, executable) of `ros2 run PACKAGE EXECUTABLE`."""
+        words = [word for word in self.words[2:4] if not word.startswith("-")]
+        is_run = self.kind is CommandKind.ROS2 and self.words[1:2] == ("run",)
+        return (words[0], words[1]) if is_run and len(words) == 2 else None
+
 
 @dataclass(frozen=True)
 class NotRunnable:
@@ -55,10 +85,62 @@ class NotRunnable:
     line: int
     why: str
 
+    @property
+    def is_ros(self) -> bool:
+        """Whether it is one of the commands that a notebook runs, in a form that it does not."""
+        return self.text.split(" ")[0] in PROGRAMS
+
 
 def read_commands(code: str) -> list[Command | NotRunnable]:
-    """The commands of a shell fence, in order."""
-    return [_read(text, line) for text, line in _logical_lines(code)]
+    """The commands of a shell fence, in order. Beside a command that runs, what is only for a terminal is a note."""
+    read = [_read(part, line) for text, line in _logical_lines(code) for part in _parts(text)]
+    runs = any(isinstance(command, Command) and command.kind is not CommandKind.NOTE for command in read)
+    return [_noted(command) if runs and isinstance(command, NotRunnable) else command for command in read]
+
+
+def looks_like_shell(code: str) -> bool:
+    """Whether text without a language is commands of a terminal: each line begins as one, and one is ROS's."""
+    texts = [text for text, _ in _logical_lines(code) if not text.startswith("#")]
+    known = PROGRAMS | _MOVING_ABOUT | {"mkdir"}
+    firsts = [text.split()[0] for text in texts]
+    return bool(firsts) and set(firsts) <= known and bool(set(firsts) & PROGRAMS) and len(texts[0].split()) > 1
+
+
+def programs_of(code: str) -> list[tuple[str, ...]]:
+    """The words of each command, whether a notebook runs it or not."""
+    found = []
+    for text, _ in _logical_lines(code):
+        for part in _parts(text):
+            try:
+                found.append(tuple(shlex.split(part, comments=True)))
+            except ValueError:
+                continue
+    return [words for words in found if words]
+
+
+def _noted(command: NotRunnable) -> Command | NotRunnable:
+    if command.text.split(" ")[0] in _BESIDE and not _SHELL_SYNTAX.search(command.text):
+        return Command(CommandKind.NOTE, f"# {command.text}", (), command.line)
+    return command
+
+
+def _parts(text: str) -> list[str]:
+    """The commands of a line that are joined with `&&`, or with `;` behind moving about."""
+    if text.startswith("#") or ("&&" not in text and ";" not in text):
+        return [text]
+    try:
+        words = list(shlex.shlex(text, posix=False, punctuation_chars="&;|<>"))
+    except ValueError:
+        return [text]
+    marks = [word for word in words if word in {"&&", ";"}]
+    if any(set(word) <= set("&;|<>") and word not in {"&&", ";"} for word in words) or not marks:
+        return [text]
+    return [part.strip() for part in re.split(r"&&|;", text)] if _unquoted(text) else [text]
+
+
+def _unquoted(text: str) -> bool:
+    """Whether no `&&` and no `;` stand in quotation marks."""
+    return all("&&" not in quoted and ";" not in quoted for quoted in re.findall(r"\"[^\"]*\"|'[^']*'", text))
 
 
 def _logical_lines(code: str) -> Iterator[tuple[str, int]]:
@@ -67,7 +149,9 @@ def _logical_lines(code: str) -> Iterator[tuple[str, int]]:
     for number, raw in enumerate(code.split("\n"), start=1):
         if not joined:
             start = number
-            joined = re.sub(r"^\s*\$\s+", "", raw).strip()
+            prompt = _PROMPT.match(raw)
+            # `# text` is a comment; `root@machine:~# text` is a prompt.
+            joined = raw[prompt.end() :].strip() if prompt and prompt[0].strip() not in {"#", ">"} else raw.strip()
         else:
             joined += "\n" + raw if _inside_quotes(joined) else " " + raw.strip()
         if joined.endswith("\\"):
@@ -94,18 +178,36 @@ def _read(text: str, line: int) -> Command | NotRunnable:
         words = tuple(shlex.split(text, comments=True))
     except ValueError:
         return NotRunnable(text, line, "a quotation mark is never closed")
+    if not words:
+        return Command(CommandKind.NOTE, f"# {text}", (), line)
+    text = _without_comment(text)
     outside_quotes = re.sub(r"\"[^\"]*\"|'[^']*'", "", text)
     program = words[0]
     if program in _MOVING_ABOUT:
         return Command(CommandKind.NOTE, f"# {text}", (), line)
-    if program not in {"ros2", "colcon", "rqt_plot"}:
+    if program not in PROGRAMS:
         return NotRunnable(text, line, f"`{program}` is none of ros2, colcon and rqt_plot")
     if _SHELL_SYNTAX.search(outside_quotes):
         return NotRunnable(text, line, "pipes, `;`, `&` and redirections need a real shell")
+    if re.search(r"\.\.\.|…", outside_quotes):
+        return NotRunnable(text, line, "it stands for other commands")
     if program == "ros2":
         return _ros2(text, words, line)
     kind = CommandKind.COLCON if program == "colcon" else CommandKind.PLOT
     return Command(kind, text, words, line)
+
+
+def _without_comment(text: str) -> str:
+    """A command without the comment behind it."""
+    quote = ""
+    for index, letter in enumerate(text):
+        if quote:
+            quote = "" if letter == quote else quote
+        elif letter in "\"'":
+            quote = letter
+        elif letter == "#" and text[index - 1].isspace():
+            return text[:index].rstrip()
+    return text
 
 
 def _ros2(text: str, words: tuple[str, ...], line: int) -> Command | NotRunnable:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 import sys
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -50,10 +52,33 @@ class Course:
         return self.root / "build"
 
     @property
+    def names(self) -> dict[Path, str]:
+        """What each chapter's notebook and page are called, by its file."""
+        return names_of(self.chapters)
+
+    @property
     def exercises(self) -> frozenset[str]:
         """The names of the exercises that exist."""
         folder = self.root / "exercises"
         return frozenset(p.parent.name for p in folder.glob("*/exercise.toml"))
+
+
+def names_of(chapters: Sequence[Path]) -> dict[Path, str]:
+    """File -> a name that no other of these files has: its own, with as many of its folders as it takes."""
+    names = {chapter: _name(chapter, 0) for chapter in chapters}
+    for folders in range(1, max((len(chapter.parts) for chapter in chapters), default=1)):
+        taken = Counter(name.lower() for name in names.values())
+        names = {file: _name(file, folders) if taken[name.lower()] > 1 else name for file, name in names.items()}
+    taken = Counter(names.values())
+    # a-b/c.md and a/b-c.md, or a file with two endings.
+    return {
+        file: f"{name}-{number}" if taken[name] > 1 else name for number, (file, name) in enumerate(names.items(), 1)
+    }
+
+
+def _name(chapter: Path, folders: int) -> str:
+    parts = [*chapter.parent.parts[-folders:], chapter.stem] if folders else [chapter.stem]
+    return re.sub(r"[^\w.-]+", "-", "-".join(parts)).strip("-.") or "chapter"
 
 
 def find_course(start: Path) -> Course:
@@ -87,10 +112,6 @@ def read_course(root: Path) -> Course:
         chapters = []
     for name in {c for c in chapters if chapters.count(c) > 1}:
         problems.append(Problem(FILE, None, f"`{name}` is listed twice.", "Take one of them out."))
-    stems = [Path(c).stem for c in chapters]
-    for stem in sorted({s for s in stems if stems.count(s) > 1 and chapters.count(chapters[stems.index(s)]) == 1}):
-        found = f"two chapters would both become {stem}.ipynb."
-        problems.append(Problem(FILE, None, found, "Give one of the files another name."))
     for name in chapters:
         if Path(name).is_absolute() or ".." in Path(name).parts:
             problems.append(

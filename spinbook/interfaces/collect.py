@@ -10,16 +10,15 @@ from pathlib import Path
 from interface_compiler import prefixes
 from interface_compiler.checks import check
 from interface_compiler.definition import Definition, Fault, read_folder
-from spinbook.chapter.definition_title import interface_path, is_someone_elses
-from spinbook.chapter.markdown import outline
-from spinbook.chapter.source import read_source
+from spinbook.chapter.definition_title import interface_package, interface_path, is_someone_elses
+from spinbook.chapter.read import fences_of
 from spinbook.course.course import Course
 from spinbook.problem import Problem, SpinbookError
 
 #: The course's folder with definitions: interfaces/PACKAGE/{msg,srv,action}/.
 FOLDER = "interfaces"
 #: Whether a chapter can hold a definition at all: most do not, and are not read for it.
-_HAS_ONE = re.compile(rb"""^[`~]{3,}.*\btitle=["']?[\w/]*\b(msg|srv|action)/[\w-]+\.\1\b""", re.MULTILINE)
+_HAS_ONE = re.compile(rb"\b(msg|srv|action)/[\w-]+\.\1\b")
 
 
 @dataclass(frozen=True)
@@ -71,15 +70,9 @@ def _in_chapters(course: Course) -> Iterator[Definition]:
 
 
 def _in_chapter(course: Course, file: Path) -> Iterator[Definition]:
-    source, _ = read_source(course.root / file, file)
-    if source is None:
-        return
-    for span in outline(source.text, file)[0].spans:
-        fence = span.fence
-        if fence is None or fence.has("static"):
-            continue
-        own = f"{course.package.name}_interfaces"
-        path = interface_path(fence.title or "", own)
+    own = interface_package(course.package.name)
+    for fence in fences_of(course.root, file):
+        path = interface_path(fence.title or "", own) if not fence.has("static") else None
         if path and not is_someone_elses(path.partition("/")[0], own):
             package, kind, name = path.split("/")
             yield Definition(package, kind, name.rpartition(".")[0], fence.code, file, fence.first_code_line)

@@ -12,8 +12,12 @@ from spinbook.build.reading import read_all
 from spinbook.chapter.chapter import CellKind
 from spinbook.chapter.read import Reading
 from spinbook.course.course import Course, find_course
+from spinbook.course.obstacles import ranked
 from spinbook.interfaces.collect import checked
-from spinbook.problem import Problem, SpinbookError
+from spinbook.problem import Problem, Severity, SpinbookError
+
+#: So many problems are read one by one; of more there is a count at the end, too.
+_FEW = 12
 
 
 @click.command()
@@ -39,9 +43,13 @@ def lint(start: Path, strict: bool, show_static: bool, as_json: bool) -> None:
             click.echo(str(problem))
         for reading in readings:
             _summary(reading, show_static)
+        for line in ranked(problems) if len(problems) > _FEW else ():
+            click.echo(line)
     errors = sum(problem.is_error for problem in problems)
+    not_run = sum(problem.severity is Severity.NOT_RUN for problem in problems)
     if not as_json:
-        click.echo(f"{errors} errors, {len(problems) - errors} warnings")
+        words = f"{not_run} not run, " if not_run else ""
+        click.echo(f"{errors} errors, {words}{len(problems) - errors - not_run} warnings")
     sys.exit(1 if errors or (strict and problems) else 0)
 
 
@@ -71,13 +79,22 @@ def _as_json(reading: Reading) -> dict[str, object]:
     return {
         "chapter": chapter.file.as_posix() if chapter else None,
         "problems": [
-            {"file": p.file.as_posix(), "line": p.line, "severity": p.severity.value, "found": p.found, "mend": p.mend}
+            {
+                "file": p.file.as_posix(),
+                "line": p.line,
+                "severity": p.severity.value,
+                "found": p.found,
+                "mend": p.mend,
+                "group": p.group,
+            }
             for p in reading.problems
         ],
         "cells": [{"id": cell.id, "kind": cell.kind.value, "line": cell.line} for cell in chapter.cells]
         if chapter
         else [],
-        "static": [{"line": f.line, "language": f.language, "why": f.why} for f in chapter.static_fences]
+        "static": [
+            {"line": f.line, "language": f.language, "why": f.why, "sign": f.sign} for f in chapter.static_fences
+        ]
         if chapter
         else [],
     }

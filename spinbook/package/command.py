@@ -54,10 +54,13 @@ def course_modules(course: Course) -> list[Module]:
             assert cell.name is not None
             assert reading.chapter is not None
             file, known = first.setdefault(cell.name, (reading.chapter.file, cell))
-            if known.source != cell.source:
+            if file == reading.chapter.file:
+                # Shown again, changed: the file as it is in the end.
+                first[cell.name] = (file, cell)
+            elif known.whole != cell.whole:
                 found = f"the node `{cell.name}` also stands in {file}:{known.line}, with other code."
                 mend = "Give one of them another file name: the package can hold only one module of a name."
                 problems.append(Problem(reading.chapter.file, cell.line, found, mend))
     if problems:
         raise SpinbookError(*problems)
-    return [Module(name, cell.source) for name, (_, cell) in sorted(first.items())]
+    return [Module(name, cell.whole) for name, (_, cell) in sorted(first.items())]

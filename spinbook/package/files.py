@@ -17,10 +17,14 @@ from spinbook.course.course import Package
 
 @dataclass(frozen=True)
 class Module:
-    """A node's file: `name` without .py, and its code, byte for byte."""
+    """A node's file: `name` without .py, and its code, byte for byte.
+
+    `executables` are what `ros2 run` calls it; none: the same as its file.
+    """
 
     name: str
     code: str
+    executables: tuple[str, ...] = ()
 
     @property
     def has_main(self) -> bool:
@@ -35,13 +39,18 @@ def package_files(package: Package, modules: Sequence[Module], interfaces: Seque
     """Path within the package's folder -> content. `interfaces` are the course's own packages of interfaces."""
     files = {
         "package.xml": _package_xml(package, _dependencies(modules, interfaces)),
-        "setup.py": _setup_py(package, [module.name for module in modules if module.has_main]),
+        "setup.py": _setup_py(package, _executables(modules)),
         "setup.cfg": _setup_cfg(package),
         f"resource/{package.name}": "",
         f"{package.name}/__init__.py": "",
     }
     files.update({f"{package.name}/{module.name}.py": module.code for module in modules})
     return files
+
+
+def _executables(modules: Sequence[Module]) -> list[tuple[str, str]]:
+    """(executable, module) of all that `ros2 run` can start."""
+    return [(name, m.name) for m in modules if m.has_main for name in m.executables or (m.name,)]
 
 
 def _dependencies(modules: Sequence[Module], interfaces: Sequence[str]) -> list[str]:
@@ -78,8 +87,8 @@ def _package_xml(package: Package, dependencies: Sequence[str]) -> str:
     )
 
 
-def _setup_py(package: Package, executables: Sequence[str]) -> str:
-    scripts = "".join(f"            '{name} = {package.name}.{name}:main',\n" for name in executables)
+def _setup_py(package: Package, executables: Sequence[tuple[str, str]]) -> str:
+    scripts = "".join(f"            '{name} = {package.name}.{module}:main',\n" for name, module in executables)
     settings: Mapping[str, str] = {
         "name": "package_name",
         "version": repr(package.version),

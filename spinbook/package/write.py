@@ -9,6 +9,9 @@ from spinbook.course.course import Package
 from spinbook.package.files import Module, package_files
 from spinbook.written import write_if_changed
 
+#: What was written is remembered here, one module per line.
+_RECORD = ".spinbook-modules"
+
 
 def package_folder(workspace: Path, package: Package) -> Path:
     """Where the package's sources are in a workspace."""
@@ -25,24 +28,27 @@ def write_package(workspace: Path, package: Package, modules: Sequence[Module], 
     files = package_files(package, modules, interfaces)
     for path, content in files.items():
         write_if_changed(folder / path, content)
-    written = folder / ".spinbook-modules"
-    before = written.read_text(encoding="utf-8").split() if written.exists() else []
-    for name in set(before) - {module.name for module in modules}:
+    for name in set(_written(folder)) - {module.name for module in modules}:
         (folder / package.name / f"{name}.py").unlink(missing_ok=True)
-    write_if_changed(written, "".join(f"{module.name}\n" for module in modules))
+    lines = (" ".join([module.name, *module.executables]) for module in modules)
+    write_if_changed(folder / _RECORD, "".join(f"{line}\n" for line in lines))
     return folder
+
+
+def _written(folder: Path) -> dict[str, tuple[str, ...]]:
+    """The modules that were written before, each with its executables."""
+    record = folder / _RECORD
+    lines = record.read_text(encoding="utf-8").splitlines() if record.exists() else []
+    return {words[0]: tuple(words[1:]) for words in map(str.split, lines) if words}
 
 
 def add_module(workspace: Path, package: Package, module: Module) -> Path:
     """Put one module into the package, beside those that are there. Returns the module's file."""
     folder = package_folder(workspace, package)
-    written = folder / ".spinbook-modules"
-    names = written.read_text(encoding="utf-8").split() if written.exists() else []
-    others = [name for name in names if name != module.name]
     modules = [
-        Module(name, file.read_text(encoding="utf-8"))
-        for name in others
-        if (file := folder / package.name / f"{name}.py").exists()
+        Module(name, file.read_text(encoding="utf-8"), executables)
+        for name, executables in _written(folder).items()
+        if name != module.name and (file := folder / package.name / f"{name}.py").exists()
     ]
     write_package(workspace, package, [*modules, module])
     return folder / package.name / f"{module.name}.py"

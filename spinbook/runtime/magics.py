@@ -16,7 +16,7 @@ from IPython.core.magic import Magics, cell_magic, line_magic, magics_class, no_
 from spinbook.course.course import Package
 from spinbook.runtime import colcon_cell, domain, graph_cell, interface_cell, plot_cell, ros2_cell, turtle_cell
 from spinbook.runtime.failure import CellFailed
-from spinbook.runtime.session import COMMAND_SECONDS, GRAPH_SECONDS, NODE_SECONDS, Session
+from spinbook.runtime.session import COMMAND_SECONDS, GRAPH_SECONDS, NODE_SECONDS, Session, Start
 from spinbook.runtime.showing import Bound
 
 _OWN_OPTION = re.compile(r"""\s*--(seconds|until)\s+("[^"]*"|'[^']*'|\S+)\s*""")
@@ -107,12 +107,42 @@ class SpinbookMagics(Magics):
         reader.add_argument("name", help="the node's file, without .py")
         reader.add_argument("--seconds", type=float, default=NODE_SECONDS, help="how long its log is shown")
         reader.add_argument("--until", help="stop showing once the log holds this text")
-        reader.add_argument("--class", dest="spin_class", help="spin this Node class; the code does not do it itself")
+        reader.add_argument("--class", dest="classes", action="append", default=[], help="spin this Node class")
+        reader.add_argument("--main", action="store_true", help="call the code's main(); it does not do so itself")
+        reader.add_argument(
+            "--after", nargs="+", default=[], metavar="CELL", help="use what these nodes and parts define"
+        )
+        reader.add_argument("--usual-imports", action="store_true", help="add the imports that the code leaves out")
+        reader.add_argument(
+            "--as",
+            dest="known_as",
+            action="append",
+            default=[],
+            metavar="PACKAGE/EXECUTABLE",
+            help="what `ros2 run` calls this node",
+        )
         if given := reader.read(line):
             name = given.name.removesuffix(".py")
             if not name.isidentifier():
                 raise CellFailed(f"`{name}` can't be a node's file name: use letters, digits and underscores.")
-            self.session.run_node(name, cell, Bound(given.seconds, given.until), given.spin_class)
+            parts = given.after if given.after or given.usual_imports else None
+            start = Start(tuple(given.classes), given.main, tuple(given.known_as))
+            self.session.run_node(name, cell, Bound(given.seconds, given.until), start, parts)
+
+    @no_var_expand
+    @cell_magic
+    def part(self, line: str, cell: str) -> None:
+        """%%part NAME: code that later nodes use, by `%%node … --after NAME`."""
+        reader = LineReader("%%part", "Keep this cell's code for nodes further down, and run it as any other cell.")
+        reader.add_argument("name", help="what `--after` calls it")
+        reader.add_argument("--keep", action="store_true", help="only keep it: it can't run by itself")
+        if given := reader.read(line):
+            self.session.parts[given.name] = cell
+            if given.keep:
+                print(f"— kept for the nodes below that use it: {given.name} —")
+            else:
+                assert self.shell is not None
+                self.shell.run_cell(cell).raise_error()
 
     @no_var_expand
     @line_magic

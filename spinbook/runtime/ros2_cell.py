@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+from spinbook.course.own_packages import created_package
+from spinbook.package.write import write_package
 from spinbook.runtime.failure import CellFailed
 from spinbook.runtime.session import Session
 from spinbook.runtime.showing import Bound
@@ -15,8 +18,23 @@ def run(session: Session, words: list[str], bound: Bound) -> None:
     if words[:1] == ["run"] and not {"-h", "--help"} & set(words):
         _run_executable(session, words[1:], bound)
         return
+    if words[:2] == ["pkg", "create"]:
+        _create_package(session, words)
+        return
     argv = [sys.executable, "-m", "spinbook.ros2", *words]
     session.run_command(argv, {}, Path.cwd(), bound, "ros2 " + " ".join(words[:2]))
+
+
+def _create_package(session: Session, words: list[str]) -> None:
+    """`ros2 pkg create … NAME`: an empty package in the workspace, which the chapter's nodes fill."""
+    name, _ = created_package(["ros2", *words])
+    if not name:
+        raise CellFailed("Write: ros2 pkg create --build-type ament_python NAME")
+    if name != session.package.name and (session.workspace / "src" / name).exists():
+        print(f"{name} is there already.")
+        return
+    folder = write_package(session.workspace, replace(session.package, name=name), [])
+    print(f"Created the package {name} in {folder.relative_to(Path.cwd())}")
 
 
 def _run_executable(session: Session, words: list[str], bound: Bound) -> None:
@@ -24,6 +42,8 @@ def _run_executable(session: Session, words: list[str], bound: Bound) -> None:
     if len(words) < 2 or words[0].startswith("-"):
         raise CellFailed("Write: ros2 run PACKAGE EXECUTABLE, such as ros2 run turtlesim turtlesim_node")
     executable = words[1]
+    if session.run_executable(words[0], executable, words[2:], bound):
+        return
     argv = [sys.executable, "-m", "spinbook.ros2", "run", *words]
     cwd = session.workspace if session.workspace.is_dir() else Path.cwd()
     session.run_background(executable, argv, {}, cwd, bound)

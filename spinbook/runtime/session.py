@@ -5,10 +5,13 @@ from __future__ import annotations
 import os
 import sys
 import time
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from spinbook.chapter.python_code import CodeError
 from spinbook.course.course import Package
+from spinbook.course.joining import join
 from spinbook.package.files import Module
 from spinbook.package.write import add_module
 from spinbook.runtime import environment
@@ -27,6 +30,26 @@ GRAPH_SECONDS = 2.5
 COMMAND_GRACE = (3.0, 1.0)
 
 
+@dataclass(frozen=True)
+class Start:
+    """How a node's code is started: by itself, by its `main`, or by spinning these classes.
+
+    `known_as` are the names `PACKAGE/EXECUTABLE` by which `ros2 run` finds it.
+    """
+
+    classes: tuple[str, ...] = ()
+    calls_main: bool = False
+    known_as: tuple[str, ...] = ()
+
+    def argv(self, file: Path, words: Sequence[str] = ()) -> list[str]:
+        """The command that starts the code in `file`; `words` are for the node."""
+        own = [part for name in self.classes for part in ("--class", name)]
+        own = ["--main"] if self.calls_main else own
+        if not own:
+            return [sys.executable, "-u", os.fspath(file), *words]
+        return [sys.executable, "-u", "-m", "spinbook.runtime.entry", os.fspath(file), *own, "--", *words]
+
+
 @dataclass
 class Session:
     """The notebook's state. Processes that it starts run in `settings` on top of the kernel's own environment."""
@@ -38,6 +61,10 @@ class Session:
     """The code of each node's cell as it was run last, by the node's name."""
     ran_at: dict[str, float] = field(default_factory=dict)
     """When that was (s since the epoch)."""
+    parts: dict[str, str] = field(default_factory=dict)
+    """Code that later nodes use, by its name."""
+    starts: dict[str, tuple[Path, Start]] = field(default_factory=dict)
+    """The file of each node and how it is started, by the node's name."""
 
     def __post_init__(self) -> None:
         self.use_domain(self.domain)
@@ -54,18 +81,59 @@ class Session:
         """The colcon workspace: beside the notebook."""
         return Path.cwd() / self.package.workspace
 
-    def run_node(self, name: str, code: str, bound: Bound, spin_class: str | None) -> None:
-        """Write a node's code as a module of the package, start it and show its log for a while."""
-        if self.package.name == name:
+    def run_node(
+        self, name: str, code: str, bound: Bound, start: Start | None = None, after: Sequence[str] | None = None
+    ) -> None:
+        """Write a node's code as a module of its package, start it and show its log for a while.
+
+        `after` names the nodes and parts whose code makes it whole; None: it is whole.
+        """
+        start = start or Start()
+        package, executables = self._package_of(start.known_as)
+        if package.name == name:
             raise CellFailed(f"A node can't have the package's name, {name}.")
         self.ran[name] = code
         self.ran_at[name] = time.time()
-        module = add_module(self.workspace, self.package, Module(name, code.rstrip("\n") + "\n"))
-        if spin_class:
-            argv = [sys.executable, "-u", "-m", "spinbook.runtime.spin_class", os.fspath(module), spin_class]
-        else:
-            argv = [sys.executable, "-u", os.fspath(module)]
-        self.run_background(name, argv, {}, Path.cwd(), bound)
+        whole = code if after is None else self._whole(code, after)
+        module = Module(name, whole.rstrip("\n") + "\n", executables)
+        file = add_module(self.workspace, package, module)
+        self.starts[name] = (file, start)
+        self.run_background(name, start.argv(file), self._import_path(file), Path.cwd(), bound)
+
+    def _package_of(self, known_as: Sequence[str]) -> tuple[Package, tuple[str, ...]]:
+        """The package to which a node belongs, and what its executables are called there."""
+        pairs = [name.partition("/") for name in known_as]
+        if not pairs:
+            return self.package, ()
+        package = pairs[0][0]
+        executables = tuple(executable for name, _, executable in pairs if name == package)
+        return (self.package if package == self.package.name else replace(self.package, name=package)), executables
+
+    def _whole(self, code: str, after: Sequence[str]) -> str:
+        pieces = []
+        for name in after:
+            piece = self.parts.get(name, self.ran.get(name))
+            if piece is None:
+                raise CellFailed(f"This node uses what `{name}` defines: run its cell above first.")
+            pieces.append(piece)
+        try:
+            return join(code, pieces).whole
+        except CodeError:
+            # Python says best itself what is wrong.
+            return code
+
+    def _import_path(self, module: Path) -> dict[str, str]:
+        """Lets nodes import each other by their package, as they can once it is installed."""
+        paths = [os.fspath(module.parents[1]), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
+        return {"PYTHONPATH": os.pathsep.join(path for path in paths if path)}
+
+    def run_executable(self, package: str, executable: str, words: Sequence[str], bound: Bound) -> bool:
+        """Start the node that a cell made as this executable. False if no cell did."""
+        for name, (file, start) in self.starts.items():
+            if f"{package}/{executable}" in start.known_as:
+                self.run_background(name, start.argv(file, words), self._import_path(file), Path.cwd(), bound)
+                return True
+        return False
 
     def run_background(self, name: str, argv: list[str], settings: dict[str, str], cwd: Path, bound: Bound) -> None:
         """Start a process that goes on behind the cell, and show its log for a while. Raises CellFailed."""

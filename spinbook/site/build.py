@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from spinbook.build.digest import code_digest, digest, files_digest, versions
 from spinbook.course.course import FILE, Course
@@ -101,6 +102,7 @@ def _record(course: Course) -> Path:
 def _key(course: Course, *, as_it_ran: bool) -> str:
     """All that the site depends on."""
     inputs = [course.root / FILE, *(course.root / chapter for chapter in course.chapters)]
+    inputs += [course.root / file for file in _shown(course)]
     inputs += [course.root / course.glossary] if course.glossary else []
     for part in ("exercises", "solutions", "interfaces"):
         inputs += [file for file in (course.root / part).rglob("*") if file.is_file() and file.suffix != ".pyc"]
@@ -111,7 +113,13 @@ def _key(course: Course, *, as_it_ran: bool) -> str:
     return digest(files_digest(inputs, course.root), code_digest(*_CODE), versions(), *known, str(as_it_ran))
 
 
-def _read(record: Path) -> dict[str, str]:
+def _shown(course: Course) -> list[str]:
+    """The files that the chapters include or show, as they were when their notebooks were built."""
+    record = _read(course.build_folder / ".cache" / "notebooks.json")
+    return sorted({file for entry in record.values() for file in entry.get("uses", [])})
+
+
+def _read(record: Path) -> dict[str, Any]:
     try:
         found = json.loads(record.read_text(encoding="utf-8"))
     except (OSError, ValueError):

@@ -48,11 +48,13 @@ def chapter_notebook(
     prose: Mapping[str, str],
     exercises: Mapping[str, ExerciseCard],
     repository: Repository,
+    downloads: Mapping[str, str],
     graph: str = "",
 ) -> dict[str, Any]:
     """The page's notebook. `prose` holds the text of each prose cell by id, as `rich` made it.
 
-    `graph` is the Markdown of the section that shows the nodes that ran; it is the page's last.
+    `downloads` are the files of nodes' programs by cell. `graph` is the Markdown of the section that shows the nodes
+    that ran; it is the page's last.
     """
     cells: list[dict[str, Any]] = []
     for cell in chapter.cells:
@@ -61,7 +63,7 @@ def chapter_notebook(
         elif cell.kind is CellKind.EXERCISE:
             cells.append(_prose(cell, _card(exercises[cell.name or ""])))
         else:
-            cells.append(_code(cell, ran, repository.link(chapter.file, cell.line)))
+            cells.append(_code(cell, ran, repository.link(chapter.file, cell.line), downloads.get(cell.id, "")))
     if graph:
         cells.append({**_prose(chapter.cells[-1], graph), "id": "nodes-as-seen"})
     return {
@@ -88,7 +90,7 @@ def _card(exercise: ExerciseCard) -> str:
     )
 
 
-def _code(cell: Cell, ran: Ran, source_link: str) -> dict[str, Any]:
+def _code(cell: Cell, ran: Ran, source_link: str, download: str) -> dict[str, Any]:
     shown = ran.outputs(cell.id)
     outputs = [_published(output) for output in shown]
     stills = [still_of(output) for output in shown if is_picture(output)]
@@ -101,7 +103,7 @@ def _code(cell: Cell, ran: Ran, source_link: str) -> dict[str, Any]:
         "fails": cell.raises,
     }
     if cell.kind is CellKind.NODE:
-        about["file"] = cell.module
+        about |= {"file": cell.module, "download": download, "after": _after(cell)}
     elif cell.kind is CellKind.INTERFACE:
         about["interface"] = cell.name
     return {
@@ -112,6 +114,12 @@ def _code(cell: Cell, ran: Ran, source_link: str) -> dict[str, Any]:
         "outputs": outputs,
         "execution_count": None,
     }
+
+
+def _after(cell: Cell) -> str:
+    """What a node that is shown in pieces runs with, in words."""
+    with_what = [*cell.after] or (["the usual imports"] if cell.before else [])
+    return f"runs with {', '.join(with_what)}" if with_what else ""
 
 
 def _published(output: dict[str, Any]) -> dict[str, Any]:

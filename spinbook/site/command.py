@@ -17,9 +17,10 @@ from spinbook.site.build import Site, build_site, unchanged_site
 @click.command()
 @click.option("--course", "start", type=click.Path(path_type=Path), default=".", help="The course's folder.")
 @click.option("--no-run", is_flag=True, help="Run no notebook: show the outputs that are there, old as they may be.")
+@click.option("--strict", is_flag=True, help="A cell that fails, or code that does not run, stops the site.")
 @click.option("--serve", is_flag=True, help="Show the site in a browser, and build it again whenever a file is saved.")
 @click.option("--port", type=click.IntRange(1, 65535), default=8000, show_default=True, help="Where --serve listens.")
-def site(start: Path, no_run: bool, serve: bool, port: int) -> None:
+def site(start: Path, no_run: bool, strict: bool, serve: bool, port: int) -> None:
     """Make the course's website in build/site/.
 
     Every output on it was made by real nodes: a chapter whose code has changed since it ran is run first, as
@@ -33,7 +34,9 @@ def site(start: Path, no_run: bool, serve: bool, port: int) -> None:
     The folder can be put on any web server as it is, or opened without one. Beside it, build/launch/ holds the
     notebooks that Colab, Binder and Codespaces open: push it to the branch `notebooks` (docs/site.md).
 
-    Exit code: 0 the site is built, 1 something has to be mended first; the site of the last good build then stays.
+    A cell that fails is shown as it failed. With --strict, as for the CI of your own course, it stops the site.
+
+    Exit code: 0 the site is built, 1 something has to be fixed first; the site of the last good build then stays.
     """
     course = find_course(start)
     console = Console(soft_wrap=True, highlight=False)
@@ -46,8 +49,8 @@ def site(start: Path, no_run: bool, serve: bool, port: int) -> None:
     if before is not None:
         _report(console, before)
         return
-    if not no_run and not _up_to_date(course, console):
-        console.print("The site was not built: mend what is said above first.", style="red")
+    if not no_run and not _up_to_date(course, console, strict):
+        console.print("The site was not built: fix what is said above first.", style="red")
         sys.exit(1)
     try:
         with console.status("Making the pages …") as status:
@@ -59,10 +62,10 @@ def site(start: Path, no_run: bool, serve: bool, port: int) -> None:
     _report(console, built)
 
 
-def _up_to_date(course: Course, console: Console) -> bool:
+def _up_to_date(course: Course, console: Console, strict: bool) -> bool:
     from spinbook.site.notebooks import bring_up_to_date
 
-    return bring_up_to_date(course, console)
+    return bring_up_to_date(course, console, is_strict=strict)
 
 
 def _report(console: Console, built: Site) -> None:

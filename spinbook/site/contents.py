@@ -40,7 +40,8 @@ DOWNLOADS = "downloads"
 class Contents:
     """The site before it is built.
 
-    `pages` are in reading order, the home page first. `files` go into the site as they are, `branch` into the
+    `pages` are in reading order, the home page first. `pictures` are those that the text shows: path in the site ->
+    content. `files` go into the site as they are, `branch` into the
     branch of notebooks: path -> text. `origins` says for a staged page which file an author would mend, and `lines`
     for a chapter's page the first line of each of its cells. `taught` is the code of the chapters' nodes.
     """
@@ -48,6 +49,7 @@ class Contents:
     pages: list[Page] = field(default_factory=list)
     files: dict[str, str | bytes] = field(default_factory=dict)
     branch: dict[str, str] = field(default_factory=dict)
+    pictures: dict[str, bytes] = field(default_factory=dict)
     openers: dict[str, list[dict[str, str]]] = field(default_factory=dict)
     terms: tuple[Term, ...] = ()
     origins: dict[str, Path] = field(default_factory=dict)
@@ -93,6 +95,8 @@ def read_contents(course: Course) -> Contents:
     for code, picture in drawings.pictures.items():
         if picture is not None:
             contents.files |= drawing_files(code, picture)
+    contents.pictures |= links.pictures
+    contents.files |= links.pictures
     return contents
 
 
@@ -119,7 +123,7 @@ def _exercises(course: Course, chapters: list[Chapter]) -> dict[str, Exercise]:
 
 def _pages_of_files(course: Course, exercises: Mapping[str, Exercise]) -> dict[str, str]:
     """The course's files that have pages, and what is staged for them: Sphinx makes the address."""
-    pages = {chapter.as_posix(): f"{names.chapter_page(chapter)}.ipynb" for chapter in course.chapters}
+    pages = {file.as_posix(): f"{names.chapter_page(name)}.ipynb" for file, name in course.names.items()}
     pages |= {f"exercises/{name}/task.md": f"{names.exercise_page(name)}.md" for name in exercises}
     if course.glossary:
         pages[course.glossary.as_posix()] = f"{names.GLOSSARY}.md"
@@ -153,7 +157,7 @@ def _chapter(
     drawings: _Drawings,
     contents: Contents,
 ) -> Page:
-    name = names.chapter_page(chapter.file)
+    name = names.chapter_page(chapter.name)
     ran = _ran(course, chapter)
     folder = chapter.file.parent.as_posix()
     prose = {
@@ -162,17 +166,29 @@ def _chapter(
         if cell.kind is CellKind.PROSE
     }
     cards = {name: ExerciseCard(name, exercise.title, exercise.points) for name, exercise in exercises.items()}
-    notebook = chapter_notebook(chapter, ran, prose, cards, links.repository, _graph(course, chapter))
+    downloads = _downloads(chapter, contents)
+    notebook = chapter_notebook(chapter, ran, prose, cards, links.repository, downloads, _graph(course, chapter))
     contents.files |= stills(chapter, ran)
     contents.origins[name] = chapter.file
     contents.lines[name] = [cell["metadata"]["spinbook"]["line"] for cell in notebook["cells"]]
-    for cell in chapter.nodes:
-        contents.taught.append(cell.source)
-        contents.files[f"{DOWNLOADS}/{cell.module}"] = cell.source.rstrip("\n") + "\n"
+    contents.taught += [cell.source for cell in chapter.nodes]
     source = links.repository.link(chapter.file, 1)
     return Page(
         name, chapter.title, "chapter", ".ipynb", as_text(notebook), source, chapter.name, summary=chapter.summary
     )
+
+
+def _downloads(chapter: Chapter, contents: Contents) -> dict[str, str]:
+    """Put the programs of a chapter's nodes into the site: cell -> file. One name may stand for several programs."""
+    places: dict[str, str] = {}
+    for cell in chapter.nodes:
+        code = cell.whole.rstrip("\n") + "\n"
+        place = f"{DOWNLOADS}/{cell.module}"
+        if contents.files.get(place, code) != code:
+            place = f"{DOWNLOADS}/{chapter.name}/{cell.id}/{cell.module}"
+        contents.files[place] = code
+        places[cell.id] = place
+    return places
 
 
 def _ran(course: Course, chapter: Chapter) -> Ran:
@@ -203,7 +219,7 @@ def _exercise(exercise: Exercise, chapter: Chapter, links: Links, drawings: _Dra
     about = {
         "points": f"{exercise.points:g}",
         "file": exercise.file_name,
-        "chapter": {"title": chapter.title, "page": names.chapter_page(chapter.file)},
+        "chapter": {"title": chapter.title, "page": names.chapter_page(chapter.name)},
     }
     notebook = names.exercise_notebook(exercise.name)
     source = links.repository.link(Path(folder, "task.md"), 1)
@@ -230,7 +246,7 @@ def _glossary(course: Course, contents: Contents) -> None:
 def _closing_pages(course: Course, repository: Repository, first: str, contents: Contents) -> Iterator[Page]:
     if course.glossary is not None:
         text = (course.root / course.glossary).read_text(encoding="utf-8")
-        links = Links(_pages_of_files(course, {}), repository)
+        links = Links(_pages_of_files(course, {}), repository, contents.pictures)
         text = rich(text, links, course.glossary.parent.as_posix(), "", lambda code: "")
         source = repository.link(course.glossary, 1)
         summary = "The words of the course, each explained in a sentence or two."

@@ -38,7 +38,7 @@ def home_chapters(chapters: list[Chapter], exercises: Mapping[str, Exercise]) ->
     return [
         {
             "title": chapter.title,
-            "page": chapter_page(chapter.file),
+            "page": chapter_page(chapter.name),
             "summary": chapter.summary,
             "nodes": sum(1 for _ in chapter.nodes),
             "exercises": [
@@ -80,7 +80,7 @@ def home_log(runs: list[tuple[Chapter, Ran]]) -> dict[str, str]:
             lines = [line for line in text.splitlines() if line.startswith("[")][:_LOG_LINES]
             warns = any("[WARN]" in line for line in lines)
             if lines and not cell.raises and warns >= best[0]:
-                page = f"{chapter_page(chapter.file)}.html"
+                page = f"{chapter_page(chapter.name)}.html"
                 best = warns, {"html": _coloured("\n".join(lines)), "file": cell.module, "page": page}
     return best[1]
 
@@ -114,7 +114,7 @@ def _shown(chapter: Chapter, cell: Cell, output: Mapping[str, Any], caption: str
         "still": still.path if still else "",
         "alt": alternative(output, cell),
         "caption": caption,
-        "page": f"{chapter_page(chapter.file)}.html",
+        "page": f"{chapter_page(chapter.name)}.html",
         "chapter": chapter.title,
         **size,
     }

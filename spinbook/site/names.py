@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 HOME = "index"
 GLOSSARY = "glossary"
 ABOUT = "about"
@@ -13,9 +11,9 @@ SEARCH = "search"
 FRAME_SUFFIX = ".frame.json"
 
 
-def chapter_page(chapter: Path | str) -> str:
-    """The page of a chapter, named by its file or its stem."""
-    return f"chapters/{Path(chapter).stem}"
+def chapter_page(name: str) -> str:
+    """The page of the chapter of this name."""
+    return f"chapters/{name}"
 
 
 def exercise_page(exercise: str) -> str:

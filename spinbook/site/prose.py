@@ -1,81 +1,86 @@
 """Makes a chapter's or a task's Markdown into what Sphinx's MyST parser shows at its best.
 
 Alerts, admonitions, tables and maths are MyST's own matter. What is done here: links lead to pages of the site or into
-the repository, and mermaid fences become pictures. No line is added or lost, so that a line of the text is known by
-its number still.
+the repository, pictures to copies beside the pages, and mermaid fences become pictures. No line is added or lost, so
+that a line of the text is known by its number still.
 """
 
 from __future__ import annotations
 
+import hashlib
 import posixpath
-import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from urllib.parse import quote
 
+from markdown_it.token import Token
+
+from spinbook.chapter.fence import directive, parse_info
+from spinbook.course.files import is_elsewhere, locate, split
+from spinbook.course.flavours import parser
+from spinbook.course.links import linked
 from spinbook.handout.comments import without_comments
 from spinbook.site.repository import Repository
 
-_FENCE = re.compile(r"^(\s*)(`{3,}|~{3,})\s*(.*)$")
-_LINK = re.compile(r"(?<!!)(\[[^\]]*\]\()([^)\s]+)(\))")
-_ELSEWHERE = re.compile(r"[a-z][a-z0-9+.-]*:|#|//", re.IGNORECASE)
-_ATTRIBUTED = re.compile(r"""^(?P<language>[\w+-]+)\s.*?\btitle=["']?(?P<title>[^"'\s]+)""")
-
 #: A mermaid drawing's code -> the HTML that shows it, in one line.
 Draw = Callable[[str], str]
+#: Where the chapters' pictures are, in the staged folder and in the site.
+PICTURES = "pictures"
+_SHOWN = frozenset({".png", ".jpg", ".jpeg", ".gif", ".svg", ".webp", ".avif", ".mp4", ".webm"})
 
 
 @dataclass(frozen=True)
 class Links:
-    """Where links of the text lead. `pages` maps files of the course to pages, all relative to the course."""
+    """Where links of the text lead. `pages` maps files of the course to pages, all relative to the course.
+
+    `pictures` collects the files that the pages show: path in the site -> content.
+    """
 
     pages: Mapping[str, str]
     repository: Repository
+    pictures: dict[str, bytes] = field(default_factory=dict)
 
-    def target(self, target: str, folder: str, page_folder: str) -> str:
-        """Where a link in a file of `folder` leads, seen from a page in `page_folder`."""
-        if _ELSEWHERE.match(target):
-            return target
-        path, mark, anchor = target.partition("#")
-        full = posixpath.normpath(posixpath.join(folder, path))
+    def target(self, target: str, is_image: bool, folder: str, page_folder: str) -> str | None:
+        """Where a link in a file of `folder` leads, seen from a page in `page_folder`; None: where it says."""
+        if is_elsewhere(target):
+            return None
+        path, anchor = split(target)
+        file = locate(self.repository.root, folder, target)
+        full = file.as_posix() if file else posixpath.normpath(posixpath.join(folder, path))
         if full in self.pages:
-            return posixpath.relpath(self.pages[full], page_folder or ".") + mark + anchor
-        return (self.repository.link(Path(full)) or target) + mark + anchor
+            return posixpath.relpath(self.pages[full], page_folder or ".") + anchor
+        if is_image and file is not None and file.suffix.lower() in _SHOWN:
+            return posixpath.relpath(self._picture(file), page_folder or ".")
+        link = self.repository.link(Path(full))
+        return quote(link, safe=":/?#=&%") + anchor if link else None
+
+    def _picture(self, file: Path) -> str:
+        data = (self.repository.root / file).read_bytes()
+        name = f"{PICTURES}/{hashlib.sha256(data).hexdigest()[:16]}{file.suffix.lower()}"
+        self.pictures[name] = data
+        return name
 
 
 def rich(text: str, links: Links, folder: str, page_folder: str, draw: Draw) -> str:
     """`text`, from a file in `folder`, for a page in `page_folder`; without comments, in which authors write notes."""
-    out: list[str] = []
-    fence: str | None = None
-    drawing: list[str] | None = None
-    for line in without_comments(text, keep_lines=True).split("\n"):
-        match = _FENCE.match(line)
-        if match and fence is None:
-            fence = match.group(2)
-            if match.group(3).split(" ")[0] == "mermaid":
-                drawing = []
-            else:
-                line = f"{match.group(1)}{fence}{_info(match.group(3))}"
-        elif match and match.group(2).startswith(fence or "\0") and not match.group(3).strip():
-            fence = None
-            if drawing is not None:
-                out += [draw("\n".join(drawing)), *[""] * (len(drawing) + 1)]
-                drawing = None
-                continue
-        elif fence is None:
-            line = _LINK.sub(lambda m: m.group(1) + links.target(m.group(2), folder, page_folder) + m.group(3), line)
-        if drawing is None:
-            out.append(line)
-        elif match is None:
-            drawing.append(line)
-    if drawing is not None:
-        out += ["```text", *drawing]
-    return "\n".join(out)
+    lines = without_comments(text, keep_lines=True).split("\n")
+    for token in parser().parse("\n".join(lines)):
+        if token.type == "fence" and token.map:
+            _fence(token, lines, draw)
+    return linked("\n".join(lines), lambda target, is_image: links.target(target, is_image, folder, page_folder))
 
 
-def _info(info: str) -> str:
-    """A fence's language, without the attributes that tell Spinbook what it is."""
-    match = _ATTRIBUTED.match(info)
-    if match:
-        return match.group("language")
-    return info.split(" ")[0].split("{")[0] if not info.startswith("{") else info
+def _fence(token: Token, lines: list[str], draw: Draw) -> None:
+    """A drawing in place of mermaid's code; any other fence without the attributes that tell Spinbook what it is."""
+    start, end = token.map or (0, 0)
+    if directive(token.info)[0] or not token.info.strip():
+        return
+    language, _ = parse_info(token.info)
+    written = token.info.strip().split(" ")[0].split("{")[0] or language
+    if language == "mermaid" and lines[end - 1].strip().startswith(token.markup):
+        lines[start:end] = [draw(token.content.rstrip("\n")), *[""] * (end - start - 1)]
+    else:
+        lines[start] = lines[start][: len(lines[start]) - len(token.info)] + (
+            "text" if language == "mermaid" else written
+        )

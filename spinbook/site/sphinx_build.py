@@ -20,6 +20,8 @@ from spinbook.site.names import HOME, SEARCH
 
 _THEMES = Path(__file__).parent
 _WARNING = re.compile(r"^(?P<file>/.*?):(?:(?P<line>\d+):)? (?:WARNING|ERROR|CRITICAL): (?P<what>.*)$")
+#: What docutils minds of a line `---` between sections; it is shown as a line all the same.
+_NO_MATTER = re.compile(r"[Tt]ransition(s)? (must|are)|(begin|end) with a transition|separate transitions")
 _ANSI = re.compile(r"\x1b\[[0-9;]*m")
 #: myst-nb counts the lines of each cell from this many times the cell's number.
 _LINES_A_CELL = 10_000
@@ -94,7 +96,7 @@ def _problems(told: str, contents: Contents, source: Path) -> Iterator[Problem]:
     seen: set[str] = set()
     for line in _ANSI.sub("", told).splitlines():
         match = _WARNING.match(line)
-        if match is None or line in seen:
+        if match is None or line in seen or _NO_MATTER.search(line):
             continue
         seen.add(line)
         file, number = _place(match.group("file"), match.group("line"), contents, source)

@@ -11,13 +11,12 @@ from spinbook.written import write_if_changed
 
 def stage(contents: Contents, folder: Path) -> None:
     """Make `folder` hold the pages, and nothing else. Files that are as they should be keep their times."""
-    wanted: dict[Path, str] = {}
+    wanted: dict[Path, str | bytes] = {folder / path: data for path, data in contents.pictures.items()}
     for page in contents.pages:
-        text = page.text + _table_of(contents) if page.name == HOME else page.text
-        wanted[folder / f"{page.name}{page.suffix}"] = text
+        wanted[folder / f"{page.name}{page.suffix}"] = page.text + (_table_of(contents) if page.name == HOME else "")
         wanted[folder / f"{page.name}{FRAME_SUFFIX}"] = page.frame(contents.openers)
-    for file, text in wanted.items():
-        write_if_changed(file, text)
+    for file, content in wanted.items():
+        write_if_changed(file, content)
     for file in folder.rglob("*"):
         if file.is_file() and file not in wanted:
             file.unlink()

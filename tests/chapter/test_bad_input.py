@@ -12,62 +12,94 @@ from spinbook.cli import main
 
 GOOD = "# Good\n\n```python\nx = 1\n```\n"
 
-#: name -> (chapter, line that is told, words that are told, whether it stops the chapter)
-FAULTS: dict[str, tuple[bytes, int, list[str], bool]] = {
+ERROR, NOT_RUN, WARNING = "error", "not run", "warning"
+
+#: name -> (chapter, line that is told, words that are told, how bad it is: only an error stops the chapter)
+FAULTS: dict[str, tuple[bytes, int, list[str], str]] = {
     "syntax error in a fence": (
         b"# T\n\ntext\n\n```python\na = 1\nb = = 2\n```\n",
         7,
         ["not Python", "invalid syntax"],
-        True,
+        NOT_RUN,
     ),
     "unknown package": (
         b"# T\n\n```python\nimport no_such_package\n```\n",
         4,
         ["no_such_package", "not installed"],
-        True,
+        NOT_RUN,
     ),
-    "misspelt package": (b"# T\n\n```python\nimport geometri_msgs\n```\n", 4, ["Did you mean `geometry_msgs`"], True),
+    "misspelt package": (
+        b"# T\n\n```python\nimport geometri_msgs\n```\n",
+        4,
+        ["Did you mean `geometry_msgs`"],
+        NOT_RUN,
+    ),
     "misspelt message": (
         b"# T\n\n```python\nfrom sensor_msgs.msg import JointStat\n```\n",
         4,
         ["no `JointStat`", "Did you mean `JointState`"],
-        True,
+        NOT_RUN,
     ),
-    "unknown ROS package": (b"# T\n\n```bash\nros2 run no_such_package talker\n```\n", 4, ["no_such_package"], True),
-    "unclosed fence": (b"# T\n\ntext\n\n```python\nx = 1\n\nmore\n", 5, ["never closed", "```"], True),
-    "two nodes of one name": (
-        b'# T\n\n```python title="a.py"\nimport rclpy\nrclpy.spin(1)\n```\n\n```python title="a.py"\nx = 2\n```\n',
-        8,
-        ["`a`", "line 3", "another file name"],
-        True,
+    "unknown ROS package": (b"# T\n\n```bash\nros2 run no_such_package talker\n```\n", 4, ["no_such_package"], NOT_RUN),
+    "unclosed fence": (b"# T\n\ntext\n\n```python\nx = 1\n\nmore\n", 5, ["never closed", "```"], NOT_RUN),
+    "broken front matter": (b"---\ntitle: a\nsummary: b: c\n---\n\n# T\n", 3, ["front matter", "YAML"], WARNING),
+    "front matter without end": (b"---\ntitle: a\n\n# T\n", 1, ["never ends", "---"], WARNING),
+    "control characters": (b"# T\n\nbell \x07 rings\n", 3, ["U+0007", "column 6", "Delete"], WARNING),
+    "not UTF-8": (b"# T\n\nna\xefve\n", 3, ["0xef", "UTF-8"], ERROR),
+    "Windows line ends": (b"# T\r\n\r\n```python\r\nx = 1\r\n```\r\n", 1, ["CRLF", "LF"], WARNING),
+    "byte-order mark": (b"\xef\xbb\xbf# T\n\ntext\n", 1, ["BOM"], WARNING),
+    "no heading": (b"text only\n", 1, ["no heading", "# "], WARNING),
+    "empty file": (b"", 1, ["no heading"], WARNING),
+    "unknown exercise": (b"# T\n\n<!-- exercise: nothing -->\n", 3, ["no exercise `nothing`"], NOT_RUN),
+    "no time": (
+        b"# T\n\n```bash seconds=soon\nros2 topic list\n```\n",
+        3,
+        ["seconds=soon", "number of seconds"],
+        WARNING,
     ),
-    "broken front matter": (b"---\ntitle: a\nsummary: b: c\n---\n\n# T\n", 3, ["front matter", "YAML"], True),
-    "front matter without end": (b"---\ntitle: a\n\n# T\n", 1, ["never ends", "---"], True),
-    "control characters": (b"# T\n\nbell \x07 rings\n", 3, ["U+0007", "column 6", "Delete"], True),
-    "not UTF-8": (b"# T\n\nna\xefve\n", 3, ["0xef", "UTF-8"], True),
-    "Windows line ends": (b"# T\r\n\r\n```python\r\nx = 1\r\n```\r\n", 1, ["CRLF", "LF"], False),
-    "byte-order mark": (b"\xef\xbb\xbf# T\n\ntext\n", 1, ["BOM"], False),
-    "no heading": (b"text only\n", 1, ["no heading", "# "], True),
-    "empty file": (b"", 1, ["no heading"], True),
-    "unknown exercise": (b"# T\n\n<!-- exercise: nothing -->\n", 3, ["no exercise `nothing`"], True),
-    "no time": (b"# T\n\n```bash seconds=soon\nros2 topic list\n```\n", 3, ["seconds=soon", "number of seconds"], True),
     "file name that is no module": (
         b'# T\n\n```python title="my-node.py"\nimport rclpy\nrclpy.spin(1)\n```\n',
         3,
         ["my-node", "letters, digits and underscores"],
-        True,
+        WARNING,
     ),
     "magic in a node": (
         b'# T\n\n```python title="a.py"\nimport rclpy\n%stop b\nrclpy.spin(1)\n```\n',
         3,
         ["notebook command", "another fence"],
-        True,
+        NOT_RUN,
     ),
-    "dead link": (b"# T\n\nsee [there](nowhere.md)\n", 3, ["nowhere.md", "no such file"], False),
-    "misspelt attribute": (b"# T\n\n```bash secnods=3\nros2 topic list\n```\n", 3, ["`secnods`", "Known are"], False),
-    "pipe in a shell fence": (b"# T\n\n```bash\nros2 topic list | grep x\n```\n", 4, ["not run", "pipes"], False),
-    "unknown ros2 verb": (b"# T\n\n```bash\nros2 topic lsit\n```\n", 4, ["ros2 topic lsit", "list"], False),
-    "fence in a list": (b"# T\n\n- item\n\n  ```python\n  x = 1\n  ```\n", 5, ["list", "left margin"], False),
+    "dead link": (b"# T\n\nsee [there](nowhere.md)\n", 3, ["nowhere.md", "no such file"], WARNING),
+    "misspelt attribute": (b"# T\n\n```bash secnods=3\nros2 topic list\n```\n", 3, ["`secnods`", "Known are"], WARNING),
+    "pipe in a shell fence": (b"# T\n\n```bash\nros2 topic list | grep x\n```\n", 4, ["not run", "pipes"], WARNING),
+    "unknown ros2 verb": (b"# T\n\n```bash\nros2 topic lsit\n```\n", 4, ["ros2 topic lsit", "list"], WARNING),
+    "missing module": (
+        b"# T\n\n```python\nfrom geometry_msgs.srv import GetPlan\n```\n",
+        4,
+        ["no such module", "Did you mean `from nav_msgs.srv import GetPlan`"],
+        NOT_RUN,
+    ),
+    "relative import": (
+        b'# T\n\n```python title="a.py"\nfrom .names import JOINTS\nprint(JOINTS)\n```\n',
+        4,
+        ["`.names`", "import names"],
+        NOT_RUN,
+    ),
+    "undefined name": (
+        b"# T\n\n```python\nimport rclpy\n\n\ndef main():\n    rclpy.init()\n    node = Talker()\n"
+        b"    rclpy.spin(node)\n```\n",
+        9,
+        ["`Talker`", "defined neither here nor above"],
+        NOT_RUN,
+    ),
+    "attribute that nothing sets": (
+        b"# T\n\n```python\nimport rclpy\nfrom rclpy.node import Node\n\n\nclass A(Node):\n"
+        b"    def beat(self):\n        self.count += 1\n        print(self.total)\n\n\n"
+        b"def main():\n    rclpy.init()\n    rclpy.spin(A('a'))\n```\n",
+        11,
+        ["`self.total`", "set nowhere"],
+        WARNING,
+    ),
 }
 
 
@@ -83,8 +115,9 @@ class Built:
 def faulty(tmp_path_factory: pytest.TempPathFactory) -> Built:
     """That course."""
     course = CourseFolder(tmp_path_factory.mktemp("faulty"))
-    said = course.write(good=GOOD, **{name_of(fault): FAULTS[fault][0] for fault in FAULTS}).spinbook("build")
-    assert said.returncode == 1
+    course.write(good=GOOD, **{name_of(fault): FAULTS[fault][0] for fault in FAULTS})
+    assert course.spinbook("build").returncode == 1
+    said = course.spinbook("lint")
     assert "Traceback" not in said.stdout + said.stderr
     return Built(course, said.stdout)
 
@@ -96,20 +129,39 @@ def name_of(fault: str) -> str:
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault_is_told_with_file_and_line_and_what_to_do(faulty: Built, fault: str) -> None:
-    _, line, words, stops = FAULTS[fault]
+    _, line, words, severity = FAULTS[fault]
     name = name_of(fault)
 
     # What is told of this chapter: from its name to the name of the next.
     told = [part for part in re.split(r"^(?=chapters/)", faulty.said, flags=re.MULTILINE) if f"/{name}.md:" in part]
 
-    assert any(part.startswith(f"chapters/{name}.md:{line}: {'error' if stops else 'warning'}:") for part in told)
+    assert any(part.startswith(f"chapters/{name}.md:{line}: {severity}:") for part in told)
     for word in words:
         assert word in "".join(told)
-    assert (faulty.course.root / f"build/notebooks/{name}.ipynb").exists() is not stops
+    assert (faulty.course.root / f"build/notebooks/{name}.ipynb").exists() is (severity != ERROR)
 
 
 def test_chapters_beside_a_faulty_one_are_built_all_the_same(faulty: Built) -> None:
     assert faulty.course.notebook("good").cells
+
+
+def test_what_cannot_run_stops_nothing_and_is_told_once_with_what_would_help(course: CourseFolder) -> None:
+    fence = "```python\nimport no_such_package\n```\n"
+
+    said = course.write(one=f"# A\n\n{fence}\n{fence}", two=f"# B\n\n{fence}").spinbook("build")
+
+    assert said.returncode == 0
+    assert "3 fences need no_such_package in 2 chapters." in said.stdout
+    assert said.stdout.count("no_such_package") == 1
+    shown = course.notebook("two").cells[0].source
+    assert "<small>Not run here: it needs `no_such_package`, not installed here.</small>" in shown
+
+
+def test_strict_makes_it_an_error_that_something_does_not_run(course: CourseFolder) -> None:
+    said = course.write(one="# A\n\n```python\nimport no_such_package\n```\n").spinbook("build", "--strict")
+
+    assert said.returncode == 1
+    assert "chapters/one.md:4: error: imports `no_such_package`" in said.stdout
 
 
 def test_a_warning_stops_nothing(course: CourseFolder) -> None:
@@ -120,11 +172,11 @@ def test_a_chapter_that_breaks_keeps_its_last_good_notebook(course: CourseFolder
     course.write(one=GOOD).spinbook("build")
     before = (course.root / "build/notebooks/one.ipynb").read_bytes()
 
-    said = course.write(one="# Good\n\n```python\nx = = 1\n```\n").spinbook("build")
+    said = course.write(one="# Good\n\n```python\nx = = 1\n```\n").spinbook("build", "--strict")
 
     assert said.returncode == 1
     assert (course.root / "build/notebooks/one.ipynb").read_bytes() == before
-    assert course.spinbook("build").stdout == said.stdout, "told again until it is mended"
+    assert course.spinbook("build", "--strict").stdout == said.stdout, "told again until it is fixed"
 
 
 def test_a_missing_chapter_is_told(course: CourseFolder) -> None:
@@ -145,7 +197,6 @@ def test_a_missing_chapter_is_told(course: CourseFolder) -> None:
         ('title = "x"\nchapters = ["a.md"]', ["[package]", "name"]),
         ('title = "x"\nchapters = ["a.md"]\n[package]\nname = "My-Robot"', ["My-Robot", "lower-case"]),
         ('title = "x"\nchapters = ["a.md", "a.md"]\n[package]\nname = "robot"', ["listed twice"]),
-        ('title = "x"\nchapters = ["a/x.md", "b/x.md"]\n[package]\nname = "robot"', ["x.ipynb", "another name"]),
         ('title = "x"\nchapters = ["../x.md"]\n[package]\nname = "robot"', ["outside the course"]),
         ('title = "x"\nchapters = ["a.md"]\n[package]\nname = "robot"\nnmae = "y"', ["unknown keys: nmae"]),
     ],

@@ -41,7 +41,6 @@ def kinds(chapter: Chapter) -> list[CellKind]:
         ("python", "[i for i in range(3) if i]\n", CellKind.SNIPPET),
         ("bash", "ros2 topic list\n", CellKind.SHELL),
         ("console", "$ ros2 topic list\n", CellKind.SHELL),
-        ("sh", "cd humanoid_ws\ncolcon build --symlink-install\nsource install/setup.bash\n", CellKind.SHELL),
         ("bash", "rqt_plot /a/b[0]\n", CellKind.SHELL),
         ("bash", "# a comment\nros2 node list\n", CellKind.SHELL),
         ("bash", 'ros2 topic pub --once /a std_msgs/msg/String "{data: a;b|c}"\n', CellKind.SHELL),
@@ -119,7 +118,7 @@ def test_a_class_without_a_main_is_spun_by_the_runtime(tmp_path: Path) -> None:
 
     (cell,) = read(tmp_path, f'# T\n\n```python title="silent.py"\n{code}```\n').nodes
 
-    assert cell.spin_class == "Silent"
+    assert cell.spin_classes == ("Silent",)
 
 
 def test_lines_of_cells_are_the_chapters_lines(tmp_path: Path) -> None:

@@ -172,7 +172,7 @@ def test_a_chapter_may_import_what_another_one_defines_and_nothing_else(tmp_path
 
     course.write(two=second.replace("Limits", "Limit"))
     said = course.spinbook("lint").stdout
-    assert "chapters/two.md:4: error: `robot_interfaces.msg` has no `Limit`.\n    Did you mean `Limits`?" in said
+    assert "chapters/two.md:4: not run: `robot_interfaces.msg` has no `Limit`.\n    Did you mean `Limits`?" in said
 
 
 def test_the_folder_interfaces_holds_definitions_too(tmp_path: Path) -> None:
@@ -277,3 +277,26 @@ def test_an_exercise_on_a_message_that_was_not_compiled_says_what_to_do(tmp_path
 
     assert "the package robot_interfaces is not installed here" in said.stderr
     assert "spinbook build" in said.stderr
+
+
+def test_what_asks_for_an_interface_that_the_course_lacks_is_shown_with_the_remedy(tmp_path: Path) -> None:
+    definition = '# One\n\n```text title="srv/Grip.srv"\nfloat64 force\n---\nbool held\n```\n'
+    there = "```bash\nros2 interface show robot_interfaces/srv/Grip\n```\n"
+    wrong = there.replace("Grip", "Gripp")
+    optional = there.replace("robot_interfaces/srv/Grip", "control_msgs/srv/QueryCalibrationState")
+    course = CourseFolder(tmp_path).write(one=f"{definition}\n{there}\n{wrong}\n{optional}")
+
+    said = course.spinbook("lint").stdout
+    assert "1 shell, 1 interface, 2 fences shown and not run" in said
+    assert "`robot_interfaces/srv` has no `Gripp`" in said
+    assert "Compile it, once: spinbook interfaces add control_msgs" in said
+
+
+def test_colcon_may_name_a_package_of_interfaces_that_a_cell_above_defines(tmp_path: Path) -> None:
+    definition = '# One\n\n```text title="srv/Grip.srv"\nfloat64 force\n---\nbool held\n```\n'
+    build = "```bash\ncolcon build --packages-select robot_interfaces\n```\n"
+    course = CourseFolder(tmp_path).write(one=f"{definition}\n{build}", two=f"# Two\n\n{build}")
+
+    said = course.spinbook("lint").stdout
+    assert "chapters/one.md: 1 prose, 1 shell, 1 interface, 0 fences shown and not run" in said
+    assert "chapters/two.md: 1 prose, 1 fences shown and not run" in said

@@ -8,8 +8,14 @@ from typing import Any
 from docutils import nodes
 from sphinx.transforms import SphinxTransform
 
-_LANGUAGES = {"shell": "bash", "node": "python", "interface": "text"}
-_KINDS = {"shell": "Terminal", "node": "Node", "snippet": "Notebook", "interface": "Interface"}
+_LANGUAGES = {"shell": "bash", "node": "python", "part": "python", "interface": "text"}
+_KINDS = {
+    "shell": "Terminal",
+    "node": "Node",
+    "snippet": "Notebook",
+    "part": "Part of a node",
+    "interface": "Interface",
+}
 
 
 class DescribeCells(SphinxTransform):
@@ -45,6 +51,7 @@ def _head(kind: str, about: dict[str, Any]) -> str:
     file = about.get("file", "")
     shown = file or about.get("interface", "")
     name = f'<span class="cell-file">{escape(shown)}</span>' if shown else ""
+    name += f'<span class="cell-kind">{escape(about["after"])}</span>' if about.get("after") else ""
     of = shown or f"this {_KINDS.get(kind, 'cell').lower()} block"
     source = (
         f'<a class="cell-source" href="{escape(about["source"])}" '
@@ -53,7 +60,7 @@ def _head(kind: str, about: dict[str, Any]) -> str:
         else ""
     )
     download = (
-        f'<a class="cell-download" href="../downloads/{escape(file)}" download aria-label="Download {escape(file)}">'
+        f'<a class="cell-download" href="../{escape(about["download"])}" download aria-label="Download {escape(file)}">'
         "Download</a>"
         if file
         else ""

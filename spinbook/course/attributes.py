@@ -1,0 +1,183 @@
+"""What book tools call things: kinds of admonitions, directives, and the attributes of tags."""
+
+from __future__ import annotations
+
+import re
+from html import unescape
+
+#: The four styles in which admonitions are shown, and what book tools call them.
+STYLES = ("note", "tip", "important", "warning", "caution")
+_STYLE = {
+    **{style: style for style in STYLES},
+    **dict.fromkeys(
+        ("info", "abstract", "summary", "quote", "cite", "example", "seealso", "todo", "secondary"), "note"
+    ),
+    **dict.fromkeys(("callout-note", "callout", "theorem", "topic", "admonition", "sidebar", "margin"), "note"),
+    **dict.fromkeys(("prerequisites", "learninggoals", "keytakeaways", "exercise", "solution", "hint-info"), "note"),
+    **dict.fromkeys(("hint", "success", "check", "done", "question", "help", "faq", "callout-tip", "highlight"), "tip"),
+    **dict.fromkeys(("danger", "error", "bug", "failure", "fail", "missing", "callout-caution", "caution"), "caution"),
+    **dict.fromkeys(("attention", "warn", "callout-warning", "new"), "warning"),
+    **dict.fromkeys(("callout-important",), "important"),
+}
+#: Directives of MyST that hold code.
+CODE = frozenset({"code-cell", "code-block", "code", "sourcecode", "highlight"})
+#: Directives that make lists of pages, and the like: nothing for a reader of one chapter.
+UNSEEN = frozenset({"toctree", "tableofcontents", "contents", "index", "bibliography", "only", "raw", "eval-rst"})
+#: Tags that hold blocks: MDX's, HTML's, Liquid's.
+_TABS = frozenset({"Tabs", "TabItem", "Tab", "tabs", "tab", "CodeGroup", "TabPanel"})
+_HOLDING = frozenset({"Admonition", "details", "Details", "hint", "highlight", "raw", "capture", "comment"})
+
+
+class _Paired:
+    """Every capitalised tag of MDX, and the few others that are known, come in pairs."""
+
+    def __contains__(self, name: str) -> bool:
+        return name[:1].isupper() or name in _TABS or name in _HOLDING or name in _STYLE
+
+
+PAIRED = _Paired()
+_PAIR = re.compile(r"""([A-Za-z_][\w-]*)\s*[=:]\s*(?:\{?\s*"([^"]*)"\s*\}?|\{?\s*'([^']*)'\s*\}?|([^\s,}>]+))""")
+_EXERCISE = re.compile(r"^<!--\s*exercise:\s*([\w-]+)\s*-->")
+_OPTION = re.compile(r"^:([\w-]+):\s*(.*)$")
+_SNIPPET = re.compile(r"\s*(?:#|//)?\s*-+8<-+\s+[\"'](.+?)[\"']\s*$")
+_PROPERTY = re.compile(r"\s+([\w-]+)=\{((?:[^{}]|\{[^{}]*\})*)\}")
+_PATH = re.compile(r"""(["'`])([^"'`]+)\1""")
+_QUOTED = re.compile(r"\"((?:[^\"\\]|\\.){12,})\"|'((?:[^'\\]|\\.){12,})'")
+
+
+def exercise(html: str) -> str:
+    """The exercise that a comment asks for; "" for any other piece of HTML."""
+    match = _EXERCISE.match(html.strip())
+    return match[1] if match else ""
+
+
+def snippet(line: str) -> str:
+    """The file that a line `--8<-- "file"` includes; "" for any other line."""
+    match = _SNIPPET.match(line)
+    return match[1] if match else ""
+
+
+def options(lines: list[str]) -> tuple[dict[str, str], int]:
+    """A directive's options, and how many lines they take: `:key: value` lines, or YAML between two lines of `---`."""
+    found: dict[str, str] = {}
+    if lines and lines[0].strip() == "---" and "---" in (rest := [line.strip() for line in lines[1:]]):
+        end = rest.index("---")
+        for line in lines[1 : end + 1]:
+            key, _, value = line.partition(":")
+            found[key.strip()] = value.strip()
+        return found, end + 2
+    count = 0
+    while count < len(lines) and (match := _OPTION.match(lines[count].strip())):
+        found[match[1]] = match[2].strip()
+        count += 1
+    return found, count
+
+
+def pairs(text: str) -> dict[str, str]:
+    """The attributes of a tag: `label="Python"`, `title={"Note"}`, `style=info`."""
+    return {key: double or single or plain for key, double, single, plain in _PAIR.findall(text)}
+
+
+def image(path: str, given: dict[str, str]) -> str:
+    """An image as HTML if it has a width, else as Markdown."""
+    alt = given.get("alt") or given.get("caption") or ""
+    if "width" in given:
+        width = given["width"].removesuffix("px")
+        return f'<img src="{path}" alt="{alt}" width="{width}">'
+    return f"![{alt}](<{path}>)" if " " in path else f"![{alt}]({path})"
+
+
+def container_name(info: str) -> tuple[str, str]:
+    """(name, rest) behind `:::`, in the forms of Docusaurus, VitePress, MyST and Quarto."""
+    info = info.strip().rstrip(":").strip()
+    if info.startswith("{"):
+        inside, _, rest = info[1:].partition("}")
+        words = inside.strip().split(" ")
+        title = pairs(inside).get("title", "")
+        return words[0].lstrip(".").lower(), (title or rest).strip()
+    name, bracket, rest = info.partition("[")
+    if bracket and " " not in name.strip():
+        return name.strip().lower(), rest.rpartition("]")[0].strip()
+    name, _, rest = info.partition(" ")
+    name = name.partition("{")[0]
+    return name.lower(), rest.partition("{")[0].strip().strip("\"'") if not rest.startswith("{") else ""
+
+
+def container(name: str, argument: str, colon: bool = False) -> tuple[str | None, str, str]:
+    """(kind, style, title) of what a name such as `warning`, `tab-item` or `details` holds; kind None: unknown."""
+    name = name.lower()
+    if name in {"tab-item", "tab"}:
+        return "tab", "", argument
+    if name in {"dropdown", "details", "collapse", "toggle"}:
+        return "details", "note", argument or "Details"
+    if name in {"tab-set", "tabs", "code-group", "grid", "grid-item", "grid-item-card", "card", "div", "column"}:
+        return "group", "", ""
+    if name in _STYLE:
+        own_title = argument if colon or name in {"admonition", "topic", "exercise", "sidebar"} else ""
+        return "admonition", _STYLE[name], own_title
+    return None, "", ""
+
+
+def admonition(info: str) -> tuple[str, str]:
+    """(style, title) behind `!!!`: `note "Title"`, `warning inline end`."""
+    words, quote, title = info.strip().partition('"')
+    name = words.strip().split(" ")[0].lower()
+    style = _STYLE.get(name, "note")
+    if quote:
+        return style, title.rpartition('"')[0]
+    return style, "" if name in STYLES else name.capitalize()
+
+
+def kramdown_style(text: str) -> str:
+    """The style that kramdown's `{: .warning }` names; "" where it names none."""
+    names = [word[1:].removesuffix("-title") for word in text.split() if word.startswith(".")]
+    return next((_STYLE[name] for name in names if name in _STYLE), "")
+
+
+def paired(name: str, given: dict[str, str], words: str) -> tuple[str, str, str]:
+    """(kind, style, title) of what an opening tag of this name holds."""
+    if name in {"TabItem", "Tab", "tab", "TabPanel"}:
+        positional = words.strip().strip("\"'") if "=" not in words else ""
+        # jekyll-tabs names the group first: `tab group title`.
+        positional = positional.partition(" ")[2] or positional
+        return "tab", "", given.get("label") or given.get("title") or given.get("value") or positional.strip("\"'")
+    if name.lower() == "details":
+        return "details", "note", given.get("title") or given.get("summary") or ""
+    if name == "Admonition":
+        return "admonition", _STYLE.get(given.get("type", "note"), "note"), given.get("title", "")
+    if name == "hint":
+        return "admonition", _STYLE.get(given.get("style", "info"), "note"), ""
+    if name.lower() in _STYLE and name not in {"highlight"}:
+        title = given.get("title") or ("" if name.lower() in STYLES else in_words(name))
+        return "admonition", _STYLE[name.lower()], title
+    return ("dropped", "", "") if name == "comment" else ("group", "", "")
+
+
+def in_words(name: str) -> str:
+    """`LearningGoals` as "Learning goals"."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).capitalize()
+
+
+def words_of(name: str, properties: str) -> list[str]:
+    """The sentences among a component's properties, as a quotation; nothing where it has none."""
+    found = [(double or single).replace('\\"', '"') for double, single in _QUOTED.findall(properties)]
+    title = pairs(properties).get("title", "")
+    found = [text for text in found if " " in text and text != title]
+    return [f"> **{title or in_words(name)}**", ">", *(f"> - {text}" for text in found), ""] if found else []
+
+
+def as_html(tag: str) -> str:
+    """An MDX tag as HTML: properties that are a path keep it, those that are code are left out."""
+    return _PROPERTY.sub(lambda match: _property(match[1], match[2]), tag).replace(" className=", " class=")
+
+
+def _property(name: str, code: str) -> str:
+    path = _PATH.search(code)
+    if name in {"src", "href"} and path:
+        return f' {name}="{path[2]}"'
+    return f' {name}="{code.strip()}"' if code.strip().isdigit() else ""
+
+
+def plain(html: str) -> str:
+    """The words of a piece of HTML."""
+    return unescape(re.sub(r"<[^>]*>", "", html)).strip()

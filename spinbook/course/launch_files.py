@@ -1,0 +1,83 @@
+"""What a launch file that a chapter shows starts: its nodes, as `ros2 run` would start each of them."""
+
+from __future__ import annotations
+
+import ast
+import shlex
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from spinbook.chapter.terminal import Command, CommandKind
+
+
+@dataclass(frozen=True)
+class LaunchedNode:
+    """One `Node(package=…, executable=…)` of a launch file; `words` are what its process is given."""
+
+    package: str
+    executable: str
+    words: tuple[str, ...]
+
+    def command(self, line: int) -> Command:
+        """`ros2 run` with this node's name, parameters and remappings."""
+        words = ("ros2", "run", self.package, self.executable, *self.words)
+        return Command(CommandKind.ROS2, shlex.join(words), words, line)
+
+
+def launched_nodes(code: str) -> list[LaunchedNode]:
+    """The nodes that a launch file starts, in order; none if one of them is not said in plain words."""
+    nodes = [_node(call) for call in _calls(code)]
+    return [node for node in nodes if node is not None] if all(nodes) else []
+
+
+def _calls(code: str) -> Iterator[ast.Call]:
+    for item in ast.walk(ast.parse(code)):
+        if isinstance(item, ast.Call) and ast.unparse(item.func).rpartition(".")[2] in {"Node", "LifecycleNode"}:
+            yield item
+
+
+def _node(call: ast.Call) -> LaunchedNode | None:
+    given = {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg}
+    package, executable = (_text(given.get(name)) for name in ("package", "executable"))
+    if not package or not executable:
+        return None
+    words = [*_remapped("__node", _text(given.get("name"))), *_remapped("__ns", _namespace(given.get("namespace")))]
+    words += [word for name, to in _pairs(given.get("remappings")) for word in _remapped(name, to)]
+    words += [word for name, value in _parameters(given.get("parameters")) for word in ("-p", f"{name}:={value}")]
+    arguments = [_text(item) for item in _items(given.get("arguments"))]
+    return LaunchedNode(package, executable, (*filter(None, arguments), *(("--ros-args", *words) if words else ())))
+
+
+def _text(value: ast.expr | None) -> str:
+    return str(value.value) if isinstance(value, ast.Constant) else ""
+
+
+def _namespace(value: ast.expr | None) -> str:
+    text = _text(value)
+    return text if not text or text.startswith("/") else f"/{text}"
+
+
+def _remapped(name: str, to: str) -> list[str]:
+    return ["-r", f"{name}:={to}"] if to else []
+
+
+def _items(value: ast.expr | None) -> list[ast.expr]:
+    return value.elts if isinstance(value, ast.List | ast.Tuple) else []
+
+
+def _pairs(value: ast.expr | None) -> Iterator[tuple[str, str]]:
+    for item in _items(value):
+        both = [_text(part) for part in _items(item)]
+        if len(both) == 2 and all(both):
+            yield both[0], both[1]
+
+
+def _parameters(value: ast.expr | None) -> Iterator[tuple[str, str]]:
+    for item in _items(value):
+        if isinstance(item, ast.Dict):
+            for key, of in zip(item.keys, item.values, strict=True):
+                try:
+                    found = ast.literal_eval(of)
+                except ValueError:
+                    continue
+                yield _text(key), str(found).lower() if isinstance(found, bool) else str(found)

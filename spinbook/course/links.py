@@ -1,0 +1,192 @@
+"""Finds and replaces the targets of links and images in Markdown, where markdown-it finds them: never in code.
+
+markdown-it parses; its rules for links, images and HTML are watched for the place of each target in the text.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from html import escape, unescape
+from html.parser import HTMLParser
+from typing import Any
+
+from markdown_it import MarkdownIt
+from markdown_it.rules_inline import StateInline
+
+#: (target, whether it is an image) -> the new target, or None to leave it.
+Target = Callable[[str, bool], str | None]
+_ATTRIBUTES = {"img": "src", "a": "href", "source": "src", "video": "src"}
+
+
+@dataclass(frozen=True)
+class _Found:
+    """A target in an inline token's content: from `start` to `end`."""
+
+    start: int
+    end: int
+    target: str
+    is_image: bool
+    is_html: bool = False
+
+
+@functools.cache
+def _parser() -> MarkdownIt:
+    md = MarkdownIt("commonmark", {"html": True}).enable("table")
+    md.core.ruler.enableOnly(["normalize", "block"])
+    for name, is_image in (("link", False), ("image", True)):
+        md.inline.ruler.at(name, _watched(_rule(md, name), is_image))
+    md.inline.ruler.at("html_inline", _watched_html(_rule(md, "html_inline")))
+    return md
+
+
+def _rule(md: MarkdownIt, name: str) -> Any:
+    return next(rule.fn for rule in md.inline.ruler.__rules__ if rule.name == name)
+
+
+def _watched(rule: Any, is_image: bool) -> Any:
+    def watch(state: StateInline, silent: bool) -> bool:
+        start = state.pos
+        if not rule(state, silent):
+            return False
+        if not silent and state.src == state.env.get("watched"):
+            if place := _destination(state, start + is_image, is_image):
+                state.env["found"].append(place)
+            _attribute_list(state)
+        return True
+
+    return watch
+
+
+def _destination(state: StateInline, label: int, is_image: bool) -> _Found | None:
+    """The place of `target` in `[text](target "title")`; None for a reference, whose target is elsewhere."""
+    # Links in links are not allowed, but images are: the end of the label must be looked for anew.
+    pos = state.pos
+    label_end = state.md.helpers.parseLinkLabel(state, label, not is_image)
+    state.pos = pos
+    at = label_end + 1
+    if label_end < 0 or state.src[at : at + 1] != "(":
+        return None
+    at += 1
+    while state.src[at : at + 1] in {" ", "\n"}:
+        at += 1
+    found = state.md.helpers.parseLinkDestination(state.src, at, state.posMax)
+    return _Found(at, found.pos, found.str, is_image) if found.ok and found.str else None
+
+
+def _attribute_list(state: StateInline) -> None:
+    """Kramdown's and MkDocs' `{:style="…"}` behind a link or an image says how it looks: it is left out."""
+    rest = state.src[state.pos :]
+    if rest.startswith("{") and "}" in rest and (rest[1] in ":.#" or "=" in rest.partition("}")[0]):
+        end = state.pos + rest.index("}") + 1
+        state.env["found"].append(_Found(state.pos, end, "", False))
+
+
+def _watched_html(rule: Any) -> Any:
+    def watch(state: StateInline, silent: bool) -> bool:
+        start = state.pos
+        if not rule(state, silent):
+            return False
+        if not silent and state.src == state.env.get("watched"):
+            state.env["found"].append(_Found(start, state.pos, state.src[start : state.pos], False, is_html=True))
+        return True
+
+    return watch
+
+
+def linked(text: str, target: Target) -> str:
+    """`text` with the targets of its links and images replaced. No line is added or lost."""
+    if not any(mark in text for mark in ("](", "]:", "<")):
+        return text
+    md = _parser()
+    env: dict[str, Any] = {}
+    lines = text.split("\n")
+    at = [0] * len(lines)
+    for token in md.parse(text, env):
+        first = (token.map or (0, 0))[0]
+        if token.type == "inline":
+            env |= {"watched": token.content, "found": []}
+            md.inline.parse(token.content, md, env, [])
+            _replace(lines, at, first, token.content, env["found"], target)
+        elif token.type == "html_block":
+            for number, line in enumerate(token.content.rstrip("\n").split("\n"), start=first):
+                if line and (place := lines[number].find(line)) >= 0:
+                    lines[number] = lines[number][:place] + in_html(line, target) + lines[number][place + len(line) :]
+    _references(lines, env.get("references", {}), target)
+    return "\n".join(lines)
+
+
+def _replace(lines: list[str], at: list[int], first: int, content: str, found: list[_Found], target: Target) -> None:
+    """Put new targets into the lines of one inline token. `at` is how far each line has been read."""
+    places = list(_places(lines, at, first, content))
+    for item in sorted(found, key=lambda item: -item.start):
+        new = _new(content, item, target)
+        row = content.count("\n", 0, item.start)
+        if new is None or "\n" in content[item.start : item.end] or row >= len(places) or places[row] is None:
+            continue
+        number, place = places[row] or (0, 0)
+        column = place + item.start - (content.rfind("\n", 0, item.start) + 1)
+        line = lines[number]
+        lines[number] = line[:column] + new + line[column + item.end - item.start :]
+        at[number] += len(new) - (item.end - item.start)
+
+
+def _places(lines: list[str], at: list[int], first: int, content: str) -> Iterator[tuple[int, int] | None]:
+    """Where each line of an inline token's content is: (number of the line, column)."""
+    for row, part in enumerate(content.split("\n")):
+        number = first + row
+        place = lines[number].find(part, at[number]) if number < len(lines) else -1
+        if place >= 0:
+            at[number] = place + len(part)
+        yield (number, place) if place >= 0 else None
+
+
+def _new(content: str, item: _Found, target: Target) -> str | None:
+    if item.is_html:
+        changed = in_html(item.target, target)
+        return changed if changed != item.target else None
+    if not item.target:
+        return ""
+    new = target(item.target, item.is_image)
+    if new is None:
+        return None
+    return f"<{new}>" if " " in new else new
+
+
+def _references(lines: list[str], references: dict[str, Any], target: Target) -> None:
+    """Put new targets into definitions such as `[label]: target "title"`."""
+    for reference in references.values():
+        number = reference["map"][0]
+        before, mark, behind = lines[number].partition("]:")
+        new = target(reference["href"], False)
+        if mark and new is not None:
+            words = behind.strip().split(" ", 1)
+            title = f" {words[1]}" if len(words) > 1 else ""
+            lines[number] = f"{before}{mark} {new}{title}"
+
+
+def in_html(html: str, target: Target) -> str:
+    """A piece of HTML with the targets of its images and links replaced."""
+    tags = _Tags()
+    tags.feed(html)
+    for tag, raw, value in tags.found:
+        new = target(value, tag != "a")
+        if new is not None:
+            quoted = next((q for q in (f'"{value}"', f"'{value}'", f'"{escape(value)}"') if q in raw), None)
+            changed = raw.replace(quoted, f'"{new}"', 1) if quoted else raw
+            html = html.replace(raw, changed, 1)
+    return html
+
+
+class _Tags(HTMLParser):
+    """Finds the tags that have a target: (tag, as it is written, target)."""
+
+    def __init__(self) -> None:
+        super().__init__(convert_charrefs=False)
+        self.found: list[tuple[str, str, str]] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        value = dict(attrs).get(_ATTRIBUTES.get(tag, ""))
+        if value:
+            self.found.append((tag, self.get_starttag_text() or "", unescape(value)))

@@ -1,0 +1,90 @@
+"""What can be told of a Node class from its code: whether it can be made, and what of `self` nothing sets."""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import functools
+import importlib.util
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+
+def last_name(expression: ast.expr) -> str:
+    """The last part of a dotted name: `Node` of `rclpy.node.Node`."""
+    if isinstance(expression, ast.Attribute):
+        return expression.attr
+    return expression.id if isinstance(expression, ast.Name) else ""
+
+
+def can_stand_alone(name: str, classes: Mapping[str, ast.ClassDef], everything: Sequence[ast.AST]) -> bool:
+    """Whether a Node class can be made without a main: nothing else makes it, and it needs no arguments."""
+    own = classes[name]
+    inside = set(ast.walk(own))
+    used = any(isinstance(i, ast.Name) and i.id == name and i not in inside for i in everything)
+    init = next((i for i in own.body if isinstance(i, ast.FunctionDef) and i.name == "__init__"), None)
+    if used or init is None:
+        return not used
+    given = len(init.args.args) - 1 - len(init.args.defaults)
+    required = [a for a, d in zip(init.args.kwonlyargs, init.args.kw_defaults, strict=True) if d is None]
+    return given <= 0 and not required
+
+
+def attributes_lacking(
+    everything: Sequence[ast.AST], names: list[str], classes: Mapping[str, ast.ClassDef]
+) -> dict[str, int]:
+    """The attributes of `self` that these classes read and nothing in the code or in rclpy's Node defines."""
+    known = node_attributes() if names else frozenset()
+    if not known:
+        return {}
+    stored = {i.attr for i in everything if isinstance(i, ast.Attribute) and not isinstance(i.ctx, ast.Load)}
+    if any(isinstance(i, ast.Call) and last_name(i.func) == "setattr" for i in everything):
+        return {}
+    found: dict[str, int] = {}
+    for name in names:
+        if any(last_name(base) not in {"Node", "LifecycleNode", "object", "ABC"} for base in classes[name].bases):
+            continue
+        bound = {
+            i.name for i in classes[name].body if isinstance(i, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
+        }
+        bound |= {
+            t.id
+            for i in ast.walk(classes[name])
+            if isinstance(i, ast.Assign | ast.AnnAssign)
+            for t in (i.targets if isinstance(i, ast.Assign) else [i.target])
+            if isinstance(t, ast.Name)
+        }
+        for item in ast.walk(classes[name]):
+            reads = isinstance(item, ast.Attribute) and isinstance(item.value, ast.Name) and item.value.id == "self"
+            if reads and isinstance(item, ast.Attribute) and item.attr not in known | stored | bound:
+                found.setdefault(item.attr, item.lineno)
+    return found
+
+
+def used_by_init(lacking: Mapping[str, int], names: list[str], classes: Mapping[str, ast.ClassDef]) -> str:
+    """The first of the lacking attributes that a class uses in its own `__init__`; "" if none."""
+    for name in names:
+        for item in classes[name].body:
+            if isinstance(item, ast.FunctionDef) and item.name == "__init__":
+                used = {i.attr for i in ast.walk(item) if isinstance(i, ast.Attribute)}
+                return next((attribute for attribute in lacking if attribute in used), "")
+    return ""
+
+
+@functools.cache
+def node_attributes() -> frozenset[str]:
+    """What every rclpy Node has, read from rclpy's source; empty where there is no rclpy."""
+    try:
+        spec = importlib.util.find_spec("rclpy")
+    except (ImportError, ValueError):
+        return frozenset()
+    names: set[str] = set(dir(object))
+    for folder in (spec.submodule_search_locations or []) if spec else []:
+        for file in ("node.py", "lifecycle/node.py", "lifecycle/managed_entity.py"):
+            with contextlib.suppress(OSError, SyntaxError):
+                for item in ast.walk(ast.parse(Path(folder, file).read_text(encoding="utf-8"))):
+                    if isinstance(item, ast.FunctionDef | ast.AsyncFunctionDef):
+                        names.add(item.name)
+                    elif isinstance(item, ast.Attribute) and not isinstance(item.ctx, ast.Load):
+                        names.add(item.attr)
+    return frozenset(names) if len(names) > 60 else frozenset()

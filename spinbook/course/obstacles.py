@@ -1,0 +1,94 @@
+"""What stands between a course and running cells, counted: one cause is told once, the one that unlocks most first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from spinbook.problem import Problem, Severity
+
+#: What a count of each kind is called: group -> words. Any other group is a package.
+_WORDS = {
+    "a real shell": (
+        "shell fence needs a real shell (a pipe, or a command that is none of ROS's)",
+        "shell fences need a real shell",
+    ),
+    "a file name": ("node has no file name", "nodes have no file name"),
+    "files that are not there": ("link leads to a file that is not there", "links lead to files that are not there"),
+    "relative imports": ("node imports relative to a package", "nodes import relative to a package"),
+    "programs that no fence shows": (
+        "command starts a program that no fence shows",
+        "commands start programs that no fence shows",
+    ),
+    "packages that no fence shows": ("command builds what no cell makes", "commands build what no cell makes"),
+    "names that nothing makes": (
+        "command asks for a name that nothing makes",
+        "commands ask for names that nothing makes",
+    ),
+    "launch files": ("command launches a file that no fence shows", "commands launch files that no fence shows"),
+    "files of parameters": ("command reads a file of parameters", "commands read files of parameters"),
+    "C++ packages": ("command makes a package for C++", "commands make packages for C++"),
+}
+
+
+@dataclass(frozen=True)
+class Obstacle:
+    """One cause. `problems` are its places; `blocks` says that something is not run because of it."""
+
+    group: str
+    problems: tuple[Problem, ...]
+
+    @property
+    def blocks(self) -> bool:
+        """Whether something is not run because of it."""
+        return any(problem.severity is Severity.NOT_RUN for problem in self.problems)
+
+    @property
+    def chapters(self) -> tuple[Path, ...]:
+        """The chapters in which it is."""
+        return tuple(dict.fromkeys(problem.file for problem in self.problems))
+
+    @property
+    def unlocks(self) -> int:
+        """At how many places nothing else stands in the way."""
+        return len({(problem.file, problem.line) for problem in self.problems if problem.alone})
+
+    @property
+    def in_words(self) -> str:
+        """One line: how often, and what would help."""
+        places = {(problem.file, problem.line) for problem in self.problems}
+        one, many = _WORDS.get(self.group, (f"fence needs {self.group}", f"fences need {self.group}"))
+        count = len(places)
+        only = f", {self.unlocks} of them nothing else," if self.unlocks < count else ""
+        where = f" in {len(self.chapters)} chapters" if len(self.chapters) > 1 else f" in {self.chapters[0]}"
+        return f"{count:4} {one if count == 1 else many}{only}{where}. {self.problems[0].mend}"
+
+
+def obstacles(problems: Iterable[Problem]) -> list[Obstacle]:
+    """The causes that several places may share: those first that would unlock most, those last that block nothing."""
+    groups: dict[str, list[Problem]] = {}
+    for problem in problems:
+        if problem.group:
+            groups.setdefault(problem.group, []).append(problem)
+    found = [Obstacle(group, tuple(of)) for group, of in groups.items()]
+    return sorted(found, key=lambda item: (not item.blocks, -item.unlocks, -len(item.problems), item.group))
+
+
+def by_itself(problems: Iterable[Problem]) -> Iterator[Problem]:
+    """The problems that are told one by one: each has its own cause."""
+    return (problem for problem in problems if not problem.group)
+
+
+def ranked(problems: Sequence[Problem]) -> list[str]:
+    """The lines of a report of all causes; none where there are none."""
+    found = obstacles(problems)
+    blocking = [item.in_words for item in found if item.blocks]
+    others = [item.in_words for item in found if not item.blocks]
+    lines = ["Shown and not run, the cause that unlocks most first:", *blocking] if blocking else []
+    return [*lines, *(["To look at:", *others] if others else [])]
+
+
+def strict(problem: Problem) -> Problem:
+    """The problem as `--strict` sees it: what is not run is an error."""
+    return replace(problem, severity=Severity.ERROR) if problem.severity is Severity.NOT_RUN else problem

@@ -1,0 +1,1 @@
+"""`spinbook import`: an existing book becomes a course."""

@@ -1,0 +1,236 @@
+"""Reads what an existing book says of itself: its title, its chapters, and their order.
+
+Known are mkdocs.yml, _toc.yml (Jupyter Book), myst.yml, _quarto.yml, sidebars.js (Docusaurus), SUMMARY.md (mdBook,
+GitBook) and _sidebar.md (docsify). A folder without any of them is read file by file.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+from markdown_it import MarkdownIt
+
+from spinbook.course.course import FILE
+from spinbook.importing.javascript import objects_in
+from spinbook.importing.pages import Pages
+from spinbook.problem import Problem, SpinbookError
+
+
+@dataclass(frozen=True)
+class Book:
+    """An existing book. `root` is the folder that becomes the course; `chapters` are relative to it, in order.
+
+    `contents` is the file that says the order, None where there is none. `left_out` are pages that it lists and that
+    are no Markdown, or do not exist.
+    """
+
+    root: Path
+    title: str
+    chapters: tuple[Path, ...]
+    contents: Path | None
+    left_out: tuple[str, ...] = ()
+    repository: str = ""
+
+
+class _Yaml(yaml.SafeLoader):
+    """YAML with the tags of other tools, such as `!ENV` and `!!python/name`, read as nothing."""
+
+
+_Yaml.add_multi_constructor("", lambda loader, suffix, node: None)
+
+
+def read_book(place: Path) -> Book:
+    """Read the book at `place`: a folder, or the file that says its order. Raises SpinbookError."""
+    place = place.resolve()
+    if not place.exists():
+        raise SpinbookError(Problem(place, None, "there is no such file or folder.", "Name a book's folder."))
+    contents = place if place.is_file() else _contents_in(place)
+    root = _root(place, contents)
+    pages = Pages(root)
+    if contents is None:
+        return _book(root, pages, None, "", root, list(pages.in_folder(root)))
+    reader = next((read for name, read in _READERS.items() if contents.name.startswith(name)), None)
+    if reader is None:
+        found = "this is no file that says a book's order."
+        raise SpinbookError(Problem(contents, None, found, f"Known are: {', '.join(_READERS)}."))
+    title, folder, listed = reader(contents, pages)
+    return _book(root, pages, contents, title, folder, listed)
+
+
+def _contents_in(folder: Path) -> Path | None:
+    """The file that says the order, in a folder or one below."""
+    for below in ("", "docs", "website", "book", "doc", "source", "src", "content"):
+        for name in _READERS:
+            found = sorted(path for path in (folder / below).glob(f"{name}*") if path.is_file())
+            if found:
+                return found[0]
+    return None
+
+
+def _root(place: Path, contents: Path | None) -> Path:
+    """The folder that holds everything: the one that was named, or that of the repository."""
+    if place.is_dir():
+        return place
+    assert contents is not None
+    folder = contents.parent
+    above = [folder, *folder.parents][:4]
+    return next((path for path in above if (path / ".git").exists()), folder)
+
+
+def _book(root: Path, pages: Pages, contents: Path | None, title: str, folder: Path, listed: list[str | Path]) -> Book:
+    chapters: dict[Path, None] = {}
+    left_out: list[str] = []
+    for item in listed:
+        found = item if isinstance(item, Path) else pages.find(folder, item)
+        if found is None:
+            left_out.append(str(item))
+        else:
+            chapters[found.relative_to(root)] = None
+    if not chapters:
+        found_none = "there are no chapters (.md, .mdx) here."
+        raise SpinbookError(Problem(root, None, found_none, f"Write a course.toml by hand: see docs ({FILE})."))
+    title = title or _title_of(root) or pages.title_of(root / next(iter(chapters)))
+    return Book(root, title, tuple(chapters), contents, tuple(left_out), _repository(root))
+
+
+def _mkdocs(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
+    data = _load(file)
+    folder = file.parent / str(data.get("docs_dir") or "docs")
+    nav = data.get("nav")
+    listed: list[str | Path] = list(_strings(nav)) if nav else list(pages.in_folder(folder))
+    return str(data.get("site_name") or ""), folder, listed
+
+
+def _jupyter_book(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
+    data = _load(file)
+    config = file.with_name("_config.yml")
+    title = str(_load(config).get("title") or "") if config.is_file() else ""
+    return title, file.parent, list(_under(data, ("root", "file", "glob")))
+
+
+def _myst(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
+    project = _load(file).get("project") or {}
+    listed = list(_under(project.get("toc"), ("file", "pattern")))
+    if not listed and file.with_name("_toc.yml").is_file():
+        return str(project.get("title") or ""), *_jupyter_book(file.with_name("_toc.yml"), pages)[1:]
+    return str(project.get("title") or ""), file.parent, [*listed] if listed else list(pages.in_folder(file.parent))
+
+
+def _quarto(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
+    data = _load(file)
+    book = data.get("book") or data.get("website") or {}
+    listed = [*_strings(book.get("chapters")), *_strings(book.get("sidebar")), *_strings(book.get("appendices"))]
+    known = [name for name in listed if name.endswith((".md", ".qmd", ".mdx"))]
+    return str(book.get("title") or ""), file.parent, [*known] if known else list(pages.in_folder(file.parent))
+
+
+def _docusaurus(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
+    folder = next((path for path in (file.parent / "docs", file.parent) if path.is_dir()), file.parent)
+    listed: list[str | Path] = []
+    for sidebars in objects_in(file.read_text(encoding="utf-8")):
+        for sidebar in sidebars.values() if isinstance(sidebars, dict) else ():
+            listed += _items(sidebar, folder, pages)
+    return "", folder, listed or list(pages.in_folder(folder))
+
+
+def _items(item: Any, folder: Path, pages: Pages) -> Iterator[str | Path]:
+    """The pages of a Docusaurus sidebar."""
+    if isinstance(item, str):
+        yield item
+    elif isinstance(item, list):
+        for inner in item:
+            yield from _items(inner, folder, pages)
+    elif isinstance(item, dict) and item.get("type") == "autogenerated":
+        yield from pages.in_folder(folder / str(item.get("dirName", ".")))
+    elif isinstance(item, dict):
+        if item.get("type") in {"doc", "ref"} and isinstance(item.get("id"), str):
+            yield item["id"]
+        if isinstance(item.get("link"), dict) and item["link"].get("type") == "doc":
+            yield str(item["link"].get("id", ""))
+        if "items" in item:
+            yield from _items(item["items"], folder, pages)
+        elif "type" not in item:
+            # The short form: { "A category": ["one", "two"] }.
+            yield from _items(list(item.values()), folder, pages)
+
+
+def _list_of_links(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
+    tokens = MarkdownIt("commonmark").parse(file.read_text(encoding="utf-8"))
+    targets = [str(child.attrs.get("href", "")) for token in tokens for child in token.children or []]
+    listed = [target.partition("#")[0] for target in targets if target and "://" not in target]
+    return "", file.parent, [target for target in listed if target]
+
+
+_Reader = Callable[[Path, Pages], tuple[str, Path, list[str | Path]]]
+#: How the name of a file that says a book's order begins -> what reads it.
+_READERS: dict[str, _Reader] = {
+    "mkdocs.y": _mkdocs,
+    "_toc.yml": _jupyter_book,
+    "myst.yml": _myst,
+    "_quarto.yml": _quarto,
+    "sidebars.": _docusaurus,
+    "SUMMARY.md": _list_of_links,
+    "_sidebar.md": _list_of_links,
+}
+
+
+def _load(file: Path) -> dict[str, Any]:
+    try:
+        data = yaml.load(file.read_text(encoding="utf-8"), Loader=_Yaml)
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        words = str(getattr(error, "problem", None) or error)
+        raise SpinbookError(Problem(file, None, f"it can't be read: {words}.", "Save it as YAML.")) from None
+    # The first form of _toc.yml is a list.
+    return data if isinstance(data, dict) else {"chapters": data or []}
+
+
+def _strings(value: Any) -> Iterator[str]:
+    """Every page in nested lists and `Title: page` pairs."""
+    if isinstance(value, str):
+        if "://" not in value:
+            yield value
+    elif isinstance(value, Iterable):
+        for item in value.values() if isinstance(value, dict) else value:
+            yield from _strings(item)
+
+
+def _under(value: Any, keys: tuple[str, ...]) -> Iterator[str]:
+    """The strings under these keys, however deep, in order."""
+    if isinstance(value, dict):
+        for key, item in value.items():
+            if key in keys and isinstance(item, str):
+                yield item
+            else:
+                yield from _under(item, keys)
+    elif isinstance(value, list):
+        for item in value:
+            yield from _under(item, keys)
+
+
+def _title_of(root: Path) -> str:
+    """What a book's settings call it."""
+    for name in ("_config.yml", "docs/_config.yml"):
+        if (root / name).is_file() and (title := _load(root / name).get("title")):
+            return str(title)
+    for name in ("docusaurus.config.js", "docusaurus.config.ts"):
+        if (root / name).is_file():
+            match = re.search(r"""\btitle:\s*(["'`])(.+?)\1""", (root / name).read_text(encoding="utf-8"))
+            if match:
+                return match[2]
+    return ""
+
+
+def _repository(root: Path) -> str:
+    """The address of the repository on GitHub, as its clone remembers it."""
+    for folder in (root, *root.parents):
+        config = folder / ".git" / "config"
+        if config.is_file():
+            match = re.search(r"github\.com[:/]([\w.-]+/[\w.-]+?)(?:\.git)?\s*$", config.read_text(), re.MULTILINE)
+            # A course below the repository's root has other paths than the repository.
+            return f"https://github.com/{match[1]}" if match and folder == root else ""
+    return ""

@@ -1,0 +1,106 @@
+"""`spinbook import`: from an existing book to a course."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable
+from pathlib import Path
+
+import click
+
+from spinbook.build.notebooks import Built, build_notebooks
+from spinbook.build.reading import read_all
+from spinbook.chapter.chapter import CellKind
+from spinbook.course.course import FILE, Course, read_course
+from spinbook.course.obstacles import ranked
+from spinbook.importing.book import Book, read_book
+from spinbook.importing.report import report_page
+from spinbook.problem import Problem, SpinbookError
+from spinbook.written import write_if_changed
+
+_SHOWN = 6
+
+
+@click.command(name="import", context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("book", type=click.Path(path_type=Path), default=".")
+@click.option("--title", help="What the course is called.  [default: as the book is]")
+@click.option("--package", help="The ROS 2 package that the nodes make.  [default: from the title]")
+def import_book(book: Path, title: str | None, package: str | None) -> None:
+    """Make a course of an existing book, without touching its chapters.
+
+    \b
+      spinbook import my-book                  a folder: its table of contents is found
+      spinbook import my-book/mkdocs.yml       MkDocs
+      spinbook import my-book/docs/_toc.yml    Jupyter Book; also myst.yml, _quarto.yml
+      spinbook import my-book/sidebars.js      Docusaurus; also SUMMARY.md, _sidebar.md
+
+    Writes course.toml with the chapters in the book's order, builds the notebooks, and writes a page that says
+    what runs, what does not, and what to do first: build/import.html. Runs nothing. A course.toml that exists is not
+    overwritten.
+    """
+    read = read_book(book)
+    if (read.root / FILE).exists():
+        found = f"{read.root} is a course already."
+        raise SpinbookError(Problem(read.root / FILE, None, found, "Go there, and run: spinbook build"))
+    text = course_toml(read, title or read.title, package or package_of(title or read.title))
+    write_if_changed(read.root / FILE, text)
+    course = read_course(read.root)
+    click.echo(f"{course.title}: {len(read.chapters)} chapters, in the order of {_shown(read.contents, read.root)}")
+    if read.left_out:
+        click.echo(f"Left out, because they are no Markdown or not there: {', '.join(read.left_out)}")
+    built = list(build_notebooks(course))
+    _report(course, built)
+
+
+def course_toml(book: Book, title: str, package: str) -> str:
+    """The course.toml of a book."""
+    chapters = "".join(f"  {_quoted(chapter.as_posix())},\n" for chapter in book.chapters)
+    repository = f"repository = {_quoted(book.repository)}\n" if book.repository else ""
+    return (
+        "# What the course is called, and the order of its chapters: see docs/writing-chapters.md.\n"
+        f"title = {_quoted(title)}\n{repository}chapters = [\n{chapters}]\n\n"
+        "# The ROS 2 package that the chapters' nodes make: `spinbook package`.\n"
+        f'[package]\nname = "{package}"\nworkspace = "{package}_ws"\n'
+    )
+
+
+def package_of(title: str) -> str:
+    """A ROS package's name for a title."""
+    name = re.sub(r"[^a-z0-9]+", "_", title.lower()).strip("_")[:40].strip("_")
+    return name if name[:1].isalpha() else f"course_{name}".strip("_")
+
+
+def _quoted(text: str) -> str:
+    """A basic string of TOML."""
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{"".join(letter if letter.isprintable() else " " for letter in escaped)}"'
+
+
+def _shown(contents: Path | None, root: Path) -> str:
+    return contents.relative_to(root).as_posix() if contents else "their names"
+
+
+def _report(course: Course, built: Iterable[Built]) -> None:
+    built = list(built)
+    chapters = [reading.chapter for reading in read_all(course) if reading.chapter]
+    problems = [problem for item in built for problem in item.problems]
+    page = course.build_folder / "import.html"
+    write_if_changed(page, report_page(course, chapters, problems))
+    cells = [
+        cell for chapter in chapters for cell in chapter.cells if cell.kind not in {CellKind.PROSE, CellKind.EXERCISE}
+    ]
+    static = sum(1 for chapter in chapters for fence in chapter.static_fences if fence.sign)
+    nodes = sum(cell.kind is CellKind.NODE for cell in cells)
+    made = sum(not item.failed for item in built)
+    click.echo(f"{made} of {len(built)} chapters built: {len(cells)} cells, {nodes} of them nodes")
+    click.echo(f"{static} pieces of code are shown and not run")
+    for line in ranked(problems)[: _SHOWN + 1]:
+        click.echo(line)
+    folder = os.path.relpath(course.root)
+    go = f"  cd {folder}\n" if folder != "." else ""
+    click.echo(
+        f"What runs, what does not, and what to do first: {os.path.relpath(page)}\n\nGo on with:\n\n{go}"
+        "  spinbook build --execute      run the notebooks, with real nodes\n"
+        "  spinbook site                 the website, with what the cells printed"
+    )

@@ -1,0 +1,128 @@
+"""The Markdown files of a book, found by whatever its table of contents calls them."""
+
+from __future__ import annotations
+
+import functools
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from spinbook.chapter.source import read_source
+
+_ENDINGS = (".md", ".mdx", ".qmd", ".markdown")
+#: Folders that hold no chapters.
+_SKIPPED = frozenset({"node_modules", "build", "blog", "i18n", "versioned_docs", "vendor", "site", "_site", "dist"})
+#: Files about a repository, not of a book.
+_NOT_CHAPTERS = frozenset(
+    {
+        "contributing",
+        "changelog",
+        "license",
+        "code_of_conduct",
+        "security",
+        "summary",
+        "_sidebar",
+        "_navbar",
+        "_coverpage",
+    }
+    | {"claude", "agents", "gemini", "authors", "pull_request_template"}
+)
+_NUMBER = re.compile(r"^\d+\s*[-_.]+\s*(?=.)")
+
+
+class Pages:
+    """The pages below `root`."""
+
+    def __init__(self, root: Path) -> None:
+        self._root = root
+
+    def find(self, folder: Path, name: str) -> Path | None:
+        """The file that a table of contents in `folder` calls `name`: with or without its ending or its number."""
+        name = name.strip().split("?")[0].strip("/")
+        for base in (folder, self._root):
+            path = base / name
+            for candidate in (path, *(path.with_name(path.name + ending) for ending in _ENDINGS)):
+                if candidate.is_file() and candidate.suffix in _ENDINGS and self._is_inside(candidate):
+                    return candidate.resolve()
+            for index in ("index.md", "README.md", "index.mdx"):
+                if (path / index).is_file() and self._is_inside(path):
+                    return (path / index).resolve()
+        return self._by_id(folder).get(name)
+
+    def _is_inside(self, path: Path) -> bool:
+        return path.resolve().is_relative_to(self._root)
+
+    @functools.cache  # noqa: B019
+    def _by_id(self, folder: Path) -> dict[str, Path]:
+        """Docusaurus's ids: the path without its ending and without numbers; `id` in the front matter ends it."""
+        found: dict[str, Path] = {}
+        for file in self.in_folder(folder):
+            parts = [_NUMBER.sub("", part) for part in file.relative_to(folder.resolve()).with_suffix("").parts]
+            found.setdefault("/".join(parts), file)
+            if own := self._front_matter(file).get("id"):
+                found.setdefault("/".join([*parts[:-1], str(own)]), file)
+        return found
+
+    def in_folder(self, folder: Path) -> Iterator[Path]:
+        """The chapters below a folder, in the order that their front matter or their names give."""
+        if not folder.is_dir():
+            return
+        entries = [entry for entry in folder.resolve().iterdir() if self._is_wanted(entry)]
+        for entry in sorted(entries, key=self._place):
+            if entry.is_dir():
+                yield from self.in_folder(entry)
+            else:
+                yield entry
+
+    def _is_wanted(self, entry: Path) -> bool:
+        if entry.name.startswith(".") or entry.name in _SKIPPED:
+            return False
+        if entry.is_dir():
+            return not (entry / "course.toml").exists()
+        is_root_readme = (
+            entry.parent == self._root and entry.stem.lower() == "readme" and (self._root / "docs").is_dir()
+        )
+        return entry.suffix in _ENDINGS and entry.stem.lower() not in _NOT_CHAPTERS and not is_root_readme
+
+    def _place(self, entry: Path) -> tuple[float, bool, list[tuple[int, str]]]:
+        first = entry.stem.lower() in {"index", "readme", "intro", "introduction"} and entry.is_file()
+        position = self._position(entry)
+        return (position if position is not None else 0.0 if first else float("inf"), not first, _natural(entry.name))
+
+    def _position(self, entry: Path) -> float | None:
+        if entry.is_dir():
+            about = _category(entry)
+            index = next((entry / name for name in ("index.md", "index.mdx") if (entry / name).is_file()), None)
+            about = about or (self._front_matter(index) if index else {})
+        else:
+            about = self._front_matter(entry)
+        for key in ("position", "sidebar_position", "nav_order", "weight", "order"):
+            try:
+                return float(about[key])
+            except (KeyError, TypeError, ValueError):
+                continue
+        return None
+
+    @functools.cache  # noqa: B019
+    def _front_matter(self, file: Path) -> dict[str, Any]:
+        source, _ = read_source(file, file)
+        return dict(source.front_matter) if source else {}
+
+    def title_of(self, file: Path) -> str:
+        """What a page calls itself, or its folder's name in words."""
+        return str(self._front_matter(file).get("title") or self._root.name.replace("-", " ").replace("_", " "))
+
+
+def _category(folder: Path) -> dict[str, Any]:
+    try:
+        about = json.loads((folder / "_category_.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return about if isinstance(about, dict) else {}
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    """`2.md` before `10.md`."""
+    return [(int(part), "") if part.isdigit() else (-1, part.lower()) for part in re.split(r"(\d+)", name)]

@@ -1,0 +1,283 @@
+"""Programs that a chapter shows in pieces run as a whole; what stays incomplete is shown only."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from spinbook.chapter.chapter import Cell, CellKind, Chapter
+from spinbook.chapter.python_code import inspect
+from spinbook.chapter.read import Reading, Surroundings, read_chapter
+
+IMPORTS = "import rclpy\nfrom rclpy.node import Node\nfrom std_msgs.msg import String\n"
+TALKER = "class Talker(Node):\n    def __init__(self):\n        super().__init__('talker')\n"
+MAIN = "def main(args=None):\n    rclpy.init(args=args)\n    rclpy.spin(Talker())\n"
+GUARD = "if __name__ == '__main__':\n    main()\n"
+
+
+def reading(tmp_path: Path, *fences: str) -> Reading:
+    """A chapter of these fences; one without an opening is Python."""
+    parts = [fence if fence.startswith("```") else f"```python\n{fence}```\n" for fence in fences]
+    (tmp_path / "c.md").write_text("# T\n\n" + "\n".join(parts))
+    return read_chapter(tmp_path, Path("c.md"), Surroundings("robot"))
+
+
+def read(tmp_path: Path, *fences: str) -> Chapter:
+    chapter = reading(tmp_path, *fences).chapter
+    assert chapter is not None
+    return chapter
+
+
+def cells(chapter: Chapter) -> list[Cell]:
+    return [cell for cell in chapter.cells if cell.kind is not CellKind.PROSE]
+
+
+def test_a_main_continues_the_class_above_which_does_not_run_by_itself(tmp_path: Path) -> None:
+    part, node = cells(read(tmp_path, IMPORTS + TALKER, MAIN + GUARD))
+
+    assert (part.kind, part.name) == (CellKind.PART, "talker")
+    assert (node.kind, node.after, node.source) == (CellKind.NODE, ("talker",), MAIN + GUARD)
+    assert not inspect(node.whole).needs
+
+
+def test_imports_and_a_constant_in_fences_above_are_taken_along(tmp_path: Path) -> None:
+    *_, node = cells(
+        read(tmp_path, "import rclpy\nimport numpy as pn\n", "RATE = 2.0\n", TALKER + "X = pn.pi * RATE\n" + MAIN)
+    )
+
+    assert node.kind is CellKind.NODE
+    assert "import numpy as pn" in node.before
+    assert "RATE = 2.0" in node.before
+    assert "from rclpy.node import Node" in node.before
+    assert not inspect(node.whole).needs
+
+
+@pytest.mark.parametrize("used", ["String", "Twist", "QoSProfile", "np", "MultiThreadedExecutor", "LaserScan"])
+def test_the_usual_imports_are_added(tmp_path: Path, used: str) -> None:
+    (node,) = cells(read(tmp_path, f"{TALKER}        self.used = {used}\n"))
+
+    assert (node.kind, node.spin_classes) == (CellKind.NODE, ("Talker",))
+    assert not inspect(node.whole).needs
+
+
+@pytest.mark.parametrize(
+    ("code", "why"),
+    [
+        (TALKER + "        self.pub = my_publisher\n", "`my_publisher`, which nothing above defines"),
+        (TALKER + "        self.create_timer(1.0, self.tick)\n", "`self.tick` is set nowhere"),
+        ("class Arm(Node):\n    def __init__(self, name):\n        super().__init__(name)\n", "nothing makes a node"),
+        ("    def tick(self):\n        self.count += 1\n", "indented"),
+        ("self.create_timer(1.0, self.tick)\n", "`self`"),
+        (IMPORTS + "name = input()\nrclpy.init()\nrclpy.spin(Node(name))\n", "waits for somebody to type"),
+    ],
+)
+def test_what_stays_incomplete_is_shown_with_a_sign(tmp_path: Path, code: str, why: str) -> None:
+    chapter = read(tmp_path, code)
+
+    (static,) = chapter.static_fences
+    assert why in static.why
+    assert cells(chapter) == []
+    assert "<small>Not run here: " in chapter.cells[0].source
+
+
+def test_nothing_is_run_that_changes_the_machine(tmp_path: Path) -> None:
+    codes = [
+        "import os\nos.system('sudo apt install x')\n",
+        "import subprocess\nsubprocess.run(['pip', 'install', 'x'])\n",
+        "!rm -rf build\n",
+        "%pip install x\n",
+        "```bash\ngit clone x && colcon build\n```\n",
+        "```bash\nsudo apt update\nros2 topic list\n```\n",
+    ]
+
+    chapter = read(tmp_path, *codes)
+
+    assert cells(chapter) == []
+    assert len(chapter.static_fences) == len(codes)
+
+
+def test_a_main_without_a_guard_is_called(tmp_path: Path) -> None:
+    (node,) = cells(read(tmp_path, IMPORTS + TALKER + MAIN))
+
+    assert node.runs_main
+    assert node.spin_classes == ()
+
+
+def test_two_classes_without_a_main_are_both_spun(tmp_path: Path) -> None:
+    (node,) = cells(read(tmp_path, IMPORTS + TALKER + TALKER.replace("Talker", "Listener")))
+
+    assert node.spin_classes == ("Talker", "Listener")
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import rclpy\nrclpy.init()\nnode = rclpy.create_node('a')\nwhile rclpy.ok():\n    rclpy.spin_once(node)\n",
+        "import time\nwhile True:\n    time.sleep(1)\n",
+    ],
+)
+def test_scripts_that_never_end_are_nodes_and_not_cells_of_the_kernel(tmp_path: Path, code: str) -> None:
+    assert [cell.kind for cell in cells(read(tmp_path, code))] == [CellKind.NODE]
+
+
+def test_a_script_goes_on_in_the_next_fence(tmp_path: Path) -> None:
+    *parts, node = cells(
+        read(
+            tmp_path,
+            "import rclpy\nrclpy.init()\nnode = rclpy.create_node('a')\n",
+            "rclpy.spin(node)\n",
+        )
+    )
+
+    assert [part.kind for part in parts] == [CellKind.PART]
+    assert node.whole.index("rclpy.init()") < node.whole.index("rclpy.spin(node)")
+
+
+def test_a_second_node_of_one_name_gets_a_number_and_a_file_shown_again_keeps_its_own(tmp_path: Path) -> None:
+    untitled = IMPORTS + TALKER + MAIN
+    titled = f'```python title="arm.py"\n{untitled}```\n'
+
+    names = [cell.name for cell in cells(read(tmp_path, untitled, untitled, titled, titled))]
+
+    assert names == ["talker", "talker_2", "arm", "arm"]
+
+
+@pytest.mark.parametrize(
+    "before",
+    [
+        "Create a file `src/arm/arm/gripper.py`:",
+        "### gripper.py",
+        "Save this as **gripper.py**, and go on.",
+        "```bash\ntouch gripper.py\n```",
+    ],
+)
+def test_the_text_before_a_fence_names_its_file(tmp_path: Path, before: str) -> None:
+    (tmp_path / "c.md").write_text(f"# T\n\n{before}\n\n```python\n{IMPORTS}{TALKER}{MAIN}```\n")
+
+    chapter = read_chapter(tmp_path, Path("c.md"), Surroundings("robot")).chapter
+
+    assert chapter is not None
+    assert [node.name for node in chapter.nodes] == ["gripper"]
+
+
+SETUP = (
+    "from setuptools import setup\nsetup(name='arm', entry_points={'console_scripts': ['hand = arm.gripper:main']})\n"
+)
+GRIPPER = f'```python title="gripper.py"\n{IMPORTS}{TALKER}{MAIN}```\n'
+
+
+@pytest.mark.parametrize(
+    ("fences", "command"),
+    [
+        ([GRIPPER], "ros2 run arm gripper"),
+        ([GRIPPER], "ros2 run arm gripper.py"),
+        ([GRIPPER, SETUP], "ros2 run arm hand"),
+        ([GRIPPER], "ros2 run arm talker"),
+        ([IMPORTS + TALKER + MAIN], "ros2 run my_package talker"),
+        (["```bash\nros2 pkg create --build-type ament_python arm\n```\n"], "colcon build --packages-select arm"),
+        ([GRIPPER, SETUP], "cd ~/ros2_ws && colcon build --packages-select arm && source install/setup.bash"),
+        ([GRIPPER], "ros2 topic echo /chatter std_msgs/msg/String"),
+        ([GRIPPER], "ros2 node info /talker"),
+    ],
+)
+def test_commands_about_the_chapters_own_package_run(tmp_path: Path, fences: list[str], command: str) -> None:
+    last = cells(read(tmp_path, *fences, f"```bash\n{command}\n```\n"))[-1]
+
+    assert last.kind is CellKind.SHELL
+
+
+def test_a_node_knows_what_ros2_run_calls_it(tmp_path: Path) -> None:
+    node, _ = cells(read(tmp_path, GRIPPER, SETUP, "```bash\nros2 run arm hand\n```\n"))
+
+    assert node.executables == (("arm", "hand"),)
+
+
+@pytest.mark.parametrize(
+    ("command", "why"),
+    [
+        ("ros2 run nav2_map_server map_saver", "no package `nav2_map_server`"),
+        ("ros2 run turtlesim turtle_race", "has no program `turtle_race`"),
+        ("ros2 run turtlesim turtle_teleop_key", "reads keys from a terminal"),
+        ("ros2 run arm other", "no fence above shows `other`"),
+        ("colcon build", "no cell above makes"),
+        ("ros2 pkg create --build-type ament_cmake arm", "C++"),
+        ("ros2 topic pub /a nav2_msgs/msg/Route {}", "needs `nav2_msgs`"),
+        ("ros2 topic echo /scan", "nothing above makes `/scan`"),
+        ("ros2 topic echo ...", "stands for other commands"),
+        ("ros2 run arm hand --ros-args --params-file p.yaml", "reads a file of parameters"),
+    ],
+)
+def test_foreign_commands_are_shown_with_a_word(tmp_path: Path, command: str, why: str) -> None:
+    chapter = read(tmp_path, SETUP, f"```bash\n{command}\n```\n")
+
+    assert cells(chapter) == []
+    assert why in chapter.static_fences[-1].sign
+
+
+@pytest.mark.parametrize(
+    ("code", "kind"),
+    [
+        ("$ ros2 topic list\n$ ros2 node list\n", CellKind.SHELL),
+        ("cd ros2_ws\nros2 topic list\n", CellKind.SHELL),
+        ("user@pc:~$ ros2 topic list\n", CellKind.SHELL),
+        (IMPORTS + TALKER, CellKind.NODE),
+        ("ros2 topic list\n/chatter\n/rosout\n", None),
+        ("src/\n  arm/\n", None),
+    ],
+)
+def test_a_fence_without_a_language_is_what_it_surely_is(tmp_path: Path, code: str, kind: CellKind | None) -> None:
+    assert [cell.kind for cell in cells(read(tmp_path, f"```\n{code}```\n"))] == ([kind] if kind else [])
+
+
+def test_a_caption_is_no_file_name(tmp_path: Path) -> None:
+    (node,) = cells(read(tmp_path, f'```python title="Publisher Node"\n{IMPORTS}{TALKER}{MAIN}```\n'))
+
+    assert node.name == "talker"
+
+
+def test_an_import_that_the_code_can_do_without_is_not_missed(tmp_path: Path) -> None:
+    code = "try:\n    import no_such_package\nexcept ImportError:\n    no_such_package = None\n"
+
+    assert [cell.kind for cell in cells(read(tmp_path, code))] == [CellKind.SNIPPET]
+
+
+def test_a_launch_file_of_the_chapter_starts_its_nodes(tmp_path: Path) -> None:
+    launch = (
+        '```python title="arm.launch.py"\n'
+        "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n\n\n"
+        "def generate_launch_description():\n    return LaunchDescription([\n"
+        "        Node(package='arm', executable='gripper', name='left', parameters=[{'rate': 2.0, 'loud': True}],\n"
+        "             remappings=[('chatter', 'left/chatter')]),\n    ])\n```\n"
+    )
+
+    shell = cells(read(tmp_path, GRIPPER, launch, "```bash\nros2 launch arm arm.launch.py\n```\n"))[-1]
+
+    assert [command.text for command in shell.commands] == [
+        "# ros2 launch arm arm.launch.py starts:",
+        "ros2 run arm gripper --ros-args -r __node:=left -r chatter:=left/chatter -p rate:=2.0 -p loud:=true",
+    ]
+
+
+def test_a_launch_file_from_elsewhere_is_shown_only(tmp_path: Path) -> None:
+    chapter = read(tmp_path, "```bash\nros2 launch nav2_bringup navigation.launch.py\n```\n")
+
+    assert chapter.static_fences[0].sign == "no fence above is its launch file."
+
+
+def test_methods_are_added_to_the_class_above(tmp_path: Path) -> None:
+    begun = f"{IMPORTS}{TALKER}        self.count = 0\n\n    def shout(self):\n        pass\n"
+    added = "class Talker(Node):\n    # ...\n\n    def beat(self):\n        self.count += 1\n        self.shout()\n"
+
+    *_, node = cells(read(tmp_path, begun, added))
+
+    assert (node.kind, node.after, node.spin_classes) == (CellKind.NODE, ("talker",), ("Talker",))
+    assert node.before.rstrip().endswith("Node = Talker")
+
+
+def test_where_failing_is_the_lesson_it_may_fail(tmp_path: Path) -> None:
+    fences = [f"```python {more}raises\nimport rclpy\nrclpy.spin(undefined)\n```\n" for more in ("", 'title="a.py" ')]
+
+    chapter = read(tmp_path, *fences, "```python raises\nundefined\n```\n")
+
+    assert [cell.raises for cell in cells(chapter)] == [True, True, True]

@@ -1,0 +1,2 @@
+RATE = 2.0
+print(f"{RATE} Hz")

@@ -1,0 +1,169 @@
+"""`spinbook import` makes a course of an existing book, in the book's order, and says what runs."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from spinbook.course.course import read_course
+
+CHAPTER = "# {}\n\n```python\nimport no_such_package\n```\n\n```python\nprint(1)\n```\n"
+
+
+def book(root: Path, *chapters: str) -> Path:
+    """A book's folder with these chapters."""
+    for name in chapters:
+        file = root / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(CHAPTER.format(file.stem))
+    return root
+
+
+def spinbook_import(place: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    argv = [sys.executable, "-m", "spinbook", "import", str(place), *words]
+    return subprocess.run(argv, capture_output=True, text=True, timeout=120, cwd=place.parent)
+
+
+def order(root: Path) -> list[str]:
+    return [chapter.as_posix() for chapter in read_course(root).chapters]
+
+
+MKDOCS = """\
+site_name: "Robots: a course"
+markdown_extensions:
+  - pymdownx.emoji:
+      emoji_index: !!python/name:material.extensions.emoji.twemoji
+nav:
+  - Home: index.md
+  - Part one:
+      - part/second.md
+      - Elsewhere: https://example.org
+  - First: part/first.md
+  - Gone: gone.md
+"""
+TOC = """\
+format: jb-book
+root: index
+parts:
+- caption: A
+  chapters:
+  - file: part/second
+    sections:
+    - file: part/first
+"""
+MYST = """\
+project:
+  title: Robots
+  toc:
+    - file: index.md
+    - title: A
+      children:
+        - file: part/second.md
+        - file: part/first.md
+"""
+SIDEBARS = """\
+// @ts-check
+/** @type {import('x').SidebarsConfig} */
+const sidebars = {
+  tutorial: [
+    'index', // the first
+    {type: 'category', label: "A, b: {c}", link: {type: 'generated-index'},
+     items: ['part/second', {type: 'doc', id: 'part/first'}]},
+  ],
+};
+module.exports = sidebars;
+"""
+SUMMARY = "# Summary\n\n- [Home](index.md)\n  - [Second](part/second.md)\n- [First](part/first.md#top)\n"
+
+
+@pytest.mark.parametrize(
+    ("contents", "text", "docs"),
+    [
+        ("mkdocs.yml", MKDOCS, "docs"),
+        ("_toc.yml", TOC, ""),
+        ("myst.yml", MYST, ""),
+        ("sidebars.js", SIDEBARS, "docs"),
+        ("sidebars.ts", SIDEBARS.replace("const sidebars =", "const sidebars: SidebarsConfig ="), "docs"),
+        ("SUMMARY.md", SUMMARY, ""),
+        ("_sidebar.md", SUMMARY, ""),
+    ],
+)
+@pytest.mark.parametrize("by_file", [True, False])
+def test_the_chapters_come_in_the_books_order(
+    tmp_path: Path, contents: str, text: str, docs: str, by_file: bool
+) -> None:
+    names = [str(Path(docs, name).as_posix()) for name in ("index.md", "part/second.md", "part/first.md")]
+    root = book(tmp_path / "robots", *names)
+    (root / contents).write_text(text)
+
+    said = spinbook_import(root / contents if by_file else root)
+
+    assert said.returncode == 0, said.stderr
+    assert order(root) == names
+    assert f"in the order of {contents}" in said.stdout
+
+
+def test_a_folder_without_a_table_of_contents_goes_by_positions_and_numbers(tmp_path: Path) -> None:
+    root = book(
+        tmp_path / "robots", "10-last.md", "2-middle.md", "deep/a.md", "node_modules/x/README.md", "CONTRIBUTING.md"
+    )
+    (root / "zero.md").write_text("---\nsidebar_position: 1\n---\n# Zero\n")
+
+    spinbook_import(root)
+
+    assert order(root) == ["zero.md", "2-middle.md", "10-last.md", "deep/a.md"]
+
+
+def test_docusaurus_finds_pages_by_their_ids_without_numbers(tmp_path: Path) -> None:
+    root = book(tmp_path / "robots", "docs/02-topics/01-start.md", "docs/intro.md")
+    (root / "docs/intro.md").write_text("---\nid: hello\n---\n# Hello\n")
+    (root / "sidebars.js").write_text("export default { s: ['hello', 'topics/start'] };")
+
+    spinbook_import(root)
+
+    assert order(root) == ["docs/intro.md", "docs/02-topics/01-start.md"]
+
+
+def test_the_first_build_and_a_page_say_what_runs_and_what_to_do_first(tmp_path: Path) -> None:
+    root = book(tmp_path / "robots", "docs/index.md", "docs/part/second.md", "docs/part/first.md")
+    (root / "mkdocs.yml").write_text(MKDOCS)
+    before = {path: path.read_bytes() for path in root.rglob("*.md")}
+
+    said = spinbook_import(root)
+
+    assert said.stdout.startswith("Robots: a course: 3 chapters")
+    assert "gone.md" in said.stdout
+    assert "3 of 3 chapters built: 3 cells, 0 of them nodes" in said.stdout
+    assert "3 fences need no_such_package in 3 chapters." in said.stdout
+    page = (root / "build/import.html").read_text()
+    assert "3 fences need no_such_package" in page
+    assert "docs/part/first.md:4" in page
+    assert {path: path.read_bytes() for path in root.rglob("*.md")} == before
+    assert (root / "build/notebooks/second.ipynb").exists()
+
+
+def test_a_course_is_not_overwritten(tmp_path: Path) -> None:
+    root = book(tmp_path / "robots", "a.md")
+    (root / "course.toml").write_text("mine")
+
+    said = spinbook_import(root)
+
+    assert said.returncode == 1
+    assert "is a course already" in said.stderr
+    assert (root / "course.toml").read_text() == "mine"
+
+
+@pytest.mark.parametrize("text", ["nav: [", "const x = {", ""])
+def test_a_broken_or_empty_table_of_contents_is_told(tmp_path: Path, text: str) -> None:
+    root = tmp_path / "robots"
+    root.mkdir()
+    (root / "mkdocs.yml").write_text(text)
+
+    said = spinbook_import(root)
+
+    assert said.returncode == 1
+    assert "Traceback" not in said.stderr
+    assert "error:" in said.stderr

@@ -1,0 +1,79 @@
+"""A node may be shown in pieces: its cell runs the whole, with what the cells above hold when it runs."""
+
+from __future__ import annotations
+
+import time
+
+from notebook_kernel import Kernel
+
+CLASS = """class Talker(Node):
+    def __init__(self):
+        super().__init__("talker")
+        self.get_logger().info("I am " + NAME)
+"""
+MAIN = "def main(args=None):\n    rclpy.init(args=args)\n    rclpy.spin(Talker())\n"
+
+
+def test_a_node_is_made_whole_of_the_parts_above_as_they_are_now(kernel: Kernel) -> None:
+    assert "kept for the nodes below" in kernel.run(f"%%part talker --keep\n{CLASS}").text
+    assert kernel.run("%%part name\nNAME = 'Ada'\nprint(NAME)").text == "Ada\n"
+    shown = kernel.run(f"%%node main --seconds 60 --until Ada --main --after talker name\n{MAIN}")
+    assert "[INFO] [talker]: I am Ada" in shown.text
+
+    kernel.run("%%part name\nNAME = 'Grace'")
+    shown = kernel.run(f"%%node main --seconds 60 --until Grace --main --after talker name\n{MAIN}")
+
+    assert "[INFO] [talker]: I am Grace" in shown.text
+
+
+def test_a_part_that_is_missing_is_named(kernel: Kernel) -> None:
+    shown = kernel.run(f"%%node main --main --after nowhere\n{MAIN}")
+
+    assert "uses what `nowhere` defines: run its cell above first" in shown.error
+
+
+def test_two_classes_without_a_main_run_in_one_process_with_the_usual_imports(kernel: Kernel) -> None:
+    both = CLASS.replace("NAME", "'one'") + "\n\n" + CLASS.replace("Talker", "Other").replace('"talker"', '"other"')
+
+    shown = kernel.run(
+        "%%node both --seconds 60 --until two --class Talker --class Other --usual-imports\n"
+        + both.replace("NAME", "'two'")
+    )
+
+    assert "[talker]: I am one" in shown.text
+    assert "[other]: I am two" in shown.text
+    assert kernel.run("%stop both").text == "both stopped.\n"
+
+
+def test_ros2_run_starts_the_node_by_the_name_that_its_package_gives_it(kernel: Kernel) -> None:
+    code = CLASS.replace("NAME", "str(sys.argv[1:2])") + MAIN
+    options = "--seconds 60 --until I --main --usual-imports --as arm/hand"
+    assert kernel.run("%ros2 pkg create --build-type ament_python arm").text.startswith("Created the package arm")
+    kernel.run(f"%%node gripper {options}\n{code}")
+
+    shown = kernel.run("%ros2 --seconds 60 --until left run arm hand left")
+
+    assert "(restarting gripper)" in shown.text
+    assert "I am ['left']" in shown.text
+    setup = (kernel.folder / "robot_ws/src/arm/setup.py").read_text()
+    assert "'hand = arm.gripper:main'" in setup
+
+
+def test_nodes_of_a_package_import_each_other_by_its_name(kernel: Kernel) -> None:
+    kernel.run("%%node names --as arm/names\nNAME = 'Emmy'\n")
+
+    code = "from arm.names import NAME\nprint('I am ' + NAME)\n"
+    shown = kernel.run(f"%%node other --as arm/other\n{code}")
+
+    assert "I am Emmy" in shown.text
+
+
+def test_an_endless_loop_is_a_process_that_the_kernel_does_not_wait_for(kernel: Kernel) -> None:
+    started = time.monotonic()
+
+    shown = kernel.run(
+        "%%node endless --seconds 20 --until on\nimport time\nwhile True:\n    print('on')\n    time.sleep(1)\n"
+    )
+
+    assert "endless goes on in the background" in shown.text
+    assert time.monotonic() - started < 20
