@@ -25,7 +25,7 @@ _VALUE = {
     "--enclave": "enclave path", "--log-file-name": "log file name prefix",
 }  # fmt: skip
 _SWITCHES = ("rosout-logs", "stdout-logs", "external-lib-logs")
-_RULE = re.compile(r"(?:(?P<node>[A-Za-z_]\w*):)?(?P<of>(?:rostopic://|rosservice://)?[^:]+|__\w+):=(?P<to>\S+)$")
+_RULE = re.compile(r"(?:(?P<node>[A-Za-z_]\w*):(?!//))?(?P<of>(?:rostopic://|rosservice://)?[^:]+|__\w+):=(?P<to>\S+)$")
 _NODE_NAME = re.compile(r"[A-Za-z_]\w*$")
 
 

@@ -14,6 +14,9 @@ _pointers = itertools.count(0x10000, 16)
 class Destroyable:
     """An object that `destroy_when_not_in_use` ends once the last `with` around it is left."""
 
+    pointer: int = 0
+    """What wait sets name it by."""
+
     def __init__(self) -> None:
         self.pointer = next(_pointers)
         self._uses = 0

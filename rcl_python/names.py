@@ -86,7 +86,7 @@ def namespace_fault(name: str) -> Fault:
     if name == "/":
         return None
     if name.startswith("/") and name.endswith("/"):
-        return "namespace must not end with a '/'", len(name) - 1
+        return "namespace must not end with a '/', unless only a '/'", len(name) - 1
     if not name:
         return "namespace must not be empty", 0
     if not name.startswith("/"):

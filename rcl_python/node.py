@@ -158,7 +158,13 @@ def _refuse(what: str, fault: names.Fault, line: int) -> None:
 
 def _namespace_result(text: str) -> int:
     """The number that rmw gives a fault of a namespace (rmw/validate_namespace.h)."""
-    endings = ["must not be empty", "lead with a '/'", "end with a '/'", "alphanumerics, '_', or '/'", "repeated '/'"]
+    endings = [
+        "must not be empty",
+        "lead with a '/'",
+        "unless only a '/'",
+        "alphanumerics, '_', or '/'",
+        "repeated '/'",
+    ]
     return next((number for number, ending in enumerate(endings, 1) if ending in text), 6)
 
 

@@ -213,6 +213,10 @@ def _late(pub: int, sub: int, what: str) -> Iterable[str]:
         yield f"Subscription {what} is less than {least}"
 
 
+_RMW_SPELLING = {"durability": "durabilty"}
+"""A slip of rmw's own, which rclpy shows as it is."""
+
+
 def _warnings(pub: Profile, sub: Profile) -> Iterable[str]:
     words = {SYSTEM_DEFAULT: "system_default", UNKNOWN: "unknown"}
     yield from _unsure(
@@ -237,7 +241,7 @@ def _unsure(
     what: str, pub: str | None, sub: str | None, weak: str, strong: str, is_weak: bool, is_strong: bool
 ) -> Iterable[str]:
     if pub and sub:
-        yield f"Publisher {what} is {pub} and subscription {what} is {sub}"
+        yield f"Publisher {_RMW_SPELLING.get(what, what)} is {pub} and subscription {what} is {sub}"
     elif pub and is_strong:
         yield f"{strong} subscription, but publisher is {pub}"
     elif sub and is_weak:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import builtins
 import enum
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 RCL_DEFAULT_DOMAIN_ID = 2**64 - 1
 RMW_DURATION_INFINITE = 2**63 - 1
@@ -190,6 +190,9 @@ def _int64(value: int) -> int:
 class rcl_time_point_t:  # noqa: N801
     """A moment of a clock (ns)."""
 
+    nanoseconds: int = 0
+    clock_type: ClockType = ClockType.UNINITIALIZED
+
     def __init__(self, nanoseconds: int, clock_type: int) -> None:
         self.nanoseconds = _int64(nanoseconds)
         self.clock_type = ClockType(int(clock_type))
@@ -197,6 +200,8 @@ class rcl_time_point_t:  # noqa: N801
 
 class rcl_duration_t:  # noqa: N801
     """A span of time (ns)."""
+
+    nanoseconds: int = 0
 
     def __init__(self, nanoseconds: int) -> None:
         self.nanoseconds = _int64(nanoseconds)
@@ -283,6 +288,6 @@ class rmw_request_id_t:  # noqa: N801
 class rmw_service_info_t:  # noqa: N801
     """A request or a response on its way (times in ns since the epoch)."""
 
-    request_id: rmw_request_id_t = field(default_factory=rmw_request_id_t)
+    request_id: rmw_request_id_t = rmw_request_id_t()
     source_timestamp: int = 0
     received_timestamp: int = 0
