@@ -60,6 +60,8 @@ class Profile:
 class rmw_qos_profile_t:  # noqa: N801
     """What rclpy calls to make a profile."""
 
+    to_dict = Profile.to_dict
+
     def __new__(  # type: ignore[misc]
         cls,
         history: int,

@@ -5,7 +5,8 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as module
 
 NAMES = [
     "", "a", "/a", "a/", "a//b", "/a//b", "1a", "a/1b", "/1b", "~a", "~/a", "~", "~foo", "a~b", "/~", "{a", "a}",
-    "{a b}", "{1}", "{node}", "{{a}}", "/a/{sub}", "a b", "/a b", "__a", "a__b", "/", "/a/", "x" * 300, "/" + "x" * 300, "a-b",
+    "{a b}", "{1}", "{node}", "{{a}}", "/a/{sub}", "a b", "/a b", "__a", "a__b", "/", "/a/", "x" * 300, "/" + "x" * 300,
+    "a-b",
     "ä",
 ]  # fmt: skip
 EXPANDED = ["a", "~/a", "~", "{node}/x", "{ns}/x", "{namespace}/x", "{foo}/x", "/b", "b//", "{ns}{node}"]
