@@ -149,13 +149,15 @@ def end_all() -> None:
 
 
 def interrupt(name: str) -> None:
-    """What a signal from the hub does. Raises KeyboardInterrupt for SIGINT, as Python does in its main thread."""
+    """What a signal from the hub does: as a signal in Python's main thread, SIGINT raises KeyboardInterrupt."""
+    number = getattr(signal, name)
     if _installed in (SignalHandlerOptions.ALL, getattr(SignalHandlerOptions, name)):
         end_all()
-    elif name == "SIGTERM":
-        raise SystemExit(143)
-    if name == "SIGINT":
-        raise KeyboardInterrupt
+    elif name == "SIGTERM" and signal.getsignal(number) is signal.SIG_DFL:
+        raise SystemExit(128 + number)
+    handler = signal.getsignal(number)
+    if callable(handler):
+        handler(number, None)
 
 
 def install_signal_handlers(options: SignalHandlerOptions) -> None:

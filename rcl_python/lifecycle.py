@@ -59,7 +59,6 @@ class LifecycleStateMachine(Destroyable):
             raise TypeError(f"enable_com_interface has to be a bool, not {enable_com_interface!r}")
         super().__init__()
         self._state = 1
-        self.transition_graph: list[Transition] = _graph()
         self._services: dict[str, Service] = {}
         self._publisher: Publisher | None = None
         if enable_com_interface:
@@ -98,6 +97,11 @@ class LifecycleStateMachine(Destroyable):
     def available_states(self) -> list[tuple[int, str]]:
         """Every state."""
         return list(_STATES.items())
+
+    @property
+    def transition_graph(self) -> list[Transition]:
+        """Every transition."""
+        return _graph()
 
     @property
     def available_transitions(self) -> list[Transition]:

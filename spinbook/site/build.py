@@ -31,7 +31,7 @@ class Site:
 
 
 #: What Spinbook's own code makes of a course, down to the outputs of its notebooks.
-_CODE = ("site", "chapter", "build", "course", "runtime", "ros2", "turtlesim", "package", "graph", "animation")
+_CODE = ("site", "browser", "chapter", "build", "course", "runtime", "ros2", "turtlesim", "package", "graph", "animation")
 
 
 def unchanged_site(course: Course, *, as_it_ran: bool) -> Site | None:

@@ -14,6 +14,7 @@ import nbformat
 
 from grader.exercise import Exercise, ExerciseError, load, starter
 from spinbook.build.reading import read_all
+from spinbook.browser.files import can_run, run_files
 from spinbook.chapter.chapter import CellKind, Chapter
 from spinbook.course.course import Course
 from spinbook.handout.comments import without_comments
@@ -93,6 +94,7 @@ def read_contents(course: Course) -> Contents:
     for code, picture in drawings.pictures.items():
         if picture is not None:
             contents.files |= drawing_files(code, picture)
+    contents.files |= run_files({})
     return contents
 
 
@@ -170,8 +172,10 @@ def _chapter(
         contents.taught.append(cell.source)
         contents.files[f"{DOWNLOADS}/{cell.module}"] = cell.source.rstrip("\n") + "\n"
     source = links.repository.link(chapter.file, 1)
+    text = as_text(notebook)
+    runs = can_run()
     return Page(
-        name, chapter.title, "chapter", ".ipynb", as_text(notebook), source, chapter.name, summary=chapter.summary
+        name, chapter.title, "chapter", ".ipynb", text, source, chapter.name, summary=chapter.summary, runs=runs
     )
 
 
