@@ -121,10 +121,8 @@ class Endpoint:
         mine = self.info
         if other.kind != OPPOSITE[mine.kind] or other.topic != mine.topic or other.domain != mine.domain:
             return
-        if other.gid in self.matched:
-            return
-        if other.type != mine.type:
-            self.statuses.other_type.total_count_change += 1
+        # Fast DDS says nothing of another type either.
+        if other.gid in self.matched or other.type != mine.type:
             return
         policy = self._incompatible(other)
         if policy is None:

@@ -1,7 +1,7 @@
 """The archives that a page loads: rclpy and the message classes with rcl_python, the checks, the interface files.
 
-rclpy's files and the message classes are those of the installed wheels, unchanged. Archives are the same, byte for byte,
-whenever they are made of the same files.
+rclpy's files and the message classes are those of the installed wheels, unchanged. Archives are the same, byte for
+byte, whenever they are made of the same files.
 """
 
 from __future__ import annotations

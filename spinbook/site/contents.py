@@ -13,8 +13,9 @@ import jupytext
 import nbformat
 
 from grader.exercise import Exercise, ExerciseError, load, starter
-from spinbook.build.reading import read_all
+from spinbook.browser.exercises import public_parts
 from spinbook.browser.files import can_run, run_files
+from spinbook.build.reading import read_all
 from spinbook.chapter.chapter import CellKind, Chapter
 from spinbook.course.course import Course
 from spinbook.handout.comments import without_comments
@@ -94,8 +95,16 @@ def read_contents(course: Course) -> Contents:
     for code, picture in drawings.pictures.items():
         if picture is not None:
             contents.files |= drawing_files(code, picture)
-    contents.files |= run_files({})
+    if can_run():
+        contents.files |= run_files(_public_parts(exercises))
     return contents
+
+
+def _public_parts(exercises: Mapping[str, Exercise]) -> dict[str, bytes]:
+    try:
+        return public_parts(exercises.values())
+    except ExerciseError as error:
+        raise SpinbookError(Problem(error.file, error.line, error.found, error.mend)) from None
 
 
 def _chapters(course: Course) -> list[Chapter]:
@@ -212,7 +221,7 @@ def _exercise(exercise: Exercise, chapter: Chapter, links: Links, drawings: _Dra
     notebook = names.exercise_notebook(exercise.name)
     source = links.repository.link(Path(folder, "task.md"), 1)
     summary = f"An exercise of the chapter {chapter.title}, worth {exercise.points:g} points."
-    return Page(name, exercise.title, "exercise", ".md", text, source, notebook, summary, about)
+    return Page(name, exercise.title, "exercise", ".md", text, source, notebook, summary, about, can_run())
 
 
 def _starter_of(exercise: Exercise) -> str:

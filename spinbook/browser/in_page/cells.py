@@ -22,9 +22,11 @@ def run_python(source: str) -> int:
 
 def _run(source: str) -> None:
     tree = ast.parse(source, "<cell>")
-    last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
+    last = tree.body[-1] if tree.body else None
+    if isinstance(last, ast.Expr):
+        tree.body.pop()
     exec(compile(tree, "<cell>", "exec"), _variables)
-    if last is not None:
+    if isinstance(last, ast.Expr):
         value = eval(compile(ast.Expression(last.value), "<cell>", "eval"), _variables)
         if value is not None:
             print(repr(value))
@@ -96,4 +98,3 @@ def _reader(path: str) -> Any:
         return message
 
     return read
-

@@ -1,7 +1,7 @@
 """How a process in a web worker reaches the others: through the page, which is the hub.
 
-Waiting is a promise, awaited on the program's own stack (JavaScript Promise Integration, JSPI), so that a program blocks
-in `rclpy.spin` while the worker's event loop goes on.
+Waiting is a promise, awaited on the program's own stack (JavaScript Promise Integration, JSPI), so that a program
+blocks in `rclpy.spin` while the worker's event loop goes on.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import json
 import threading
 import time
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, SupportsFloat
 
 from rcl_python.link import Frame
 
@@ -22,7 +22,7 @@ class PageLink:
     """The link of one worker. `page` is the worker's JavaScript side (worker.js)."""
 
     def __init__(self, page: Any) -> None:
-        from pyodide.ffi import run_sync, to_js
+        from pyodide.ffi import run_sync, to_js  # type: ignore[import-not-found]
 
         self.lock = threading.Condition(threading.RLock())
         self._page, self._await, self._to_js = page, run_sync, to_js
@@ -55,11 +55,11 @@ class PageLink:
         """The system clock (ns since the epoch)."""
         return time.time_ns()
 
-    def sleep(self, seconds: float) -> None:
+    def sleep(self, seconds: SupportsFloat) -> None:
         """Do what time.sleep does; signals end it."""
         from rcl_python import participant
 
-        until = time.monotonic() + seconds
+        until = time.monotonic() + float(seconds)
         while (left := until - time.monotonic()) > 0:
             self.wait(int(left * 1e9))
             participant.current().pump()

@@ -28,7 +28,7 @@ def open_process(page: Any, identity: str) -> None:
     """Get ready: join the graph, and let waiting be what a page can do."""
     link = PageLink(page)
     participant.use(link, identity)
-    time.sleep = link.sleep
+    time.sleep = link.sleep  # type: ignore[assignment]
     logs.write = lambda line: print(line, file=sys.stderr)
     rcl_python.install()
     _refuse_threads()

@@ -6,6 +6,7 @@ There is no numpy for web pages without a package repository of their own. rclpy
 from __future__ import annotations
 
 import array as _array
+import operator
 from collections.abc import Iterable, Iterator
 from typing import Any
 
@@ -67,10 +68,10 @@ class ndarray:  # noqa: N801
         return iter(self._values)
 
     def __eq__(self, other: object) -> Any:
-        return [mine == theirs for mine, theirs in zip(self, other, strict=True)] if isinstance(other, Iterable) else False
+        return list(map(operator.eq, self, other)) if isinstance(other, Iterable) else False
 
     def __ne__(self, other: object) -> Any:
-        return [mine != theirs for mine, theirs in zip(self, other, strict=True)] if isinstance(other, Iterable) else True
+        return list(map(operator.ne, self, other)) if isinstance(other, Iterable) else True
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -90,11 +91,11 @@ class ndarray:  # noqa: N801
         return ndarray(self._values, self.dtype)
 
 
-def array(values: Iterable[Any], dtype: dtype = float64) -> ndarray:  # noqa: A002
+def array(values: Iterable[Any], dtype: dtype = float64) -> ndarray:
     """An array of these numbers."""
     return ndarray(values, dtype)
 
 
-def zeros(shape: int | tuple[int, ...], dtype: dtype = float64) -> ndarray:  # noqa: A002
+def zeros(shape: int | tuple[int, ...], dtype: dtype = float64) -> ndarray:
     """An array of zeros."""
     return ndarray([0] * (shape if isinstance(shape, int) else shape[0]), dtype)

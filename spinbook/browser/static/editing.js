@@ -26,11 +26,16 @@ export function editing(code, key, name) {
   let leaving = false;
   const field = {
     onchange: () => {},
+    focus: () => code.focus(),
     get text() {
       return code.textContent;
     },
     get changed() {
       return code.textContent !== written;
+    },
+    replace(text) {
+      code.textContent = text;
+      code.dispatchEvent(new Event("input"));
     },
     restore() {
       store(key, null);

@@ -17,18 +17,18 @@ const logs = new Map();
 let shared = null;
 
 // What a page can't do, in one sentence, or "".
-function hindrance() {
+export function hindrance() {
   if (location.protocol === "file:") return FROM_FILE;
   return typeof WebAssembly === "object" && "Suspending" in WebAssembly ? "" : TOO_OLD;
 }
 
-function element(tag, properties = {}, ...children) {
+export function element(tag, properties = {}, ...children) {
   const made = Object.assign(document.createElement(tag), properties);
   made.append(...children);
   return made;
 }
 
-function button(text, label, act) {
+export function button(text, label, act) {
   const made = element("button", { type: "button", className: "run-button", textContent: text });
   made.setAttribute("aria-label", label);
   made.addEventListener("click", act);
@@ -148,17 +148,25 @@ function parts(source) {
 }
 
 async function magic(cell, process, [word, ...args]) {
-  if (word === "nodes") for (const node of running()) cell.print(`${node.name}  running`);
+  if (word === "nodes") showNodes(cell);
   else if (word === "log") for (const line of logs.get(args[0]) ?? []) cell.print(line);
   else if (word === "stop") await stop(cell, args);
   else if (word === "plot") await drawPlot(cell, process, args);
   else cell.print(`%${word} does not work in a page. It works in the notebook.`, "stderr");
 }
 
+function showNodes(cell) {
+  if (running().length === 0) cell.print("No node runs.");
+  for (const { name } of running()) {
+    const count = logs.get(name)?.length ?? 0;
+    cell.print(`${name.padEnd(28)} running     ${String(count).padStart(12)} line${count === 1 ? "" : "s"} logged`);
+  }
+}
+
 async function stop(cell, names) {
   const wanted = running().filter((node) => names.length === 0 || names.includes("--all") || names.includes(node.name));
   await Promise.all(wanted.map((node) => node.stop()));
-  for (const node of wanted) cell.print(`${node.name}  stopped`);
+  for (const node of wanted) cell.print(`${node.name} stopped.`);
 }
 
 async function drawPlot(cell, process, args) {
@@ -219,13 +227,17 @@ function cellAt(node) {
   return cells.get(node);
 }
 
+// The page's style sheet for all this, once.
+export function style() {
+  if (document.querySelector("link[data-run]")) return;
+  const sheet = element("link", { rel: "stylesheet", href: new URL("run.css", import.meta.url).href });
+  sheet.dataset.run = "";
+  document.head.append(sheet);
+}
+
 // Get the cells of a page ready: each can be changed from now on.
 export function open() {
-  if (!document.querySelector("link[data-run]")) {
-    const sheet = element("link", { rel: "stylesheet", href: new URL("run.css", import.meta.url).href });
-    sheet.dataset.run = "";
-    document.head.append(sheet);
-  }
+  style();
   for (const node of document.querySelectorAll("main .cell:is(.cell-node, .cell-shell, .cell-snippet)")) cellAt(node);
 }
 

@@ -1,6 +1,8 @@
 // The processes of a page and the hub between them: each is a web worker, and what one sends the others get.
 
 const STOP_MS = 2000;
+// Log lines look as in the notebook.
+const ENVIRONMENT = { RCUTILS_CONSOLE_OUTPUT_FORMAT: "[{severity}] [{name}]: {message}" };
 const base = new URL("./", import.meta.url);
 const all = new Map();
 let count = 0;
@@ -78,7 +80,7 @@ export class Process {
   async program(source, file, args = []) {
     this.running = true;
     this.ended = this.ready
-      .then(() => this.call("program", { source, file, args, environment: {} }))
+      .then(() => this.call("program", { source, file, args, environment: ENVIRONMENT }))
       .finally(() => this.end());
     return this.ended;
   }

@@ -3,9 +3,9 @@
 
 (() => {
   const places = [...document.querySelectorAll("main .cell:is(.cell-node, .cell-shell, .cell-snippet)")];
-  const load = () => import(new URL(`${document.documentElement.dataset.root}run/page.js`, location.href));
+  const load = (name) => import(new URL(`${document.documentElement.dataset.root}run/${name}`, location.href));
 
-  function add(cell, text, label, act) {
+  function add(place, module, text, label, act) {
     const button = document.createElement("button");
     button.type = "button";
     button.className = "run-button";
@@ -13,17 +13,24 @@
     button.setAttribute("aria-label", label);
     button.addEventListener("click", async () => {
       try {
-        act(await load());
+        act(await load(module), button);
       } catch {
         document.getElementById("said").textContent = "Nodes can't run in a page that is opened from a file.";
         button.textContent = "Only on a website";
       }
     });
-    cell.querySelector(".cell-links")?.prepend(button);
+    place?.prepend(button);
   }
 
   for (const [index, cell] of places.entries()) {
     const name = cell.querySelector(".cell-file")?.textContent ?? `cell ${index + 1}`;
-    add(cell, "Run", `Run ${name}`, (page) => page.run(cell));
+    add(cell.querySelector(".cell-links"), "page.js", "Run", `Run ${name}`, (page) => page.run(cell));
+  }
+  const starter = document.querySelector("body.kind-exercise main #starter");
+  if (starter) {
+    add(starter.querySelector("p"), "exercise.js", "Edit and check here", "Edit and check the starter here", (page, button) => {
+      button.remove();
+      page.open(starter).focus();
+    });
   }
 })();
