@@ -98,7 +98,10 @@ def module(name: str) -> types.ModuleType:
     made = types.ModuleType(name, "ROS 2 Python client library.")
     for source, offered in _CLASSES.items():
         for item in offered:
-            setattr(made, item, getattr(source, item))
+            thing = getattr(source, item)
+            if isinstance(thing, type) and issubclass(thing, BaseException):
+                thing.__module__ = name  # tracebacks show it
+            setattr(made, item, thing)
     for item, function in _FUNCTIONS.items():
         setattr(made, f"rclpy_{item}", function)
     introspection = types.ModuleType(f"{name}.service_introspection")
