@@ -19,7 +19,9 @@ import spinbook
 
 #: Modules of the environment that rclpy and `ros2` need, besides the interface packages.
 _ROS = ("rclpy", "rpyutils", "rosidl_parser", "rosidl_generator_py", "ament_index_python", "yaml", "click")
-_CHECKS = ("pytest", "_pytest", "pluggy", "iniconfig", "packaging", "pygments")
+_CHECKS = ("pytest", "_pytest", "py", "pluggy", "iniconfig", "packaging", "pygments")
+#: Of its hundreds, pytest needs the lexers of Python.
+_LEXERS = ("__init__.py", "_mapping.py", "python.py", "diff.py")
 _SPINBOOK = ("__init__.py", "problem.py", "ros2", "turtlesim", "browser")
 #: What of the grader judges recordings; the rest starts and confines programs.
 _GRADER = ("__init__.py", "checking", "exercise", "recording", "rig", "scenario", "report", "feedback")
@@ -31,7 +33,7 @@ _TEXTS = (".msg", ".srv", ".action")
 def ros_archive() -> bytes:
     """rclpy, every interface package, rcl_python, and the parts of Spinbook that run in the page."""
     packages = [*_ROS, *interface_packages()]
-    files = {name: data for package in packages for name, data in _python_files(_folder_of(package), package)}
+    files = {name: data for package in packages for name, data in _module(package)}
     # The original imports what finds compiled libraries.
     files["rosidl_generator_py/__init__.py"] = b"from .import_type_support_impl import import_type_support\n"
     files |= dict(_python_files(Path(rcl_python.__file__).parent, "rcl_python"))
@@ -68,18 +70,29 @@ def share_archive() -> bytes:
 
 def check_archive(exercises: Mapping[str, bytes]) -> bytes:
     """pytest, the part of the grader that judges, and the exercises' public parts: path -> content."""
-    files = {name: data for package in _CHECKS for name, data in _python_files(_folder_of(package), package)}
+    found = {name: data for package in _CHECKS for name, data in _module(package)}
+    files = {name: data for name, data in found.items() if _needed(name)}
     root = Path(spinbook.__file__).parent.parent / "grader"
     for part in _GRADER:
         files |= _part(root / part, f"grader/{part}")
     return zipped({**files, **exercises})
 
 
-def _folder_of(package: str) -> Path:
-    spec = importlib.util.find_spec(package)
+def _needed(name: str) -> bool:
+    package, _, file = name.rpartition("/")
+    return package != "pygments/lexers" or file in _LEXERS
+
+
+def _module(name: str) -> Iterator[tuple[str, bytes]]:
+    """The files of an installed module: one, or a package's."""
+    spec = importlib.util.find_spec(name)
     if spec is None or spec.origin is None:
-        raise ModuleNotFoundError(f"{package} is not installed in {sys.prefix}")
-    return Path(spec.origin).parent
+        raise ModuleNotFoundError(f"{name} is not installed in {sys.prefix}")
+    file = Path(spec.origin)
+    if spec.submodule_search_locations:
+        yield from _python_files(file.parent, name)
+    else:
+        yield file.name, file.read_bytes()
 
 
 def _part(path: Path, name: str) -> dict[str, bytes]:

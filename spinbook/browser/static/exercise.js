@@ -80,7 +80,8 @@ export function open(section) {
       say(found.total ?? "");
       result.replaceChildren(...panel(found));
     } catch (error) {
-      say(`The check could not run here: ${error.message.split("\n").at(-2) ?? error.message}`);
+      const words = error.message.split("\n").filter((line) => /^[\w.]+(Error|Exception|Fault)\b/.test(line));
+      say(`The check could not run here: ${words.at(-1) ?? error.message}`);
     } finally {
       checking.disabled = false;
     }
