@@ -276,11 +276,19 @@ def _without_rig(trace: types.TracebackType | None) -> types.TracebackType | Non
     return trace
 
 
+def _forget_rclpy_s() -> None:
+    """Let the next program find rclpy as it is after its import: a signal ends contexts behind rclpy's back."""
+    import rclpy
+    import rclpy.utilities
+
+    rclpy.try_shutdown()
+    rclpy.utilities.g_default_context = None
+    vars(rclpy)["__executor"] = None
+
+
 @contextmanager
 def _as_main(program: Program, log: io.StringIO) -> Iterator[None]:
     """Let the program be `__main__`, started with simulated time; keep what it prints; clean up behind it."""
-    import rclpy
-
     before = sys.modules["__main__"], sys.argv, time.sleep, logs.write
     main = types.ModuleType("__main__")
     main.__file__ = program.file
@@ -296,4 +304,4 @@ def _as_main(program: Program, log: io.StringIO) -> Iterator[None]:
             yield
     finally:
         sys.modules["__main__"], sys.argv, time.sleep, logs.write = before
-        rclpy.try_shutdown()
+        _forget_rclpy_s()

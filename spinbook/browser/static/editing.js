@@ -19,8 +19,13 @@ function store(key, text) {
   }
 }
 
-// Makes `code`, a <pre>, a field. Tab indents; Escape, then Tab, leaves it.
-export function editing(code, key, name) {
+// Makes the code in `place`, a <pre>, a field. Tab indents; Escape, then Tab, leaves it.
+export function editing(place, key, name) {
+  // A field of its own: the page gives the <pre> another role where it scrolls.
+  const code = document.createElement("span");
+  code.className = "editor";
+  code.append(...place.childNodes);
+  place.append(code);
   const original = code.innerHTML;
   const written = code.textContent;
   let leaving = false;
