@@ -11,6 +11,10 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 
+class generic:  # noqa: N801
+    """What numbers of numpy have in common: here they are Python's own, so that nothing is one."""
+
+
 class dtype:  # noqa: N801
     """A type of numbers."""
 
@@ -99,3 +103,12 @@ def array(values: Iterable[Any], dtype: dtype = float64) -> ndarray:
 def zeros(shape: int | tuple[int, ...], dtype: dtype = float64) -> ndarray:
     """An array of zeros."""
     return ndarray([0] * (shape if isinstance(shape, int) else shape[0]), dtype)
+
+
+def __getattr__(name: str) -> Any:
+    if name.startswith("__"):
+        raise AttributeError(name)
+    text = (
+        f"There is no numpy.{name}: a web page does not have numpy. The program runs in a notebook and in the grader."
+    )
+    raise AttributeError(text)

@@ -2,6 +2,7 @@
 import { editing } from "./editing.js";
 import { plot } from "./plot.js";
 import { Process, named, running } from "./processes.js";
+import { turtle } from "./turtle.js";
 
 const LINES = 500;
 const LOOK_S = 6;
@@ -151,6 +152,7 @@ async function magic(cell, process, [word, ...args]) {
   if (word === "nodes") showNodes(cell);
   else if (word === "log") for (const line of logs.get(args[0]) ?? []) cell.print(line);
   else if (word === "stop") await stop(cell, args);
+  else if (word === "turtle") showTurtle(cell);
   else if (word === "plot") await drawPlot(cell, process, args);
   else cell.print(`%${word} does not work in a page. It works in the notebook.`, "stderr");
 }
@@ -191,10 +193,31 @@ async function runTerminal(cell) {
 }
 
 async function runExecutable(cell, words) {
+  if (words[3] === "turtlesim_node") return void (await runTurtlesim(cell, words.slice(4)));
   const wanted = cellOf(words[3]);
   if (!wanted) return void cell.print(`There is no node ${words[3]} on this page.`, "stderr");
   const args = words.slice(4);
   await Promise.race([runNode(wanted, cell, args), new Promise((resolve) => setTimeout(resolve, 1000 * LOOK_S))]);
+}
+
+const TURTLESIM =
+  "import sys\nfrom spinbook.browser.in_page import canvas\ncanvas.use()\n" +
+  "from spinbook.turtlesim.node import main\nsys.exit(main())\n";
+
+async function runTurtlesim(cell, args) {
+  await named("turtlesim_node")?.stop();
+  logs.delete("turtlesim_node");
+  const process = new Process("turtlesim_node", cell.hears("turtlesim_node"));
+  process.program(TURTLESIM, "turtlesim_node.py", args);
+  bar();
+  await process.ready;
+  cell.say("turtlesim_node runs. Look at it with %turtle.");
+}
+
+function showTurtle(cell) {
+  const node = named("turtlesim_node");
+  if (node) cell.shown.append(turtle(node.ended));
+  else cell.print("turtlesim does not run: ros2 run turtlesim turtlesim_node", "stderr");
 }
 
 // What does not end by itself is ended after a while, as in the notebook.

@@ -5,7 +5,7 @@ const WIDTH = 640;
 const HEIGHT = 280;
 const EDGE = { left: 56, right: 12, top: 12, bottom: 36 };
 
-function draw(tag, attributes, text = "") {
+export function draw(tag, attributes, text = "") {
   const made = document.createElementNS(NS, tag);
   for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
   made.textContent = text;

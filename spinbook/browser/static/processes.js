@@ -49,6 +49,7 @@ export class Process {
   #heard(message) {
     if (message.op === "frame") route(this, message.head, message.data);
     else if (message.op === "output") this.hears.output?.(message.text, message.stream);
+    else if (message.op === "picture") this.hears.picture?.(message.text);
     else if (message.op === "progress") this.hears.progress?.(message.part);
     else if (message.op === "done") {
       const { resolve, reject } = this.calls.get(message.id);

@@ -2,12 +2,15 @@
 import { loadPyodide } from "./pyodide.mjs";
 
 const inbox = [];
+const keys = [];
 let wake = null;
 
 // What in_page/link.py calls: frames out, frames in, and waiting, which is a promise.
 const page = {
   send: (head, data) => self.postMessage({ op: "frame", head, data }),
   receive: () => inbox.shift(),
+  key: () => keys.shift(),
+  picture: (text) => self.postMessage({ op: "picture", text }),
   wait: (ms) =>
     new Promise((resolve) => {
       // Even a wait for nothing lets the event loop turn.
@@ -69,6 +72,10 @@ const does = {
     const lines = await (await cells()).record.callPromising(py.toPy(topics), seconds);
     return lines.toJs({ dict_converter: Object.fromEntries });
   },
+  turtle: async () => {
+    const { py } = await ready;
+    return py.pyimport("spinbook.browser.in_page.turtle").show.callPromising(page);
+  },
   check: async ({ exercise, source }) => {
     const { py } = await ready;
     if (!py.checks) py.checks = archive(py, "check.zip", "checks");
@@ -98,6 +105,7 @@ self.onmessage = async ({ data: message }) => {
     arrived();
     return;
   }
+  if (message.op === "key") return void keys.push(message);
   try {
     self.postMessage({ op: "done", id: message.id, value: await does[message.op](message) });
   } catch (error) {
