@@ -6,6 +6,7 @@ import { turtle } from "./turtle.js";
 
 const LINES = 500;
 const LOOK_S = 6;
+const LONGEST_S = 60;
 const TOO_OLD =
   "This browser can't run nodes: it lacks JavaScript Promise Integration. Chrome and Edge 137 or newer and " +
   "Firefox 153 or newer have it. The outputs on this page are recorded from real nodes.";
@@ -222,7 +223,8 @@ function showTurtle(cell) {
 
 // What does not end by itself is ended after a while, as in the notebook.
 async function bounded(cell, process, line) {
-  const timer = setTimeout(() => process.signal("SIGINT"), 1000 * LOOK_S);
+  const goesOn = /^ros2 topic (echo|hz|bw|delay|pub)\b/.test(line) && !/ (--once|-1|--times|-t) /.test(`${line} `);
+  const timer = setTimeout(() => process.signal("SIGINT"), 1000 * (goesOn ? LOOK_S : LONGEST_S));
   try {
     await process.call("command", { source: line });
   } finally {

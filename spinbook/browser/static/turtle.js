@@ -40,7 +40,7 @@ export function turtle(until) {
   words.textContent = "Click the picture, then drive with the arrow keys.";
   figure.append(svg, words);
   const process = new Process("turtle window", { picture: (text) => paint(svg, JSON.parse(text)) });
-  process.ready.then(() => process.call("turtle")).catch(() => {});
+  process.ready.then(() => process.call("turtle")).catch((error) => (words.textContent = error.message));
   svg.addEventListener("keydown", (event) => {
     if (!KEYS[event.key]) return;
     event.preventDefault();
