@@ -17,10 +17,15 @@ class TypeDescriptionService(Destroyable):
         super().__init__()
         from type_description_interfaces.srv import GetTypeDescription
 
-        self.impl = Service(node, GetTypeDescription, "~/get_type_description", Profile())
+        self._service = Service(node, GetTypeDescription, "~/get_type_description", Profile())
 
     def _destroy(self) -> None:
-        self.impl.destroy_when_not_in_use()
+        self._service.destroy_when_not_in_use()
+
+    @property
+    def impl(self) -> Service:
+        """The service itself."""
+        return self._service
 
     def handle_request(self, request: Any, response_class: Any, node: Node) -> Any:
         """Say that the description is not known: types are known by their Python classes alone."""
