@@ -11,12 +11,12 @@ ARG BASE=${TARGETARCH:-amd64}
 
 FROM python:3.12-slim-bookworm AS base-amd64
 RUN apt-get update \
-    && apt-get install -y --no-install-recommends bubblewrap git make procps \
+    && apt-get install -y --no-install-recommends bubblewrap g++ git make procps \
     && rm -rf /var/lib/apt/lists/*
 
 FROM ros:jazzy-ros-base-noble AS base-arm64
 RUN apt-get update \
-    && apt-get install -y --no-install-recommends bubblewrap git make procps python3-venv ros-jazzy-test-msgs \
+    && apt-get install -y --no-install-recommends bubblewrap g++ git make procps python3-venv ros-jazzy-test-msgs \
     && rm -rf /var/lib/apt/lists/* \
     && if id ubuntu >/dev/null 2>&1; then userdel --remove ubuntu; fi
 

@@ -13,10 +13,10 @@ unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 # A sourced ROS 2 brings pytest plugins that do not load with a current pytest: only those named here are.
 PYTEST := PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(BIN)/pytest -p pytest_timeout -p xdist.plugin -p _hypothesis_pytestplugin
 
-.PHONY: help setup course class test soak audit doctor lock clean
+.PHONY: help setup course class test soak audit doctor rmw-wheel lock clean
 
 help:    ## List what can be made.
-	@sed -nE 's/^([a-z]+):.*##/\1\t/p' Makefile | expand -t 10
+	@sed -nE 's/^([a-z-]+):.*##/\1\t/p' Makefile | expand -t 10
 
 setup:   ## Make the virtual environment with every pinned dependency, or bring it up to date.
 	@PYTHON="$(PYTHON)" VENV="$(VENV)" sh setup.sh
@@ -52,6 +52,9 @@ audit: setup   ## Show what every exercise's checks are worth; the report lies i
 
 doctor: setup   ## Say what works on this machine, and how to mend what does not.
 	$(BIN)/spinbook doctor
+
+rmw-wheel: setup   ## Write a wheel of the compiled middleware into build/, for machines without a C++ compiler.
+	@$(BIN)/python -m rmw_lockstep.wheel build
 
 lock:    ## Pin the newest versions of every dependency (needs uv).
 	sh lock.sh

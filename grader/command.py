@@ -19,7 +19,7 @@ from grader.marking.order import Order
 from grader.marking.results import Busy
 from grader.report.as_json import as_json
 from grader.report.terminal import show
-from grader.sandbox import Isolation, SandboxUnavailable
+from grader.sandbox import Isolation, Middleware, SandboxUnavailable, choose_middleware
 from grader.submission import NoSubmission, Submission, read
 
 #: Exit codes. 2 is click's own, for usage.
@@ -41,6 +41,11 @@ FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
     "--isolation",
     type=click.Choice([level.value for level in Isolation]),
     help="How the node is kept apart from this machine.  [default: the strongest that works here]",
+)
+@click.option(
+    "--middleware",
+    type=click.Choice([middleware.value for middleware in Middleware]),
+    help="Over which the node talks to the grader.  [default: lockstep, the grader's own, where it can be had]",
 )
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="A class: the folder of the results.")
 @click.option("--jobs", type=click.IntRange(1, 64), help="A class: how many submissions to grade at once.")
@@ -68,6 +73,7 @@ def grade(
     real_time: bool,
     seed: int,
     isolation: str | None,
+    middleware: str | None,
     out: Path | None,
     jobs: int | None,
     regrade: tuple[str, ...],
@@ -101,8 +107,15 @@ def grade(
       spinbook grade joint_velocity moodle.zip --out results/ --overrides extensions.csv
       spinbook grade joint_velocity submissions/ --out results/ --regrade anna
     """
-    options = Options(Isolation(isolation) if isolation else None, seed, 1.0 if real_time else None)
+    options = Options(
+        isolation=Isolation(isolation) if isolation else None,
+        seed=seed,
+        pace=1.0 if real_time else None,
+        middleware=Middleware(middleware) if middleware else None,
+    )
     try:
+        if warning := choose_middleware(options.middleware).warning:
+            click.echo(warning, err=True)
         found = load(_folder(exercise))
         if out:
             sys.exit(_class(found, Order(Path(submission), out, options, jobs, regrade, overrides, scheduler)))
@@ -133,7 +146,7 @@ def _class(exercise: Exercise, order: Order) -> int:
 
 
 def _graded(exercise: Exercise, submission: Submission, options: Options) -> Grade:
-    with Crew() as crew:
+    with Crew(options.middleware) as crew:
         return grading_of(exercise, options, crew).grade(submission)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -10,13 +11,13 @@ from rich.console import Console
 
 from grader.audit.report.as_json import write_json
 from grader.audit.report.progress import on
-from grader.audit.report.terminal import show
+from grader.audit.report.terminal import show, show_shadow
 from grader.audit.result import Audit, Problem
 from grader.crew import Crew, HostFault
 from grader.exercise import Exercise, ExerciseError, load
 from grader.exercise.finding import NoExercise, find
 from grader.grading import Options
-from grader.sandbox import SandboxUnavailable
+from grader.sandbox import Middleware, SandboxUnavailable, choose_middleware
 
 #: Exit codes, beside click's 2 for usage and a shell's 130 for Ctrl-C.
 PROVED, TO_MEND, OUR_FAULT, STOPPED = 0, 1, 3, 130
@@ -29,6 +30,12 @@ PROVED, TO_MEND, OUR_FAULT, STOPPED = 0, 1, 3, 130
 @click.option("--seeds", type=click.IntRange(1), help="Numbers for the scenarios with chance in them.  [default: 20]")
 @click.option("--json", "json_", type=click.Path(path_type=Path), help="Write the report as JSON, for programs.")
 @click.option("--html", type=click.Path(path_type=Path), help="Write the report as a page.")
+@click.option("--shadow", is_flag=True, help="Grade every file in solutions/ over both middlewares, and compare.")
+@click.option(
+    "--middleware",
+    type=click.Choice([middleware.value for middleware in Middleware]),
+    help="Over which nodes talk to the grader.  [default: lockstep, the grader's own, where it can be had]",
+)
 @click.option("--parallel", type=click.IntRange(1, 64), help="How many spins run at once.  [default: twice the cores]")
 def audit(
     exercises: tuple[str, ...],
@@ -37,6 +44,8 @@ def audit(
     seeds: int | None,
     json_: Path | None,
     html: Path | None,
+    shadow: bool,
+    middleware: str | None,
     parallel: int | None,
 ) -> None:
     """Show that the checks of each EXERCISE catch what is wrong and pass what is right.
@@ -50,6 +59,7 @@ def audit(
       spinbook audit joint_velocity               one
       spinbook audit --quick                      a sample, in seconds
       spinbook audit joint_velocity --html a.html how much each check catches, and what it costs
+      spinbook audit --shadow                     do lockstep and Fast DDS lead to the same verdicts?
 
     EXERCISE is a name in the course's folder exercises/, or the path of an exercise's folder. The first audit of an
     exercise takes minutes. What has been tried before is not tried again while nothing that it depends on has changed,
@@ -61,14 +71,23 @@ def audit(
         if file and (file.is_dir() or not file.absolute().parent.is_dir()):
             told = "that is a folder" if file.is_dir() else f"there is no folder {file.parent}"
             raise click.UsageError(f"{option} {file}: {told}. Name a file in a folder that is there.")
-    options = Options(parallel=parallel) if parallel else Options()
+    if shadow and (quick or mutants is not None or seeds or json_ or html or middleware):
+        raise click.UsageError("--shadow goes with no other option but --parallel.")
+    options = Options(middleware=Middleware(middleware) if middleware else None)
+    options = replace(options, parallel=parallel) if parallel else options
     audits: list[Audit] = []
+    differing = 0
     faulty: list[ExerciseError] = []
     console = Console(highlight=False)
     try:
-        with Crew() as crew:
+        if not shadow and (warning := choose_middleware(options.middleware).warning):
+            click.echo(warning, err=True)
+        with Crew(*(Middleware if shadow else (options.middleware,))) as crew:
             for folder in [_folder(name) for name in exercises] or _all_here():
                 try:
+                    if shadow:
+                        differing += _shadowed(load(folder), options, crew, console)
+                        continue
                     audits.append(_audited(load(folder), options, crew, console, quick, mutants, seeds))
                 except ExerciseError as error:
                     faulty.append(error)
@@ -88,7 +107,17 @@ def audit(
     except KeyboardInterrupt:
         click.echo("Stopped. What was tried is kept; the same command goes on from there.", err=True)
         sys.exit(STOPPED)
-    sys.exit(TO_MEND if faulty or any(result.problems for result in audits) else PROVED)
+    sys.exit(TO_MEND if faulty or differing or any(result.problems for result in audits) else PROVED)
+
+
+def _shadowed(exercise: Exercise, options: Options, crew: Crew, console: Console) -> int:
+    """Show on which verdicts the two middlewares disagree; how many there are."""
+    from grader.audit.shadow import shadow
+
+    with on(Console(stderr=True)) as progress:
+        result = shadow(exercise, options, crew, progress)
+    show_shadow(result, console)
+    return len(result.differing)
 
 
 def _audited(

@@ -18,6 +18,7 @@ from grader.grading.reference import cache_folder
 from grader.grading.versions import GRADER, digest_of, versions
 from grader.recording import Recording
 from grader.recording.store import from_json, to_json
+from grader.sandbox import Middleware
 from grader.scenario import Scenario
 from grader.submission import Submission
 
@@ -50,7 +51,8 @@ class Spins:
         Raises `HostFault` where the machine or we are at fault, `Stopped` when no more are to be made.
         """
         spinner = self._grading.spinner
-        key = (submission.digest, scenario.digest, str(spinner.isolation), spinner.exercise.outputs, engine())
+        made_by = (str(spinner.isolation), engine(spinner.middleware))
+        key = (submission.digest, scenario.digest, spinner.exercise.outputs, *made_by)
         file = self._folder / f"{hashlib.sha256(repr(key).encode()).hexdigest()[:32]}.spin.gz"
         try:
             kept = from_json(gzip.decompress(file.read_bytes()).decode())[scenario.name]
@@ -90,12 +92,12 @@ def tidy(exercise: str) -> None:
 
 
 @cache
-def engine(also: tuple[str, ...] = ()) -> str:
-    """A digest of all of ours that decides what a recording holds, and of Python's and ROS's versions.
+def engine(middleware: Middleware, also: tuple[str, ...] = ()) -> str:
+    """A digest of all of ours that decides what a recording holds, and the versions of Python, ROS and the middleware.
 
     `also` names further files and folders, by their paths below grader/.
     """
     named = [GRADER / name for name in (*SPINNING_FILES, *SPINNING, *also)]
     files = [file for path in named for file in (sorted(path.rglob("*.py")) if path.is_dir() else [path])]
-    others = {name: version for name, version in versions().items() if name != "grader"}
+    others = {name: version for name, version in versions(middleware).items() if name != "grader"}
     return f"{digest_of(files)} {json.dumps(others, sort_keys=True)}"

@@ -31,7 +31,7 @@ class Store:
             "solution": digest_of([solution_file(exercise)]),
             "exercise": digest_of([exercise.folder / "exercise.toml", *exercise.check_files]),
             "scenarios": [scenario.digest for scenario in spinner.scenarios],
-            "engine": engine(JUDGING),
+            "engine": engine(spinner.middleware, JUDGING),
             "isolation": str(spinner.isolation),
         }
         self._lock = threading.Lock()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from grader.checking.lateness import how_late
 from grader.checking.pattern import pattern
 
 if TYPE_CHECKING:
@@ -60,10 +61,11 @@ def close(got: Any, expected: Any, tolerance: float) -> bool:
 
 def _answer(run: Run, exchange: Exchange) -> Message:
     if not exchange.answers:
-        told = "an answer was expected, none came."
+        late = how_late(run, exchange)
+        told = f"an answer was expected at once; it came {late}." if late else "an answer was expected, none came."
         if not exchange.sent.heard and run.subscriptions(exchange.sent.topic):
             told += f" Your node did not subscribe to {exchange.sent.topic} yet: create the subscription in __init__."
-        run.wrong(exchange, told, "", "a message", "nothing")
+        run.wrong(exchange, told, "", "a message", late or "nothing")
     return exchange.answers[0]
 
 
@@ -89,7 +91,7 @@ def _compare_each(
 
 def _differs(run: Run, exchange: Exchange, field: str, expected: Any, got: Any, unit: str) -> None:
     wanted, came = _shown(expected, unit), _shown(got, unit)
-    run.wrong(exchange, f"expected {field} {wanted}, got {came}.", "", wanted, came)
+    run.wrong(exchange, f"expected {field} {wanted}, got {came}.{pattern(run, field)}", "", wanted, came)
 
 
 def _shown(value: Any, unit: str = "") -> str:

@@ -5,22 +5,32 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from grader.checking.lateness import is_one_late
+
 if TYPE_CHECKING:
-    from grader.checking.run import Run
+    from grader.checking.run import Message, Run
+
+#: What a speed is multiplied with when its time is measured with the computer's clock: see `grader.runner.clocks`.
+COMPUTER_CLOCK = 0.8
 
 #: A value this near to 0 tells nothing about a ratio.
 SMALLEST = 1e-3
 
 
-def pattern(run: Run, field: str, per: str) -> str:
-    """A sentence about what all values of `field` have in common, beginning with a space; empty where nothing."""
+def pattern(run: Run, field: str, per: str = "") -> str:
+    """A sentence about what all values of `field` have in common, beginning with a space; empty where nothing.
+
+    `per` names the list of names that `field` goes with; without it, `field` is one number.
+    """
+    if is_one_late(run):
+        return " Every answer is one message late: it is the right one to the message before."
     pairs: list[tuple[float, float]] = []
     positions: list[tuple[float, float]] = []
     for exchange in run.exchanges:
         if exchange.expected and exchange.answers:
-            expected, got = exchange.expected[0].by(per, field), exchange.answers[0].by(per, field)
+            expected, got = _values(exchange.expected[0], field, per), _values(exchange.answers[0], field, per)
             pairs += [(expected[name], got[name]) for name in expected if name in got]
-            if "position" in exchange.sent._fields:
+            if per and "position" in exchange.sent._fields:
                 sent = exchange.sent.by(per, "position")
                 positions += [(sent[name], got[name]) for name in got if name in sent]
     if positions and all(math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-12) for a, b in positions):
@@ -37,4 +47,15 @@ def pattern(run: Run, field: str, per: str) -> str:
         return " All signs are turned round."
     if math.isclose(ratio, 180 / math.pi, rel_tol=1e-3):
         return " All values are in degrees."
-    return f" Every {field} is {ratio:.4g} times what it should be."
+    told = f" Every {field} is {ratio:.4g} times what it should be"
+    if run.recording.hold == "lockstep" and any(
+        math.isclose(ratio, factor, rel_tol=1e-3) for factor in (COMPUTER_CLOCK, 1 / COMPUTER_CLOCK)
+    ):
+        return f"{told}: your node measures time with the computer's clock, which goes at another speed here."
+    return f"{told}."
+
+
+def _values(message: Message, field: str, per: str) -> dict[str, float]:
+    """The numbers in a field, by name."""
+    values = message.by(per, field) if per else {"": message.value(field)}
+    return {name: value for name, value in values.items() if isinstance(value, (int, float))}

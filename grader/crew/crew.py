@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from grader.crew.environment import OURS
 from grader.crew.hand import Hand
+from grader.sandbox import Middleware, choose_middleware
 
 if TYPE_CHECKING:
     from grader.crew.hand import Connection
@@ -28,7 +29,14 @@ class Crew:
     Any thread may call `do` and `hand`; use it as a context manager.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *middlewares: Middleware | None) -> None:
+        """Starts the worker, ready for programs of these middlewares; None is the one that is used without a wish.
+
+        Raises:
+            MiddlewareUnavailable: if one of them can't be had on this machine.
+        """
+        chosen = {choose_middleware(one).middleware for one in middlewares or (None,)}
+        self._middlewares = sorted(one.value for one in chosen)
         self._lock = threading.Lock()
         self._closed = False
         self._start()
@@ -36,7 +44,7 @@ class Crew:
     def _start(self) -> None:
         self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._worker = subprocess.Popen(
-            [sys.executable, "-m", "grader.crew.worker", str(theirs.fileno())],
+            [sys.executable, "-m", "grader.crew.worker", str(theirs.fileno()), *self._middlewares],
             pass_fds=[theirs.fileno()],
             stdin=subprocess.DEVNULL,
             start_new_session=True,

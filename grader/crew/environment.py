@@ -6,15 +6,15 @@ from pathlib import Path
 
 PROFILE = Path(__file__).parents[1] / "loopback.xml"
 
-#: For every process that takes part in a spin. The ROS domain comes on top.
-EVERYONE = {
+#: For every process that takes part in a spin over Fast DDS. The ROS domain comes on top.
+FAST_DDS = {
     "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILE),
     "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
 }
 
 #: For the worker and its rigs. A second RMW or a ROS_STATIC_PEERS of the user's would part rig and student.
 OURS = {
-    **EVERYONE,
+    **FAST_DDS,
     "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp",
     "ROS_STATIC_PEERS": "",
     "PYTHONHASHSEED": "0",
@@ -23,8 +23,6 @@ OURS = {
 
 #: For students' programs. No time stamps in the log, so that two runs log the same.
 STUDENTS = {
-    **EVERYONE,
-    "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp",
     "RCUTILS_CONSOLE_OUTPUT_FORMAT": "[{severity}] [{name}]: {message}",
     "RCUTILS_COLORIZED_OUTPUT": "0",
 }

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, Protocol
 
 from grader.exercise import Exercise
 from grader.recording import Recording
-from grader.sandbox import Isolation, Limits, Nursery, Program, enter
+from grader.runner.task import Task
+from grader.sandbox import Isolation, Limits, Middleware, Nursery, Program, Student, enter
 from grader.scenario import Scenario
 
 
@@ -27,6 +29,7 @@ class SpinJob:
     scenario: Scenario
     program: Program
     isolation: Isolation
+    middleware: Middleware
     limits: Limits
     source: str
     file_name: str
@@ -35,15 +38,35 @@ class SpinJob:
 
     def run(self, nursery: Nursery, ready: Callable[[], None]) -> Recording:
         """The recording of the spin."""
-        from grader.crew.domain import domain_for
-        from grader.rig.spin import Spin, spin
+        by = {Middleware.LOCKSTEP: self._over_lockstep, Middleware.FASTDDS: self._over_fast_dds}
+        return by[self.middleware](nursery, ready)
 
+    @property
+    def _task(self) -> Task:
+        return Task(self.exercise, self.scenario, self.file_name, self.source, self.pace)
+
+    def _over_lockstep(self, nursery: Nursery, ready: Callable[[], None]) -> Recording:
+        from grader.runner.run import run
+
+        def start(hub: Path) -> Student:
+            return nursery.start(replace(self.program, hub=hub), self.isolation, self.limits, self.core)
+
+        ready()
+        return run(self._task, start)
+
+    def _over_fast_dds(self, nursery: Nursery, ready: Callable[[], None]) -> Recording:
+        from grader.crew.domain import domain_for
+        from grader.rig.spin import spin
+
+        nursery.prepare(self.middleware)  # before, so that it stays outside of what is entered now
         enter(self.isolation)
         ready()
         domain = domain_for(self.isolation)
         program = replace(self.program, environment={**self.program.environment, "ROS_DOMAIN_ID": str(domain)})
-        what = Spin(self.exercise, self.scenario, domain, self.file_name, self.source, self.pace)
-        return spin(what, lambda: nursery.start(program, self.isolation, self.limits, self.core))
+        return spin(
+            replace(self._task, domain=domain),
+            lambda: nursery.start(program, self.isolation, self.limits, self.core),
+        )
 
 
 @dataclass(frozen=True)

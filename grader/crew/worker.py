@@ -1,4 +1,7 @@
-"""The worker process, `python -m grader.crew.worker FD`: has rclpy in its memory and forks the processes for jobs."""
+"""The worker process: has rclpy in its memory and forks the processes for jobs.
+
+python -m grader.crew.worker DESCRIPTOR MIDDLEWARE…
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from grader.crew.crew import PREPARE_TO_JUDGE, PROCESS
 from grader.exercise import ExerciseError
-from grader.sandbox import Nursery
+from grader.sandbox import Middleware, Nursery
 from grader.sandbox.fork import fork
 
 if TYPE_CHECKING:
@@ -27,9 +30,10 @@ if TYPE_CHECKING:
 def main() -> None:
     """Serve jobs until the other end of the control socket is closed."""
     control = socket.socket(fileno=int(sys.argv[1]))
-    with Nursery() as nursery:
+    with Nursery([Middleware(name) for name in sys.argv[2:]]) as nursery:
         import grader.crew.jobs
-        import grader.rig.spin  # noqa: F401  # for every process that is forked from this one
+        import grader.rig.spin
+        import grader.runner.run  # noqa: F401  # for every process that is forked from this one
         from grader.crew.warmth import warm, warm_to_judge
 
         warm()

@@ -54,7 +54,7 @@ def _files(exercise: Exercise) -> Iterator[tuple[str, Path]]:
     """Every file of the container's course, with its name there."""
     for name in NEEDED:
         yield name, SOURCE / name
-    for package in ("grader", "spinbook"):
+    for package in ("grader", "spinbook", "rmw_lockstep"):
         for file in _within(SOURCE / package):
             yield f"{package}/{file.relative_to(SOURCE / package)}", file
     for file in _within(exercise.folder):

@@ -8,6 +8,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 missing=()
 python3 -c 'import ensurepip, venv' 2>/dev/null || missing+=(python3 python3-venv)
 command -v bwrap >/dev/null || missing+=(bubblewrap)
+command -v g++ >/dev/null || missing+=(g++)
 if [ "${#missing[@]}" -gt 0 ]; then
     apt-get update -qq
     DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
@@ -18,6 +19,9 @@ cat "$here/course/constraints.txt" "$here/course/constraints-ros.txt" |
     sed -n 's/^\([A-Za-z0-9].*[^ \\]\) *\\$/\1/p' >"$here/pins.txt"
 python3 -m venv "$here/venv"
 "$here/venv/bin/python" -m pip install --quiet --disable-pip-version-check -c "$here/pins.txt" "$here/course[ros]"
+
+# The grader's own middleware. Where it can't be compiled Fast DDS is used, and the build's output has the reason.
+"$here/venv/bin/python" -m rmw_lockstep.build || true
 
 # Proves that grading works in here, and keeps what the solution publishes. What is wrong stands in the build's output.
 "$here/venv/bin/python" -m grader.gradescope.prepare "$here/course/exercises/$EXERCISE" $ISOLATION

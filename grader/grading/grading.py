@@ -83,7 +83,7 @@ class Grading:
             verdicts=verdicts,
             isolation=str(self.spinner.isolation),
             seed=self.spinner.options.seed,
-            versions=versions(),
+            versions=versions(self.spinner.middleware),
             self_check=self.public is not None,
             hidden_checks=self.public.hidden_checks if self.public else 0,
             hidden_points=self.public.hidden_points if self.public else 0.0,
@@ -127,5 +127,6 @@ def _isolation_of_ones_own(options: Options) -> Isolation:
 
 def grade_submission(exercise: Exercise, submission: Submission, options: Options | None = None) -> Grade:
     """The grade of one submission. Raises what `grading_of` raises."""
-    with Crew() as crew:
-        return grading_of(exercise, options or Options(), crew).grade(submission)
+    options = options or Options()
+    with Crew(options.middleware) as crew:
+        return grading_of(exercise, options, crew).grade(submission)

@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, field
 
-from grader.sandbox import Isolation, Limits
+from grader.sandbox import Isolation, Limits, Middleware
 
 
 @dataclass(frozen=True)
 class Options:
-    """How to grade. `isolation` None means the strongest that works here.
+    """How to grade. `isolation` None means the strongest that works here, `middleware` None lockstep if it can be had.
 
     `seed` chooses the numbers of scenarios that have chance in them. `pace` is 1.0 for the pace of real time, None for
     as fast as it goes.
@@ -25,3 +25,4 @@ class Options:
     parallel: int = field(default_factory=lambda: max(2, min(8, 2 * len(os.sched_getaffinity(0)))))
     limits: Limits = field(default_factory=Limits)
     core: int | None = None
+    middleware: Middleware | None = None

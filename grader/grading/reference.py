@@ -69,7 +69,7 @@ def key_of(spinner: Spinner) -> str:
         "solution": digest_of([solution_file(exercise)]),
         "exercise": digest_of([exercise.folder / "exercise.toml", *exercise.check_files]),
         "scenarios": [scenario.digest for scenario in spinner.scenarios],
-        "versions": versions(),
+        "versions": versions(spinner.middleware),
         "pace": spinner.options.pace,
     }
     return hashlib.sha256(json.dumps(key, sort_keys=True).encode()).hexdigest()

@@ -7,14 +7,14 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 
 from grader.crew import Crew
-from grader.crew.environment import PROFILE, STUDENTS
+from grader.crew.environment import FAST_DDS, PROFILE, STUDENTS
 from grader.crew.jobs import SpinJob
 from grader.exercise import Exercise
 from grader.grading.helping import Helping
 from grader.grading.options import Options
 from grader.grading.spins import Spins
 from grader.recording import Ending, Recording
-from grader.sandbox import Isolation
+from grader.sandbox import Isolation, Middleware, choose_middleware
 from grader.scenario import Scenario
 from grader.submission import Submission
 
@@ -32,6 +32,11 @@ class Spinner:
     crew: Crew
     helping: Helping = field(default_factory=Helping, compare=False)
     """Through which others may help, beside the `options.parallel` hands that there are for each submission."""
+
+    @property
+    def middleware(self) -> Middleware:
+        """Over which programs talk. Raises `MiddlewareUnavailable` where the one that is asked for can't be had."""
+        return choose_middleware(self.options.middleware).middleware
 
     def spin(self, submission: Submission) -> dict[str, Recording]:
         """The recording of each scenario. Raises `HostFault` when one can't be had.
@@ -61,11 +66,12 @@ class Spinner:
     def job(self, submission: Submission, scenario: Scenario, number: int) -> SpinJob:
         """The spin of a program through one scenario; `number` chooses the core that it is kept on, turn by turn."""
         assert submission.program
+        fast_dds = self.middleware is Middleware.FASTDDS
         program = replace(
             submission.program,
             arguments=ARGUMENTS,
-            environment={**STUDENTS, **submission.program.environment},
-            readonly=(PROFILE, *submission.program.readonly),
+            environment={**STUDENTS, **(FAST_DDS if fast_dds else {}), **submission.program.environment},
+            readonly=(*((PROFILE,) if fast_dds else ()), *submission.program.readonly),
             hidden=(self.exercise.folder, *([self.exercise.solution_folder] if self.exercise.solution_folder else [])),
         )
         cores = sorted(os.sched_getaffinity(0))
@@ -74,6 +80,7 @@ class Spinner:
             scenario=scenario,
             program=program,
             isolation=self.isolation,
+            middleware=self.middleware,
             limits=self.options.limits,
             source=submission.source,
             file_name=submission.file_name,

@@ -49,7 +49,7 @@ def grade_class(exercise: Exercise, order: Order, console: Console) -> int:
         tell_intake(console, intake.kind, len(intake.handed_in), intake.skipped)
         submissions = {one.student.id: read(str(one.file.path), exercise) for one in intake.handed_in}
         adjusting = _adjusting(exercise, order, set(submissions))
-        with Results(order.out) as results, Crew() as crew:
+        with Results(order.out) as results, Crew(order.options.middleware) as crew:
             grading = grading_of(exercise, order.options, crew)
             with _markers(grading, order) as markers:
                 marking = Marking(exercise, markers, results, adjusting)

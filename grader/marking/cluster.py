@@ -59,7 +59,7 @@ class Cluster:
                     yield future.result()
                 else:
                     told = f"the cluster could not grade it: {type(error).__name__}: {error}"
-                    grade = fault(spinner.exercise, spinner.options, spinner.isolation, submissions[who], told)
+                    grade = fault(spinner, submissions[who], told)
                     yield Marked(who, grade, None)
         finally:
             self.client.cancel(list(asked))
@@ -85,12 +85,12 @@ def cluster(grading: Grading, address: str) -> Iterator[Cluster]:
             client.wait_for_workers(1, timeout=WORKER_S)
         except TimeoutError:
             raise NoCluster(f"--scheduler {address}: it has no worker. Start some: dask worker {address}") from None
-        _same_versions(client.run(about, on_error="return"))
+        middleware = grading.spinner.middleware
+        _same_versions(versions(middleware), client.run(about, middleware, on_error="return"))
         yield Cluster(grading, client)
 
 
-def _same_versions(told: Mapping[str, object]) -> None:
-    ours = versions()
+def _same_versions(ours: Mapping[str, str], told: Mapping[str, object]) -> None:
     for worker, theirs in sorted(told.items()):
         if not isinstance(theirs, dict):
             raise NoCluster(f"The worker {worker} can't grade: {type(theirs).__name__}: {theirs}")

@@ -19,6 +19,7 @@ from grader.marking.key import key_of
 from grader.marking.marks import Marked
 from grader.marking.parcel import Parcel
 from grader.marking.picture import picture
+from grader.sandbox import Middleware, choose_middleware
 from grader.submission import Submission
 
 
@@ -35,9 +36,9 @@ _ready: dict[str, Bench] = {}
 _lock = threading.Lock()
 
 
-def about() -> dict[str, str]:
-    """What grades depend on here, beside the exercise."""
-    return versions()
+def about(middleware: Middleware) -> dict[str, str]:
+    """What grades depend on here, besides the exercise. Raises `MiddlewareUnavailable`."""
+    return versions(choose_middleware(middleware).middleware)
 
 
 def mark(parcel: Parcel, options: Options, key: str, who: str, submission: Submission) -> Marked:
@@ -46,14 +47,14 @@ def mark(parcel: Parcel, options: Options, key: str, who: str, submission: Submi
     `key` is that of whoever asks: where grades would depend on something else here, there is none, and it is told.
     """
     bench = _bench(parcel, options)
-    exercise = bench.grading.spinner.exercise
+    spinner = bench.grading.spinner
     if bench.key != key:
-        told = f"a worker of the cluster grades otherwise than this machine: {versions()}"
-        return Marked(who, fault(exercise, options, bench.grading.spinner.isolation, submission, told), None)
+        told = f"a worker of the cluster grades otherwise than this machine: {versions(spinner.middleware)}"
+        return Marked(who, fault(spinner, submission, told), None)
     with own_core() as core:
-        spinner = replace(bench.grading.spinner, options=replace(options, parallel=1, core=core))
+        spinner = replace(spinner, options=replace(options, parallel=1, core=core))
         grade = replace(bench.grading, spinner=spinner).grade(submission)
-    return Marked(who, replace(grade, recordings={}, references={}), picture(grade, exercise))
+    return Marked(who, replace(grade, recordings={}, references={}), picture(grade, spinner.exercise))
 
 
 def _bench(parcel: Parcel, options: Options) -> Bench:
@@ -65,7 +66,7 @@ def _bench(parcel: Parcel, options: Options) -> Bench:
                 _ready.popitem()[1].holds.close()
             with contextlib.ExitStack() as holds:
                 folder = holds.enter_context(tempfile.TemporaryDirectory(prefix="spinbook-exercise-"))
-                crew = holds.enter_context(Crew())
+                crew = holds.enter_context(Crew(options.middleware))
                 grading = grading_of(load(parcel.unpack(Path(folder))), options, crew)
                 _ready[name] = Bench(grading, key_of(grading), holds.pop_all())
         return _ready[name]

@@ -27,7 +27,7 @@ def key_of(grading: Grading) -> str:
         "exercise": repr(replace(exercise, folder=Path(), solution_folder=None)),
         "files": digest_of([file for file in files if file.exists()]),
         "scenarios": [scenario.digest for scenario in spinner.scenarios],
-        "versions": versions(),
+        "versions": versions(spinner.middleware),
         "seed": spinner.options.seed,
         "pace": spinner.options.pace,
         "limits": asdict(spinner.options.limits),

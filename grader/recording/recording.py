@@ -73,9 +73,10 @@ class Ending:
 class Recording:
     """One spin of one node through one scenario.
 
-    `hold` tells how the rig knew that the node had handled a message: by its parameter services, by its type
-    description service, or by waiting until it was quiet. `seconds` is how long the run took in real time, and
-    `lockstep_seconds` the part of it from the first message to the last.
+    `hold` tells how it was known that the node had handled a message. "lockstep": the middleware said so. The others
+    are for Fast DDS: by its parameter services, by its type description service, or by waiting until it was quiet.
+    `seconds` is how long the run took in real time, and `lockstep_seconds` the part of it from the first message to the
+    last.
     """
 
     scenario: str
@@ -83,7 +84,7 @@ class Recording:
     received: tuple[Received, ...]
     nodes: tuple[str, ...]
     end_points: tuple[EndPoint, ...]
-    hold: Literal["parameters", "type description", "quiet", "none"]
+    hold: Literal["lockstep", "parameters", "type description", "quiet", "none"]
     uses_sim_time: bool
     ending: Ending
     log: str = field(default="", compare=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from grader.grading import Grade
-from grader.sandbox import Isolation
+from grader.sandbox import Isolation, Middleware
 
 
 def total(grade: Grade) -> str:
@@ -25,6 +25,8 @@ def standing(grade: Grade) -> str:
     told = "This is a self-check, not your grade."
     if grade.isolation == Isolation.NONE.value:
         told += " Your code ran without a sandbox, and no grade of record is made that way."
+    if grade.versions["middleware"] == Middleware.FASTDDS.value:
+        told += " It ran over Fast DDS: a node with threads or sleeps of its own may get another result each time."
     return told
 
 

@@ -34,7 +34,8 @@ def show(grade: Grade, exercise: Exercise, console: Console, verbose: bool = Fal
             console.print(Text(first, style=style), *(Text(line) for line in rest), sep="\n", soft_wrap=True)
         else:
             console.print(Text(f"{grade.score:g} of {grade.points:g} points", style=style))
-    console.print(Text(f"isolation: {grade.isolation}", style="dim"))
+    made_by = f"isolation: {grade.isolation}, middleware: {grade.versions['middleware']}"
+    console.print(Text(made_by, style="dim"))
     if verbose:
         console.print(Text("the node's log:", style="bold"))
         console.print(Text(printable(grade.log) or "(nothing)"), soft_wrap=True)

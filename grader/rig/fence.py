@@ -23,8 +23,8 @@ from type_description_interfaces.srv import GetTypeDescription
 from grader.rig.call import Caller, Calls
 from grader.rig.graph import Graph
 from grader.rig.patience import Calm, Patience
-from grader.rig.stopped import Stopped
 from grader.rig.watch import Watch
+from grader.runner.stopped import Stopped
 
 Hold = Literal["parameters", "type description", "quiet"]
 

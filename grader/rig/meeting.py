@@ -11,8 +11,8 @@ from grader.rig.graph import Graph
 from grader.rig.patience import Calm, Patience
 from grader.rig.publishers import ReferencePublishers
 from grader.rig.recorder import Recorder
-from grader.rig.stopped import Stopped
 from grader.rig.watch import Watch
+from grader.runner.stopped import Stopped
 
 #: Importing large libraries takes computing time; nothing that a node needs takes this much.
 START_CPU_S, START_BLOCKED_S = 20.0, 3.0

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import time
 
-from grader.rig.stopped import Stopped
 from grader.rig.watch import Watch
+from grader.runner.stopped import Stopped
 
 #: The longest piece of time between two looks that counts: a rig that did not run itself saw nothing. Where a machine
 #: is not busy the looks come sooner than this.

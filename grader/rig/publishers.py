@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from grader.recording import Sent
-from grader.rig.message import message_class, to_message
 from grader.rig.ros import OFFER
+from grader.runner.message import message_class, to_message
 from grader.scenario import Message, Scenario
 
 

@@ -11,9 +11,9 @@ from rclpy.serialization import deserialize_message
 
 from grader.exercise.interface import Topic
 from grader.recording import Received
-from grader.rig.message import message_class, to_fields
 from grader.rig.ros import ACCEPT, ACCEPT_ANY
-from grader.rig.stopped import Stopped
+from grader.runner.message import message_class, to_fields
+from grader.runner.stopped import Stopped
 
 #: No exercise needs more than this from a node in one scenario.
 MOST_MESSAGES = 5_000

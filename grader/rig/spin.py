@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 
-from grader.exercise import Exercise
 from grader.recording import Ending, EndPoint, Recording
 from grader.rig.clock import Clock
-from grader.rig.ending import cut_short, interrupted
+from grader.rig.ending import interrupted
 from grader.rig.fence import AFTER_CLOCK, AFTER_MESSAGES, Fence, Gone
 from grader.rig.graph import Graph
 from grader.rig.meeting import Discovery, let_in, wait_for_nodes, wait_until_connected
@@ -17,32 +15,18 @@ from grader.rig.publishers import ReferencePublishers
 from grader.rig.quiet import Receivers, Threads
 from grader.rig.recorder import Recorder
 from grader.rig.ros import Ros
-from grader.rig.stopped import Stopped
-from grader.rig.student import Student
 from grader.rig.watch import Watch
-from grader.scenario import Scenario
+from grader.runner.ending import cut_short
+from grader.runner.stopped import Stopped
+from grader.runner.student import Student
+from grader.runner.task import Task
 from grader.scenario.scenario import SECOND, START
 
 #: How far simulated time goes on after the last message, for what a node does by timer.
 AFTERWARDS = SECOND // 2
 
 
-@dataclass(frozen=True)
-class Spin:
-    """What to spin. `domain` is the ROS domain; `pace` is 1.0 for real time's pace and None for as fast as it goes.
-
-    `file_name` and `source` are the student's, to name lines in what is told.
-    """
-
-    exercise: Exercise
-    scenario: Scenario
-    domain: int
-    file_name: str
-    source: str
-    pace: float | None = None
-
-
-def spin(what: Spin, start: Callable[[], Student]) -> Recording:
+def spin(what: Task, start: Callable[[], Student]) -> Recording:
     """Start the student's program and spin it through the scenario; every fault of the student's is in the recording.
 
     Anything raised is a fault of the machine's or of ours.
@@ -59,7 +43,7 @@ def spin(what: Spin, start: Callable[[], Student]) -> Recording:
 class Rig:
     """One run: the rig's ends of the graph around one student."""
 
-    def __init__(self, ros: Ros, what: Spin, student: Student) -> None:
+    def __init__(self, ros: Ros, what: Task, student: Student) -> None:
         self._what, self._student = what, student
         node = ros.node("rig")
         self._clock = Clock(node)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from grader.rig.quiet import Receivers, Threads
-from grader.rig.student import Student
+from grader.runner.student import Student
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,15 @@
 """Runs a student's program where it can neither see nor harm anything: see docs/sandbox.md.
 
-nursery = Nursery()                       # once in a worker, before the rigs are forked
+nursery = Nursery([Middleware.LOCKSTEP])  # once in a worker, before the processes that grade are forked
 ...
-enter(isolation)                          # in the rig, freshly forked
-with nursery.start(Program("node.py", {"node.py": source}), isolation) as student:
+with nursery.start(Program("node.py", {"node.py": source}, hub=socket), isolation) as student:
     ...
 """
 
-from .level import Isolation, SandboxError, SandboxUnavailable, available, choose
+from .faults import SandboxError, SandboxUnavailable
+from .level import Isolation, available, choose
 from .limits import Limits
+from .middleware import Choice, Middleware, MiddlewareUnavailable, choose_middleware
 from .nursery import Nursery
 from .output import Output
 from .program import Program
@@ -17,9 +18,12 @@ from .student import Student
 from .warden import Exit
 
 __all__ = [
+    "Choice",
     "Exit",
     "Isolation",
     "Limits",
+    "Middleware",
+    "MiddlewareUnavailable",
     "Nursery",
     "Output",
     "Program",
@@ -28,5 +32,6 @@ __all__ = [
     "Student",
     "available",
     "choose",
+    "choose_middleware",
     "enter",
 ]

@@ -27,8 +27,10 @@ def find() -> str | None:
     return shutil.which("bwrap")
 
 
-def build(plan: Sequence[Step], user_namespace: int) -> Room:
+def build(plan: Sequence[Step], user_namespace: int, *, network: bool) -> Room:
     """Makes the namespaces and their root, and moves this process into them (all but the pid namespace's children).
+
+    With `network` the network stays the one that this process is in; otherwise there is none, not even loopback.
 
     Raises:
         OSError: if bubblewrap could not be run or ended early; the text has what it said.
@@ -37,7 +39,7 @@ def build(plan: Sequence[Step], user_namespace: int) -> Room:
     if program is None:
         raise OSError("bubblewrap (bwrap) is not installed")
     texts = {step.path: _memory_file(step.content.encode()) for step in plan if step.action == "text"}
-    filters = [_memory_file(seccomp.program())] if seccomp.supported() else []
+    filters = [_memory_file(seccomp.program(network=network))] if seccomp.supported() else []
     # Not on the command line, which the student can read and which would tell it what is hidden from it.
     arguments = _memory_file(b"".join(os.fsencode(option) + b"\0" for option in _options(plan, texts)))
     information, information_end = os.pipe()
@@ -70,6 +72,8 @@ def build(plan: Sequence[Step], user_namespace: int) -> Room:
     for holder in (init, *holders):
         _starve(holder)
     _join(init, user_namespace)
+    if not network:
+        kernel.unshare(kernel.CLONE_NEWNET)  # not by bubblewrap, which brings loopback up
     return Room(init, holders, builder=process)
 
 
@@ -80,7 +84,7 @@ def _options(plan: Sequence[Step], texts: dict[str, int]) -> Iterator[str]:
         elif step.action == "scratch":
             yield from ("--perms", "1777", "--size", str(step.size), "--tmpfs", step.path)
         elif step.action == "bind":
-            yield from ("--ro-bind", step.path, step.path)
+            yield from ("--ro-bind", step.content or step.path, step.path)
         elif step.action == "mask":
             yield from ("--ro-bind", "/dev/null", step.path) if Path(step.path).is_file() else ("--tmpfs", step.path)
         elif step.action == "device":

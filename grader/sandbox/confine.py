@@ -66,7 +66,8 @@ def confine(
     if isolation is Isolation.NONE:
         return
     hidden = (*view.own_packages(), *start.program.hidden)
-    filters = seccomp.program(no_signals=_signals_leave(isolation)) if seccomp.supported() else None
+    network = start.program.hub is None
+    filters = seccomp.program(network=network, no_signals=_signals_leave(isolation)) if seccomp.supported() else None
     user = USER_ID if isolation is not Isolation.LANDLOCK else Path(place.home).stat().st_uid
     kernel.drop_bounding_capabilities()
     if os.geteuid() != user:
@@ -76,7 +77,7 @@ def confine(
     kernel.prctl(kernel.PR_SET_NO_NEW_PRIVS, 1)
     kernel.prctl(kernel.PR_SET_DUMPABLE, 1)  # lost with the change of user; without it /proc/self is closed
     if isolation is Isolation.LANDLOCK:
-        landlock.restrict(place, start.program.readonly, hidden)
+        landlock.restrict(place, start.program.readonly, hidden, processes=not network)
     if filters is not None:
         seccomp.install(filters)
 

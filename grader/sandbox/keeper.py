@@ -17,11 +17,12 @@ import signal
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NoReturn
 
 from . import bubblewrap, kernel, landlock, limits, namespaces, open_room, room, view
 from .confine import Start, confine
 from .level import Isolation
-from .program import SUBMISSION, Place, Program
+from .program import HUB, SUBMISSION, Place, Program
 
 
 @dataclass(frozen=True)
@@ -39,8 +40,8 @@ def keep(start: Start, control: int, output: int, rig_namespaces: Sequence[int])
         start: what to start.
         control: the socket to the rig.
         output: where the student's standard output and error go.
-        rig_namespaces: the user namespace that the rig has made for its students, and its own user and network
-            namespace; empty for the levels without.
+        rig_namespaces: the user namespace that the rig has made for its students, and for those without a hub its own
+            user and network namespace; empty for the levels without.
     """
     reported = False
     try:
@@ -51,6 +52,8 @@ def keep(start: Start, control: int, output: int, rig_namespaces: Sequence[int])
         users, *rig = rig_namespaces or (-1,)
         for namespace in rig:
             _join(namespace)
+        if start.program.hub:
+            _admit_student_alone(start.program.hub, _owner(start.isolation))
         house, place = _build(start, users)
         child = _fork_student(start, place, house, beside, output)
         if isinstance(child, Job):
@@ -68,15 +71,34 @@ def keep(start: Start, control: int, output: int, rig_namespaces: Sequence[int])
     os._exit(0)
 
 
+def refuse(control: int, reason: str) -> NoReturn:
+    """Answers a rig that no student can be started, and exits."""
+    _tell(control, {"event": "failed", "reason": reason})
+    os._exit(0)
+
+
 def _build(start: Start, users: int) -> tuple[room.Room | open_room.OpenRoom, Place]:
     program = start.program
     if start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
         builder = bubblewrap if start.isolation is Isolation.BUBBLEWRAP else namespaces
-        house = builder.build(start.plan, users)
+        house = builder.build(start.plan, users, network=not program.hub)
         room.place(program.files)
-        return house, Place(SUBMISSION, view.HOME, "/tmp")
-    place = open_room.make_place(program.files, _owner(start.isolation))
+        return house, Place(SUBMISSION, view.HOME, "/tmp", HUB if program.hub else None)
+    owner = _owner(start.isolation)
+    place = open_room.make_place(program.files, owner, program.hub)
     return open_room.OpenRoom(Path(place.folder).parent), place
+
+
+def _admit_student_alone(hub: Path, owner: int | None) -> None:
+    """Lets the student use the hub's socket, and no other user of this machine.
+
+    With namespaces it gets the socket alone, without the folder. Without, and as root, it is another user.
+    """
+    other_user = owner is not None and owner != os.geteuid()
+    hub.parent.chmod(0o711 if other_user else 0o700)
+    hub.chmod(0o600 if other_user else 0o666)
+    if other_user:
+        os.chown(hub, owner or 0, -1)
 
 
 def _fork_student(

@@ -6,8 +6,11 @@ Source: the manual pages named in each docstring (man7.org), section 2 unless to
 from __future__ import annotations
 
 import ctypes
+import fcntl
 import os
 import platform
+import socket
+import struct
 
 CLONE_NEWNS = 0x00020000
 CLONE_NEWUTS = 0x04000000
@@ -39,6 +42,9 @@ PR_SET_SECCOMP = 22
 PR_CAPBSET_DROP = 24
 PR_SET_CHILD_SUBREAPER = 36
 PR_SET_NO_NEW_PRIVS = 38
+
+_SIOCSIFFLAGS = 0x8914
+_IFF_UP = 1
 
 _MOUNT_SETATTR = 442  # the same number on every architecture, as all calls since Linux 5.1
 _PIVOT_ROOT = {"x86_64": 155, "aarch64": 41}
@@ -138,3 +144,9 @@ def drop_capabilities() -> None:
     header = (ctypes.c_uint32 * 2)(_CAPABILITY_VERSION_3, 0)
     data = (ctypes.c_uint32 * 6)()
     call("capset", ctypes.byref(header), ctypes.byref(data), what="capset")
+
+
+def bring_loopback_up() -> None:
+    """Makes 127.0.0.1 of this network namespace work: netdevice(7)."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:
+        fcntl.ioctl(any_socket, _SIOCSIFFLAGS, struct.pack("16sh14x", b"lo", _IFF_UP))

@@ -63,7 +63,7 @@ def student_user() -> int:
     return dedicated_user()
 
 
-def restrict(place: Place, readonly: Sequence[Path], hidden: Sequence[Path]) -> None:
+def restrict(place: Place, readonly: Sequence[Path], hidden: Sequence[Path], *, processes: bool) -> None:
     """Confines this process, and all that it starts, to reading Python and ROS 2 and writing its own folders.
 
     Needs no_new_privs.
@@ -72,6 +72,8 @@ def restrict(place: Place, readonly: Sequence[Path], hidden: Sequence[Path]) -> 
         place: its own folders.
         readonly: what else it may read.
         hidden: what it may not read, although it lies in something that it may; it sees the names in there.
+        processes: whether it may read /proc, in which its processes look whether they are idle. It then sees others'
+            command lines; Landlock itself keeps their memory, environment and files closed.
 
     Raises:
         OSError: if the kernel has no Landlock.
@@ -90,6 +92,8 @@ def restrict(place: Place, readonly: Sequence[Path], hidden: Sequence[Path]) -> 
     )
     for path in (*view.system(), *view.interpreter(), *readonly, Path(place.folder)):
         _allow_reading(ruleset, path, [path.resolve() for path in hidden])
+    if processes:
+        _allow(ruleset, Path("/proc"), _READ_FILE | _READ_FOLDER)
     for path in map(Path, ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")):
         _allow(ruleset, path, (_READ_FILE | _WRITE_FILE) & files)
     for path in (Path(place.home), Path(place.temporary)):

@@ -9,6 +9,7 @@ from enum import Enum
 from functools import cache
 
 from . import view
+from .faults import SandboxUnavailable
 
 _TRIAL_S = 30.0
 
@@ -28,14 +29,6 @@ class Isolation(str, Enum):
     def __str__(self) -> str:
         """The word that is used on the command line and in a grade."""
         return self.value
-
-
-class SandboxUnavailable(Exception):
-    """This machine does not allow the sandbox that was wanted, or none at all."""
-
-
-class SandboxError(Exception):
-    """A sandbox could not be made or ended: a fault of ours or the machine's, never of the student."""
 
 
 def available() -> dict[Isolation, str | None]:

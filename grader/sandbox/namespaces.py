@@ -17,20 +17,23 @@ _OLD = "/.old"
 _MOUNT = kernel.MS_NOSUID | kernel.MS_NODEV
 
 
-def build(plan: Sequence[Step], user_namespace: int) -> Room:
+def build(plan: Sequence[Step], user_namespace: int, *, network: bool) -> Room:
     """Makes the namespaces and their root, and moves this process into them (all but the pid namespace's children).
+
+    With `network` the network stays the one that this process is in; otherwise there is none, not even loopback.
 
     Raises:
         OSError: if a namespace or a mount is refused.
     """
     kernel.setns(user_namespace, kernel.CLONE_NEWUSER)
-    kernel.unshare(kernel.CLONE_NEWNS | kernel.CLONE_NEWPID | kernel.CLONE_NEWIPC | kernel.CLONE_NEWUTS)
+    flags = kernel.CLONE_NEWNS | kernel.CLONE_NEWPID | kernel.CLONE_NEWIPC | kernel.CLONE_NEWUTS
+    kernel.unshare(flags if network else flags | kernel.CLONE_NEWNET)
     kernel.sethostname("student")
     os.chdir("/")
     told_at, told_to = os.pipe()
     init = os.fork()
     if init == 0:
-        _be_init(plan, told_to)
+        _be_init(plan, told_to, network)
     os.close(told_to)
     with os.fdopen(told_at, "rb") as stream:
         said = stream.read()
@@ -40,7 +43,7 @@ def build(plan: Sequence[Step], user_namespace: int) -> Room:
     return Room(init)
 
 
-def _be_init(plan: Sequence[Step], told_to: int) -> NoReturn:
+def _be_init(plan: Sequence[Step], told_to: int, network: bool) -> NoReturn:
     """The first process of the pid namespace: builds the root, then only buries orphans until it is killed."""
     try:
         kernel.prctl(kernel.PR_SET_PDEATHSIG, signal.SIGKILL)
@@ -52,7 +55,7 @@ def _be_init(plan: Sequence[Step], told_to: int) -> NoReturn:
         kernel.prctl(kernel.PR_SET_NO_NEW_PRIVS, 1)
         kernel.prctl(kernel.PR_SET_DUMPABLE, 0)
         if seccomp.supported():
-            seccomp.install(seccomp.program())
+            seccomp.install(seccomp.program(network=network))
         os.write(told_to, b"ready")
     except BaseException as fault:
         os.write(told_to, str(fault).encode())
@@ -94,7 +97,7 @@ def _take(step: Step) -> None:
         path.mkdir(exist_ok=True)
         kernel.mount("tmpfs", step.path, "tmpfs", _MOUNT, f"mode=1777,size={step.size}")
     elif step.action in ("bind", "device"):
-        _bind(_OLD + step.path, path)
+        _bind(_OLD + (step.content or step.path), path)
         kernel.make_read_only(step.path, devices=step.action == "device")
     elif step.action == "mask" and path.is_dir():
         kernel.mount("tmpfs", step.path, "tmpfs", _MOUNT, "mode=0755,size=64k")
@@ -121,11 +124,12 @@ def _bind(source: str, target: Path) -> None:
 
 
 def _mount_processes(target: str) -> None:
-    """Mounts /proc. Where a container hides parts of its own, the kernel allows none: it then stays empty."""
+    """Mounts /proc, in which a program's processes look whether they are idle."""
     try:
         kernel.mount("proc", target, "proc", _MOUNT | kernel.MS_NOEXEC)
-    except PermissionError:
-        kernel.mount("tmpfs", target, "tmpfs", _MOUNT | kernel.MS_RDONLY, "mode=0555,size=4k")
+    except PermissionError as fault:
+        allow = "docker run --security-opt systempaths=unconfined"
+        raise OSError(f"this container hides parts of its /proc, so none can be mounted ({allow}): {fault}") from fault
 
 
 def _seal(target: str) -> None:

@@ -16,10 +16,12 @@ import sys
 from collections.abc import Sequence
 from types import TracebackType
 
-from . import rig_namespace, view
+from . import rig_namespace, user_namespace, view
 from .confine import Start
-from .level import Isolation, SandboxError
+from .faults import SandboxError
+from .level import Isolation
 from .limits import Limits
+from .middleware import Middleware, variables
 from .program import Program
 from .student import Student
 
@@ -40,34 +42,36 @@ PRELOAD = (
 
 
 class Nursery:
-    """Starts students. One serves a whole worker: make it before the rigs are forked, and each of them may use it."""
+    """Starts students. One serves a whole worker: make it before the rigs are forked, and each of them may use it.
 
-    def __init__(self, preload: Sequence[str] = PRELOAD) -> None:
-        """Starts the process; it imports while the caller goes on.
+    It has a process for each middleware, which is started when it is first needed.
+    """
+
+    def __init__(self, middlewares: Sequence[Middleware] = (), preload: Sequence[str] = PRELOAD) -> None:
+        """Starts the processes for some middlewares; they import while the caller goes on.
 
         Args:
+            middlewares: those that rigs will need. A rig that needs another one waits for a process of its own.
             preload: the modules to import beforehand; those that are not installed are left out.
         """
-        self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        environment = {name: os.environ[name] for name in view.RUNTIME_VARIABLES if name in os.environ}
-        # One thread: forked from several, the child could hang. And the same order of sets in each run of a submission.
-        environment |= {"OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": "0", "PYTHONDONTWRITEBYTECODE": "1"}
-        # Address space is limited, and by default each thread may reserve 64 MiB of it, the more the more cores.
-        environment |= {"MALLOC_ARENA_MAX": "4"}
-        self._owner = os.getpid()
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "grader.sandbox.fork_server", str(theirs.fileno()), *preload],
-            pass_fds=[theirs.fileno()],
-            env=environment,
-            stdin=subprocess.DEVNULL,
-            start_new_session=True,
-        )
-        theirs.close()
+        self._preload = preload
+        self._servers: dict[Middleware, _ForkServer] = {}
+        for middleware in middlewares:
+            self.prepare(middleware)
+
+    def prepare(self, middleware: Middleware) -> None:
+        """Starts the process for a middleware, unless it has been started.
+
+        Raises:
+            MiddlewareUnavailable: if the middleware has not been compiled here.
+        """
+        if middleware not in self._servers:
+            self._servers[middleware] = _ForkServer(middleware, self._preload)
 
     def start(
         self, program: Program, isolation: Isolation, limits: Limits | None = None, core: int | None = None
     ) -> Student:
-        """Starts a student's program in a new sandbox, in the network of the calling process.
+        """Starts a student's program in a new sandbox: without a network, or without a hub in that of the caller.
 
         Args:
             program: what to start.
@@ -77,21 +81,23 @@ class Nursery:
 
         Raises:
             SandboxError: if the sandbox could not be made: our fault or the machine's, never the student's.
+            MiddlewareUnavailable: if the program's middleware has not been compiled here.
         """
         limits = limits or Limits()
+        self.prepare(program.middleware)
         apart = isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES)
         plan = view.steps(program.readonly, program.hidden, limits.file_bytes) if apart else ()
-        request = pickle.dumps(Start(program, isolation, limits, core, plan))
-        passed = [_memory_file(request)]
+        if apart and program.hub:
+            plan = view.with_hub(plan, program.hub)
+        passed = [_memory_file(pickle.dumps(Start(program, isolation, limits, core, plan)))]
         if apart:
-            passed.append(os.dup(rig_namespace.students_users()))
-            passed += [os.open(f"/proc/self/ns/{name}", os.O_RDONLY) for name in ("user", "net")]
+            passed += _namespaces(program)
         ours, control = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         output, output_end = os.pipe2(os.O_CLOEXEC)
         passed[1:1] = [os.dup(control.fileno()), output_end]
         control.close()
         try:
-            socket.send_fds(self._socket, [b"start"], passed)
+            self._servers[program.middleware].request(passed)
         except OSError as fault:
             os.close(output)
             ours.close()
@@ -102,12 +108,9 @@ class Nursery:
         return Student(ours, output, limits)
 
     def close(self) -> None:
-        """Ends the process. Students that it has started end with their rigs."""
-        self._socket.close()
-        if os.getpid() == self._owner:
-            with contextlib.suppress(ProcessLookupError):
-                self._process.send_signal(signal.SIGTERM)
-            self._process.wait()
+        """Ends the processes. Students that they have started end with their rigs."""
+        for server in self._servers.values():
+            server.close()
 
     def __enter__(self) -> Nursery:
         """Nothing: it has been started already."""
@@ -118,6 +121,49 @@ class Nursery:
     ) -> None:
         """Closes it."""
         self.close()
+
+
+class _ForkServer:
+    """The process from which students of one middleware are forked, as this process and its forks hold it."""
+
+    def __init__(self, middleware: Middleware, preload: Sequence[str]) -> None:
+        self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        environment = {name: os.environ[name] for name in view.RUNTIME_VARIABLES if name in os.environ}
+        environment |= variables(middleware, environment)
+        # One thread: forked from several, the child could hang. And the same order of sets in each run of a submission.
+        environment |= {"OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": "0", "PYTHONDONTWRITEBYTECODE": "1"}
+        # Address space is limited, and by default each thread may reserve 64 MiB of it, the more the more cores.
+        environment |= {"MALLOC_ARENA_MAX": "4"}
+        self._owner = os.getpid()
+        command = [sys.executable, "-m", "grader.sandbox.fork_server", str(theirs.fileno()), middleware.value, *preload]
+        self._process = subprocess.Popen(
+            command,
+            pass_fds=[theirs.fileno()],
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+        theirs.close()
+
+    def request(self, passed: Sequence[int]) -> None:
+        """Asks for a student. Raises OSError where the process has ended."""
+        socket.send_fds(self._socket, [b"start"], passed)
+
+    def close(self) -> None:
+        """Ends the process, if it is this process's own."""
+        self._socket.close()
+        if os.getpid() == self._owner:
+            with contextlib.suppress(ProcessLookupError):
+                self._process.send_signal(signal.SIGTERM)
+            self._process.wait()
+
+
+def _namespaces(program: Program) -> list[int]:
+    """Descriptors of the namespaces that a student joins: its user namespace, and without a hub its rig's network."""
+    if program.hub:
+        return [os.dup(user_namespace.of_this_process())]
+    rig = [os.open(f"/proc/self/ns/{name}", os.O_RDONLY) for name in ("user", "net")]
+    return [os.dup(rig_namespace.students_users()), *rig]
 
 
 def _memory_file(content: bytes) -> int:

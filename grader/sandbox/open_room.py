@@ -43,12 +43,13 @@ class OpenRoom:
         shutil.rmtree(self.folder, ignore_errors=True)
 
 
-def make_place(files: Mapping[str, bytes], owner: int | None) -> Place:
+def make_place(files: Mapping[str, bytes], owner: int | None, hub: Path | None) -> Place:
     """Makes a folder in the machine's temporary folder, with the submission's files and a home.
 
     Args:
         files: name to content.
         owner: the user that the home is given to; None for the present one.
+        hub: the hub's socket, which the program sees where it is.
     """
     top = Path(tempfile.mkdtemp(prefix="spinbook-student-"))
     top.chmod(0o755)
@@ -60,4 +61,4 @@ def make_place(files: Mapping[str, bytes], owner: int | None) -> Place:
     for name, content in files.items():
         (submission / name).write_bytes(content)
         (submission / name).chmod(0o444)
-    return Place(str(submission), str(home), str(temporary))
+    return Place(str(submission), str(home), str(temporary), str(hub) if hub else None)

@@ -6,7 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
+from .middleware import Middleware
+
 SUBMISSION = "/submission"
+HUB = "/run/lockstep/hub"
 
 
 @dataclass(frozen=True)
@@ -22,6 +25,9 @@ class Program:
         environment: variables beyond those that Python and ROS 2 need; nothing of the caller's own is passed on.
         readonly: files and folders of this machine that are to be seen, read-only, at the same path.
         hidden: files and folders of this machine that are never seen, also inside one that is.
+        hub: the socket of the hub that each of its processes connects to, over rmw_lockstep; alone in a folder that
+            belongs to the caller. The program then has no network at all. None: it uses Fast DDS, in the network of the
+            calling process.
         warm: run in a fork of the nursery, in which rclpy has been imported already. Otherwise in a new Python process.
     """
 
@@ -32,6 +38,7 @@ class Program:
     readonly: tuple[Path, ...] = ()
     hidden: tuple[Path, ...] = ()
     warm: bool = True
+    hub: Path | None = None
 
     def __post_init__(self) -> None:
         """Refuses what could leave the submission's folder or does not exist in it.
@@ -48,11 +55,17 @@ class Program:
         if absolute and not any(Path(self.main).is_relative_to(shown) for shown in self.readonly):
             raise ValueError(f"the main file {self.main} lies in none of the readonly folders")
 
+    @property
+    def middleware(self) -> Middleware:
+        """Over which it talks."""
+        return Middleware.LOCKSTEP if self.hub else Middleware.FASTDDS
+
 
 @dataclass(frozen=True)
 class Place:
-    """The folders of a student's program, as it sees them: its files, its home, and for temporary files."""
+    """The folders of a student's program, as it sees them: its files, its home, for temporary files; and its hub."""
 
     folder: str
     home: str
     temporary: str
+    hub: str | None = None

@@ -1,22 +1,19 @@
-"""Takes a rig, and with it all its students, out of the machine's network and shared memory."""
+"""Fast DDS only: takes a rig, and with it all its students, out of the machine's network and shared memory."""
 
 from __future__ import annotations
 
-import fcntl
 import os
-import socket
-import struct
 from pathlib import Path
 
 from . import kernel, user_namespace
-from .level import Isolation, SandboxError
-
-_SIOCSIFFLAGS = 0x8914  # netdevice(7)
-_IFF_UP = 1
+from .faults import SandboxError
+from .level import Isolation
 
 
 def enter(isolation: Isolation) -> None:
     """Moves this process into namespaces of its own: a network with nothing but loopback, /dev/shm, and System V IPC.
+
+    Only for students without a hub, who talk to their rig over Fast DDS. Those with a hub have no network to share.
 
     Call it in a freshly forked process with a single thread, before rclpy is initialised. Its students join the same
     network, so that rig and student hear each other and nobody else. At the levels without namespaces only orphans
@@ -33,7 +30,7 @@ def enter(isolation: Isolation) -> None:
         return
     if _made:
         kernel.unshare(kernel.CLONE_NEWNET)
-        _bring_loopback_up()
+        kernel.bring_loopback_up()
         return
     flags = kernel.CLONE_NEWNET | kernel.CLONE_NEWNS | kernel.CLONE_NEWIPC
     user, group = os.geteuid(), os.getegid()
@@ -49,7 +46,7 @@ def enter(isolation: Isolation) -> None:
     kernel.mount("", "/", flags=kernel.MS_REC | kernel.MS_PRIVATE)
     if Path("/dev/shm").is_dir():
         kernel.mount("tmpfs", "/dev/shm", "tmpfs", kernel.MS_NOSUID | kernel.MS_NODEV, "mode=1777,size=64m")
-    _bring_loopback_up()
+    kernel.bring_loopback_up()
     _made.append(user_namespace.create())
 
 
@@ -66,8 +63,3 @@ def students_users() -> int:
     if not _made:
         raise SandboxError("call grader.sandbox.enter(isolation) in the rig's process before it starts a student")
     return _made[-1]
-
-
-def _bring_loopback_up() -> None:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:
-        fcntl.ioctl(any_socket, _SIOCSIFFLAGS, struct.pack("16sh14x", b"lo", _IFF_UP))

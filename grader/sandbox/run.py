@@ -13,22 +13,27 @@ import types
 from pathlib import Path
 from typing import NoReturn
 
-from . import view
+from . import middleware, view
 from .program import Place, Program
 
 
 def run(program: Program, place: Place) -> None:
     """Runs a program as `__main__` in this process; returns or raises SystemExit as the program does.
 
+    Its first act is to connect to the hub, if it has one. So a program that ended without a connection has done nothing
+    of the student's: that is a fault of the machine's or ours.
+
     An uncaught exception prints its traceback, beginning with the student's own lines, and exits with 1; an uncaught
     KeyboardInterrupt ends the process by SIGINT. Threads, atexit and the rest of the end are the interpreter's own.
     """
     path = str(Path(place.folder, program.main))
-    variables = view.environment(program, place.home, place.temporary)
+    variables = view.environment(program, place)
     os.environ.clear()
     os.environ.update(variables)
     if not program.warm:
         os.execv(sys.executable, [sys.executable, path, *program.arguments])
+    if place.hub:
+        middleware.connect(place.hub)
     module = _prepare(path, program.arguments)
     try:
         exec(compile(Path(path).read_bytes(), path, "exec", dont_inherit=True), module.__dict__)
@@ -62,7 +67,7 @@ def _prepare(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
     atexit.register(_die_of_interrupt)  # the first to be registered is the last to be called
     _ours.append(sys.modules["__main__"])
     sys.modules["__main__"] = module
-    for name in [name for name in sys.modules if name == "grader" or name.startswith("grader.")]:
+    for name in [name for name in sys.modules if name.partition(".")[0] in ("grader", "rmw_lockstep")]:
         _ours.append(sys.modules.pop(name))
     return module
 

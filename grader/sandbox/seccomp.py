@@ -35,7 +35,8 @@ _RETURN = 0x06  # BPF_RET | BPF_K
 _NUMBER_AT, _ARCHITECTURE_AT, _ARGUMENT_AT = 0, 4, 16  # offsets in struct seccomp_data, little-endian
 
 _NEW_NAMESPACES = 0x7E020000  # every CLONE_NEW… flag of clone(2)
-_SOCKETS = (socket.AF_UNIX, socket.AF_INET, socket.AF_INET6, socket.AF_NETLINK)
+_LOCAL = (socket.AF_UNIX,)
+_NETWORK = (socket.AF_UNIX, socket.AF_INET, socket.AF_INET6, socket.AF_NETLINK)
 
 # name: (number on x86-64, number on arm64); None where it does not exist
 _FORBIDDEN: dict[str, tuple[int | None, int | None]] = {
@@ -121,10 +122,11 @@ def supported() -> bool:
     return platform.machine() in ("x86_64", "aarch64")
 
 
-def program(*, no_signals: bool = False) -> bytes:
+def program(*, network: bool = True, no_signals: bool = False) -> bytes:
     """The filter as the kernel wants it (an array of struct sock_filter).
 
     Args:
+        network: allow sockets for IP and netlink, which Fast DDS needs. Without, there are Unix sockets only.
         no_signals: also refuse every signal to another process, for where neither a pid namespace nor Landlock does.
 
     Raises:
@@ -132,6 +134,7 @@ def program(*, no_signals: bool = False) -> bytes:
     """
     if not supported():
         raise OSError(f"seccomp: the system calls of {platform.machine()} are not known here")
+    sockets = _NETWORK if network else _LOCAL
     column = 0 if platform.machine() == "x86_64" else 1
     forbidden = {name: pair[column] for name, pair in _FORBIDDEN.items()}
     if no_signals:
@@ -153,9 +156,9 @@ def program(*, no_signals: bool = False) -> bytes:
         (_ANY_BIT, 0, 1, _NEW_NAMESPACES),
         _refuse(errno.EPERM),
         (_RETURN, 0, 0, _ALLOW),
-        (_EQUAL, 0, len(_SOCKETS) + 2, _SOCKET[column]),
+        (_EQUAL, 0, len(sockets) + 2, _SOCKET[column]),
         (_LOAD, 0, 0, _ARGUMENT_AT),
-        *((_EQUAL, len(_SOCKETS) - at, 0, int(family)) for at, family in enumerate(_SOCKETS)),
+        *((_EQUAL, len(sockets) - at, 0, int(family)) for at, family in enumerate(sockets)),
         _refuse(errno.EAFNOSUPPORT),
         (_RETURN, 0, 0, _ALLOW),
     ]

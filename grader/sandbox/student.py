@@ -9,7 +9,7 @@ import signal
 import socket
 from types import TracebackType
 
-from .level import SandboxError
+from .faults import SandboxError
 from .limits import Limits
 from .output import Output
 from .warden import Exit, Warden

@@ -8,7 +8,8 @@ from __future__ import annotations
 import sys
 
 from . import landlock
-from .level import Isolation, SandboxError
+from .faults import SandboxError
+from .level import Isolation
 from .nursery import Nursery
 from .program import Program
 from .rig_namespace import enter

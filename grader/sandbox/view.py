@@ -16,7 +16,8 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import Literal
 
-from .program import SUBMISSION, Program
+from .middleware import library_folder
+from .program import HUB, SUBMISSION, Place, Program
 
 HOME = "/home/student"
 USER_ID = 1000
@@ -40,7 +41,7 @@ class Step:
 
     - folder: an empty folder
     - scratch: a tmpfs of `size` bytes that anybody may write to
-    - bind: the file or folder at `path` outside, read-only
+    - bind: the file or folder at `path` outside, or at `content` if that is given, read-only
     - mask: the file or folder at `path`, which a bind has shown, becomes empty
     - device: the device at `path` outside
     - link: a symbolic link to `content`
@@ -98,6 +99,14 @@ def steps(readonly: tuple[Path, ...], hidden: tuple[Path, ...], scratch_bytes: i
     return tuple(plan.steps)
 
 
+def with_hub(plan: tuple[Step, ...], hub: Path) -> tuple[Step, ...]:
+    """The steps that also show the hub's socket: always in the same place, wherever it is outside."""
+    made = {"/", *(step.path for step in plan)}
+    folders = (Step("folder", str(folder)) for folder in reversed(Path(HUB).parents) if str(folder) not in made)
+    *others, seal = plan
+    return (*others, *folders, Step("bind", HUB, str(hub)), seal)
+
+
 class _Plan:
     """Collects steps, each after those that make the folders which it lies in."""
 
@@ -119,16 +128,18 @@ class _Plan:
         self.steps.append(Step(action, path, content, size))
 
 
-def environment(program: Program, home: str, temporary: str) -> dict[str, str]:
+def environment(program: Program, place: Place) -> dict[str, str]:
     """The whole environment of a program: what Python and ROS 2 need, its private folders, and what it was given."""
-    needed = {name: os.environ[name] for name in RUNTIME_VARIABLES if name in os.environ}
+    needed = {name: os.environ[name] for name in (*RUNTIME_VARIABLES, "LD_PRELOAD") if name in os.environ}
+    hub = {"RMW_LOCKSTEP_SOCKET": place.hub} if place.hub else {}
     return {
         **needed,
+        **hub,
         "PATH": f"{sys.prefix}/bin:/usr/local/bin:/usr/bin:/bin",
-        "HOME": home,
-        "TMPDIR": temporary,
+        "HOME": place.home,
+        "TMPDIR": place.temporary,
         "PYTHONUNBUFFERED": "1",
-        "ROS_LOG_DIR": f"{home}/log",
+        "ROS_LOG_DIR": f"{place.home}/log",
         "USER": "student",
         "LOGNAME": "student",
         **program.environment,
@@ -182,13 +193,14 @@ def interpreter() -> tuple[Path, ...]:
         prefixes[Path(prefix).resolve()] = None
     prefixes[Path(sys.executable).resolve().parents[1]] = None
     found = [prefix / part for prefix in prefixes for part in _PARTS if prefix != Path("/usr")]
-    return tuple(path for path in (*found, *ros_prefixes()) if path.exists())
+    library = filter(None, (library_folder(),))
+    return tuple(path for path in (*found, *ros_prefixes(), *library) if path.exists())
 
 
 def own_packages() -> tuple[Path, ...]:
-    """This package and Spinbook's: installed, they lie among the libraries that a sandbox shows."""
+    """This package and Spinbook's others: installed, they lie among the libraries that a sandbox shows."""
     grader = Path(__file__).resolve().parents[1]
-    return (grader, grader.with_name("spinbook"))
+    return (grader, *(grader.with_name(name) for name in ("spinbook", "rmw_lockstep")))
 
 
 def _masks(hidden: Iterable[Path], shown: Iterable[Path]) -> Iterator[Path]:

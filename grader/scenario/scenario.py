@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import asdict, dataclass
+from typing import Literal
 
 from grader.recording.recording import Fields
 
@@ -12,6 +13,9 @@ SECOND = 1_000_000_000
 
 #: Simulated time at which every scenario begins. Not 0, which means "no time yet" in ROS.
 START = 100 * SECOND
+
+#: What the computer's own clock shows while simulated time goes by: see `grader.runner.clocks`.
+ComputerTime = Literal["apart", "simulated"]
 
 
 @dataclass(frozen=True)
@@ -34,12 +38,17 @@ class Scenario:
 
     `name` is the fixture by which checks ask for its recording, `title` says in words what happens. With `interrupt`
     the node is asked to end by Ctrl-C after the last message.
+
+    `computer_time` says what the computer's clock shows to the node, and what `time.sleep` and wall timers take:
+    "simulated" is the same as simulated time; "apart" is more, so that who measures with the wrong clock measures
+    something else: 1.25 s for each simulated second.
     """
 
     name: str
     title: str
     messages: tuple[Message, ...]
     interrupt: bool = False
+    computer_time: ComputerTime = "apart"
 
     @property
     def seconds(self) -> float:
@@ -49,4 +58,7 @@ class Scenario:
     @property
     def digest(self) -> str:
         """The same for two scenarios only if everything in them is."""
-        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()
+        content = asdict(self)
+        if self.computer_time == "apart":  # the default, from before there was a choice
+            del content["computer_time"]
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

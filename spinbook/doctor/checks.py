@@ -39,6 +39,7 @@ CHECKS = (
     Check("namespaces", "Namespaces", "spinbook.doctor.namespaces"),
     Check("sandbox", "Sandbox", "spinbook.doctor.sandbox", 150.0, _NODE),
     Check("bubblewrap", "bubblewrap", "spinbook.doctor.bubblewrap"),
+    Check("lockstep", "Lockstep", "spinbook.doctor.lockstep", 30.0, ("ros",)),
     Check("ros2", "ros2, turtlesim", "spinbook.doctor.ros2_command"),
     Check("browser", "Browser", "spinbook.doctor.browser", 45.0),
 )

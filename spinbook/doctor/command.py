@@ -29,7 +29,8 @@ def doctor(checks: tuple[str, ...], as_json: bool) -> None:
       python       folder       libraries    ros
       middleware   logs         message      environment
       memory       kernel       colcon       namespaces
-      sandbox      bubblewrap   ros2         browser
+      sandbox      bubblewrap   lockstep     ros2
+      browser
 
     \b
       ✓  works

@@ -26,6 +26,6 @@ def examine(name: str) -> Finding:
         return warning(
             name,
             f"landlock only ({reasons})",
-            f"It denies files and processes to students' code, but not this machine's network. {_ALLOW}",
+            f"It denies students' code files, processes and the network, but not every user's Unix sockets. {_ALLOW}",
         )
     return missing(name, f"none ({reasons})", f"Students' code is not run unprotected. {_ALLOW}")

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from grader.rig.message import message_class, to_fields, to_message
+from grader.runner.message import message_class, to_fields, to_message
 from grader.scenario.numbers import (
     Stream,
     chosen,

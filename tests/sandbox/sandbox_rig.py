@@ -17,7 +17,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
-from grader.sandbox import Exit, Isolation, Limits, Nursery, Program, available, enter, kernel
+from grader.sandbox import Exit, Isolation, Limits, Middleware, Nursery, Program, available, enter, kernel
 
 NOBODY = 65534
 
@@ -95,7 +95,7 @@ def run_to_end(nursery: Nursery, level: Isolation, program: Program, limits: Lim
 def _serve(connection: Connection, level: Isolation, rootless: bool) -> None:
     if rootless:
         become_nobody()
-    with Nursery() as nursery:
+    with Nursery([Middleware.FASTDDS]) as nursery:
         enter(level)
         while True:
             try:

@@ -200,3 +200,28 @@ def test_a_python_that_is_not_there_is_told(checkout: Checkout) -> None:
     code, said = checkout.set_up(PYTHON="python3.99")
     assert code == 1
     assert "There is no 'python3.99' here" in said
+
+
+def test_the_middleware_is_compiled_once_and_again_when_its_sources_have_changed(checkout: Checkout) -> None:
+    checkout.set_up()
+    assert checkout.calls[-1] == "compile"
+    checkout.forget_calls()
+
+    source = checkout.folder / "rmw_lockstep" / "lockstep" / "core.cpp"
+    source.parent.mkdir(parents=True)
+    source.write_text("int changed;\n")
+    assert checkout.set_up() == (0, "Compiling the grader's middleware ...\n")
+    assert checkout.calls == ["compile"]
+    assert checkout.set_up() == (0, "")
+
+
+def test_where_it_can_not_be_compiled_set_up_succeeds_and_says_what_is_weaker(checkout: Checkout) -> None:
+    checkout.tell("compiling-fails", "No middleware: g++ is not installed. Install it: sudo ...\n")
+
+    code, said = checkout.set_up()
+
+    assert code == 0
+    assert "g++ is not installed. Install it" in said
+    assert "Until then the grader uses Fast DDS" in said
+    (checkout.stage / "compiling-fails").unlink()
+    assert checkout.set_up() == (0, "Compiling the grader's middleware ...\n")

@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from grader.audit.result import Audit, Problem
+from grader.audit.shadow import Shadow
 from grader.report.printable import printable
 
 
@@ -23,6 +24,19 @@ def show(audit: Audit, console: Console) -> None:
     if not audit.quick:
         console.print(_checks(audit))
     _show_score(audit, console)
+
+
+def show_shadow(shadow: Shadow, console: Console) -> None:
+    """Print each verdict on which the two middlewares disagree."""
+    console.print(Text(printable(f"{shadow.title} ({shadow.exercise})"), style="bold"))
+    for one in shadow.differing:
+        console.print(Text.assemble((" ≠ ", "yellow"), printable(f"{one.program}, {one.check}")), soft_wrap=True)
+        lines = (f"lockstep  {one.lockstep}", f"fastdds   {one.fast_dds}", one.reason or "no reason is known")
+        for line in lines:
+            console.print(Padding(Text(printable(line), style="dim"), (0, 0, 0, 3)))
+    verdicts = shadow.equal + len(shadow.differing)
+    told = f"{shadow.programs} programs over both middlewares: {len(shadow.differing)} of {verdicts} verdicts differ"
+    console.print(Text(f"{told} ({shadow.seconds:.0f} s)", style="yellow" if shadow.differing else "bold green"))
 
 
 def _show_programs(audit: Audit, console: Console) -> None:

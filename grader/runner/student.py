@@ -1,4 +1,4 @@
-"""What the rig needs to know about a running student's program, however it is kept."""
+"""What a runner needs to know about a running student's program, however it is kept."""
 
 from __future__ import annotations
 
@@ -29,6 +29,8 @@ class Output(Protocol):
 class Student(Protocol):
     """A student's program, running."""
 
+    @property
+    def pid(self) -> int: ...
     def pids(self) -> Collection[int]: ...
     def output(self) -> Output: ...
     def poll(self) -> Exit | None: ...

@@ -6,7 +6,7 @@ from grader.recording.recording import RunOutcome
 
 
 class Stopped(Exception):
-    """Raised inside the rig when the student's node can't be spun any further; `story` is for the student."""
+    """Raised inside a runner when the student's program can't be run any further; `story` is for the student."""
 
     def __init__(self, outcome: RunOutcome, story: str) -> None:
         super().__init__(story)

@@ -1,0 +1,138 @@
+"""The second opinion: every file of an exercise's solutions, graded over both middlewares.
+
+The grader's own middleware (rmw_lockstep) decides; Fast DDS is what robots use. Where the two lead to different
+verdicts, one of them is wrong, or the program depends on something that Fast DDS leaves to chance.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+from grader.audit.candidates import Candidate, mistakes, right_ones
+from grader.audit.trying import Progress
+from grader.checking.verdict import Verdict
+from grader.crew import Crew, HostFault
+from grader.exercise import Exercise
+from grader.grading import Grade, Options, grading_of
+from grader.grading.grading import Grading
+from grader.recording import Recording
+from grader.sandbox import Middleware
+
+#: What is compared besides the checks.
+OUTCOME = "outcome"
+
+INFERRED = "over Fast DDS the grader could only infer from sleeping threads when the node was done"
+
+
+@dataclass(frozen=True)
+class Opinion:
+    """What one middleware led to: a check's status or a grade's outcome, and the words for the student."""
+
+    verdict: str
+    text: str = ""
+
+    def __str__(self) -> str:
+        """Both."""
+        return f"{self.verdict}: {self.text}" if self.text else self.verdict
+
+
+@dataclass(frozen=True)
+class Differing:
+    """A verdict on which the two disagree. `reason` is why, where the recordings show it; else it is empty."""
+
+    program: str
+    check: str
+    lockstep: Opinion
+    fast_dds: Opinion
+    reason: str
+
+
+@dataclass(frozen=True)
+class Shadow:
+    """All of one exercise. `equal` and `differing` are its verdicts, outcomes included."""
+
+    exercise: str
+    title: str
+    programs: int
+    equal: int
+    differing: tuple[Differing, ...]
+    seconds: float
+
+
+def shadow(exercise: Exercise, options: Options, crew: Crew, progress: Progress) -> Shadow:
+    """Grade every file of the exercise's solutions over both middlewares, and compare.
+
+    Raises what `grading_of` raises, `MiddlewareUnavailable` where one can't be had, and `HostFault` where a program
+    can't be graded by a fault of the machine's or ours.
+    """
+    began = time.monotonic()
+    gradings = [grading_of(exercise, replace(options, middleware=one), crew) for one in Middleware]
+    programs = [*right_ones(exercise), *mistakes(exercise)]
+    progress.begin(exercise.name, len(programs))
+    with ThreadPoolExecutor(options.parallel) as pool:
+        compared = [pool.submit(_compared, program, gradings, progress) for program in programs]
+        found = [one for future in compared for one in future.result()]
+    differing = tuple(one for one in found if one.lockstep.verdict != one.fast_dds.verdict)
+    equal = len(found) - len(differing)
+    return Shadow(exercise.name, exercise.title, len(programs), equal, differing, time.monotonic() - began)
+
+
+def _compared(program: Candidate, gradings: list[Grading], progress: Progress) -> list[Differing]:
+    lockstep, fast_dds = (_graded(program, grading) for grading in gradings)
+    progress.done()
+    return list(_verdicts(program.name, lockstep, fast_dds))
+
+
+def _graded(program: Candidate, grading: Grading) -> Grade:
+    spinner = grading.spinner
+    one_at_a_time = replace(spinner, options=replace(spinner.options, parallel=1))
+    grade = replace(grading, spinner=one_at_a_time).grade(program.submission)
+    if grade.outcome == "host-error":
+        raise HostFault(f"{program.file} can't be graded over {spinner.middleware}: {grade.message}")
+    return grade
+
+
+def _verdicts(program: str, lockstep: Grade, fast_dds: Grade) -> Iterator[Differing]:
+    ours, theirs = (Opinion(grade.outcome, grade.message) for grade in (lockstep, fast_dds))
+    first = next(iter(lockstep.recordings), "")
+    yield Differing(program, OUTCOME, ours, theirs, _reason(lockstep, fast_dds, first))
+    others = {verdict.name: verdict for verdict in fast_dds.verdicts}
+    for verdict in lockstep.verdicts:
+        other = others[verdict.name]
+        scenario = next((one.finding.scenario for one in (verdict, other) if one.finding), "")
+        why = _reason(lockstep, fast_dds, scenario)
+        yield Differing(program, verdict.name, _opinion(verdict), _opinion(other), why)
+
+
+def _opinion(verdict: Verdict) -> Opinion:
+    return Opinion(verdict.status, verdict.finding.text if verdict.finding else "")
+
+
+def _reason(lockstep: Grade, fast_dds: Grade, scenario: str) -> str:
+    """What the recordings of a scenario show of why the two differ."""
+    ours, theirs = lockstep.recordings.get(scenario), fast_dds.recordings.get(scenario)
+    if ours is None or theirs is None:
+        return ""
+    seen = _seen(ours, theirs)
+    inferred = INFERRED if theirs.hold == "quiet" else ""
+    return "; ".join(filter(None, (f"scenario {scenario}: {seen}" if seen else "", inferred)))
+
+
+def _seen(ours: Recording, theirs: Recording) -> str:
+    """The first difference between two recordings of one scenario."""
+    if ours.ending.outcome != theirs.ending.outcome:
+        return f"its run is {ours.ending.outcome} over lockstep, {theirs.ending.outcome} over Fast DDS"
+    heard = [sum(sent.heard for sent in recording.sent) for recording in (ours, theirs)]
+    if heard[0] != heard[1]:
+        return f"it subscribed to {heard[0]} of {len(ours.sent)} messages over lockstep, to {heard[1]} over Fast DDS"
+    if len(ours.received) != len(theirs.received):
+        return f"it published {len(ours.received)} messages over lockstep and {len(theirs.received)} over Fast DDS"
+    for number, (one, other) in enumerate(zip(ours.received, theirs.received, strict=True), start=1):
+        if one.fields != other.fields:
+            return f"its message {number} is another one"
+        if one.after != other.after:
+            return f"its message {number} came after input {one.after} over lockstep, after {other.after} over Fast DDS"
+    return ""

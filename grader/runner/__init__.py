@@ -1,0 +1,1 @@
+"""Runs one program through one scenario, and records what it does."""

@@ -1,0 +1,117 @@
+"""How long a program is waited for: in its own CPU time, and in time that it spends blocked, never in wall time."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import time
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from pathlib import Path
+
+from grader.runner.stopped import Stopped
+from grader.runner.student import Student
+
+#: The longest piece of time between two looks that counts: a grader that did not run itself saw nothing.
+LONGEST_LOOK_S = 0.025
+
+#: What one step of a run may take, which no right program comes near.
+CPU_S, BLOCKED_S = 3.0, 3.0
+
+
+class Gone(Exception):
+    """Raised when the student's program has ended by itself."""
+
+
+class HostStoodStill(Exception):
+    """Raised when the machine, and not the program, was what did not go on."""
+
+
+@dataclass(frozen=True)
+class Allowance:
+    """What one step may take, in seconds of CPU time and of time blocked, and what is said when it takes more."""
+
+    busy: str
+    blocked: str
+    cpu_s: float = CPU_S
+    blocked_s: float = BLOCKED_S
+
+
+class Budget:
+    """Looks at the student's program from time to time while it is waited for: see `look`."""
+
+    def __init__(self, student: Student, pids: Callable[[], Collection[int]], allowance: Allowance) -> None:
+        """`pids` tells the numbers of the program's processes."""
+        self._student, self._pids = student, pids
+        self._began = self._looked = time.monotonic()
+        self._seen = 0.0
+        self.begin(allowance)
+
+    def begin(self, allowance: Allowance) -> None:
+        """A new step begins."""
+        self._allowance = allowance
+        self._cpu_start: float | None = None
+        self.blocked = 0.0
+
+    @property
+    def used(self) -> float:
+        """Seconds of this step that the program has computed or was blocked for, as far as anybody has looked."""
+        return self.blocked + self._cpu
+
+    @property
+    def _cpu(self) -> float:
+        return 0.0 if self._cpu_start is None else self._student.cpu_seconds() - self._cpu_start
+
+    def look(self) -> None:
+        """To be called every 20 ms. Raises `Gone`, or `Stopped` when the step takes more than it may.
+
+        Most steps are over before this is called twice within one: only then is anything read.
+        """
+        now = time.monotonic()
+        passed = min(now - self._looked, LONGEST_LOOK_S)
+        self._looked = now
+        self._seen += passed
+        if self._student.poll() is not None:
+            raise Gone
+        if self._cpu_start is None:
+            self._cpu_start = self._student.cpu_seconds()
+            return
+        if not at_work(self._pids()):
+            self.blocked += passed
+        self._check()
+
+    def _check(self) -> None:
+        allowance = self._allowance
+        if self.blocked >= allowance.blocked_s:
+            raise Stopped("timed-out", allowance.blocked)
+        # One that has run into a limit of its sandbox is about to end, and its end tells which limit it was.
+        if self._cpu >= allowance.cpu_s and not self._student.at_limit():
+            raise Stopped("timed-out", allowance.busy)
+
+    def check_the_host(self) -> None:
+        """Raise `HostStoodStill` when this machine ran too little for a limit in wall time to say anything."""
+        real = time.monotonic() - self._began
+        if self._seen < real / 2:
+            raise HostStoodStill(
+                f"this machine was frozen or overloaded: it ran for {self._seen:.0f} s of {real:.0f} s"
+            )
+
+
+def at_work(pids: Collection[int]) -> bool:
+    """Whether a thread of one of these processes runs, waits for a CPU, or waits for the disk."""
+    return any(_state(stat) in (b"R", b"D") for pid in pids for stat in _threads(pid))
+
+
+def _threads(pid: int) -> list[Path]:
+    folder = Path(f"/proc/{pid}/task")
+    with contextlib.suppress(OSError):
+        return [folder / name / "stat" for name in os.listdir(folder)]  # noqa: PTH208 - names alone
+    return []
+
+
+def _state(stat: Path) -> bytes:
+    """The state of a thread, such as R, S or D; nothing when it has ended."""
+    with contextlib.suppress(OSError):
+        # It follows the program's name, which may hold any character but ends with the last bracket.
+        return stat.read_bytes().rpartition(b") ")[2][:1]
+    return b""

@@ -1,0 +1,222 @@
+"""Runs one student's program through one scenario, over the grader's own middleware.
+
+The hub says what time it is, hands the program each message, and knows when the program has nothing left to do. So what
+is recorded depends on the program alone.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from grader.recording import Ending, EndPoint, Received, Recording
+from grader.runner.budget import Allowance, Budget, Gone
+from grader.runner.clocks import Clocks, clock_message
+from grader.runner.ending import cut_short
+from grader.runner.graph import end_points, nodes
+from grader.runner.interrupting import interrupted
+from grader.runner.parameters import Parameters
+from grader.runner.publishers import OFFER, ReferencePublishers
+from grader.runner.recorder import Recorder
+from grader.runner.starting import START as STARTING
+from grader.runner.starting import wait_until_up
+from grader.runner.stopped import Stopped
+from grader.runner.student import Student
+from grader.runner.task import Task
+from grader.runner.violations import story_of
+from grader.scenario import Message
+from grader.scenario.scenario import SECOND, START
+from rmw_lockstep.hub import Hub, Limits, Violation
+
+#: How far simulated time goes on after the last message, for what a node does by timer (ns).
+AFTERWARDS = SECOND // 2
+
+#: A program that waits for less long is taken to be about to go on (ns of the computer's time).
+SOON = 3 * SECOND
+
+ENDLESS = "Your node used {0:g} s of computing time on one message without an end. Is there an endless loop?"
+OUTSIDE = (
+    "Your program did not go on for {0:g} s: it waits for something outside of it, such as another program that sleeps."
+)
+DEAF = (
+    "Your node does not answer: it is there, but it does nothing. Does your program call rclpy.spin(node), and does no "
+    "callback wait or sleep?"
+)
+
+STEP = Allowance(ENDLESS.format(3.0), OUTSIDE.format(3.0))
+
+
+def run(task: Task, start: Callable[[Path], Student], limits: Limits | None = None) -> Recording:
+    """Start the student's program and run it through the scenario; every fault of the student's is in the recording.
+
+    `start` gets the socket of the hub, which each of the program's processes has to be connected to before it does
+    anything of the student's. Anything raised is a fault of the machine's or of ours.
+    """
+    began = time.monotonic()
+    # The path of a socket has to be short, so the folder is not one of the caller's.
+    folder = Path(tempfile.mkdtemp(prefix="spinbook-hub-"))
+    try:
+        with Hub(folder, limits) as hub:
+            student = start(hub.path)
+            try:
+                return Run(task, student, hub).run(began)
+            finally:
+                student.kill()
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+class Run:
+    """One run: the hub's ends of the graph around one program."""
+
+    def __init__(self, task: Task, student: Student, hub: Hub) -> None:
+        self._task, self._student, self._hub = task, student, hub
+        rig = hub.node("rig")
+        self._clock = rig.publisher("/clock", "rosgraph_msgs/msg/Clock", OFFER)
+        self._recorder = Recorder(rig, task.exercise.outputs)
+        self._publishers = ReferencePublishers(hub.node("joint_command_publisher"), task.scenario)
+        self._parameters = Parameters(hub, rig)
+        self._budget = Budget(student, self._pids, STARTING)
+        self._clocks = Clocks(task.scenario.computer_time)
+        self._is_up = False
+        self._nodes: tuple[str, ...] = ()
+        self._end_points: tuple[EndPoint, ...] = ()
+        self._sim_time = False
+        self._asks_in_vain = False
+        self._lockstep_seconds = 0.0
+        hub.main = student.pid
+        hub.patience = self._budget.look
+        hub.before_end = self._remember_end_points
+
+    def _pids(self) -> set[int]:
+        return {link.pid for link in self._hub.links}.union(self._student.pids())
+
+    def _remember_end_points(self) -> None:
+        """What a program had before it crashed; not what was left when it had taken most of it down itself."""
+        found = end_points(self._hub.graph)
+        if len(found) >= len(self._end_points):
+            self._end_points = found
+
+    def run(self, began: float) -> Recording:
+        """The whole run, from the first sign of the program to its end."""
+        ending = self._ending()
+        self._end_points = self._end_points or end_points(self._hub.graph)
+        self._student.kill()  # before the last look at what has come: it may never stop publishing
+        ending, received = self._take_everything(ending)
+        return Recording(
+            scenario=self._task.scenario.name,
+            sent=tuple(self._publishers.sent),
+            received=received,
+            nodes=self._nodes,
+            end_points=self._end_points,
+            hold="lockstep" if self._is_up else "none",
+            uses_sim_time=self._sim_time,
+            ending=ending,
+            log=self._student.output().text,
+            seconds=time.monotonic() - began,
+            lockstep_seconds=self._lockstep_seconds,
+        )
+
+    def _ending(self) -> Ending:
+        task, program = self._task, (self._task.file_name, self._task.source)
+        try:
+            self._begin()
+            self._lockstep()
+            if task.scenario.interrupt:
+                return interrupted(self._hub, self._budget, self._student, *program)
+            return Ending("completed")
+        except Stopped as stopped:
+            return Ending(stopped.outcome, stopped.story)
+        except Violation as violation:
+            return Ending("over-limit", story_of(violation))
+        except Gone:
+            self._see_that_it_was_the_program()
+            return cut_short(self._student, *program, self._is_up, len(self._publishers.sent))
+
+    def _see_that_it_was_the_program(self) -> None:
+        """Raise what says otherwise."""
+        exit_ = self._student.poll()
+        if exit_ and exit_.limit == "wall":
+            self._budget.check_the_host()
+
+    def _take_everything(self, ending: Ending) -> tuple[Ending, tuple[Received, ...]]:
+        """Everything that the program published before its end. That may be too much, after all."""
+        try:
+            self._hub.drain()
+        except Violation as violation:
+            ending = _first(ending, Ending("over-limit", story_of(violation)))
+        except Stopped as stopped:
+            ending = _first(ending, Ending(stopped.outcome, stopped.story))
+        try:
+            received = self._recorder.received(self._clocks, self._publishers.stages)
+        except Stopped as stopped:
+            return _first(ending, Ending(stopped.outcome, stopped.story)), ()
+        return ending, received
+
+    def _begin(self) -> None:
+        hub = self._hub
+        wait_until_up(hub, lambda: self._publishers.heard)
+        self._budget.begin(STEP)
+        self._sim_time = self._parameters.use_sim_time(hub.now + SOON)
+        self._nodes = nodes(hub.graph)
+        self._set_clock(START)
+        hub.wait_until_idle()
+        self._is_up = True
+        self._remember_end_points()
+
+    def _lockstep(self) -> None:
+        began = time.monotonic()
+        for message in self._task.scenario.messages:
+            self._budget.begin(self._allowance(message.at))
+            self._keep_pace(began, message.at)
+            self._go_to(message.at)
+            if not self._publishers.is_heard(message):
+                self._hub.wait_until_idle()  # whether anybody hears it is known only then
+            self._clocks.set(message.at, self._hub.now, self._publishers.publish(message), message=True)
+            self._hub.wait_until_idle()
+            self._see_that_it_listens(message)
+        self._end_points = end_points(self._hub.graph)
+        self._go_to(self._clocks.at + AFTERWARDS)
+        self._hub.wait_until_idle()
+        self._lockstep_seconds = time.monotonic() - began
+
+    def _allowance(self, at: int) -> Allowance:
+        """What the program may take until simulated time `at`: it may compute as long as time goes by meanwhile."""
+        passes = (self._clocks.computer(at) - self._hub.now) / SECOND
+        return STEP if passes < 1.0 else replace(STEP, cpu_s=STEP.cpu_s + passes)
+
+    def _go_to(self, at: int) -> None:
+        """Let both clocks go on to the simulated time `at`; what was due before happens before."""
+        self._hub.advance(self._clocks.computer(at))
+        if at > self._clocks.at:
+            self._set_clock(at)
+        self._hub.barrier()
+
+    def _set_clock(self, at: int) -> None:
+        self._clocks.set(at, self._hub.now, self._clock.publish(clock_message(at)))
+
+    def _see_that_it_listens(self, message: Message) -> None:
+        """Raise `Stopped` when the program neither waits in ROS 2 nor is about to go on, and answers no call either."""
+        hub = self._hub
+        if hub.in_ros or self._asks_in_vain or not self._publishers.is_heard(message):
+            return
+        wakes = hub.next
+        if wakes is not None and wakes - hub.now <= SOON:
+            return
+        if not all(self._parameters.answers(node, hub.now) for node in self._nodes):
+            raise Stopped("timed-out", DEAF)
+        self._asks_in_vain = True  # an executor that waits in a way of its own, such as rclpy's EventsExecutor
+
+    def _keep_pace(self, began: float, at: int) -> None:
+        if self._task.pace:
+            due = began + (at - START) / SECOND / self._task.pace
+            time.sleep(max(0.0, due - time.monotonic()))
+
+
+def _first(ending: Ending, other: Ending) -> Ending:
+    """What came first counts, and what completed has come to its end only with the other."""
+    return other if ending.outcome == "completed" else ending

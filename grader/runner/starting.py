@@ -1,0 +1,53 @@
+"""Waits until a program is there: it has made its nodes and begins to spin them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from grader.runner.budget import BLOCKED_S, Allowance
+from grader.runner.stopped import Stopped
+from grader.scenario.scenario import SECOND
+from rmw_lockstep.hub import Hub
+
+#: Importing large libraries takes CPU time; nothing that a node needs takes this much.
+START_CPU_S = 20.0
+
+#: How long a program may sleep before it makes a node, or spins it, by the computer's clock (ns).
+LONGEST = 10 * SECOND
+
+#: How long the subscriptions of a node that spins are waited for (ns).
+LONGEST_FOR_SUBSCRIPTIONS = 3 * SECOND // 2
+
+NO_NODE_BUSY = f"Your program computed for {START_CPU_S:g} s and created no node. Is there an endless loop before it?"
+NO_NODE_BLOCKED = (
+    "Your program waits and creates no node. Does something wait or sleep before the node is created, and is main() "
+    "called?"
+)
+
+START = Allowance(NO_NODE_BUSY, NO_NODE_BLOCKED, START_CPU_S, BLOCKED_S)
+
+
+def wait_until_up(hub: Hub, connected: Callable[[], bool]) -> None:
+    """Let the computer's time go on until the program has a node that is ready.
+
+    A node is ready when it has its subscriptions (`connected`), or spins and has had time to make them.
+
+    Raises:
+        Stopped: when there will be no node.
+    """
+    began = hub.now
+    hub.wait_until_idle()
+    while not (has_nodes(hub) and connected()):
+        wakes = hub.next
+        longest = LONGEST_FOR_SUBSCRIPTIONS if has_nodes(hub) and hub.in_ros else LONGEST
+        if wakes is None or wakes > began + longest:
+            break
+        hub.advance(wakes)
+        hub.wait_until_idle()
+    if not has_nodes(hub):
+        raise Stopped("did-not-start" if hub.next is None else "timed-out", NO_NODE_BLOCKED)
+
+
+def has_nodes(hub: Hub) -> bool:
+    """Whether the student's program has any."""
+    return bool(hub.graph.program_nodes())

@@ -1,0 +1,120 @@
+"""Over which middleware programs under test talk, and what this machine has."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+from functools import cache
+from pathlib import Path
+
+from rmw_lockstep.library import IDENTIFIER, Library, Unavailable, library
+from rmw_lockstep.ros import installed_ros
+
+from .faults import SandboxUnavailable
+
+
+class Middleware(str, Enum):
+    """The middlewares, the better one first."""
+
+    LOCKSTEP = "lockstep"
+    """rmw_lockstep: no network, and the hub knows when a program has nothing left to do."""
+    FASTDDS = "fastdds"
+    """Fast DDS over a network that a rig shares with its student."""
+
+    def __str__(self) -> str:
+        """The word that is used on the command line and in a grade."""
+        return self.value
+
+    def is_named(self, identifier: str) -> bool:
+        """Whether rclpy calls the middleware so that it has loaded."""
+        return identifier == IDENTIFIER if self is Middleware.LOCKSTEP else identifier.startswith("rmw_fastrtps")
+
+
+class MiddlewareUnavailable(SandboxUnavailable):
+    """The middleware that was asked for can't be had on this machine."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A middleware; `warning` says in one sentence what is weaker than it could be, and what to do. Mostly empty."""
+
+    middleware: Middleware
+    warning: str = ""
+
+
+@cache
+def choose_middleware(wanted: Middleware | None = None) -> Choice:
+    """The middleware to use: the wanted one, or else lockstep where it can be had. Compiles it at the first call.
+
+    Raises:
+        MiddlewareUnavailable: if lockstep is wanted and can't be had.
+    """
+    if wanted is Middleware.FASTDDS:
+        return Choice(wanted)
+    reason = _reason_against_lockstep()
+    if reason is None:
+        return Choice(Middleware.LOCKSTEP)
+    if wanted is Middleware.LOCKSTEP:
+        raise MiddlewareUnavailable(f"The middleware 'lockstep' can't be used here: {reason}")
+    return Choice(
+        Middleware.FASTDDS,
+        "Graded over Fast DDS: the grader has to infer when a node is done, so one with threads or sleeps of its own "
+        f"may get another result each time. Its own middleware can't be used here: {reason}",
+    )
+
+
+def _reason_against_lockstep() -> str | None:
+    from rmw_lockstep.build import BuildError, build  # compiling is not for the processes that become students
+
+    try:
+        found = build()
+    except BuildError as error:
+        return f"it could not be compiled. {error}"
+    return f"{found.reason}. {found.remedy}" if isinstance(found, Unavailable) else None
+
+
+def variables(middleware: Middleware, of: Mapping[str, str]) -> dict[str, str]:
+    """What a process needs in its environment to load a middleware, given the environment that it would have otherwise.
+
+    Raises:
+        MiddlewareUnavailable: if it has not been compiled.
+    """
+    if middleware is Middleware.FASTDDS:
+        return {"RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}
+    return _library().environment(of)
+
+
+def choosable() -> bool:
+    """Whether `RMW_IMPLEMENTATION` chooses the middleware. PyPI's wheels are bound to theirs by the name of its file.
+
+    There rcl ends the process, with a line that nobody reads, if the variable names another one than was loaded.
+    """
+    ros = installed_ros()
+    return ros is not None and ros.chooses_at_run_time
+
+
+def library_folder() -> Path | None:
+    """Where the compiled lockstep lies, which sandboxes show; None if there is none."""
+    found = library()
+    return found.folder if isinstance(found, Library) else None
+
+
+def _library() -> Library:
+    found = library()
+    if isinstance(found, Unavailable):
+        raise MiddlewareUnavailable(f"The middleware 'lockstep' can't be used here: {found.reason}. {found.remedy}")
+    return found
+
+
+def connect(hub: str) -> None:
+    """Connect this process, into which liblockstep was preloaded, to the hub; from now on it lives in the hub's time.
+
+    Raises:
+        OSError: if there is no hub, or it does not answer.
+    """
+    error = ctypes.CDLL(None).lockstep_connect(os.fsencode(hub))
+    if error:
+        raise OSError(error, f"no connection to the hub {hub}: {os.strerror(error)}")

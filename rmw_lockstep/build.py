@@ -1,0 +1,153 @@
+"""Compiles the middleware for the ROS 2 in use, once: `python -m rmw_lockstep.build`."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from rmw_lockstep.library import (
+    DESCRIPTION,
+    SOURCES,
+    Library,
+    Unavailable,
+    compiler,
+    description,
+    key,
+    library,
+    places,
+    sources,
+)
+from rmw_lockstep.ros import Ros, installed_ros
+
+_COMPILE = ("-std=c++17", "-O2", "-fPIC", "-fvisibility=hidden", "-pthread", "-Wall", "-Wextra", "-c")
+_LINK = ("-shared", "-s", "-pthread", "-Wl,-z,defs")
+
+#: liblockstep is loaded into every program. It brings its own C++ library, and shows only what the map names.
+_ALONE = (
+    *("-static-libstdc++", "-static-libgcc", "-Wl,--exclude-libs,ALL", "-ldl"),
+    f"-Wl,--version-script={SOURCES / 'lockstep/exports.map'}",
+)
+
+#: Compilers that run at once: each takes some 300 MB.
+_AT_ONCE = 2
+
+#: How many former sets of libraries are kept, for programs that still use them.
+_FORMER = 3
+
+_NO_COMPILER = Unavailable("g++ is not installed", "Install it: sudo apt-get install g++")
+
+
+class BuildError(Exception):
+    """Raised where the compiler or the linker fails; the text has what it printed."""
+
+
+def build() -> Library | Unavailable:
+    """The compiled middleware, which is compiled now if there is none yet (seconds, and about 300 MB of memory).
+
+    Raises:
+        BuildError: if the compiler or the linker fails.
+    """
+    found = library()
+    ros = installed_ros()
+    if isinstance(found, Library) or ros is None or not sources():
+        return found
+    if compiler() is None:
+        return _NO_COMPILER
+    place = next((place for place in places() if _writable(place)), None)
+    if place is None:
+        return Unavailable("there is no folder for it that can be written to", "Set HOME to a folder of your own.")
+    with _turn(place):
+        found = library()  # somebody else may have compiled it meanwhile
+        return found if isinstance(found, Library) else Library(_compiled(ros, place), ros.prefix)
+
+
+def compile_into(folder: Path, ros: Ros) -> None:
+    """Compile the libraries into an empty folder. Raises `BuildError`."""
+    objects = folder / "objects"
+    objects.mkdir()
+    files = [file for file in sources() if file.suffix == ".cpp"]
+    with ThreadPoolExecutor(_AT_ONCE) as pool:
+        made = list(pool.map(lambda file: _compile(file, objects, ros), files))
+    lockstep = [made for file, made in zip(files, made, strict=True) if file.is_relative_to(SOURCES / "lockstep")]
+    rmw = [str(one) for one in made if one not in lockstep]
+    _run([*_LINK, "-Wl,-soname,liblockstep.so", "-o", folder / "liblockstep.so", *lockstep, *_ALONE])
+    for name, origin in (("librmw_lockstep_cpp.so", "$ORIGIN"), ("wheels/librmw_fastrtps_cpp.so", "$ORIGIN/..")):
+        output = folder / name
+        output.parent.mkdir(exist_ok=True)
+        options = (f"-Wl,-soname,{output.name}", f"-Wl,-rpath,{origin}", "-o", output)
+        _run([*_LINK, *options, *rmw, folder / "liblockstep.so", *ros.libraries])
+    shutil.rmtree(objects)
+    (folder / DESCRIPTION).write_text(json.dumps(description(ros), indent=1) + "\n", encoding="utf-8")
+
+
+def _compiled(ros: Ros, place: Path) -> Path:
+    target = place / key(ros)
+    with tempfile.TemporaryDirectory(prefix=".new-", dir=place, ignore_cleanup_errors=True) as temporary:
+        folder = Path(temporary) / "set"
+        folder.mkdir(mode=0o755)
+        compile_into(folder, ros)
+        folder.rename(target)
+    _forget_former(place, target)
+    return target
+
+
+def _compile(file: Path, objects: Path, ros: Ros) -> Path:
+    relative = file.relative_to(SOURCES)
+    output = objects / f"{'-'.join(relative.with_suffix('').parts)}.o"
+    # liblockstep is for any program, also for one without ROS 2.
+    folders = () if relative.parts[0] == "lockstep" else ros.include_folders
+    own = (SOURCES / "lockstep", SOURCES / "src", SOURCES)
+    _run([*_COMPILE, file, "-o", output, *(f"-I{folder}" for folder in own), *(f"-isystem{f}" for f in folders)])
+    return output
+
+
+def _run(arguments: Sequence[str | Path]) -> None:
+    command = [*(compiler() or ["g++"]), *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise BuildError(f"{command[0]} ended with {done.returncode}:\n{done.stderr.strip()}")
+
+
+def _writable(place: Path) -> bool:
+    with contextlib.suppress(OSError):
+        place.mkdir(parents=True, exist_ok=True)
+        return os.access(place, os.W_OK | os.X_OK)
+    return False
+
+
+@contextlib.contextmanager
+def _turn(place: Path) -> Iterator[None]:
+    """Of several processes that want to compile, one does; the others wait for it."""
+    with (place / ".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+def _forget_former(place: Path, current: Path) -> None:
+    former = [folder for folder in place.iterdir() if folder != current and not folder.name.startswith(".")]
+    for folder in sorted(former, key=lambda folder: folder.stat().st_mtime, reverse=True)[_FORMER:]:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def main() -> None:
+    """Compile, and print the folder of the libraries; or the reason why not, with exit code 1."""
+    try:
+        found = build()
+    except BuildError as error:
+        sys.exit(f"The middleware rmw_lockstep could not be compiled. {error}")
+    if isinstance(found, Unavailable):
+        sys.exit(f"There is no middleware rmw_lockstep: {found.reason}. {found.remedy}")
+    print(found.folder)
+
+
+if __name__ == "__main__":
+    main()

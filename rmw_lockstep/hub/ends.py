@@ -1,0 +1,131 @@
+"""The hub's own nodes and their ends of the graph: how a test or a grader takes part in it."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import NamedTuple, Protocol
+
+from rmw_lockstep.hub.frames import EndPoint, Node
+from rmw_lockstep.hub.qos import KEEP_ALL, TRANSIENT_LOCAL, Qos
+
+
+class Heard(NamedTuple):
+    """A message that came from a process.
+
+    `now` is the time of the process (ns). `stage` is the number of the hub's last publication that the process had
+    handled. `handled` counts the hub's frames that it had handled, and `thread` numbers its threads, from 1.
+    """
+
+    publisher: EndPoint
+    node: str
+    now: int
+    stage: int
+    handled: int
+    thread: int
+    cdr: bytes
+
+
+class Post(Protocol):
+    """What the ends need of the hub."""
+
+    def publish(self, publisher: Publisher, cdr: bytes) -> int: ...
+    def request(self, client: Client, number: int, cdr: bytes) -> bool: ...
+    def respond(self, client: int, number: int, cdr: bytes) -> None: ...
+    def matched(self, end_point: EndPoint) -> tuple[EndPoint, ...]: ...
+    def add_end(self, end: End) -> None: ...
+    def remove_end(self, end: End) -> None: ...
+    def new_end_point(self, kind: int, node: Node, name: str, type: str, qos: Qos) -> EndPoint: ...
+
+
+class End:
+    """One end point of the hub's."""
+
+    def __init__(self, post: Post, end_point: EndPoint) -> None:
+        self.end_point = end_point
+        self._post = post
+        post.add_end(self)
+
+    @property
+    def matched(self) -> tuple[EndPoint, ...]:
+        """The processes' end points that it exchanges messages with."""
+        return self._post.matched(self.end_point)
+
+    def close(self) -> None:
+        """Remove it from the graph."""
+        self._post.remove_end(self)
+
+
+class Publisher(End):
+    """Publishes serialized messages. It keeps those that a later subscription is to get, as its QoS says."""
+
+    def __init__(self, post: Post, end_point: EndPoint) -> None:
+        keeps = end_point.qos.durability == TRANSIENT_LOCAL
+        depth = None if end_point.qos.history == KEEP_ALL else max(1, end_point.qos.depth)
+        self.history: deque[tuple[int, bytes]] = deque(maxlen=depth if keeps else 0)
+        super().__init__(post, end_point)
+
+    def publish(self, cdr: bytes) -> int:
+        """Queue a message, and return its number among all that the hub has published: see `Heard.stage`."""
+        return self._post.publish(self, cdr)
+
+
+class Subscription(End):
+    """Keeps what comes, in the order in which it came, or hands it to `take`."""
+
+    def __init__(self, post: Post, end_point: EndPoint, take: Callable[[Heard], None] | None = None) -> None:
+        self.heard: list[Heard] = []
+        self.take = take or self.heard.append
+        super().__init__(post, end_point)
+
+
+class Client(End):
+    """Calls a service. The answers stand in `answers`, by the number that `call` returned."""
+
+    def __init__(self, post: Post, end_point: EndPoint) -> None:
+        self.answers: dict[int, bytes] = {}
+        self._number = 0
+        super().__init__(post, end_point)
+
+    def call(self, cdr: bytes) -> int | None:
+        """Queue a request and return its number; None when there is no such service."""
+        self._number += 1
+        return self._number if self._post.request(self, self._number, cdr) else None
+
+
+class Server(End):
+    """Answers requests, by `answer`, which gets the serialized request and returns the serialized response."""
+
+    def __init__(self, post: Post, end_point: EndPoint, answer: Callable[[bytes], bytes]) -> None:
+        self._answer = answer
+        super().__init__(post, end_point)
+
+    def serve(self, client: int, number: int, cdr: bytes) -> None:
+        """Answer one request."""
+        self._post.respond(client, number, self._answer(cdr))
+
+
+class HubNode:
+    """A node of the hub's."""
+
+    def __init__(self, post: Post, node: Node) -> None:
+        self.node = node
+        self._post = post
+
+    def publisher(self, topic: str, type_name: str, qos: Qos) -> Publisher:
+        """A new publisher of messages such as `std_msgs/msg/String`."""
+        return Publisher(self._post, self._post.new_end_point(0, self.node, topic, type_name, qos))
+
+    def subscription(
+        self, topic: str, type_name: str, qos: Qos, take: Callable[[Heard], None] | None = None
+    ) -> Subscription:
+        """A new subscription."""
+        return Subscription(self._post, self._post.new_end_point(1, self.node, topic, type_name, qos), take)
+
+    def server(self, service: str, type_name: str, answer: Callable[[bytes], bytes]) -> Server:
+        """A new server of a service such as `std_srvs/srv/Trigger`."""
+        return Server(self._post, self._post.new_end_point(2, self.node, service, type_name, Qos()), answer)
+
+    def client(self, service: str, type_name: str) -> Client:
+        """A new client of a service."""
+        return Client(self._post, self._post.new_end_point(3, self.node, service, type_name, Qos()))

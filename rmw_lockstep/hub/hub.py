@@ -1,0 +1,371 @@
+"""The hub: every process of a program is connected to it, and it alone says what happens, and when.
+
+It listens on a socket in a folder, lets time go on, and knows exactly when the whole program has nothing left to do.
+It never waits for a process without end: `patience` is called every 20 ms while it waits, and may raise.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import select
+import socket
+import time
+from collections.abc import Callable
+from pathlib import Path
+from types import TracebackType
+
+from rmw_lockstep.hub import frames
+from rmw_lockstep.hub.ends import HubNode
+from rmw_lockstep.hub.graph import Graph
+from rmw_lockstep.hub.limits import Limits, Use, Violation
+from rmw_lockstep.hub.link import Link
+from rmw_lockstep.hub.router import Router
+
+SECOND = 1_000_000_000
+
+#: What a process's clock shows when the first one connects, and what the calendar shows at a clock of 0 (ns).
+BEGIN, EPOCH = 1_000 * SECOND, 1_767_225_600 * SECOND
+
+#: The name of the socket in its folder.
+SOCKET = "hub"
+
+#: The path of a Unix socket may not be longer (sun_path of unix(7), without its NUL).
+LONGEST_PATH = 107
+
+#: How often `patience` is called while the hub waits (s).
+TICK_S = 0.02
+
+#: After how many of these a new process begins also while others are not idle.
+PATIENCE_TICKS = 10
+
+#: How often a process may be granted time without its time going on.
+MOST_STANDSTILLS = 100
+
+
+def _do_nothing() -> None:
+    """Wait for ever, and take notice of no end."""
+
+
+class Hub:
+    """Use it as a context manager, from one thread.
+
+    `main` is the number of the program's first process, as this process sees it, once it is known: the program is not
+    idle while that one is not connected. `before_end` is called before what a process had is taken out of the graph.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        limits: Limits | None = None,
+        patience: Callable[[], None] = _do_nothing,
+        begin: int = BEGIN,
+        epoch: int = EPOCH,
+    ) -> None:
+        """Listen in `folder`, which other users of this machine may enter but not list.
+
+        Raises:
+            ValueError: if the path is too long for a socket.
+            OSError: if there can be no socket.
+        """
+        self.path = folder / SOCKET
+        if len(str(self.path).encode()) > LONGEST_PATH:
+            raise ValueError(f"{self.path} is too long for a socket: at most {LONGEST_PATH} bytes")
+        self.main: int | None = None
+        self.before_end: Callable[[], None] = _do_nothing
+        self.patience = patience
+        self._use = Use(limits or Limits())
+        self._until, self._epoch = begin, epoch
+        self._instant = begin
+        self._standstills = 0
+        self._awaited = False
+        self._runs: dict[int, int] = {}
+        self._due = 0.0
+        self._ticks = 0
+        self._router = Router(self._use, lambda: self._epoch + self._until, epoch)
+        self._poll = select.poll()
+        self._listener = self._listen(folder)
+
+    def _listen(self, folder: Path) -> socket.socket:
+        listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        listener.setblocking(False)
+        listener.bind(str(self.path))
+        self.path.chmod(0o666)
+        folder.chmod(0o711)
+        listener.listen(self._use.limits.connections)
+        self._poll.register(listener, select.POLLIN)
+        return listener
+
+    # --- what the owner of the hub does
+
+    def node(self, name: str, namespace: str = "/") -> HubNode:
+        """A new node of the hub's own."""
+        return HubNode(self._router, self._router.new_node(name, namespace))
+
+    @property
+    def graph(self) -> Graph:
+        """The ROS graph."""
+        return self._router.graph
+
+    @property
+    def links(self) -> list[Link]:
+        """The processes that are connected."""
+        return self._router.links
+
+    @property
+    def now(self) -> int:
+        """The time that was granted last (ns)."""
+        return self._until
+
+    @property
+    def published(self) -> int:
+        """How many messages the hub has published: the number of the last one."""
+        return self._router.published
+
+    @property
+    def next(self) -> int | None:
+        """When the program will wake by itself (ns); None for never. Only when it is idle."""
+        return min((link.next for link in self.links if link.next is not None), default=None)
+
+    @property
+    def in_ros(self) -> int:
+        """How many of the program's threads wait in ROS 2. Only when it is idle."""
+        return sum(link.idle.in_ros for link in self.links if link.idle)
+
+    def advance(self, until: int) -> None:
+        """Let time go on to `until` (ns).
+
+        For one process alone that is only queued, before all that is published after it, until `wait_until_idle`.
+        For several, time goes on from one wake-up of any of them to the next, and this returns when it is there.
+        """
+        self._until = max(until, self._until)
+        if self._is_alone():
+            self._grant(self.links[0], self._until)
+        else:
+            self.wait_until_idle()
+
+    def barrier(self) -> None:
+        """What is published next is handled only when all that was published before is over."""
+        if self._is_alone(idle=False):
+            self.links[0].queue(frames.BARRIER)
+        else:
+            self.wait_until_idle()
+
+    def wait_until_idle(self) -> None:
+        """Send what is queued, and wait until the program has nothing left to do. Raises `Violation`."""
+        while True:
+            self._flush()
+            if not self._is_idle():
+                self._take()
+            elif not self._go_on():
+                return
+
+    def interrupted(self) -> None:
+        """What the program said of itself is no longer true: it was sent a signal. Ask it again."""
+        for link in self.links:
+            link.queue(frames.ASK)
+
+    def pause(self) -> None:
+        """Send what is queued and take what comes, for 20 ms at most, whether or not the program is idle."""
+        self._flush()
+        self._take()
+        if self._is_idle():
+            self._router.deliver()
+        self._flush()
+
+    def is_idle(self) -> bool:
+        """Whether the program has nothing left to do, by all that has come so far."""
+        return self._is_idle()
+
+    def drain(self, at_most_s: float = 1.0) -> None:
+        """Take all that processes sent before they ended; to be called when the program is dead. Raises `Violation`."""
+        self.patience = _do_nothing
+        deadline = time.monotonic() + at_most_s
+        self._accept()
+        while self.links and time.monotonic() < deadline:
+            self._take()
+
+    def close(self) -> None:
+        """Disconnect every process, and listen no more."""
+        for link in self.links:
+            link.close()
+        self.links.clear()
+        self._listener.close()
+        with contextlib.suppress(FileNotFoundError):
+            self.path.unlink()
+
+    def __enter__(self) -> Hub:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    # --- time
+
+    def _is_alone(self, idle: bool = True) -> bool:
+        """Whether there is, and always was, one process only, whose time may go on in one piece."""
+        links = self.links
+        if len(links) != 1 or self._use.connections != 1 or self._router.serves:
+            return False
+        return not idle or links[0].is_idle
+
+    def _grant(self, link: Link, until: int) -> None:
+        self._use.wake_up()
+        link.granted = until
+        link.queue(frames.to_time(until))
+
+    def _go_on(self) -> bool:
+        """Let the idle program's time go on to the next wake-up of any process. False when it is where it is to be.
+
+        No process gets ahead of the others: what one sends at its wake-up, another may get before it wakes itself.
+        """
+        if self._reach_instant():
+            return True
+        if self._router.deliver():
+            return True
+        if all(link.now >= self._until for link in self.links):
+            self._standstills = 0
+            return False
+        self._instant = min([self._until, *(link.next for link in self.links if link.next is not None)])
+        return self._reach_instant()
+
+    def _reach_instant(self) -> bool:
+        """Let the time of those go on that are behind the present instant: first of all who do not wake then, and after
+        them the others, one after another. False when all are there.
+
+        A process that is woken may end, and so wake its parent, whose clock must show the time by then.
+        """
+        behind = [link for link in self.links if link.now < self._instant]
+        if not behind:
+            return False
+        resting = [link for link in behind if link.next is None or link.next > self._instant]
+        for link in resting or [min(behind, key=lambda link: link.pid_inside)]:
+            self._see_progress(link)
+            self._grant(link, self._instant)
+        return True
+
+    def _see_progress(self, link: Link) -> None:
+        """Raise `Violation` when a process's time stays where it is."""
+        self._standstills = self._standstills + 1 if link.granted == self._instant else 0
+        if self._standstills > MOST_STANDSTILLS:
+            raise Violation("protocol", "a process is granted time again and again, and its time does not go on")
+
+    # --- connections
+
+    def _is_idle(self) -> bool:
+        """Whether every process is, the children that they name included."""
+        links = self.links
+        self._awaited = False
+        if not links or not all(link.is_idle for link in links if link.began):
+            return False
+        if self._accept() or self._welcome():
+            return False
+        if not all(link.began for link in links):
+            return False
+        if self.main is not None and all(link.pid != self.main for link in links):
+            return False
+        self._awaited = bool(self._missing_children())
+        return not self._awaited and self._is_confirmed()
+
+    def _is_confirmed(self) -> bool:
+        """Whether each of several processes has said so twice, and none of their threads has run in between.
+
+        One may wake another in a way that is not seen here, such as a pipe, after the other has said that it is idle.
+        """
+        if len(self.links) == 1:
+            return True
+        runs = {link.number: link.idle.runs for link in self.links if link.idle}
+        if all(runs.values()) and runs == self._runs:
+            return True
+        self._runs = runs
+        for link in self.links:
+            link.queue(frames.ASK)
+        return False
+
+    def _missing_children(self) -> list[Link]:
+        """The processes that name a child which is not connected: not yet, no more, or never."""
+        naming = [link for link in self.links if link.idle and link.idle.children]
+        if not naming:
+            return []
+        here = {link.hello.pid for link in self.links if link.hello}
+        return [link for link in naming if link.idle and not here.issuperset(link.idle.children)]
+
+    def _accept(self) -> bool:
+        """Let in who waits at the door. Whether there was anybody."""
+        found = False
+        while True:
+            try:
+                connection, _ = self._listener.accept()
+            except BlockingIOError:
+                return found
+            found = True
+            try:
+                self._use.connection(len(self.links))
+            except Violation:
+                connection.close()
+                raise
+            link = Link(connection, self._use.connections, self._use)
+            link.wait_at_most(TICK_S)
+            self.links.append(link)
+            self._poll.register(connection, select.POLLIN)
+
+    def _flush(self) -> None:
+        for link in self.links:
+            link.flush()
+
+    def _welcome(self) -> bool:
+        """Let those begin who have said HELLO, at the time of the others. Whether there was anybody.
+
+        A new process waits until the others are idle: then its parent's time is known.
+        """
+        waiting = sorted((one for one in self.links if one.hello and not one.began), key=lambda one: one.pid_inside)
+        now = max((link.now for link in self.links if link.began), default=self._until)
+        for link in waiting:
+            self._router.welcome(link, now)
+        return bool(waiting)
+
+    def _take(self) -> None:
+        """Wait for whatever comes, for 20 ms at most, and take it. Raises `Violation`, and what `patience` raises."""
+        links = self.links
+        if len(links) == 1 and not self._awaited and not links[0].unsent:
+            self._read(links[0], 0)
+        else:
+            self._take_from_any()
+        now = time.monotonic()
+        if now >= self._due:
+            self._due = now + TICK_S
+            self._ticks += 1
+            self._accept()
+            if not self._ticks % PATIENCE_TICKS:
+                self._welcome()  # somebody may compute until the new process has done something
+            for link in self._missing_children():
+                link.queue(frames.ASK)
+            self.patience()
+
+    def _take_from_any(self) -> None:
+        by_number = {link.socket.fileno(): link for link in self.links}
+        for number, link in by_number.items():
+            self._poll.modify(number, select.POLLIN | (select.POLLOUT if link.unsent else 0))
+        for number, events in self._poll.poll(TICK_S * 1000):
+            if number not in by_number:
+                self._accept()
+            elif events & ~select.POLLOUT:
+                self._read(by_number[number], socket.MSG_DONTWAIT)
+
+    def _read(self, link: Link, flags: int) -> None:
+        try:
+            alive = link.read(self._router.handle, flags)
+        except BlockingIOError:
+            return
+        if not alive:
+            self._end(link)
+
+    def _end(self, link: Link) -> None:
+        self.before_end()
+        self._poll.unregister(link.socket)
+        link.close()
+        self._router.forget(link)
+        for other in self.links:
+            if link.hello and other.last_idle and link.hello.pid in other.last_idle.children:
+                other.queue(frames.ASK)

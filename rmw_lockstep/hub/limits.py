@@ -1,0 +1,116 @@
+"""What a program may ask of the hub, and the one exception that says it asked for more."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+#: Why the hub does not go on with a program. `protocol`: it broke a rule of PROTOCOL.md.
+Reason = Literal[
+    "protocol", "message", "bytes", "messages", "frames", "nodes", "end points", "connections", "unread", "wake-ups"
+]
+
+
+@dataclass(frozen=True)
+class Limits:
+    """How much all processes of a program may send, own and leave unread, from the first connection to the last.
+
+    Sizes are in bytes. No right program comes near any of them.
+    """
+
+    message_bytes: int = 1_000_000
+    """One serialized message, request or response."""
+    data_bytes: int = 8_000_000
+    """All of them together."""
+    messages: int = 20_000
+    """How many of them there may be."""
+    frames: int = 1_000_000
+    """Frames of any kind."""
+    nodes: int = 200
+    """Nodes at one time."""
+    end_points: int = 4_000
+    """Publishers, subscriptions, clients and servers at one time. A node of rclpy has about ten of its own."""
+    connections: int = 64
+    """Processes at one time."""
+    all_connections: int = 5_000
+    """Processes one after another."""
+    unread_bytes: int = 16_000_000
+    """What is kept for a process that does not read."""
+    wake_ups: int = 1_000_000
+    """How often several processes may have time granted to them. One process alone is granted it in one piece."""
+
+
+class Violation(Exception):
+    """Raised when a program sends what no right program sends. `limit` is the number that `found` exceeds, or 0."""
+
+    def __init__(self, reason: Reason, text: str, *, found: int = 0, limit: int = 0) -> None:
+        super().__init__(text)
+        self.reason = reason
+        self.text = text
+        self.found = found
+        self.limit = limit
+
+
+class Use:
+    """What a program has used so far. Each method raises `Violation` when that is more than `limits` allow."""
+
+    def __init__(self, limits: Limits) -> None:
+        self.limits = limits
+        self.frames = 0
+        self.messages = 0
+        self.data_bytes = 0
+        self.connections = 0
+        self.wake_ups = 0
+
+    def frame(self) -> None:
+        """Count a frame."""
+        self.frames += 1
+        if self.frames > self.limits.frames:
+            raise _exceeded("frames", "frames", self.frames, self.limits.frames)
+
+    def data(self, size: int) -> None:
+        """Count a message of `size` bytes."""
+        self.messages += 1
+        self.data_bytes += size
+        limits = self.limits
+        if size > limits.message_bytes:
+            raise _exceeded("message", "bytes in one message", size, limits.message_bytes)
+        if self.data_bytes > limits.data_bytes:
+            raise _exceeded("bytes", "bytes in all messages together", self.data_bytes, limits.data_bytes)
+        if self.messages > limits.messages:
+            raise _exceeded("messages", "messages", self.messages, limits.messages)
+
+    def connection(self, alive: int) -> None:
+        """Count a connection, beside `alive` others."""
+        self.connections += 1
+        if alive >= self.limits.connections:
+            raise _exceeded("connections", "processes", alive + 1, self.limits.connections)
+        if self.connections > self.limits.all_connections:
+            raise _exceeded("connections", "processes", self.connections, self.limits.all_connections)
+
+    def wake_up(self) -> None:
+        """Count a grant of time."""
+        self.wake_ups += 1
+        if self.wake_ups > self.limits.wake_ups:
+            raise _exceeded("wake-ups", "wake-ups", self.wake_ups, self.limits.wake_ups)
+
+    def nodes(self, count: int) -> None:
+        """See that there may be `count` nodes."""
+        if count > self.limits.nodes:
+            raise _exceeded("nodes", "nodes", count, self.limits.nodes)
+
+    def end_points(self, count: int) -> None:
+        """See that there may be `count` end points."""
+        if count > self.limits.end_points:
+            raise _exceeded(
+                "end points", "publishers, subscriptions, clients and servers", count, self.limits.end_points
+            )
+
+    def unread(self, size: int) -> None:
+        """See that `size` bytes may be kept for a process that does not read."""
+        if size > self.limits.unread_bytes:
+            raise _exceeded("unread", "unread bytes", size, self.limits.unread_bytes)
+
+
+def _exceeded(reason: Reason, what: str, found: int, limit: int) -> Violation:
+    return Violation(reason, f"{found:,} {what}, where {limit:,} are allowed", found=found, limit=limit)

@@ -1,0 +1,170 @@
+"""The hub's end of the connection to one process: frames in, frames out, and what the process has said of itself."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import struct
+from bisect import bisect_right
+from collections.abc import Callable
+
+from rmw_lockstep.hub.frames import KERNEL_SLEEP, Hello, Idle
+from rmw_lockstep.hub.limits import Use, Violation
+
+#: How much is read at once: small enough that a process which sends without end cannot keep the hub.
+PIECE = 65_536
+
+#: A frame holds more than the message in it.
+_FRAME_BESIDE_MESSAGE = 1_024
+
+_CREDENTIALS = struct.Struct("iII")
+_WAIT = struct.Struct("ll")
+
+
+class Link:
+    """One process. `number` is what its identities begin with; `pid` is its number as the hub sees it."""
+
+    def __init__(self, sock: socket.socket, number: int, use: Use) -> None:
+        self.socket, self.number = sock, number
+        self.pid, self.uid = self._peer()
+        self.hello: Hello | None = None
+        self.began = self.joined = False
+        self.sent = 0
+        self.handled = 0
+        self.now = self.granted = 0
+        self.idle: Idle | None = None
+        self.last_idle: Idle | None = None
+        self.threads: set[int] = set()
+        self.nodes: set[int] = set()
+        self.end_points: set[int] = set()
+        self.requests: set[tuple[int, int]] = set()
+        self._use = use
+        self._queued: list[bytes] = []
+        self._unsent = b""
+        self._rest = b""
+        self._marks_at: list[int] = []
+        self._marks: list[int] = []
+        self._first_mark = 0
+
+    def begin(self, now: int, published: int) -> None:
+        """The process begins at the time `now` (ns), when the hub has published so many messages."""
+        self.began = True
+        self.now = self.granted = now
+        self._first_mark = published
+
+    def _peer(self) -> tuple[int, int]:
+        credentials = self.socket.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size)
+        pid, uid, _ = _CREDENTIALS.unpack(credentials)
+        return pid, uid
+
+    @property
+    def pid_inside(self) -> int:
+        """The number of the process as it sees it itself: in the order in which the program's processes were made."""
+        return self.hello.pid if self.hello else 0
+
+    def wait_at_most(self, seconds: float) -> None:
+        """How long `read` waits. A blocking read with a time-out is one system call, where `settimeout` takes two."""
+        whole = int(seconds)
+        waiting = _WAIT.pack(whole, int((seconds - whole) * 1e6))
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, waiting)
+
+    # --- out
+
+    def queue(self, frame: bytes) -> None:
+        """Send a frame with the next `flush`."""
+        self._queued.append(frame)
+        self.sent += 1
+        self.idle = None
+
+    @property
+    def unsent(self) -> int:
+        """How many bytes the process has left unread, beyond what the kernel keeps for it."""
+        return len(self._unsent)
+
+    def flush(self) -> None:
+        """Send what is queued, as far as that goes without waiting. Raises `Violation` when too much is left over."""
+        if self._queued:
+            self._unsent += b"".join(self._queued)
+            self._queued.clear()
+        if not self._unsent:
+            return
+        with contextlib.suppress(BlockingIOError, BrokenPipeError, ConnectionResetError):  # `read` finds its end
+            done = self.socket.send(self._unsent, socket.MSG_DONTWAIT | socket.MSG_NOSIGNAL)
+            self._unsent = self._unsent[done:]
+        self._use.unread(len(self._unsent))
+
+    def mark(self, ordinal: int) -> None:
+        """What the hub has published as number `ordinal` is handled with what is queued now."""
+        self._marks_at.append(self.sent)
+        self._marks.append(ordinal)
+
+    def stage(self, handled: int) -> int:
+        """The number of the last publication of the hub's that came before, when `handled` frames had been handled."""
+        found = bisect_right(self._marks_at, handled)
+        return self._marks[found - 1] if found else self._first_mark
+
+    # --- in
+
+    def read(self, handle: Callable[[Link, int, bytes], None], flags: int = 0) -> bool:
+        """Read once and handle the whole frames in it. False at the end of the connection.
+
+        Raises BlockingIOError when nothing comes, and `Violation`.
+        """
+        try:
+            data = self.socket.recv(PIECE, flags)
+        except (ConnectionResetError, BrokenPipeError):
+            return False
+        if not data:
+            return False
+        self._take(self._rest + data if self._rest else data, handle)
+        return True
+
+    def _take(self, data: bytes, handle: Callable[[Link, int, bytes], None]) -> None:
+        at, end, use = 0, len(data), self._use
+        longest = use.limits.message_bytes + _FRAME_BESIDE_MESSAGE
+        while end - at >= 4:
+            length = int.from_bytes(data[at : at + 4], "little")
+            if not 0 < length <= longest:
+                raise self._bad_length(length, data[at + 4 : at + 5])
+            after = at + 4 + length
+            if after > end:
+                break
+            use.frame()
+            self.idle = None
+            handle(self, data[at + 4], data[at + 5 : after])
+            at = after
+        self._rest = data[at:]
+
+    def _bad_length(self, length: int, kind: bytes) -> Violation:
+        limit = self._use.limits.message_bytes
+        if length and kind in (b"D", b"Q", b"R"):
+            return Violation("message", f"a message of {length:,} bytes", found=length, limit=limit)
+        return Violation("protocol", f"a frame of {length:,} bytes")
+
+    def moment(self, handled: int, now: int) -> tuple[int, int]:
+        """What a process says of a moment, as far as it can be true: neither goes back, nor beyond what was allowed."""
+        self.handled = min(max(handled, self.handled), self.sent)
+        self.now = min(max(now, self.now), self.granted)
+        return self.handled, self.now
+
+    def believe(self, idle: Idle) -> None:
+        """The process says that it is idle."""
+        _, now = self.moment(idle.handled, idle.now)
+        self.idle = self.last_idle = idle._replace(now=now)
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether it is, apart from its children."""
+        idle = self.idle
+        return idle is not None and idle.handled == self.sent and not idle.flags & KERNEL_SLEEP
+
+    @property
+    def next(self) -> int | None:
+        """When it will wake by itself (ns); None for never. Only for one that is idle."""
+        if self.idle is None or self.idle.next < 0:
+            return None
+        return max(self.idle.next, self.now + 1)
+
+    def close(self) -> None:
+        """Speak with it no more."""
+        self.socket.close()

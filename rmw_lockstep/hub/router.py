@@ -1,0 +1,332 @@
+"""What the hub does with each frame: the graph is kept, and messages go to whom they are for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import count
+
+from rmw_lockstep.hub import frames
+from rmw_lockstep.hub.ends import Client, End, Heard, Publisher, Server, Subscription
+from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, EndPoint, Node
+from rmw_lockstep.hub.graph import HUB, Graph
+from rmw_lockstep.hub.limits import Use, Violation
+from rmw_lockstep.hub.link import Link
+from rmw_lockstep.hub.qos import TRANSIENT_LOCAL, Qos
+
+#: The hash of a type whose description the hub has not got: version 0 is "none".
+NO_HASH = bytes(frames.HASH_BYTES)
+
+#: Requests of other processes that one process may leave unanswered.
+MOST_REQUESTS = 10_000
+
+
+@dataclass(frozen=True)
+class Route:
+    """Where the messages of one publisher go: to subscriptions of the hub's, and to processes."""
+
+    node: str
+    subscriptions: list[Subscription]
+    links: list[Link]
+
+
+class Router:
+    """Knows every link and the hub's own ends, and passes frames on between them."""
+
+    def __init__(self, use: Use, calendar: Callable[[], int], epoch: int) -> None:
+        """`calendar` is the calendar's time now, with which the hub's messages are stamped (ns)."""
+        self.graph = Graph()
+        self.links: list[Link] = []
+        self.published = 0
+        self._use, self._calendar, self._epoch = use, calendar, epoch
+        self._numbers = count(1)
+        self._ends: dict[int, End] = {}
+        self._routes: dict[int, Route] = {}
+        self._held: list[tuple[int, Link, bytes]] = []
+        self._handlers: dict[int, Callable[[Link, bytes], None]] = {
+            ord("I"): self._idle,
+            ord("D"): self._data,
+            ord("J"): self._join,
+            ord("N"): self._node,
+            ord("n"): self._node_gone,
+            ord("E"): self._end_point,
+            ord("e"): self._end_point_gone,
+            ord("Q"): self._request,
+            ord("R"): self._response,
+            ord("L"): self._alive,
+        }
+
+    def handle(self, link: Link, kind: int, payload: bytes) -> None:
+        """Take one frame of a process. Raises `Violation`."""
+        if not link.began:
+            self._hello(link, kind, payload)
+            return
+        handler = self._handlers.get(kind)
+        if handler is None:
+            raise Violation("protocol", f"a frame of kind {chr(kind)!r} is not for the hub")
+        handler(link, payload)
+
+    def _hello(self, link: Link, kind: int, payload: bytes) -> None:
+        if kind != ord("H") or link.hello:
+            raise Violation("protocol", "a process sends something other than HELLO before it gets WELCOME")
+        link.hello = frames.hello(payload)
+
+    def welcome(self, link: Link, now: int) -> None:
+        """Let a process that has said HELLO begin, at the time `now`."""
+        link.begin(now, self.published)
+        link.queue(frames.to_welcome(link.number, now, self._epoch))
+
+    def _idle(self, link: Link, payload: bytes) -> None:
+        link.believe(frames.idle(payload))
+
+    # --- the graph
+
+    def _join(self, link: Link, payload: bytes) -> None:
+        if not link.joined:
+            link.joined = True
+            for node in self.graph.nodes.values():
+                if node.id >> 32 != link.number:
+                    link.queue(frames.to_node(node))
+            for end_point in self.graph.end_points.values():
+                if end_point.process != link.number:
+                    link.queue(frames.to_end_point(end_point))
+        link.queue(frames.GRAPH_COMPLETE)
+
+    def _node(self, link: Link, payload: bytes) -> None:
+        node = frames.node(payload)
+        self._new(link, node.id, self.graph.nodes)
+        self._use.nodes(len(self.graph.nodes))
+        link.nodes.add(node.id)
+        self.graph.add_node(node)
+        self._broadcast(frames.to_node(node), link)
+
+    def _node_gone(self, link: Link, payload: bytes) -> None:
+        number = frames.identity(payload)
+        if number not in link.nodes:
+            raise Violation("protocol", "a process removes a node that is not its own")
+        self._remove_node(link, number)
+
+    def _remove_node(self, link: Link, number: int) -> None:
+        for end_point in self.graph.end_points_of(number):
+            self._remove_end_point(link, end_point.id)
+        link.nodes.discard(number)
+        self.graph.remove_node(number)
+        self._broadcast(frames.to_gone(b"n", number), link)
+
+    def _end_point(self, link: Link, payload: bytes) -> None:
+        end_point = frames.end_point(payload)
+        self._new(link, end_point.id, self.graph.end_points)
+        if end_point.node not in link.nodes:
+            raise Violation("protocol", "an end point of a node that is not the process's own")
+        self._use.end_points(len(self.graph.end_points))
+        link.end_points.add(end_point.id)
+        self._add(end_point)
+        self._broadcast(frames.to_end_point(end_point), link)
+        if end_point.kind == SUBSCRIPTION and end_point.qos.durability == TRANSIENT_LOCAL:
+            self._replay(link, end_point)
+
+    def _replay(self, link: Link, subscription: EndPoint) -> None:
+        """A subscription that asks for it gets what was published before. Processes replay what is theirs."""
+        for writer in self.graph.writers(subscription):
+            publisher = self._ends.get(writer.id)
+            if isinstance(publisher, Publisher):
+                for source_time, cdr in publisher.history:
+                    link.queue(frames.to_data(writer.id, subscription.id, source_time, cdr))
+
+    def _end_point_gone(self, link: Link, payload: bytes) -> None:
+        number = frames.identity(payload)
+        if number not in link.end_points:
+            raise Violation("protocol", "a process removes an end point that is not its own")
+        self._remove_end_point(link, number)
+
+    def _remove_end_point(self, link: Link, number: int) -> None:
+        link.end_points.discard(number)
+        self._remove(number)
+        self._broadcast(frames.to_gone(b"e", number), link)
+
+    def _new(self, link: Link, number: int, known: dict[int, Node] | dict[int, EndPoint]) -> None:
+        if number >> 32 != link.number or number in known:
+            raise Violation("protocol", "an identity that is not the process's own, or is given twice")
+
+    def _add(self, end_point: EndPoint) -> None:
+        self.graph.add(end_point)
+        self._routes.clear()
+
+    def _remove(self, number: int) -> None:
+        self.graph.remove(number)
+        self._routes.clear()
+
+    def _broadcast(self, frame: bytes, origin: Link | None = None) -> None:
+        for link in self.links:
+            if link is not origin and link.joined:
+                self._pass_on(origin, link, frame)
+
+    def _pass_on(self, origin: Link | None, to: Link, frame: bytes) -> None:
+        """What one process sends to another is held until all are idle: see `deliver`."""
+        if origin is None:
+            to.queue(frame)
+        else:
+            self._held.append((origin.pid_inside, to, frame))
+
+    def deliver(self) -> bool:
+        """Pass on what processes sent to one another, one sender after the other. Whether there was anything.
+
+        Processes run at the same time, so without this it would be chance whose message another one gets first.
+        """
+        held, self._held = sorted(self._held, key=lambda one: one[0]), []
+        for _, to, frame in held:
+            if to in self.links:
+                to.queue(frame)
+        return bool(held)
+
+    def forget(self, link: Link) -> None:
+        """A process has ended, and with it all that it had."""
+        self.links.remove(link)
+        for number in tuple(link.end_points):
+            self._remove_end_point(link, number)
+        for number in tuple(link.nodes):
+            self._remove_node(link, number)
+        self._routes.clear()
+
+    # --- messages, requests and responses
+
+    def _data(self, link: Link, payload: bytes) -> None:
+        data = frames.data(payload)
+        self._use.data(len(data.cdr))
+        publisher = self._own(link, data.publisher, PUBLISHER)
+        handled, now = link.moment(data.handled, data.now)
+        link.threads.add(data.thread)
+        route = self._routes.get(publisher.id) or self._route(publisher)
+        for subscription in route.subscriptions:
+            if data.only in (0, subscription.end_point.id):
+                stage = link.stage(handled)
+                subscription.take(Heard(publisher, route.node, now, stage, handled, data.thread, data.cdr))
+        for other in route.links:
+            self._pass_on(link, other, frames.to_data(publisher.id, data.only, data.source_time, data.cdr))
+
+    def _own(self, link: Link, number: int, kind: int) -> EndPoint:
+        end_point = self.graph.end_points.get(number) if number in link.end_points else None
+        if end_point is None or end_point.kind != kind:
+            raise Violation("protocol", "a process speaks for an end point that is not its own")
+        return end_point
+
+    def _route(self, publisher: EndPoint) -> Route:
+        readers = self.graph.readers(publisher)
+        own = [self._ends[reader.id] for reader in readers if reader.process == HUB]
+        others = {reader.process for reader in readers} - {publisher.process}
+        subscriptions = [end for end in own if isinstance(end, Subscription)]
+        links = [link for link in self.links if link.number in others]
+        route = Route(self.graph.nodes[publisher.node].full_name, subscriptions, links)
+        self._routes[publisher.id] = route
+        return route
+
+    def _request(self, link: Link, payload: bytes) -> None:
+        call = frames.call(payload)
+        self._use.data(len(call.cdr))
+        client = self._own(link, call.client, CLIENT)
+        link.moment(call.handled, call.now)
+        for server in self.graph.servers(client):
+            own = self._ends.get(server.id)
+            if isinstance(own, Server):
+                own.serve(client.id, call.number, call.cdr)
+            elif server.process != link.number:
+                self._ask(link, server, client.id, call.number, call.source_time, call.cdr)
+
+    def _ask(
+        self, origin: Link | None, server: EndPoint, client: int, number: int, source_time: int, cdr: bytes
+    ) -> None:
+        link = self._link(server.process)
+        if link is None:
+            return
+        if len(link.requests) >= MOST_REQUESTS:
+            raise Violation("messages", "unanswered requests", found=len(link.requests) + 1, limit=MOST_REQUESTS)
+        link.requests.add((client, number))
+        self._pass_on(origin, link, frames.to_request(server.id, client, number, source_time, cdr))
+
+    def _response(self, link: Link, payload: bytes) -> None:
+        call = frames.call(payload)
+        self._use.data(len(call.cdr))
+        link.moment(call.handled, call.now)
+        if (call.client, call.number) not in link.requests:
+            raise Violation("protocol", "a response to what was not requested")
+        link.requests.discard((call.client, call.number))
+        own = self._ends.get(call.client)
+        if isinstance(own, Client):
+            own.answers[call.number] = call.cdr
+            return
+        other = self._link(call.client >> 32)
+        if other is not None and call.client in other.end_points:
+            self._pass_on(link, other, frames.to_response(call.client, call.number, call.source_time, call.cdr))
+
+    def _alive(self, link: Link, payload: bytes) -> None:
+        publisher = self._own(link, frames.identity(payload), PUBLISHER)
+        for other in self._route(publisher).links:
+            self._pass_on(link, other, frames.to_gone(b"L", publisher.id))
+
+    def _link(self, number: int) -> Link | None:
+        return next((link for link in self.links if link.number == number), None)
+
+    # --- the hub's own ends: see `rmw_lockstep.hub.ends.Post`
+
+    def new_node(self, name: str, namespace: str = "/") -> Node:
+        """A node of the hub's."""
+        node = Node(next(self._numbers), name, namespace)
+        self.graph.add_node(node)
+        self._broadcast(frames.to_node(node))
+        return node
+
+    def new_end_point(self, kind: int, node: Node, name: str, type: str, qos: Qos) -> EndPoint:
+        """An identity for an end point of the hub's."""
+        return EndPoint(next(self._numbers), kind, node.id, name, type, NO_HASH, qos)
+
+    def add_end(self, end: End) -> None:
+        """It is in the graph from now on."""
+        self._ends[end.end_point.id] = end
+        self._add(end.end_point)
+        self._broadcast(frames.to_end_point(end.end_point))
+
+    def remove_end(self, end: End) -> None:
+        """It is in the graph no more."""
+        del self._ends[end.end_point.id]
+        self._remove(end.end_point.id)
+        self._broadcast(frames.to_gone(b"e", end.end_point.id))
+
+    @property
+    def serves(self) -> bool:
+        """Whether the hub answers anything by itself."""
+        return any(isinstance(end, Server) for end in self._ends.values())
+
+    def matched(self, end_point: EndPoint) -> tuple[EndPoint, ...]:
+        """The processes' end points that an end point of the hub's exchanges messages with."""
+        graph = self.graph
+        if end_point.kind == SERVER:
+            clients = graph.of_program(end_point.name, CLIENT)
+            return tuple(client for client in clients if client.type == end_point.type)
+        others = {PUBLISHER: graph.readers, SUBSCRIPTION: graph.writers, CLIENT: graph.servers}[end_point.kind]
+        return tuple(other for other in others(end_point) if other.process != HUB)
+
+    def publish(self, publisher: Publisher, cdr: bytes) -> int:
+        """Queue a message for every process that it is for, or may be for by the time it gets there."""
+        self.published += 1
+        source_time = self._calendar()
+        publisher.history.append((source_time, cdr))
+        frame = frames.to_data(publisher.end_point.id, 0, source_time, cdr)
+        processes = {reader.process for reader in self.graph.readers(publisher.end_point)}
+        for link in self.links:
+            if link.joined and (link.number in processes or link.idle is None):
+                link.queue(frame)
+            link.mark(self.published)
+        return self.published
+
+    def request(self, client: Client, number: int, cdr: bytes) -> bool:
+        """Queue a request; False when nobody serves it."""
+        servers = self.matched(client.end_point)
+        for server in servers:
+            self._ask(None, server, client.end_point.id, number, self._calendar(), cdr)
+        return bool(servers)
+
+    def respond(self, client: int, number: int, cdr: bytes) -> None:
+        """Queue a response of the hub's to a process."""
+        link = self._link(client >> 32)
+        if link is not None:
+            link.queue(frames.to_response(client, number, self._calendar(), cdr))

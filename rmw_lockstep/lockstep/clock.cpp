@@ -1,0 +1,75 @@
+// The computer's clocks, as the hub says.
+#include <errno.h>
+
+#include "real.hpp"
+#include "sleeping.hpp"
+
+namespace lockstep {
+namespace {
+
+// A thread that reads the clock this often without ever waiting waits for a time to come; then each further so many
+// readings take so long (ns). Python reads it once for each lock that it takes, so many readings are free.
+constexpr unsigned FREE_READINGS = 100'000, READINGS = 1'000;
+constexpr int64_t TIME_PER_READINGS = 1'000'000;
+
+thread_local unsigned readings = 0;
+thread_local uint64_t rests_before = 0;
+
+void count_reading() {
+  if (reads_clock_freely) return;
+  if (rests_before != rests) { rests_before = rests; readings = 0; }
+  if (++readings < FREE_READINGS || readings % READINGS) return;
+  reads_clock_freely = true;
+  sleep_until(core().now() + TIME_PER_READINGS, true);
+  reads_clock_freely = false;
+  rests_before = rests;  // this sleep is not one of the program's
+}
+
+bool of_cpu(clockid_t clock) {
+  // CPU time clocks of other processes and threads have negative numbers.
+  return clock == CLOCK_PROCESS_CPUTIME_ID || clock == CLOCK_THREAD_CPUTIME_ID || clock < 0;
+}
+
+int64_t moment(clockid_t clock) {
+  count_reading();
+  const bool calendar = clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_TAI;
+  return core().now() + (calendar ? core().epoch() : 0);
+}
+
+}  // namespace
+
+void discount_reading() { if (readings) --readings; }
+
+}  // namespace lockstep
+
+using namespace lockstep;
+
+extern "C" {
+
+LOCKSTEP_API int clock_gettime(clockid_t clock, timespec * time) {
+  if (!virtual_time() || of_cpu(clock)) return real::clock_gettime()(clock, time);
+  *time = real::as_timespec(moment(clock));
+  return 0;
+}
+
+LOCKSTEP_API int timespec_get(timespec * time, int base) {
+  if (base != TIME_UTC) return 0;
+  ::clock_gettime(CLOCK_REALTIME, time);
+  return base;
+}
+
+LOCKSTEP_API int gettimeofday(timeval * time, void * zone) {
+  if (!virtual_time()) return real::gettimeofday()(time, zone);
+  const int64_t microseconds = moment(CLOCK_REALTIME) / 1000;
+  *time = {microseconds / 1'000'000, static_cast<suseconds_t>(microseconds % 1'000'000)};
+  return 0;
+}
+
+LOCKSTEP_API time_t time(time_t * out) {
+  if (!virtual_time()) return real::time()(out);
+  const time_t seconds = moment(CLOCK_REALTIME) / 1'000'000'000;
+  if (out) *out = seconds;
+  return seconds;
+}
+
+}  // extern "C"

@@ -1,0 +1,259 @@
+#include "core.hpp"
+
+#include <errno.h>
+#include <linux/futex.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+
+#include "bytes.hpp"
+#include "real.hpp"
+
+namespace lockstep {
+
+thread_local uint64_t rests = 0;
+thread_local bool reads_clock_freely = false;
+
+Core & core() {
+  static Core * const only = new Core;
+  return *only;
+}
+
+pid_t thread_number() {
+  static thread_local pid_t number = 0;
+  static thread_local pid_t process = 0;
+  // The only thread of a forked child has its parent's memory, and another number.
+  if (process != getpid()) { process = getpid(); number = static_cast<pid_t>(syscall(SYS_gettid)); }
+  return number;
+}
+
+bool Sleeper::satisfied() const {
+  if (semaphore && semaphore->load() > 0) return true;
+  if (!files) return false;
+  std::vector<pollfd> copy(files, files + file_count);
+  return real::poll()(copy.data(), copy.size(), 0) > 0;
+}
+
+// ---- the lock
+
+void Core::lock() {
+  ++entering_;
+  pthread_mutex_lock(&mutex_);
+  --entering_;
+}
+
+void Core::unlock() {
+  std::vector<Later> calls;
+  calls.swap(later_);
+  if (calls.empty()) { pthread_mutex_unlock(&mutex_); return; }
+  ++calling_;
+  pthread_mutex_unlock(&mutex_);
+  for (const Later & call : calls) call.function(call.data, call.count);
+  --calling_;
+  lock();
+  changed_ = true;
+  poke();
+  pthread_mutex_unlock(&mutex_);
+}
+
+void Core::call_later(void (*function)(const void *, size_t), const void * data, size_t count) {
+  later_.push_back({function, data, count});
+}
+
+// The thread that tells may fall asleep where this library does not see it, so the keeper has to look.
+void Core::tell(const uint8_t * frame, size_t size) {
+  send(frame, size);
+  changed_ = true;
+  poke();
+}
+
+lockstep_moment Core::here() { return {handled_, now(), static_cast<uint32_t>(thread_number())}; }
+
+// ---- sleeping
+
+void Core::fall_asleep(Sleeper & sleeper) {
+  ++rests;
+  sleeper.thread = thread_number();
+  sleepers_.push_back(&sleeper);
+  changed_ = true;
+  if (!connected_) return;
+  step();
+  while (!later_.empty()) {
+    unlock();
+    lock();
+    step();
+  }
+  if (restless_) poke();
+}
+
+void Core::wake_up(Sleeper & sleeper) {
+  sleepers_.erase(std::find(sleepers_.begin(), sleepers_.end(), &sleeper));
+  changed_ = true;
+}
+
+void Core::wake(Sleeper & sleeper, bool due) {
+  if (sleeper.awake.load()) return;
+  sleeper.due = due;
+  sleeper.awake.store(1);
+  nudge(sleeper);
+}
+
+// Wakes a thread that has been told to wake up, in the way in which it sleeps. False: it may have come too early.
+bool Core::nudge(const Sleeper & sleeper) {
+  if (sleeper.semaphore) {
+    const int operation = FUTEX_WAKE | (sleeper.semaphore_shared ? 0 : FUTEX_PRIVATE_FLAG);
+    syscall(SYS_futex, sleeper.semaphore, operation, INT32_MAX, nullptr, nullptr, 0);
+    return false;
+  }
+  if (sleeper.condition) { real::pthread_cond_broadcast()(sleeper.condition); return false; }
+  if (sleeper.event >= 0) { const uint64_t one = 1; return write(sleeper.event, &one, sizeof one) == sizeof one; }
+  syscall(SYS_futex, &sleeper.awake, FUTEX_WAKE | FUTEX_PRIVATE_FLAG, 1, nullptr, nullptr, 0);
+  return true;
+}
+
+// ---- idle
+
+Core::Idle Core::idle() {
+  if (entering_ || calling_ || !later_.empty()) return Idle::look_again;
+  bool holds_interpreter = false;
+  std::vector<pid_t> known{keeper_};
+  for (const Sleeper * sleeper : sleepers_) {
+    if (sleeper->awake) { nudge(*sleeper); return Idle::look_again; }
+    if (sleeper->satisfied()) return Idle::look_again;
+    if (sleeper->certain()) known.push_back(sleeper->thread);
+    holds_interpreter |= sleeper->holds_interpreter;
+  }
+  const int contending_now = contending;
+  if (contending_now && !holds_interpreter) return Idle::look_again;
+  flags_ = 0;
+  const unsigned count = threads_.count();
+  others_ = count > known.size() ? count - static_cast<unsigned>(known.size()) : 0;
+  if (!others_ || (holds_interpreter && others_ == static_cast<unsigned>(contending_now))) return Idle::yes;
+  switch (threads_.look(known, !children_.empty())) {
+    case Threads::Look::busy: return Idle::look_again;
+    case Threads::Look::timed: flags_ = 2; return Idle::look_again;
+    case Threads::Look::asleep: break;
+  }
+  return entering_ || contending != contending_now ? Idle::look_again : Idle::yes;
+}
+
+void Core::step() {
+  restless_ = false;
+  while (connected_) {
+    uint32_t size = 0;
+    const uint8_t * frame = front(size);
+    const char kind = frame ? static_cast<char>(frame[0]) : 0;
+    const bool gate = kind == 'T' || kind == '|';
+    if (frame && !time_runs_ && !gate) {
+      if (kind == '?') asked_ = true;
+      else if (participant_) participant_->frame(frame, size);
+      pop();
+      continue;
+    }
+    if (!frame && !time_runs_ && !changed_) return;
+    if (idle() != Idle::yes) { restless_ = true; return; }
+    if (time_runs_) {
+      if (go_on()) continue;
+    } else if (kind == 'T') {
+      begin_time(frame, size);
+    } else if (kind == '|') {
+      pop();
+    } else {
+      announce();
+    }
+  }
+}
+
+void Core::begin_time(const uint8_t * frame, uint32_t size) {
+  Reader reader(frame + 1, size - 1);
+  until_ = std::max(reader.get<int64_t>(), now());
+  stop_at_output_ = reader.get<uint8_t>() != 0;
+  time_runs_ = true;
+  sent_output_ = false;
+}
+
+// Called when the process is idle. Wakes who is to wake next; true: look again whether the process is idle.
+bool Core::go_on() {
+  if (!(stop_at_output_ && sent_output_)) {
+    Sleeper * next = nullptr;
+    for (Sleeper * sleeper : sleepers_) {
+      const bool sooner = !next || sleeper->deadline < next->deadline ||
+                          (sleeper->deadline == next->deadline && sleeper->thread < next->thread);
+      if (sleeper->deadline <= until_ && sooner) next = sleeper;
+    }
+    const int64_t own = participant_ ? participant_->next() : NEVER;
+    if (own <= until_ && (!next || own <= next->deadline)) {
+      now_ = std::max(now(), own);
+      participant_->due(now());
+      return true;
+    }
+    if (next) {
+      now_ = std::max(now(), next->deadline);
+      wake(*next, true);
+      return true;
+    }
+    now_ = until_;
+  }
+  time_runs_ = false;
+  pop();
+  return true;
+}
+
+void Core::announce() {
+  int64_t next = participant_ ? participant_->next() : NEVER;
+  uint32_t timed = 0;
+  for (const Sleeper * sleeper : sleepers_) {
+    next = std::min(next, sleeper->deadline);
+    timed += sleeper->deadline != NEVER;
+  }
+  const uint64_t runs = asked_ ? threads_.runs(keeper_) : 0;
+  std::vector<uint8_t> frame;
+  {
+    Writer writer(frame, 'I');
+    writer.put<uint64_t>(handled_).put<int64_t>(now()).put<int64_t>(next == NEVER ? -1 : next);
+    writer.put<uint32_t>(participant_ ? participant_->waiting() : 0).put<uint32_t>(timed).put<uint32_t>(others_);
+    writer.put<uint8_t>(flags_).put<uint64_t>(runs);
+    children_.erase(std::remove_if(children_.begin(), children_.end(), [](pid_t child) {
+      siginfo_t info{};
+      const int result = waitid(P_PID, child, &info, WEXITED | WNOWAIT | WNOHANG);
+      return result != 0 || info.si_pid == child;
+    }), children_.end());
+    const auto count = static_cast<uint16_t>(std::min<size_t>(children_.size(), 1000));
+    writer.put<uint16_t>(count);
+    for (uint16_t i = 0; i < count; ++i) writer.put<uint32_t>(children_[i]);
+  }
+  changed_ = asked_ = false;
+  send(frame.data(), frame.size());
+}
+
+// ---- processes
+
+void Core::forked(pid_t child) {
+  if (child <= 0 || !connected_) return;
+  children_.push_back(child);
+  changed_ = true;
+  poke();
+}
+
+void Core::reset_in_child(bool connect_again) {
+  mutex_ = PTHREAD_MUTEX_INITIALIZER;
+  entering_ = calling_ = 0;
+  contending = 0;
+  sleepers_.clear();
+  children_.clear();
+  later_.clear();
+  threads_.forget();
+  for (const int file : {socket_, poke_}) if (file >= 0) close(file);
+  socket_ = poke_ = -1;
+  in_.clear();
+  in_at_ = 0;
+  const bool was_connected = connected_;
+  connected_ = false;
+  handled_ = 0;
+  time_runs_ = asked_ = false;
+  if (participant_) participant_->reset();
+  if (was_connected && connect_again) connect(std::string(path_));
+}
+
+}  // namespace lockstep

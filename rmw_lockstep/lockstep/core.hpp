@@ -1,0 +1,133 @@
+// What this process is: its connection, its time, and its threads that sleep.
+#pragma once
+
+#include <poll.h>
+#include <pthread.h>
+#include <sys/types.h>
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lockstep.h"
+#include "threads.hpp"
+
+namespace lockstep {
+
+constexpr int64_t NEVER = LOCKSTEP_NEVER;
+
+// A thread that waits in this library, on that thread's own stack. It stands in `Core::sleepers` from before it falls
+// asleep until after it has woken, so that a thread on its way into or out of its sleep is never taken for asleep.
+struct Sleeper {
+  int64_t deadline = NEVER;          // on the steady clock (ns)
+  pid_t thread = 0;
+  std::atomic<uint32_t> awake{0};    // what the thread sleeps on; not 0 once it has been told to wake up
+  bool due = false;                  // told to because its deadline has come
+  // How it sleeps, where it can be woken by more than this library:
+  std::atomic<uint32_t> * semaphore = nullptr;  // the value of a POSIX semaphore
+  bool semaphore_shared = false;
+  pthread_cond_t * condition = nullptr;
+  int event = -1;                    // an eventfd that it polls, beside
+  const pollfd * files = nullptr;    // these files
+  nfds_t file_count = 0;
+  bool holds_interpreter = false;    // it reads the clock again and again, and threads that wait for it wait for Python
+
+  // Whether what it waits for, besides its time, is there.
+  bool satisfied() const;
+  // Whether being in the list proves that it sleeps: of a condition variable nobody can tell who was woken.
+  bool certain() const { return !condition; }
+};
+
+class Core {
+public:
+  // The lock. A thread that waits for it looks asleep to the kernel, so it is counted.
+  void lock();
+  void unlock();
+
+  int connect(const std::string & path);
+  bool connected() const { return connected_; }
+  bool virtual_time() const { return virtual_.load(std::memory_order_relaxed); }
+  int64_t now() const { return now_.load(std::memory_order_relaxed); }
+  int64_t epoch() const { return epoch_; }
+  uint32_t process() const { return process_; }
+
+  // All below: with the lock held.
+  void participate(const lockstep_participant * participant) { participant_ = participant; }
+  // What the hub is told of the graph, or a message: it takes the process for busy from then on.
+  void tell(const uint8_t * frame, size_t size);
+  void sent_output() { sent_output_ = true; }
+  lockstep_moment here();
+  void call_later(void (*function)(const void *, size_t), const void * data, size_t count);
+
+  // Put a sleeper into the list, and see whether the process is idle now; take it out again.
+  void fall_asleep(Sleeper & sleeper);
+  void wake_up(Sleeper & sleeper);
+  void wake(Sleeper & sleeper, bool due);
+
+  // Threads of Python that wait for its global lock are about to run.
+  std::atomic<int> contending{0};
+
+  // In the parent, and in the child, of a fork. A child that is about to become another program does not connect.
+  void forked(pid_t child);
+  void reset_in_child(bool connect_again);
+
+private:
+  struct Later { void (*function)(const void *, size_t); const void * data; size_t count; };
+  enum class Idle { yes, no, look_again };
+
+  void send(const uint8_t * frame, size_t size);
+  void keep();                     // the library's own thread
+  static void * keep_of(void * core);
+  void poke();
+  bool receive();
+  void lost();
+  void step();                     // handle what may be handled now
+  const uint8_t * front(uint32_t & size) const;
+  void pop();
+  void begin_time(const uint8_t * frame, uint32_t size);
+  bool go_on();                    // one step of time; false when it is over
+  Idle idle();
+  bool nudge(const Sleeper & sleeper);
+  void announce();
+  void write_children(std::vector<uint8_t> & frame);
+
+  pthread_mutex_t mutex_ = PTHREAD_MUTEX_INITIALIZER;
+  std::atomic<int> entering_{0}, calling_{0};
+  std::atomic<bool> virtual_{false};
+  std::atomic<int64_t> now_{0};
+  bool connected_ = false;
+  int socket_ = -1, poke_ = -1;
+  std::string path_;
+  uint32_t process_ = 0;
+  int64_t epoch_ = 0;
+  pid_t keeper_ = 0;
+  bool keeper_sleeps_ = false, restless_ = false;
+  const lockstep_participant * participant_ = nullptr;
+  std::vector<Sleeper *> sleepers_;
+  std::vector<pid_t> children_;
+  std::vector<Later> later_;
+  Threads threads_;
+  uint8_t flags_ = 0;
+  unsigned others_ = 0;
+
+  std::vector<uint8_t> in_;
+  size_t in_at_ = 0;
+  uint64_t handled_ = 0;
+  bool changed_ = false;           // since the process said that it was idle
+  bool asked_ = false;             // whether it still is
+  bool time_runs_ = false, stop_at_output_ = false, sent_output_ = false;
+  int64_t until_ = 0;
+};
+
+// The one of this process. Never destroyed: threads use it until the process ends.
+Core & core();
+
+// The kernel's number of the calling thread, and how often it has slept in this library.
+pid_t thread_number();
+extern thread_local uint64_t rests;
+
+// Whether the calling thread's readings of the clock are not counted: it is not one of the program's.
+extern thread_local bool reads_clock_freely;
+
+}  // namespace lockstep

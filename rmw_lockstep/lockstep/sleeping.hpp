@@ -1,0 +1,44 @@
+// What the functions that wait have in common.
+#pragma once
+
+#include <time.h>
+
+#include <cstdint>
+
+#include "core.hpp"
+
+namespace lockstep {
+
+// Whether the calling thread sleeps in the hub's time.
+inline bool virtual_time() { return core().virtual_time(); }
+
+// A moment on any of the computer's clocks, as the steady one (ns).
+inline int64_t steady(clockid_t clock, int64_t moment) {
+  return clock == CLOCK_REALTIME ? moment - core().epoch() : moment;
+}
+
+// Stands in the core's list of sleepers for as long as it lives.
+class Asleep {
+public:
+  explicit Asleep(Sleeper & sleeper) : sleeper_(sleeper) { fall(); }
+  ~Asleep() { rise(); }
+  Asleep(const Asleep &) = delete;
+  Asleep & operator=(const Asleep &) = delete;
+  void fall() { if (!in_) { core().lock(); core().fall_asleep(sleeper_); core().unlock(); in_ = true; } }
+  void rise() { if (in_) { core().lock(); core().wake_up(sleeper_); core().unlock(); in_ = false; } }
+
+private:
+  Sleeper & sleeper_;
+  bool in_ = false;
+};
+
+// Sleep until the steady clock shows `deadline`. Returns 0, or EINTR when a signal came first.
+int sleep_until(int64_t deadline, bool holds_interpreter = false);
+
+// The last reading of the clock was not the program's own, and depends on chance.
+void discount_reading();
+
+// Wait on a word of memory, at most for a real time; returns what the futex call set errno to, 0 if it woke.
+int futex_wait(std::atomic<uint32_t> & word, uint32_t while_it_is, bool shared = false, const timespec * most = nullptr);
+
+}  // namespace lockstep

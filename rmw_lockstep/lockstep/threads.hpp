@@ -1,0 +1,40 @@
+// The threads of this process, as the kernel sees them.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace lockstep {
+
+class Threads {
+public:
+  enum class Look {
+    asleep,   // every one sleeps, in a call that only somebody else can end
+    timed,    // the same, but one of them waits for a time by the kernel's own clock
+    busy,     // one runs, or could
+  };
+
+  // How many there are, the calling one included.
+  unsigned count();
+  // Looks at every thread but those in `known`, whose sleep is certain otherwise. `children`: whether there are any.
+  Look look(const std::vector<pid_t> & known, bool children);
+  // A number that is another one if any thread but `keeper` has run since it was asked for the last time.
+  uint64_t runs(pid_t keeper);
+  void forget();
+
+private:
+  struct Thread { int stat, schedule, call; std::string before; };
+  void read();
+  bool open_thread(pid_t number);
+  void close_all();
+
+  int folder_ = -1;
+  unsigned links_ = 0;
+  std::map<pid_t, Thread> threads_;
+};
+
+}  // namespace lockstep

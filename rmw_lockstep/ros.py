@@ -1,0 +1,86 @@
+"""The ROS 2 that the middleware is compiled against: PyPI's wheels in this environment, or one that was sourced."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+#: Whose headers the middleware includes. Each has a folder of its own below include/.
+HEADERS = (
+    *("rmw", "rcutils", "rcpputils", "fastcdr"),
+    *("rosidl_runtime_c", "rosidl_runtime_cpp", "rosidl_typesupport_interface", "rosidl_dynamic_typesupport"),
+    *("rosidl_typesupport_fastrtps_c", "rosidl_typesupport_fastrtps_cpp"),
+)
+
+#: What the middleware is linked with.
+LIBRARIES = (
+    *("rmw", "rcutils", "rcpputils", "fastcdr"),
+    *("rosidl_runtime_c", "rosidl_typesupport_fastrtps_c", "rosidl_typesupport_fastrtps_cpp"),
+)
+
+_PACKAGE_VERSION = re.compile(r"<version>\s*([^<\s]+)\s*</version>")
+_FAST_CDR_VERSION = re.compile(r'FASTCDR_VERSION_STR\s+"([^"]+)"')
+
+
+@dataclass(frozen=True)
+class Ros:
+    """An installed ROS 2; `prefix` is the folder with its include/, lib/ and share/."""
+
+    prefix: Path
+
+    @property
+    def chooses_at_run_time(self) -> bool:
+        """Whether `RMW_IMPLEMENTATION` chooses the middleware. PyPI's libraries are linked to Fast DDS by name."""
+        return (self.prefix / "lib/librmw_implementation.so").exists()
+
+    @property
+    def versions(self) -> Mapping[str, str]:
+        """The versions of all that decides whether a compiled middleware fits: the API's, and Fast CDR's."""
+        found = {name: _version(self.prefix / "share" / name / "package.xml", _PACKAGE_VERSION) for name in _DECISIVE}
+        return found | {"fastcdr": _version(self.prefix / "include/fastcdr/config.h", _FAST_CDR_VERSION)}
+
+    @property
+    def include_folders(self) -> tuple[Path, ...]:
+        """Where the compiler looks for headers."""
+        top = self.prefix / "include"
+        return (*(top / name for name in HEADERS if (top / name).is_dir()), top)
+
+    @property
+    def libraries(self) -> tuple[Path, ...]:
+        """What is linked."""
+        return tuple(self.prefix / "lib" / f"lib{name}.so" for name in LIBRARIES)
+
+
+_DECISIVE = ("rmw", "rcutils", "rosidl_runtime_c", "rosidl_typesupport_fastrtps_c")
+
+
+def installed_ros() -> Ros | None:
+    """The ROS 2 that this Python imports, with its headers; None if there is none.
+
+    A sourced ROS 2 comes first, as it does in Python's own search: its packages are on `PYTHONPATH`.
+    """
+    return next((Ros(prefix) for prefix in _prefixes() if (prefix / "include/rmw/rmw/rmw.h").exists()), None)
+
+
+def _prefixes() -> Iterator[Path]:
+    imported = [Path(entry) for entry in _entries("PYTHONPATH")]
+    for prefix in map(Path, _entries("AMENT_PREFIX_PATH")):
+        if any(entry.is_relative_to(prefix) for entry in imported):
+            yield prefix
+    yield Path(sys.prefix)
+
+
+def _entries(variable: str) -> list[str]:
+    return [entry for entry in os.environ.get(variable, "").split(os.pathsep) if entry]
+
+
+def _version(file: Path, pattern: re.Pattern[str]) -> str:
+    try:
+        found = pattern.search(file.read_text(encoding="utf-8", errors="replace"))
+    except OSError:
+        return "unknown"
+    return found[1] if found else "unknown"

@@ -1,0 +1,22 @@
+// What this process and the hub say to one another about the graph: see PROTOCOL.md.
+#pragma once
+
+#include "end_points.hpp"
+
+namespace rmw_lockstep {
+
+struct Node;
+
+namespace frames {
+
+void send_join();
+void send_node(const Node & node);
+void send_end_point(const EndPoint & end_point);
+void send_gone(char kind, uint64_t id);
+void send_alive(uint64_t publisher);
+void send_data(uint64_t publisher, uint64_t only, const Message & message);
+void send_request(const Message & message);
+void send_response(const Message & message);
+
+}  // namespace frames
+}  // namespace rmw_lockstep

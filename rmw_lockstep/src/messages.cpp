@@ -1,0 +1,95 @@
+// How messages, requests and responses get from one end point to another.
+#include <algorithm>
+
+#include "frames.hpp"
+#include "graph.hpp"
+#include "qos.hpp"
+
+namespace rmw_lockstep {
+namespace {
+
+bool bounded(const EndPoint & end_point) { return end_point.qos.history != RMW_QOS_POLICY_HISTORY_KEEP_ALL; }
+
+void keep_last(std::deque<Message> & messages, const EndPoint & end_point) {
+  while (bounded(end_point) && messages.size() > end_point.qos.depth) messages.pop_front();
+}
+
+int64_t expiry(const EndPoint & publisher) {
+  const int64_t lifespan = nanoseconds(publisher.qos.lifespan);
+  return lifespan == FOREVER ? FOREVER : lockstep_now() + lifespan;
+}
+
+bool accepts(const EndPoint & subscription, const EndPoint & publisher, uint64_t only) {
+  return subscription.local && subscription.kind == Kind::subscription && (!only || subscription.id == only) &&
+         subscription.type == publisher.type && !(subscription.ignores_local && publisher.local) &&
+         compatible(publisher.qos, subscription.qos);
+}
+
+}  // namespace
+
+void Graph::publish(EndPoint & publisher, Bytes bytes) {
+  ++activity;
+  Message message{std::move(bytes), publisher.id, ++publisher.last_number, lockstep_calendar(), 0, expiry(publisher)};
+  if (publisher.qos.durability == RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL) {
+    publisher.history.push_back(message);
+    keep_last(publisher.history, publisher);
+  }
+  if (nanoseconds(publisher.qos.deadline) != FOREVER)
+    publisher.next_deadline = lockstep_now() + nanoseconds(publisher.qos.deadline);
+  if (publisher.qos.liveliness == RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC) assert_liveliness(publisher);
+  deliver(publisher, message);
+  if (publisher.announced && heard_elsewhere(publisher)) frames::send_data(publisher.id, 0, message);
+  notify();
+}
+
+void Graph::deliver(const EndPoint & publisher, const Message & message, uint64_t only) {
+  for (EndPoint * other : named(publisher.name)) {
+    if (!accepts(*other, publisher, only)) continue;
+    subscription_got(*other, publisher.id);
+    Message copy = message;
+    copy.expires = expiry(publisher);
+    enqueue(*other, std::move(copy));
+  }
+}
+
+void Graph::request(EndPoint & client, Bytes bytes) {
+  ++activity;
+  const Message message{std::move(bytes), client.id, ++client.last_number, lockstep_calendar()};
+  bool elsewhere = false;
+  for (EndPoint * other : named(client.name)) {
+    if (other->kind != Kind::server || other->type != client.type) continue;
+    if (other->local) enqueue(*other, message);
+    else elsewhere = true;
+  }
+  if (elsewhere && client.announced) frames::send_request(message);
+  notify();
+}
+
+void Graph::respond(uint64_t client, int64_t number, Bytes bytes) {
+  ++activity;
+  const Message message{std::move(bytes), client, number, lockstep_calendar()};
+  EndPoint * receiver = find(client);
+  if (receiver && receiver->local) enqueue(*receiver, message);
+  else if (receiver && joined_) frames::send_response(message);
+  notify();
+}
+
+void Graph::enqueue(EndPoint & receiver, Message message) {
+  ++activity;
+  message.received = lockstep_calendar();
+  receiver.queue.push_back(std::move(message));
+  keep_last(receiver.queue, receiver);
+  receiver.listener.tell();
+}
+
+bool Graph::take(EndPoint & receiver, Message & message) {
+  while (!receiver.queue.empty()) {
+    message = std::move(receiver.queue.front());
+    receiver.queue.pop_front();
+    ++activity;
+    if (message.expires > lockstep_now()) return true;
+  }
+  return false;
+}
+
+}  // namespace rmw_lockstep

@@ -1,0 +1,221 @@
+// Service servers and clients; actions are made of them.
+#include "checks.hpp"
+#include "graph.hpp"
+#include "qos.hpp"
+#include "rmw/rmw.h"
+#include "rmw/validate_full_topic_name.h"
+
+using namespace rmw_lockstep;
+
+namespace {
+
+EndPoint & of(const rmw_client_t * handle) { return *static_cast<EndPoint *>(handle->data); }
+EndPoint & of(const rmw_service_t * handle) { return *static_cast<EndPoint *>(handle->data); }
+
+bool valid_service(const char * name, const rmw_qos_profile_t & qos) {
+  int result = 0;
+  if (!*name) { RMW_SET_ERROR_MSG("the service's name is empty"); return false; }
+  if (qos.avoid_ros_namespace_conventions) return true;
+  if (rmw_validate_full_topic_name(name, &result, nullptr) != RMW_RET_OK) return false;
+  if (result == RMW_TOPIC_VALID) return true;
+  RMW_SET_ERROR_MSG_WITH_FORMAT_STRING("invalid service name: %s", rmw_full_topic_name_validation_result_string(result));
+  return false;
+}
+
+// Null, with rmw's error set, where something is missing or wrong.
+std::unique_ptr<EndPoint> end_point_of(
+    Kind kind, const rmw_node_t * node, const rosidl_service_type_support_t * support, const char * name,
+    const rmw_qos_profile_t * qos) {
+  REQUIRE_OR_NULL(node);
+  REQUIRE_OR_NULL(support);
+  REQUIRE_OR_NULL(name);
+  REQUIRE_OR_NULL(qos);
+  ServiceType type;
+  if (!is_ours(node->implementation_identifier) || !valid_service(name, *qos) || !find_type(support, type)) return nullptr;
+  auto made = std::make_unique<EndPoint>();
+  made->kind = kind;
+  made->local = true;
+  made->node = static_cast<Node *>(node->data)->id;
+  made->name = name;
+  made->type = type.name;
+  made->hash = type.hash;
+  made->callbacks = type.request;
+  made->answer_callbacks = type.response;
+  made->qos = *qos;
+  settle(made->qos, false, {});
+  return made;
+}
+
+EndPoint & add(std::unique_ptr<EndPoint> made) {
+  Lock lock;
+  made->id = graph().new_id();
+  return graph().add(std::move(made));
+}
+
+template<typename Handle>
+rmw_ret_t destroy(const rmw_node_t * node, Handle * handle, void (*free)(Handle *)) {
+  REQUIRE_OURS(node);
+  REQUIRE_OURS(handle);
+  {
+    Lock lock;
+    graph().remove(of(handle).id);
+  }
+  free_text(handle->service_name);
+  free(handle);
+  return RMW_RET_OK;
+}
+
+rmw_ret_t take_call(EndPoint & end_point, Callbacks callbacks, rmw_service_info_t * info, void * out, bool * taken) {
+  REQUIRE(info);
+  REQUIRE(out);
+  REQUIRE(taken);
+  Message message;
+  {
+    Lock lock;
+    *taken = graph().take(end_point, message);
+  }
+  if (!*taken) return RMW_RET_OK;
+  info->source_timestamp = message.sent;
+  info->received_timestamp = message.received;
+  info->request_id.sequence_number = message.number;
+  write_gid(message.from, reinterpret_cast<uint8_t *>(info->request_id.writer_guid));
+  if (deserialize(callbacks, message.bytes->data(), message.bytes->size(), out)) return RMW_RET_OK;
+  *taken = false;
+  return RMW_RET_ERROR;
+}
+
+template<typename Handle>
+rmw_ret_t actual_qos(const Handle * handle, rmw_qos_profile_t * qos) {
+  REQUIRE_OURS(handle);
+  REQUIRE(qos);
+  *qos = of(handle).qos;
+  return RMW_RET_OK;
+}
+
+template<typename Handle>
+rmw_ret_t set_listener(Handle * handle, rmw_event_callback_t callback, const void * data) {
+  REQUIRE_OURS(handle);
+  Lock lock;
+  of(handle).listener.set(callback, data);
+  return RMW_RET_OK;
+}
+
+}  // namespace
+
+// ---- clients
+
+RMW_LOCKSTEP_API rmw_client_t * rmw_create_client(
+    const rmw_node_t * node, const rosidl_service_type_support_t * support, const char * name,
+    const rmw_qos_profile_t * qos) {
+  auto made = end_point_of(Kind::client, node, support, name, qos);
+  if (!made) return nullptr;
+  rmw_client_t * handle = rmw_client_allocate();
+  handle->implementation_identifier = IDENTIFIER;
+  handle->service_name = copy_text(name);
+  handle->data = &add(std::move(made));
+  return handle;
+}
+
+RMW_LOCKSTEP_API rmw_ret_t rmw_destroy_client(rmw_node_t * node, rmw_client_t * handle) {
+  return destroy(node, handle, rmw_client_free);
+}
+
+RMW_LOCKSTEP_API rmw_ret_t rmw_send_request(const rmw_client_t * handle, const void * request, int64_t * number) {
+  REQUIRE_OURS(handle);
+  REQUIRE(request);
+  REQUIRE(number);
+  Bytes bytes = serialize(of(handle).callbacks, request);
+  if (!bytes) return RMW_RET_ERROR;
+  Lock lock;
+  *number = of(handle).last_number + 1;
+  graph().request(of(handle), std::move(bytes));
+  return RMW_RET_OK;
+}
+
+RMW_LOCKSTEP_API rmw_ret_t rmw_take_response(
+    const rmw_client_t * handle, rmw_service_info_t * info, void * response, bool * taken) {
+  REQUIRE_OURS(handle);
+  return take_call(of(handle), of(handle).answer_callbacks, info, response, taken);
+}
+
+RMW_LOCKSTEP_API rmw_ret_t rmw_service_server_is_available(
+    const rmw_node_t * node, const rmw_client_t * handle, bool * is_available) {
+  REQUIRE_OURS(node);
+  REQUIRE_OURS(handle);
+  REQUIRE(is_available);
+  Lock lock;
+  *is_available = graph().server_is_there(of(handle));
+  return RMW_RET_OK;
+}
+
+RMW_LOCKSTEP_API rmw_ret_t rmw_get_gid_for_client(const rmw_client_t * handle, rmw_gid_t * gid) {
+  REQUIRE_OURS(handle);
+  REQUIRE(gid);
+  gid->implementation_identifier = IDENTIFIER;
+  write_gid(of(handle).id, gid->data);
+  return RMW_RET_OK;
+}
+
+RMW_LOCKSTEP_API rmw_ret_t rmw_client_set_on_new_response_callback(
+    rmw_client_t * handle, rmw_event_callback_t callback, const void * data) {
+  return set_listener(handle, callback, data);
+}
+
+RMW_LOCKSTEP_API rmw_ret_t rmw_client_request_publisher_get_actual_qos(const rmw_client_t * handle, rmw_qos_profile_t * qos) {
+  return actual_qos(handle, qos);
+}
+
+RMW_LOCKSTEP_API rmw_ret_t rmw_client_response_subscription_get_actual_qos(
+    const rmw_client_t * handle, rmw_qos_profile_t * qos) {
+  return actual_qos(handle, qos);
+}
+
+// ---- servers
+
+RMW_LOCKSTEP_API rmw_service_t * rmw_create_service(
+    const rmw_node_t * node, const rosidl_service_type_support_t * support, const char * name,
+    const rmw_qos_profile_t * qos) {
+  auto made = end_point_of(Kind::server, node, support, name, qos);
+  if (!made) return nullptr;
+  rmw_service_t * handle = rmw_service_allocate();
+  handle->implementation_identifier = IDENTIFIER;
+  handle->service_name = copy_text(name);
+  handle->data = &add(std::move(made));
+  return handle;
+}
+
+RMW_LOCKSTEP_API rmw_ret_t rmw_destroy_service(rmw_node_t * node, rmw_service_t * handle) {
+  return destroy(node, handle, rmw_service_free);
+}
+
+RMW_LOCKSTEP_API rmw_ret_t rmw_take_request(
+    const rmw_service_t * handle, rmw_service_info_t * info, void * request, bool * taken) {
+  REQUIRE_OURS(handle);
+  return take_call(of(handle), of(handle).callbacks, info, request, taken);
+}
+
+RMW_LOCKSTEP_API rmw_ret_t rmw_send_response(const rmw_service_t * handle, rmw_request_id_t * request, void * response) {
+  REQUIRE_OURS(handle);
+  REQUIRE(request);
+  REQUIRE(response);
+  Bytes bytes = serialize(of(handle).answer_callbacks, response);
+  if (!bytes) return RMW_RET_ERROR;
+  Lock lock;
+  graph().respond(id_of(reinterpret_cast<uint8_t *>(request->writer_guid)), request->sequence_number, std::move(bytes));
+  return RMW_RET_OK;
+}
+
+RMW_LOCKSTEP_API rmw_ret_t rmw_service_set_on_new_request_callback(
+    rmw_service_t * handle, rmw_event_callback_t callback, const void * data) {
+  return set_listener(handle, callback, data);
+}
+
+RMW_LOCKSTEP_API rmw_ret_t rmw_service_request_subscription_get_actual_qos(
+    const rmw_service_t * handle, rmw_qos_profile_t * qos) {
+  return actual_qos(handle, qos);
+}
+
+RMW_LOCKSTEP_API rmw_ret_t rmw_service_response_publisher_get_actual_qos(
+    const rmw_service_t * handle, rmw_qos_profile_t * qos) {
+  return actual_qos(handle, qos);
+}

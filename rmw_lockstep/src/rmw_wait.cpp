@@ -1,0 +1,111 @@
+// Waiting.
+#include <algorithm>
+
+#include "checks.hpp"
+#include "graph.hpp"
+#include "rmw/rmw.h"
+#include "rmw/time.h"
+
+using namespace rmw_lockstep;
+
+namespace {
+
+// What a thread that asks again and again without waiting is taken to wait for (ns).
+constexpr int64_t POLL = 10'000'000;
+constexpr int QUIET_POLLS = 2;
+
+// How often this thread has polled in a row without anything happening in between.
+struct Polls {
+  uint64_t activity = 0, rests = 0;
+  int quiet = 0;
+  void count() {
+    const uint64_t now = graph().activity, rested = lockstep_rests();
+    quiet = activity == now && rests == rested ? quiet + 1 : 0;
+    activity = now;
+    rests = rested;
+  }
+};
+thread_local Polls polls;
+
+int64_t deadline_of(const rmw_time_t * timeout) {
+  if (!timeout) return LOCKSTEP_NEVER;
+  const auto duration = static_cast<int64_t>(rmw_time_total_nsec(*timeout));
+  return duration > INT64_MAX / 2 ? LOCKSTEP_NEVER : lockstep_now() + duration;
+}
+
+// True if the thread is one that polls, and has waited.
+bool wait_as_poll(Waiter & waiter) {
+  // rclpy's spin_once(timeout_sec=0) triggers a guard condition of its own each time, which is no reason to go on.
+  if (!lockstep_virtual() || waiter.ready(false)) return false;
+  polls.count();
+  if (polls.quiet < QUIET_POLLS) return false;
+  lockstep_wait(&waiter.thread, lockstep_now() + POLL);
+  polls.rests = lockstep_rests();
+  return true;
+}
+
+void wait_until(Waiter & waiter, int64_t deadline) {
+  while (!waiter.ready() && lockstep_now() < deadline) {
+    if (lockstep_virtual()) {
+      lockstep_wait(&waiter.thread, deadline);
+    } else {  // nobody else tells when a deadline of the end points has come
+      lockstep_wait(&waiter.thread, std::min(deadline, graph().next_due()));
+      graph().due(lockstep_now());
+    }
+  }
+}
+
+void keep_ready(size_t count, void ** items) {
+  for (size_t i = 0; i < count; ++i)
+    if (auto end_point = static_cast<EndPoint *>(items[i]); end_point && end_point->queue.empty()) items[i] = nullptr;
+}
+
+// What is ready stays, all else becomes null.
+void keep_what_is_ready(Waiter & waiter) {
+  if (auto guards = waiter.guards)
+    for (size_t i = 0; i < guards->guard_condition_count; ++i)
+      if (auto guard = static_cast<Guard *>(guards->guard_conditions[i]); guard && !std::exchange(guard->triggered, false))
+        guards->guard_conditions[i] = nullptr;
+  if (waiter.subscriptions) keep_ready(waiter.subscriptions->subscriber_count, waiter.subscriptions->subscribers);
+  if (waiter.services) keep_ready(waiter.services->service_count, waiter.services->services);
+  if (waiter.clients) keep_ready(waiter.clients->client_count, waiter.clients->clients);
+  if (auto events = waiter.events)
+    for (size_t i = 0; i < events->event_count; ++i)
+      if (auto event = static_cast<rmw_event_t *>(events->events[i]))
+        if (!static_cast<EndPoint *>(event->data)->events.pending[event->event_type]) events->events[i] = nullptr;
+}
+
+}  // namespace
+
+RMW_LOCKSTEP_API rmw_wait_set_t * rmw_create_wait_set(rmw_context_t * context, size_t) {
+  REQUIRE_OR_NULL(context);
+  if (!is_ours(context->implementation_identifier)) return nullptr;
+  rmw_wait_set_t * handle = rmw_wait_set_allocate();
+  handle->implementation_identifier = IDENTIFIER;
+  handle->guard_conditions = nullptr;
+  handle->data = nullptr;
+  return handle;
+}
+
+RMW_LOCKSTEP_API rmw_ret_t rmw_destroy_wait_set(rmw_wait_set_t * handle) {
+  REQUIRE_OURS(handle);
+  rmw_wait_set_free(handle);
+  return RMW_RET_OK;
+}
+
+RMW_LOCKSTEP_API rmw_ret_t rmw_wait(
+    rmw_subscriptions_t * subscriptions, rmw_guard_conditions_t * guards, rmw_services_t * services,
+    rmw_clients_t * clients, rmw_events_t * events, rmw_wait_set_t * handle, const rmw_time_t * timeout) {
+  REQUIRE_OURS(handle);
+  Lock lock;
+  Waiter waiter{subscriptions, guards, services, clients, events, {}};
+  auto & waiters = graph().waiters;
+  waiters.push_back(&waiter);
+  const int64_t deadline = deadline_of(timeout);
+  if (deadline > lockstep_now()) wait_until(waiter, deadline);
+  else wait_as_poll(waiter);
+  waiters.erase(std::find(waiters.begin(), waiters.end(), &waiter));
+  const bool ready = waiter.ready();
+  keep_what_is_ready(waiter);
+  return ready ? RMW_RET_OK : RMW_RET_TIMEOUT;
+}

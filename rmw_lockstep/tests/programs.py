@@ -1,0 +1,141 @@
+"""Real programs with rclpy over the compiled middleware, and a hub around them that only watches and lets time go on."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from rclpy.serialization import deserialize_message
+from std_msgs.msg import String
+
+from rmw_lockstep.hub import BEGIN, Hub, Qos
+from rmw_lockstep.hub.qos import BEST_EFFORT, KEEP_ALL
+from rmw_lockstep.library import Library, library
+
+SECOND = 1_000_000_000
+MS = 1_000_000
+
+#: So long a program may take for what it is asked, on a busy machine, before a test gives up (s).
+LONGEST_S = 60.0
+
+#: What every program begins with: `say(text)` publishes on /said.
+PROLOGUE = """
+import os, sys, threading, time
+import rclpy
+from rclpy.executors import *
+from rclpy.node import Node
+from rclpy.qos import *
+from std_msgs.msg import String
+rclpy.init(args=[])
+node = rclpy.create_node('talker')
+publisher = node.create_publisher(String, '/said', 100)
+def say(text): publisher.publish(String(data=str(text)))
+"""
+
+
+def text(cdr: bytes) -> str:
+    """The text of a serialized std_msgs/msg/String."""
+    message: Any = deserialize_message(cdr, String)
+    return str(message.data)
+
+
+class Program:
+    """One program, started by the text of its source, and what it says on /said."""
+
+    def __init__(self, hub: Hub, folder: Path, source: str, *arguments: str) -> None:
+        found = library()
+        assert isinstance(found, Library), f"the middleware is not compiled: {found}"
+        file = folder / f"program_{len(list(folder.iterdir()))}.py"
+        file.write_text(PROLOGUE + textwrap.dedent(source))
+        environment = {**os.environ, "RMW_LOCKSTEP_SOCKET": str(hub.path), "LTTNG_UST_REGISTER_TIMEOUT": "0"}
+        # The environment's ROS libraries come after ours.
+        environment |= found.environment(environment)
+        self.process = subprocess.Popen(
+            [sys.executable, str(file), *arguments],
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,
+        )
+
+    def end(self) -> None:
+        """End it, and all that it has started."""
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.wait()
+
+    def output(self) -> str:
+        """All that it printed; it is ended for that."""
+        self.end()
+        return str(self.process.communicate()[0])
+
+
+class Watch:
+    """A hub with one subscription to /said. Use it as a context manager."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._programs: list[Program] = []
+        self._deadline = time.monotonic() + LONGEST_S
+        self.hub = Hub(folder, patience=self._look)
+        self.node = self.hub.node("watch")
+        hears_all = Qos(history=KEEP_ALL, reliability=BEST_EFFORT)
+        self._said = self.node.subscription("/said", "std_msgs/msg/String", hears_all)
+
+    def _look(self) -> None:
+        for program in self._programs:
+            if program.process.poll() not in (None, 0):
+                raise AssertionError(f"the program ended with {program.process.returncode}:\n{program.output()}")
+        if self._programs and not self.hub.links and all(p.process.poll() == 0 for p in self._programs):
+            raise EOFError
+        if time.monotonic() > self._deadline:
+            outputs = [program.output() for program in self._programs]
+            raise AssertionError(
+                f"not idle after {LONGEST_S:g} s: {[link.last_idle for link in self.hub.links]} {outputs}"
+            )
+
+    def start(self, source: str, *arguments: str) -> Program:
+        """Start a program that the hub waits for."""
+        program = Program(self.hub, self._folder, source, *arguments)
+        self._programs.append(program)
+        if self.hub.main is None:
+            self.hub.main = program.process.pid
+        return program
+
+    def go_on(self, seconds: float) -> None:
+        """Wait until all is idle, and let time go on so far. A program may end meanwhile."""
+        try:
+            self.hub.wait_until_idle()
+            self.hub.advance(self.hub.now + round(seconds * SECOND))
+            self.hub.wait_until_idle()
+        except EOFError:
+            self.hub.drain()
+
+    def go_until(self, done: Callable[[], object], step: float = 0.05) -> None:
+        """Let time go on, step by step, until something is so: a program that has just been started takes its time."""
+        while not done():
+            self.go_on(step)
+
+    def said(self) -> list[tuple[float, str]]:
+        """What was said, and when: milliseconds since the beginning."""
+        return [((heard.now - BEGIN) / MS, text(heard.cdr)) for heard in self._said.heard]
+
+    def __enter__(self) -> Watch:
+        self.hub.__enter__()
+        return self
+
+    def __exit__(self, *error: Any) -> None:
+        for program in self._programs:
+            program.end()
+            if program.process.stdout:
+                program.process.stdout.close()
+        self.hub.__exit__(*error)

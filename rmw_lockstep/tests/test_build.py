@@ -1,0 +1,185 @@
+"""The middleware is compiled once for a ROS 2, found again at once, and its absence is said with what to do."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from rmw_lockstep import library as finding
+from rmw_lockstep.build import build
+from rmw_lockstep.library import PREBUILT, Library, Unavailable, library
+
+ROOT = Path(__file__).parents[2]
+
+needs_compiler = pytest.mark.skipif(shutil.which("g++") is None, reason="g++ is not installed")
+
+#: Does nothing, but is loaded and linked as the real one: what is tested is what is compiled when, and where it goes.
+LOCKSTEP = 'extern "C" __attribute__((visibility("default"))) int lockstep_connect(const char *) { return 0; }\n'
+RMW = (
+    '#include <rmw/rmw.h>\nextern "C" int lockstep_connect(const char *);\nint use() { return lockstep_connect(0); }\n'
+)
+
+
+class Copy:
+    """A copy of the package with small C++ sources, and the Python that compiles them, with folders of its own."""
+
+    def __init__(self, folder: Path) -> None:
+        self.package, self.cache = folder / "rmw_lockstep", folder / "cache"
+        (self.package / "lockstep").mkdir(parents=True)
+        (self.package / "src").mkdir()
+        for file in (ROOT / "rmw_lockstep").glob("*.*"):
+            shutil.copy(file, self.package)
+        (self.package / "lockstep" / "a.cpp").write_text(LOCKSTEP)
+        (self.package / "lockstep" / "exports.map").write_text("{ global: lockstep_*; local: *; };\n")
+        (self.package / "src" / "b.cpp").write_text(RMW)
+        self.environment = {**os.environ, "PYTHONPATH": str(folder), "XDG_CACHE_HOME": str(self.cache)}
+
+    def run(self, module: str, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+        """Run a module of the copy. Nothing is written into the real environment: its place is taken as read-only."""
+        code = (
+            "import runpy, sys; from pathlib import Path; from rmw_lockstep import library\n"
+            "library.places = lambda: iter([Path(__import__('os').environ['XDG_CACHE_HOME']) / 'rmw_lockstep'])\n"
+            f"sys.argv = {[module, *arguments]!r}; runpy.run_module({module!r}, run_name='__main__')"
+        )
+        return subprocess.run(
+            [sys.executable, "-P" if sys.version_info >= (3, 11) else "-B", "-c", code],
+            cwd=self.package.parent,
+            env={**self.environment, **environment},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    def built(self) -> list[Path]:
+        """The sets of libraries that have been compiled."""
+        return [file.parent for file in sorted(self.cache.glob("rmw_lockstep/*/built.json"))]
+
+
+@pytest.fixture
+def copy(tmp_path: Path) -> Copy:
+    return Copy(tmp_path)
+
+
+@needs_compiler
+def test_compiles_once_and_again_when_a_source_has_changed(copy: Copy) -> None:
+    first = copy.run("rmw_lockstep.build")
+    assert first.returncode == 0, first.stderr
+    (folder,) = copy.built()
+    assert first.stdout.strip() == str(folder)
+    made = (folder / "liblockstep.so").stat().st_mtime_ns
+
+    assert copy.run("rmw_lockstep.build").stdout == first.stdout
+    assert (folder / "liblockstep.so").stat().st_mtime_ns == made
+
+    with (copy.package / "src" / "b.cpp").open("a") as source:
+        source.write("int more() { return 1; }\n")
+    assert copy.run("rmw_lockstep.build").stdout != first.stdout
+    assert len(copy.built()) == 2
+
+
+@needs_compiler
+def test_the_library_for_the_wheels_has_the_name_that_they_are_linked_to(copy: Copy) -> None:
+    copy.run("rmw_lockstep.build")
+    (folder,) = copy.built()
+
+    names = {path: _dynamic(folder / path) for path in ("librmw_lockstep_cpp.so", "wheels/librmw_fastrtps_cpp.so")}
+
+    assert "SONAME" in names["librmw_lockstep_cpp.so"]
+    assert "[librmw_lockstep_cpp.so]" in names["librmw_lockstep_cpp.so"]
+    assert "[librmw_fastrtps_cpp.so]" in names["wheels/librmw_fastrtps_cpp.so"]
+    assert all("[liblockstep.so]" in told for told in names.values())
+    assert "libstdc++" not in _dynamic(folder / "liblockstep.so")
+
+
+def _dynamic(file: Path) -> str:
+    return subprocess.run(["readelf", "-d", file], capture_output=True, text=True, check=True).stdout
+
+
+@needs_compiler
+def test_what_does_not_compile_leaves_nothing_and_shows_the_error(copy: Copy) -> None:
+    (copy.package / "src" / "b.cpp").write_text("this is not C++\n")
+
+    said = copy.run("rmw_lockstep.build")
+
+    assert said.returncode == 1
+    assert "b.cpp:1" in said.stderr
+    assert "Traceback" not in said.stderr
+    assert copy.built() == []
+    assert [path.name for path in (copy.cache / "rmw_lockstep").iterdir()] == [".lock"]
+
+
+def test_without_a_compiler_it_says_what_to_install(copy: Copy) -> None:
+    said = copy.run("rmw_lockstep.build", CXX="no-such-compiler")
+
+    assert said.returncode == 1
+    assert "g++ is not installed. Install it: sudo apt-get install g++" in said.stderr
+
+
+@needs_compiler
+def test_what_was_compiled_is_found_without_the_compiler_too(copy: Copy) -> None:
+    folder = copy.run("rmw_lockstep.build").stdout
+
+    assert copy.run("rmw_lockstep.build", CXX="no-such-compiler").stdout == folder
+
+
+@needs_compiler
+def test_the_wheel_is_found_where_it_is_installed_if_it_fits(copy: Copy, tmp_path: Path) -> None:
+    made = copy.run("rmw_lockstep.wheel", str(tmp_path / "dist"))
+    assert made.returncode == 0, made.stderr
+    wheel = Path(made.stdout.strip())
+    assert wheel.name.startswith("rmw_lockstep_prebuilt-")
+    assert "-py3-none-linux_" in wheel.name
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(tmp_path)
+
+    assert copy.run("rmw_lockstep.build", CXX="no-such-compiler").stdout.strip() == str(tmp_path / PREBUILT)
+
+    built = tmp_path / PREBUILT / "built.json"
+    described = json.loads(built.read_text())
+    described["ros"]["rmw"] = "6.1.0"
+    built.write_text(json.dumps(described))
+    assert "g++ is not installed" in copy.run("rmw_lockstep.build", CXX="no-such-compiler").stderr
+
+
+@pytest.fixture
+def no_ros(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    return
+
+
+@pytest.mark.usefixtures("no_ros")
+def test_without_ros_it_says_so() -> None:
+    assert library() == Unavailable("ROS 2's headers are not installed here", "Install ROS 2: make setup")
+
+
+def test_a_sourced_ros_chooses_by_name_and_the_wheels_by_the_order_of_folders(tmp_path: Path) -> None:
+    wheels = Library(tmp_path, tmp_path / "wheels")
+    sourced = Library(tmp_path, tmp_path / "sourced")
+    (tmp_path / "sourced/lib").mkdir(parents=True)
+    (tmp_path / "sourced/lib/librmw_implementation.so").touch()
+
+    assert wheels.environment({"LD_LIBRARY_PATH": "/a"})["LD_LIBRARY_PATH"] == f"{tmp_path}/wheels:/a"
+    assert sourced.environment({"LD_LIBRARY_PATH": "/a"})["LD_LIBRARY_PATH"] == f"{tmp_path}:/a"
+    assert sourced.environment({})["RMW_IMPLEMENTATION"] == "rmw_lockstep_cpp"
+
+
+@needs_compiler
+def test_rclpy_loads_the_real_one() -> None:
+    found = build()
+    assert isinstance(found, Library)
+    code = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
+
+    environment = {**os.environ, **found.environment(os.environ)}
+    said = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False)
+
+    assert said.stdout == "rmw_lockstep_cpp\n", said.stderr
+    assert finding.library() == found

@@ -1,0 +1,250 @@
+"""Whatever a program sends, the hub goes on or says why not: it never hangs, and never believes what can't be."""
+
+from __future__ import annotations
+
+import array
+import os
+import socket
+import struct
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from stand_in import Process, Raw, Waits, busy, data, end_point, frame, hello, idle, node, response, welcomed
+
+from rmw_lockstep.hub import BEGIN, PUBLISHER, SUBSCRIPTION, Hub, Limits, Qos, Violation
+
+NODE, PUB, SUB = 1 << 32 | 1, 1 << 32 | 2, 1 << 32 | 3
+STRING = "std_msgs/msg/String"
+
+Make = Callable[..., Process]
+
+
+@pytest.fixture
+def limits() -> Limits:
+    return Limits(message_bytes=10_000, data_bytes=50_000, messages=1_000, frames=20_000, nodes=10, connections=8)
+
+
+def reason(hub: Hub) -> tuple[str, str]:
+    """Why the hub does not go on."""
+    with pytest.raises(Violation) as caught:
+        hub.wait_until_idle()
+    return caught.value.reason, caught.value.text
+
+
+def begin(raw: Raw, hub: Hub) -> Raw:
+    """A process that has a node with a publisher and a subscription, and is idle."""
+    welcomed(raw, hub).send(
+        node(NODE), end_point(PUB, PUBLISHER, NODE), end_point(SUB, SUBSCRIPTION, NODE), idle(1, BEGIN)
+    )
+    hub.wait_until_idle()
+    return raw
+
+
+@pytest.mark.parametrize(
+    "sent",
+    [
+        struct.pack("<I", 0),
+        struct.pack("<I", 2**32 - 1) + b"X",
+        struct.pack("<IB", 100_000, ord("N")),
+        frame(b"X"),
+        frame(b"T", struct.pack("<qB", 2**62, 0)),
+        frame(b"I", b"short"),
+        frame(b"I", struct.pack("<QqqIIIBQH", 1, 0, 0, 1, 0, 0, 0, 0, 500)),
+        frame(b"N", struct.pack("<QI", 1 << 32 | 9, 2**31)),
+        hello(),
+        node(2 << 32 | 1, "of_another"),
+        node(NODE, "twice"),
+        node(1, "of_the_hub"),
+        node(1 << 32 | 9, "nul\0"),
+        node(1 << 32 | 9, b"\xff\xfe"),
+        node(1 << 32 | 9, ""),
+        node(1 << 32 | 9, "9th"),
+        node(1 << 32 | 9, "n" * 300),
+        node(1 << 32 | 9, "node", "no/slash"),
+        frame(b"N", struct.pack("<Q", 1 << 32 | 9) + b"\1\0\0\0a\1\0\0\0/more"),
+        end_point(1 << 32 | 9, 7, NODE),
+        end_point(1 << 32 | 9, PUBLISHER, 1 << 32 | 77),
+        end_point(2 << 32 | 9, PUBLISHER, NODE),
+        end_point(PUB, PUBLISHER, NODE),
+        end_point(1 << 32 | 9, PUBLISHER, NODE, "/a b"),
+        end_point(1 << 32 | 9, PUBLISHER, NODE, "/nul\0"),
+        end_point(1 << 32 | 9, PUBLISHER, NODE, "/t", "no type"),
+        frame(b"E", b"\0" * 20),
+        frame(b"e", struct.pack("<Q", 1)),
+        frame(b"n", struct.pack("<Q", 77)),
+        frame(b"n", b""),
+        data(SUB),
+        data(1 << 32 | 77),
+        data(7 << 32 | 1),
+        frame(b"D", b"\0" * 10),
+        frame(b"Q", struct.pack("<QqqQqI", PUB, 1, 0, 1, 0, 1)),
+        response(5, 1),
+        frame(b"R", b""),
+        frame(b"L", struct.pack("<Q", SUB)),
+    ],
+)  # fmt: skip
+def test_a_frame_that_breaks_a_rule_ends_it(hub: Hub, raw: Raw, sent: bytes) -> None:
+    begin(raw, hub)
+    busy(hub)
+    raw.send(sent)
+    assert reason(hub)[0] == "protocol"
+
+
+@pytest.mark.parametrize("sent", [frame(b"J"), idle(0), hello(version=2), frame(b"H", b"\0")])
+def test_the_first_frame_has_to_be_a_hello_of_this_version(hub: Hub, raw: Raw, sent: bytes) -> None:
+    raw.send(sent)
+    assert reason(hub)[0] == "protocol"
+
+
+def test_a_message_that_is_too_long_is_told_by_its_length_before_it_is_read(hub: Hub, raw: Raw) -> None:
+    begin(raw, hub)
+    busy(hub)
+    raw.send(struct.pack("<IB", 500_000_000, ord("D")))
+    assert reason(hub) == ("message", "a message of 500,000,000 bytes")
+
+
+def flood(frames: list[bytes], process: Make, hub: Hub) -> tuple[str, str]:
+    """What comes of a process that makes a node and a publisher, and then sends this."""
+    one = process()
+    one.on[b"W"] = lambda process, _: process.raw.send(node(NODE), end_point(PUB, PUBLISHER, NODE), *frames)
+    one.start()
+    return reason(hub)
+
+
+@pytest.mark.parametrize(
+    ("frames", "why"),
+    [
+        ([data(PUB, b"x" * 9_000)] * 6, ("bytes", "54,000 bytes in all messages together, where 50,000 are allowed")),
+        ([data(PUB)] * 1_001, ("messages", "1,001 messages, where 1,000 are allowed")),
+        ([idle(0)] * 20_001, ("frames", "20,001 frames, where 20,000 are allowed")),
+        ([node(1 << 32 | n) for n in range(10, 40)], ("nodes", "10 nodes, where 10 are allowed")),
+    ],
+    ids=["bytes", "messages", "frames", "nodes"],
+)
+def test_a_flood_ends_where_a_limit_is_reached(
+    hub: Hub, process: Make, frames: list[bytes], why: tuple[str, str]
+) -> None:
+    found, text = flood(frames, process, hub)
+    assert found == why[0]
+    assert why[0] == "nodes" or text == why[1]
+
+
+def test_ten_thousand_end_points_are_too_many(hub: Hub, process: Make) -> None:
+    ends = [end_point(1 << 32 | n, PUBLISHER, NODE, f"/topic_{n}") for n in range(10, 10_010)]
+    assert flood(ends, process, hub)[0] == "end points"
+
+
+def test_connections_are_counted(hub: Hub) -> None:
+    connections = [Raw(hub.path) for _ in range(8)]
+    hub.pause()
+    connections.append(Raw(hub.path))
+    assert reason(hub) == ("connections", "9 processes, where 8 are allowed")
+    for connection in connections:
+        connection.close()
+
+
+def test_for_a_process_that_never_reads_not_everything_is_kept(folder: Path) -> None:
+    with Hub(folder, Limits(unread_bytes=1_000_000), Waits()) as hub:
+        topic = hub.node("rig").publisher("/topic", STRING, Qos())
+        raw = Raw(hub.path)
+        welcomed(raw, hub).send(frame(b"J"), node(NODE), end_point(SUB, SUBSCRIPTION, NODE))
+        hub.pause()
+        for _ in range(40):
+            topic.publish(b"x" * 50_000)
+        assert reason(hub)[0] == "unread"
+        raw.close()
+
+
+@pytest.mark.parametrize("handled", [0, 2, 2**63])
+def test_an_idle_that_names_another_number_of_frames_is_not_believed(hub: Hub, raw: Raw, handled: int) -> None:
+    welcomed(raw, hub).send(idle(handled))
+    for _ in range(3):
+        hub.pause()
+    assert not hub.is_idle()
+
+
+def test_an_idle_that_is_followed_by_another_frame_is_not_believed(hub: Hub, raw: Raw) -> None:
+    begin(raw, hub)
+    raw.send(idle(1), data(PUB))
+    hub.pause()
+    assert not hub.is_idle()
+
+
+def test_times_neither_go_back_nor_beyond_what_was_granted(hub: Hub, raw: Raw) -> None:
+    said = hub.node("rig").subscription("/topic", STRING, Qos())
+    begin(raw, hub)
+    hub.advance(BEGIN + 1_000)
+    raw.send(*(data(PUB, handled=9, now=BEGIN + after) for after in (500, 100, 2**40, -(2**40))))
+    raw.send(idle(2, BEGIN + 1_000))
+    hub.wait_until_idle()
+    assert [heard.now - BEGIN for heard in said.heard] == [500, 500, 1_000, 1_000]
+    assert all(heard.handled <= 2 for heard in said.heard)
+
+
+def test_a_process_whose_time_does_not_go_on_is_found_out(hub: Hub, process: Make) -> None:
+    one = process()
+
+    def stay(process: Process, payload: bytes) -> None:
+        process.now = BEGIN
+
+    one.on[b"T"] = stay
+    one.start()
+    hub.wait_until_idle()
+    hub.advance(BEGIN + 1_000)
+    assert reason(hub)[0] == "protocol"
+
+
+def test_a_wake_up_that_never_comes_nearer_does_not_stop_time(hub: Hub, process: Make) -> None:
+    for number in (1, 2):
+        one = process(number)
+        one.wakes = [(0, lambda process: process.wake(0, lambda _: None))]
+        one.start()
+        hub.pause()
+    hub.wait_until_idle()
+    hub.advance(BEGIN + 50)
+    assert all(link.now == BEGIN + 50 for link in hub.links)
+
+
+def test_a_socket_that_is_handed_on_and_used_by_two_is_one_process(hub: Hub, raw: Raw) -> None:
+    begin(raw, hub)
+    twin = socket.socket(fileno=os.dup(raw.socket.fileno()))
+    busy(hub)
+    raw.send(frame(b"?")[:3])
+    twin.sendall(idle(1))
+    assert reason(hub)[0] in ("protocol", "frames"), "what the two send is mixed up"
+    twin.close()
+
+
+def test_descriptors_that_are_sent_along_do_not_stay_open_here(hub: Hub, raw: Raw) -> None:
+    begin(raw, hub)
+    before = len(os.listdir("/proc/self/fd"))  # noqa: PTH208
+    passed = array.array("i", [raw.socket.fileno()] * 3)
+    busy(hub)
+    raw.socket.sendmsg([idle(1, BEGIN)], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, passed)])
+    hub.wait_until_idle()
+    assert len(os.listdir("/proc/self/fd")) == before  # noqa: PTH208
+
+
+def test_half_a_frame_and_nothing_more_is_waited_for_only_as_long_as_the_owner_likes(hub: Hub, raw: Raw) -> None:
+    class Enough(Exception):
+        pass
+
+    def enough() -> None:
+        raise Enough
+
+    begin(raw, hub)
+    busy(hub)
+    raw.send(struct.pack("<IB", 1_000, ord("D")))
+    hub.patience = enough
+    with pytest.raises(Enough):
+        hub.wait_until_idle()
+
+
+def test_a_connection_that_is_closed_takes_what_it_had_along(hub: Hub, raw: Raw) -> None:
+    begin(raw, hub)
+    raw.close()
+    while hub.links:
+        hub.pause()
+    assert not hub.graph.nodes
+    assert not hub.graph.end_points

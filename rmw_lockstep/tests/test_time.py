@@ -1,0 +1,202 @@
+"""Programs wait in the hub's time: whatever they wait with, they wake at the right time, and in the same order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from programs import Watch
+
+
+@pytest.fixture
+def watch(folder: Path) -> Iterator[Watch]:
+    with Watch(folder) as watch:
+        yield watch
+
+
+def test_time_goes_on_only_when_the_hub_says_so(watch: Watch) -> None:
+    watch.start("""
+        node.create_timer(0.1, lambda: say('tick'))
+        rclpy.spin(node)
+    """)
+    watch.go_on(0)
+    assert watch.said() == []
+    watch.go_on(0.35)
+    assert watch.said() == [(100, "tick"), (200, "tick"), (300, "tick")]
+
+
+@pytest.mark.parametrize(
+    "waiting",
+    [
+        "time.sleep(0.02)",
+        "threading.Event().wait(0.02)",
+        "threading.Lock().acquire() and lock.acquire(timeout=0.02)",
+        "queue.Queue().get(timeout=0.02) if False else threading.Condition(threading.RLock()).acquire() and cond(0.02)",
+        "select.select([], [], [], 0.02)",
+        "select.poll().poll(20)",
+        "selectors.DefaultSelector().select(0.02)",
+        "asyncio.run(asyncio.sleep(0.02))",
+        "subprocess.run(['sleep', '0.02'])",
+        "os.system('sleep 0.02')",
+        "wait_by_the_clock(0.02)",
+        "rclpy.spin_until_future_complete(node, rclpy.Future(), timeout_sec=0.02)",
+        "node.create_client(Trigger, '/nobody').wait_for_service(timeout_sec=0.02)",
+    ],
+)
+def test_a_wait_of_20_ms_takes_20_ms_of_the_hubs_time(watch: Watch, waiting: str) -> None:
+    watch.start(f"""
+        import asyncio, queue, select, selectors, subprocess
+        from std_srvs.srv import Trigger
+        lock = threading.Lock(); lock.acquire()
+        def cond(seconds):
+            condition = threading.Condition()
+            with condition: condition.wait(seconds)
+        def wait_by_the_clock(seconds):
+            end = time.perf_counter() + seconds
+            while time.perf_counter() < end: pass
+        for i in range(3):
+            {waiting}
+            say(i)
+    """)
+    watch.go_on(1.0)
+    assert [round(at) for at, _ in watch.said()] in (
+        [20, 40, 60],
+        [250, 500, 750],
+    )  # wait_for_service looks each 250 ms
+
+
+def test_threads_that_wake_at_one_time_wake_one_after_another_in_the_order_of_their_start(watch: Watch) -> None:
+    watch.start("""
+        def loop(name):
+            while True:
+                time.sleep(0.01)
+                say(name)
+        for name in 'abc': threading.Thread(target=loop, args=name, daemon=True).start()
+        rclpy.spin(node)
+    """)
+    watch.go_on(0.03)
+    assert [said for _, said in watch.said()] == list("abc" * 3)
+
+
+def test_the_calendar_and_the_steady_clock_show_the_hubs_time(watch: Watch) -> None:
+    watch.start("""
+        import datetime
+        time.sleep(1.5)
+        say(time.monotonic())
+        say(datetime.datetime.now(datetime.timezone.utc).isoformat())
+        say(node.get_clock().now().nanoseconds)
+    """)
+    watch.go_on(2)
+    assert [said for _, said in watch.said()] == ["1001.5", "2026-01-01T00:16:41.500000+00:00", "1767226601500000000"]
+
+
+def test_a_program_that_asks_again_and_again_is_idle_and_its_time_goes_on(watch: Watch) -> None:
+    watch.start("""
+        began = time.monotonic()
+        while time.monotonic() < began + 0.1: rclpy.spin_once(node, timeout_sec=0)
+        say('done')
+    """)
+    watch.go_on(0.05)
+    assert watch.said() == []
+    watch.go_on(0.15)
+    ((at, _),) = watch.said()
+    assert 100 <= at <= 110
+
+
+def test_what_a_program_published_before_it_ends_without_warning_has_come(watch: Watch) -> None:
+    watch.start("""
+        for i in range(50): say(i)
+        os._exit(0)
+    """)
+    watch.go_on(0)
+    assert [said for _, said in watch.said()] == [str(i) for i in range(50)]
+
+
+def test_a_forked_process_waits_in_the_hubs_time_too(watch: Watch) -> None:
+    watch.start("""
+        reading, writing = os.pipe()
+        if os.fork() == 0:
+            time.sleep(0.01)
+            os.write(writing, b'x')
+            os._exit(0)
+        os.read(reading, 1)
+        say('the child has slept')
+        os.wait()
+    """)
+    watch.go_on(1)
+    assert watch.said() == [(10, "the child has slept")]
+
+
+def test_a_process_that_another_wakes_through_a_pipe_is_not_idle_before_it_has_done_what_it_is_woken_for(
+    watch: Watch,
+) -> None:
+    watch.start("""
+        reading, writing = os.pipe()
+        if os.fork() == 0:
+            for i in range(20):
+                time.sleep(0.01)
+                os.write(writing, b'x')
+            time.sleep(10)
+            os._exit(0)
+        for i in range(20):
+            os.read(reading, 1)
+            sum(range(300_000))
+            say(i)
+        rclpy.spin(node)
+    """)
+    watch.go_on(0.5)
+    assert watch.said() == [(10 * (i + 1), str(i)) for i in range(20)]
+
+
+def test_a_program_that_is_started_by_the_program_is_part_of_the_graph(watch: Watch) -> None:
+    watch.start("""
+        import subprocess
+        if len(sys.argv) == 1:
+            child = subprocess.Popen([sys.executable, __file__, 'child'])
+            child.wait()
+            say('parent')
+        else:
+            time.sleep(0.01)
+            say('child')
+    """)
+    watch.go_on(1)
+    assert [said for _, said in watch.said()] == ["child", "parent"]
+
+
+@pytest.mark.parametrize("executor", ["SingleThreadedExecutor", "MultiThreadedExecutor", "EventsExecutor"])
+def test_every_executor_answers_and_is_known_to_be_idle(watch: Watch, executor: str) -> None:
+    watch.start(f"""
+        from rclpy.experimental.events_executor import EventsExecutor
+        node.create_subscription(String, '/asked', lambda message: say(message.data + '!'), 10)
+        executor = {executor}()
+        executor.add_node(node)
+        executor.spin()
+    """)
+    from programs import Qos
+    from rclpy.serialization import serialize_message
+    from std_msgs.msg import String
+
+    publisher = watch.node.publisher("/asked", "std_msgs/msg/String", Qos())
+    watch.go_on(0)
+    for word in ("one", "two", "three"):
+        publisher.publish(serialize_message(String(data=word)))
+        watch.go_on(0.1)
+    assert watch.said() == [(0, "one!"), (100, "two!"), (200, "three!")]
+
+
+def test_a_callback_that_sleeps_in_a_group_of_its_own_does_not_keep_the_others(watch: Watch) -> None:
+    watch.start("""
+        from rclpy.callback_groups import MutuallyExclusiveCallbackGroup as Group
+        def slow():
+            time.sleep(0.03)
+            say('slow')
+        node.create_timer(0.1, slow, callback_group=Group())
+        node.create_timer(0.02, lambda: say('quick'), callback_group=Group())
+        executor = MultiThreadedExecutor(4)
+        executor.add_node(node)
+        executor.spin()
+    """)
+    watch.go_on(0.25)
+    assert [at for at, said in watch.said() if said == "slow"] == [130, 230]
+    assert [at for at, said in watch.said() if said == "quick"] == list(range(20, 250, 20))

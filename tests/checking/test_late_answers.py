@@ -1,0 +1,92 @@
+"""What came late is told as late, and what was measured with the wrong clock as that: with made-up recordings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from grader.checking.run import Run
+from grader.checking.wrong import Wrong
+from grader.exercise import Exercise
+from grader.exercise.interface import Topic
+from grader.recording import Ending, Received, Recording, Sent
+from grader.scenario.scenario import SECOND, START
+
+FLOAT = "std_msgs/msg/Float64"
+EXERCISE = Exercise(
+    "doubler", Path(), "", 10.0, "doubler.py", "Doubler", "doubler", "",
+    (Topic("/in", FLOAT, "subscribe"), Topic("/out", FLOAT, "publish", units={"data": "m"})), None,
+)  # fmt: skip
+COUNT = 8
+
+
+def recording(*received: Received) -> Recording:
+    """Messages 0.1 s apart, and what came back."""
+    sent = tuple(Sent(START + i * SECOND // 10, "/in", FLOAT, {"data": float(i)}) for i in range(COUNT))
+    return Recording("plain", sent, received, ("/doubler",), (), "lockstep", True, Ending("completed"))
+
+
+def answer(number: int, value: float, later: float = 0.0) -> Received:
+    """An answer to message `number`, counted from 1, that comes `later` (s)."""
+    at = START + (number - 1) * SECOND // 10 + round(later * SECOND)
+    after = min(COUNT, 1 + (at - START) * 10 // SECOND)
+    return Received(at, after, "/out", FLOAT, {"data": value})
+
+
+def right(number: int) -> float:
+    return float(number * number)
+
+
+REFERENCE = recording(*(answer(n, right(n)) for n in range(1, COUNT + 1)))
+
+
+def told(received: list[Received], check: Callable[[Run], None]) -> str:
+    """What a check says of this."""
+    with pytest.raises(Wrong) as caught:
+        check(Run(EXERCISE, recording(*received), REFERENCE))
+    return caught.value.finding.text
+
+
+def matches(run: Run) -> None:
+    run.must_match("data")
+
+
+@pytest.mark.parametrize("check", [Run.must_answer, matches])
+def test_an_answer_that_comes_later_is_told_with_its_delay(check: Callable[[Run], None]) -> None:
+    received = [answer(n, right(n), later=0.45) for n in range(1, 5)]
+    assert "an answer was expected at once; it came 0.45 s later." in told(received, check)
+
+
+def test_an_answer_that_comes_with_the_next_message_is_told_as_one_message_late() -> None:
+    received = [answer(n, right(n), later=0.1) for n in range(1, COUNT)]
+    assert "Message 1 of 8" in told(received, Run.must_answer)
+    assert "it came one message late." in told(received, Run.must_answer)
+
+
+def test_where_each_answer_is_the_one_to_the_message_before_that_is_told() -> None:
+    received = [answer(1, 0.0), *(answer(n, right(n - 1)) for n in range(2, COUNT + 1))]
+    assert "expected data 1 m, got 0 m. Every answer is one message late" in told(received, matches)
+
+
+def test_an_answer_that_is_right_for_its_own_message_is_no_late_answer() -> None:
+    same = recording(*(answer(n, 1.0) for n in range(1, COUNT + 1)))
+    lacking = recording(*(answer(n, 1.0) for n in range(1, COUNT + 1) if n != 3))
+    with pytest.raises(Wrong) as caught:
+        Run(EXERCISE, lacking, same).must_answer()
+    assert "Message 3 of 8" in caught.value.finding.text
+    assert "none came" in caught.value.finding.text
+
+
+@pytest.mark.parametrize("factor", [0.8, 1.25])
+def test_a_measurement_by_the_computers_clock_is_told_by_its_factor(factor: float) -> None:
+    received = [answer(n, factor * right(n)) for n in range(1, COUNT + 1)]
+    assert f"Every data is {factor:g} times what it should be: your node measures time with the computer's clock" in (
+        told(received, matches)
+    )
+
+
+def test_another_factor_is_no_sign_of_a_clock() -> None:
+    received = [answer(n, 3 * right(n)) for n in range(1, COUNT + 1)]
+    assert told(received, matches).endswith("Every data is 3 times what it should be.")

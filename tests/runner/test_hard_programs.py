@@ -1,0 +1,121 @@
+"""Programs that sleep, use threads, processes, asyncio or their own loops: recorded the same each time, and truly."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from runner_programs import ANSWER, HARD, RunProgram, numbers, program
+
+from grader.recording import Recording
+from grader.recording.store import to_json
+from grader.scenario.scenario import SECOND, START
+
+MS = 1_000_000
+
+
+def seen(recording: Recording) -> str:
+    """All that counts of a recording."""
+    return to_json({"": replace(recording, log="", seconds=0.0, lockstep_seconds=0.0)})
+
+
+def answers(recording: Recording) -> list[float]:
+    return [received.fields["data"] for received in recording.received]
+
+
+def delays(recording: Recording) -> list[float]:
+    """How long after its message each answer came, in ms of simulated time."""
+    return [(received.at - recording.sent[received.after - 1].at) / MS for received in recording.received]
+
+
+@pytest.mark.parametrize("name", HARD)
+def test_a_hard_program_is_recorded_the_same_each_time(run_program: RunProgram, name: str) -> None:
+    first, second = run_program(HARD[name]), run_program(HARD[name])
+    assert first.ending.outcome == "completed", first.ending.story + first.log
+    assert first.hold == "lockstep"
+    assert first.uses_sim_time
+    assert seen(first) == seen(second)
+    if name not in ("a thread of its own", "a timer by the computer's clock"):
+        assert answers(first) == [2, 4, 6, 8, 10]
+
+
+def test_a_sleep_takes_the_computers_time_which_goes_faster_than_simulated_time(run_program: RunProgram) -> None:
+    recording = run_program(program(body=f"time.sleep(0.02)\n{ANSWER}"))
+    assert delays(recording) == [16.0] * 5, "0.02 s at 80 % of real time"
+    scenario = numbers(computer_time="simulated")
+    assert delays(run_program(program(body=f"time.sleep(0.02)\n{ANSWER}"), scenario)) == [20.0] * 5
+
+
+def test_an_answer_that_comes_after_the_next_messages_is_recorded_with_the_message_it_came_after(
+    run_program: RunProgram,
+) -> None:
+    recording = run_program(program(body="threading.Timer(0.15, self.answer, [message.data]).start()"))
+    assert [received.at - START for received in recording.received] == [(i * 100 + 120) * MS for i in range(5)]
+    assert [received.after for received in recording.received] == [2, 3, 4, 5, 5]
+
+
+def test_who_measures_with_the_computers_clock_measures_another_time_the_same_each_time(
+    run_program: RunProgram,
+) -> None:
+    body = "now = time.time()\nself.answer(now - getattr(self, 'before', now))\nself.before = now"
+    measured = answers(run_program(program(body=body)))
+    assert measured[1:] == pytest.approx([0.25] * 4, abs=1e-6), "twice 0.1 s, times 1.25"
+    assert measured == answers(run_program(program(body=body)))
+
+
+def test_several_answers_from_one_thread_keep_their_order(run_program: RunProgram) -> None:
+    recording = run_program(program(body="for i in (3, 1, 2):\n    self.answer(message.data * i)"))
+    assert answers(recording)[:6] == [6, 2, 4, 12, 4, 8]
+
+
+def test_what_was_published_before_simulated_time_began_has_no_time(run_program: RunProgram) -> None:
+    recording = run_program(program(init="self.answer(21.0)"))
+    assert (recording.received[0].at, recording.received[0].after, answers(recording)[0]) == (0, 0, 42.0)
+
+
+@pytest.mark.parametrize("last", ["os._exit(0)", "os.kill(os.getpid(), 9)", "raise RuntimeError('enough')"])
+def test_what_was_published_before_a_crash_is_kept(run_program: RunProgram, last: str) -> None:
+    recording = run_program(program(body=f"{ANSWER}\nif message.data == 3.0:\n    {last}"))
+    assert recording.ending.outcome == "crashed"
+    assert "message 3" in recording.ending.story
+    assert answers(recording) == [2, 4, 6]
+    assert {end_point.topic for end_point in recording.end_points} >= {"/in", "/out"}
+
+
+#: It subscribes with the second tick of a timer; the first is when simulated time begins.
+LATE = program(
+    init="self.destroy_subscription(next(s for s in self.subscriptions if s.topic_name == '/in'))\n"
+    "self.ticks = 0\nself.timer = self.create_timer(0.25, self.begin)",
+).replace(
+    "    def answer",
+    "    def begin(self):\n        self.ticks += 1\n        if self.ticks == 2:\n"
+    "            self.create_subscription(Float64, '/in', self.on_number, QOS)\n\n    def answer",
+    1,
+)
+
+
+def test_a_subscription_that_is_made_late_hears_from_then_on(run_program: RunProgram) -> None:
+    recording = run_program(LATE.replace("QOS", "10"))
+    assert [sent.heard for sent in recording.sent] == [False, False, False, True, True]
+    assert answers(recording) == [8, 10]
+
+
+def test_a_late_subscription_of_latched_messages_gets_what_came_before(run_program: RunProgram) -> None:
+    assert answers(run_program(LATE.replace("QOS", "LATCHED"))) == [2, 4, 6, 8, 10]
+
+
+def test_simulated_time_is_what_ros_shows(run_program: RunProgram) -> None:
+    recording = run_program(program(body="self.answer(self.get_clock().now().nanoseconds / 1e9)"))
+    assert answers(recording) == [2 * sent.at / SECOND for sent in recording.sent]
+
+
+def test_on_ctrl_c_it_has_two_seconds(run_program: RunProgram) -> None:
+    scenario = numbers(interrupt=True)
+    good = run_program(program(), scenario).ending
+    assert (good.interrupted, good.ended_in_time, good.traceback) == (True, True, "")
+    slow = program().replace("    rclpy.try_shutdown()", "    time.sleep(0.2)\n    rclpy.try_shutdown()")
+    assert run_program(slow, scenario).ending.ended_in_time
+    deaf = program(before="import signal\nsignal.signal(signal.SIGINT, signal.SIG_IGN)").replace(
+        "rclpy.init()", "rclpy.init(signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)"
+    ).replace("import rclpy\n", "import rclpy, rclpy.signals\n")  # fmt: skip
+    assert not run_program(deaf, scenario).ending.ended_in_time

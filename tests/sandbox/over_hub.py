@@ -1,0 +1,65 @@
+"""Runs programs in a sandbox over the grader's own middleware, with a real hub in the rig's process."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import pytest
+from sandbox_rig import Rig
+
+from grader.sandbox import Exit, Isolation, Limits, Middleware, Nursery, Program, choose_middleware
+from rmw_lockstep.hub import Hub
+
+SECOND = 1_000_000_000
+
+needs_lockstep = pytest.mark.skipif(
+    choose_middleware().middleware is not Middleware.LOCKSTEP, reason=choose_middleware().warning
+)
+
+
+@dataclass(frozen=True)
+class HubRun:
+    """How a program ended, and what it printed."""
+
+    exit: Exit | None
+    text: str
+
+
+class _Over(Exception):
+    """Raised out of the hub's waiting when the program has ended, or too much time has gone by."""
+
+
+def run_over_hub(
+    rig: Rig, source: str, *, warm: bool = True, limits: Limits | None = None, timeout_s: float = 60.0
+) -> HubRun:
+    """Runs a program until its first process ends; its time goes on by a second whenever it is idle."""
+    program = Program("student.py", {"student.py": source.encode()}, ("--ros-args",), warm=warm)
+    run: HubRun = rig.do(in_the_rig, program, limits, timeout_s)
+    return run
+
+
+def in_the_rig(nursery: Nursery, level: Isolation, program: Program, limits: Limits | None, timeout_s: float) -> HubRun:
+    """The same, in the rig's process."""
+    folder = Path(tempfile.mkdtemp(prefix="spinbook-hub-"))
+    deadline = time.monotonic() + timeout_s
+    try:
+        with Hub(folder) as hub, nursery.start(replace(program, hub=hub.path), level, limits) as student:
+
+            def look() -> None:
+                if student.poll() is not None or time.monotonic() > deadline:
+                    raise _Over
+
+            hub.main, hub.patience = student.pid, look
+            try:
+                while True:
+                    hub.wait_until_idle()
+                    look()
+                    hub.advance(hub.now + SECOND)
+            except _Over:
+                return HubRun(student.poll(), student.output().text)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
