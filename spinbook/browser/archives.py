@@ -24,7 +24,7 @@ _CHECKS = ("pytest", "_pytest", "py", "pluggy", "iniconfig", "packaging", "pygme
 _LEXERS = ("__init__.py", "_mapping.py", "python.py", "diff.py")
 _SPINBOOK = ("__init__.py", "problem.py", "ros2", "turtlesim", "browser")
 #: What of the grader judges recordings; the rest starts and confines programs.
-_GRADER = ("__init__.py", "checking", "exercise", "recording", "rig", "scenario", "report", "feedback")
+_GRADER = ("__init__.py", "checking", "exercise", "recording", "scenario", "report", "feedback")
 _INTERFACES = Path(sys.prefix, "share", "ament_index", "resource_index", "rosidl_interfaces")
 _INDEXED = ("rosidl_interfaces", "packages")
 _TEXTS = (".msg", ".srv", ".action")
@@ -42,8 +42,8 @@ def ros_archive() -> bytes:
     for part in _SPINBOOK:
         files |= _part(root / part, f"spinbook/{part}")
     files["numpy.py"] = (root / "browser" / "numpy_standin" / "numpy.py").read_bytes()
-    files |= _part(root.parent / "grader" / "rig" / "message.py", "grader/rig/message.py")
-    files |= {f"grader/{name}": b"" for name in ("__init__.py", "rig/__init__.py")}
+    files |= _part(root.parent / "grader" / "runner" / "message.py", "grader/runner/message.py")
+    files |= {f"grader/{name}": b"" for name in ("__init__.py", "runner/__init__.py")}
     files |= dict(_python_files(root.parent / "grader" / "recording", "grader/recording"))
     return zipped(files)
 

@@ -73,7 +73,7 @@ def record(topics: Sequence[str], seconds: float) -> list[dict[str, Any]]:
 
 def _subscribed(node: Any, path: str, line: dict[str, Any], began: float) -> bool:
     """Whether a topic is there that the path begins with; then it is heard from now on."""
-    from grader.rig.message import message_class
+    from grader.runner.message import message_class
 
     for topic, kinds in node.get_topic_names_and_types():
         if path.startswith(topic) and path[len(topic) : len(topic) + 1] in ("/", "[", "."):

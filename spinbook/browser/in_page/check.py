@@ -73,7 +73,7 @@ def public_part(exercise: Exercise) -> tuple[list[Scenario], dict[str, Recording
     """The scenarios, the solution's recordings of them, and what stays hidden, from public.json."""
     entries = json.loads(exercise.public_file.read_text(encoding="utf-8"))
     scenarios = [
-        Scenario(item["name"], item["title"], tuple(Message(**m) for m in item["messages"]), item["interrupt"])
+        Scenario(**{**item, "messages": tuple(Message(**message) for message in item["messages"])})
         for item in entries["scenarios"]
     ]
     return scenarios, from_plain(entries["expected"]), entries["hidden"]

@@ -2,7 +2,7 @@
 
 The program waits in one place only, the wait set. That it waits means that it has nothing left to do: then, and only
 then, the next thing happens. So there is no thread, no timing and no patience in it, and every run is the same. What
-happens, and in which order, is what grader/rig/spin.py does; the recording is the grader's own.
+happens, and in which order, is what grader/runner/run.py does; the recording is the grader's own.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from typing import Any
 
 from grader.exercise import Exercise
 from grader.recording import Ending, EndPoint, Received, Recording, Sent
-from grader.rig.message import message_class, to_fields, to_message
+from grader.runner.message import message_class, to_fields, to_message
 from grader.scenario import Message, Scenario
 from grader.scenario.scenario import SECOND, START
 from rcl_python import cdr, logs, participant
@@ -32,7 +32,7 @@ from rcl_python.graph import PUBLISHER, SERVICE, SUBSCRIPTION, NodeInfo
 from rcl_python.link import Frame
 from rcl_python.participant import Endpoint
 
-#: As grader/rig/spin.py.
+#: As grader/runner/run.py.
 AFTERWARDS = SECOND // 2
 #: A program that only looks and never waits is done after so many looks.
 _LOOKS = 4
@@ -174,7 +174,7 @@ class Rig:
         return self._ended(f"{words}{place}{f': {text}' if text else ''}", line)
 
     def _ended(self, why: str, line: int | None) -> Ending:
-        """The ending of a program that ended by itself, in the grader's words (grader/rig/ending.py)."""
+        """The ending of a program that ended by itself, in the grader's words (grader/runner/ending.py)."""
         if self._interrupted:
             return Ending("completed", interrupted=True)
         if self._met:
@@ -229,16 +229,14 @@ class Rig:
                 self._received.append(Received(self._now, len(self._sent), topic.name, topic.type, fields))
 
     def _look_round(self) -> None:
-        """See which nodes the program has made, and how a grader would know when they are done."""
+        """See which nodes the program has made, and whether they take their time from /clock."""
         graph = self._here.graph
         nodes = [node for node in graph.nodes.values() if node.key not in self._own]
         self._nodes = tuple(sorted(_full_name(node) for node in nodes))
-        offered = [{e.topic.rpartition("/")[2] for e in graph.ends(0, SERVICE, node=node.key)} for node in nodes]
-        holds = {"get_parameters": "parameters", "get_type_description": "type description"}
-        found = (hold for service, hold in holds.items() if nodes and all(service in names for names in offered))
-        self._hold = next(found, "quiet")
+        self._hold = "lockstep" if nodes else "none"
         listening = {end.node for end in graph.ends(0, SUBSCRIPTION, topic="/clock")}
-        self._sim_time = self._hold == "parameters" and all(node.key in listening for node in nodes)
+        asked = {end.node for end in graph.ends(0, SERVICE) if end.topic.endswith("/get_parameters")}
+        self._sim_time = all(node.key in listening & asked for node in nodes)
 
     def _student_s_ends(self) -> tuple[EndPoint, ...]:
         graph = self._here.graph
