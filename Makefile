@@ -20,6 +20,7 @@ help:    ## List what can be made.
 
 setup:   ## Make the virtual environment with every pinned dependency, or bring it up to date.
 	@PYTHON="$(PYTHON)" VENV="$(VENV)" sh setup.sh
+	@VENV="$(VENV)" sh fetch-pyodide.sh
 
 course: setup   ## Build, run and package the real course, make its site, and grade a class of twelve.
 	$(BIN)/spinbook build --execute --strict

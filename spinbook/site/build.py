@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from spinbook.browser.pyodide import pyodide_folder
 from spinbook.build.digest import code_digest, digest, files_digest, versions
 from spinbook.course.course import FILE, Course
 from spinbook.problem import Problem
@@ -34,6 +35,7 @@ class Site:
 #: What Spinbook's own code makes of a course, down to the outputs of its notebooks.
 _CODE = (
     "site",
+    "browser",
     "chapter",
     "build",
     "course",
@@ -109,7 +111,7 @@ def _key(course: Course, *, as_it_ran: bool) -> str:
     for made in ("executed", "notebooks"):
         inputs += (course.build_folder / made).glob("*.*")
     repository = repository_of(course.root, course.repository)
-    known = (repository.url, repository.commit, repository.date)
+    known = (repository.url, repository.commit, repository.date, str(pyodide_folder()))
     return digest(files_digest(inputs, course.root), code_digest(*_CODE), versions(), *known, str(as_it_ran))
 
 

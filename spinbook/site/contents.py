@@ -13,6 +13,8 @@ import jupytext
 import nbformat
 
 from grader.exercise import Exercise, ExerciseError, load, starter
+from spinbook.browser.exercises import public_parts
+from spinbook.browser.files import can_run, run_files
 from spinbook.build.reading import read_all
 from spinbook.chapter.chapter import CellKind, Chapter
 from spinbook.course.course import Course
@@ -97,7 +99,16 @@ def read_contents(course: Course) -> Contents:
             contents.files |= drawing_files(code, picture)
     contents.pictures |= links.pictures
     contents.files |= links.pictures
+    if can_run():
+        contents.files |= run_files(_public_parts(exercises))
     return contents
+
+
+def _public_parts(exercises: Mapping[str, Exercise]) -> dict[str, bytes]:
+    try:
+        return public_parts(exercises.values())
+    except ExerciseError as error:
+        raise SpinbookError(Problem(error.file, error.line, error.found, error.mend)) from None
 
 
 def _chapters(course: Course) -> list[Chapter]:
@@ -173,8 +184,10 @@ def _chapter(
     contents.lines[name] = [cell["metadata"]["spinbook"]["line"] for cell in notebook["cells"]]
     contents.taught += [cell.source for cell in chapter.nodes]
     source = links.repository.link(chapter.file, 1)
+    text = as_text(notebook)
+    runs = can_run()
     return Page(
-        name, chapter.title, "chapter", ".ipynb", as_text(notebook), source, chapter.name, summary=chapter.summary
+        name, chapter.title, "chapter", ".ipynb", text, source, chapter.name, summary=chapter.summary, runs=runs
     )
 
 
@@ -224,7 +237,7 @@ def _exercise(exercise: Exercise, chapter: Chapter, links: Links, drawings: _Dra
     notebook = names.exercise_notebook(exercise.name)
     source = links.repository.link(Path(folder, "task.md"), 1)
     summary = f"An exercise of the chapter {chapter.title}, worth {exercise.points:g} points."
-    return Page(name, exercise.title, "exercise", ".md", text, source, notebook, summary, about)
+    return Page(name, exercise.title, "exercise", ".md", text, source, notebook, summary, about, can_run())
 
 
 def _starter_of(exercise: Exercise) -> str:

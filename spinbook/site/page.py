@@ -13,7 +13,8 @@ class Page:
     """One page. `name` is its path without a suffix, such as chapters/03-nodes-and-topics.
 
     `text` is a notebook or Markdown, by `suffix`. `notebook` names the notebook that its reader can run, `about` is
-    what the theme shows of it beside the text. `summary` is one sentence, for search engines and the home page.
+    what the theme shows of it beside the text. `summary` is one sentence, for search engines and the home page. `runs`
+    says whether its cells can run in the browser.
     """
 
     name: str
@@ -25,6 +26,7 @@ class Page:
     notebook: str = ""
     summary: str = ""
     about: Mapping[str, Any] = field(default_factory=dict)
+    runs: bool = False
 
     def frame(self, openers: Mapping[str, list[dict[str, str]]]) -> str:
         """What the theme reads of the page, as JSON. `openers` are the places that open a notebook, by its name."""
@@ -35,6 +37,7 @@ class Page:
                 "notebook": self.notebook,
                 "openers": openers.get(self.notebook, []),
                 "summary": self.summary,
+                "runs": self.runs,
                 **self.about,
             },
             ensure_ascii=False,

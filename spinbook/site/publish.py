@@ -9,7 +9,7 @@ from spinbook.written import write_if_changed
 
 #: What is taken from Sphinx's output.
 _IMAGES = "_images"
-_OURS = ("early.js", "site.js", "search.js", "site.css", "print.css", "icon.svg", "search-data.js")
+_OURS = ("early.js", "site.js", "run.js", "search.js", "site.css", "print.css", "icon.svg", "search-data.js")
 
 
 def publish(html: Path, pages: Iterable[str], files: Mapping[str, str | bytes], site: Path) -> int:

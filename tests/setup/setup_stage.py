@@ -114,6 +114,8 @@ def make_checkout(parent: Path) -> Checkout:
     (folder / "interface_compiler" / "Pose.msg").write_text("float32 x\n")
     for name in ("setup.sh", "Makefile", "pyproject.toml", "spinbook/doctor/ros_origin.py"):
         shutil.copy(ROOT / name, folder / name)
+    # What it fetches from npm is tested in test_fetching_pyodide.py.
+    (folder / "fetch-pyodide.sh").write_text("")
     (folder / "constraints.txt").write_text(
         "setuptools==79.0.1 \\\n    --hash=sha256:0\nclick==8 \\\n    --hash=sha256:1\n"
     )

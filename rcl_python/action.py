@@ -1,0 +1,331 @@
+"""Actions: three services and two topics under one name, and the states of goals.
+
+The names and rules are those of rcl_action and https://design.ros2.org/articles/actions.html.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rcl_python.clock import Clock, Timer
+from rcl_python.endpoints import Client, Publisher, Service, Subscription
+from rcl_python.handle import Destroyable
+from rcl_python.node import Node
+from rcl_python.qos import Profile
+from rcl_python.values import GoalEvent, RCLError, rmw_request_id_t
+from rcl_python.wait_set import WaitSet
+
+ACCEPTED, EXECUTING, CANCELING, SUCCEEDED, CANCELED, ABORTED = 1, 2, 3, 4, 5, 6
+_ACTIVE = (ACCEPTED, EXECUTING, CANCELING)
+
+#: State and event -> the next state.
+_NEXT = {
+    (ACCEPTED, GoalEvent.EXECUTE): EXECUTING,
+    (ACCEPTED, GoalEvent.CANCEL_GOAL): CANCELING,
+    (EXECUTING, GoalEvent.CANCEL_GOAL): CANCELING,
+    (EXECUTING, GoalEvent.SUCCEED): SUCCEEDED,
+    (EXECUTING, GoalEvent.ABORT): ABORTED,
+    (CANCELING, GoalEvent.SUCCEED): SUCCEEDED,
+    (CANCELING, GoalEvent.ABORT): ABORTED,
+    (CANCELING, GoalEvent.CANCELED): CANCELED,
+}
+_UNKNOWN_GOAL, _GOAL_TERMINATED = 2, 3
+
+
+def _parts(name: str) -> dict[str, str]:
+    if not name:
+        raise ValueError("Failed to create action due to invalid topic name '': action name must not be empty")
+    parts = ("send_goal", "cancel_goal", "get_result", "feedback", "status")
+    return {part: f"{name}/_action/{part}" for part in parts}
+
+
+class _Action(Destroyable):
+    """What a server and a client have in common."""
+
+    def _hold(self, *ends: Any) -> None:
+        self._ends: tuple[Any, ...] = ends
+
+    def _destroy(self) -> None:
+        for end in self._ends:
+            end.destroy_when_not_in_use()
+
+    def is_ready(self, wait_set: WaitSet) -> tuple[bool, ...]:
+        """Which of its parts the last wait found ready."""
+        return tuple(wait_set.found_ready(end) for end in self._waited())
+
+    def _waited(self) -> tuple[Any, ...]:
+        raise NotImplementedError
+
+
+class ActionClient(_Action):
+    """What sends goals."""
+
+    def __init__(
+        self,
+        node: Node,
+        action_class: Any,
+        name: str,
+        goal_qos: Profile,
+        result_qos: Profile,
+        cancel_qos: Profile,
+        feedback_qos: Profile,
+        status_qos: Profile,
+    ) -> None:
+        self._destroyed = True
+        names, kinds = _named(name, "client"), action_class.Impl
+        self.goal = _made("client", name, Client, node, kinds.SendGoalService, names["send_goal"], goal_qos)
+        self.cancel = Client(node, kinds.CancelGoalService, names["cancel_goal"], cancel_qos)
+        self.result = Client(node, kinds.GetResultService, names["get_result"], result_qos)
+        self.feedback = Subscription(node, kinds.FeedbackMessage, names["feedback"], feedback_qos)
+        self.status = Subscription(node, kinds.GoalStatusMessage, names["status"], status_qos)
+        self._hold(self.goal, self.cancel, self.result, self.feedback, self.status)
+        super().__init__()
+
+    def _waited(self) -> tuple[Any, ...]:
+        return self.feedback, self.status, self.goal, self.cancel, self.result
+
+    def get_num_entities(self) -> tuple[int, int, int, int, int]:
+        """Subscriptions, guard conditions, timers, clients, services."""
+        return 2, 0, 0, 3, 0
+
+    def add_to_waitset(self, wait_set: WaitSet) -> None:
+        """Wait for every part."""
+        for subscription in (self.feedback, self.status):
+            wait_set.add_subscription(subscription)
+        for client in (self.goal, self.cancel, self.result):
+            wait_set.add_client(client)
+
+    def is_action_server_available(self) -> bool:
+        """Whether a whole server is there."""
+        services = all(client.service_server_is_available() for client in (self.goal, self.cancel, self.result))
+        return bool(services and all(topic.get_publisher_count() for topic in (self.feedback, self.status)))
+
+    def send_goal_request(self, request: Any) -> int:
+        """Send a goal; the request's number."""
+        return int(self.goal.send_request(request))
+
+    def send_cancel_request(self, request: Any) -> int:
+        """Ask for goals to be canceled; the request's number."""
+        return self.cancel.send_request(request)
+
+    def send_result_request(self, request: Any) -> int:
+        """Ask for a goal's result; the request's number."""
+        return self.result.send_request(request)
+
+    def take_goal_response(self, response_class: Any) -> tuple[int | None, Any]:
+        """The number of a request and its response, or (None, None)."""
+        return _numbered(self.goal, response_class)
+
+    def take_cancel_response(self, response_class: Any) -> tuple[int | None, Any]:
+        """The number of a request and its response, or (None, None)."""
+        return _numbered(self.cancel, response_class)
+
+    def take_result_response(self, response_class: Any) -> tuple[int | None, Any]:
+        """The number of a request and its response, or (None, None)."""
+        return _numbered(self.result, response_class)
+
+    def take_feedback(self, message_class: Any) -> Any:
+        """Feedback, or None."""
+        return _message(self.feedback, message_class)
+
+    def take_status(self, message_class: Any) -> Any:
+        """The states of the server's goals, or None."""
+        return _message(self.status, message_class)
+
+
+def _named(name: str, what: str) -> dict[str, str]:
+    try:
+        return _parts(name)
+    except ValueError as error:
+        raise ValueError(str(error).replace("create action", f"create action {what}")) from None
+
+
+def _made(what: str, name: str, kind: Any, *given: Any) -> Any:
+    try:
+        return kind(*given)
+    except ValueError as error:
+        raise ValueError(f"Failed to create action {what} due to invalid topic name '{name}' : {error}") from None
+
+
+def _numbered(client: Client, response_class: Any) -> tuple[int | None, Any]:
+    header, response = client.take_response(response_class)
+    return (header.request_id.sequence_number if header else None), response
+
+
+def _message(subscription: Subscription, message_class: Any) -> Any:
+    taken = subscription.take_message(message_class, False)
+    return taken[0] if taken else None
+
+
+class ActionServer(_Action):
+    """What works on goals. `result_timeout` (s) is how long a result is kept; for ever where it is negative."""
+
+    def __init__(
+        self,
+        node: Node,
+        clock: Clock,
+        action_class: Any,
+        name: str,
+        goal_qos: Profile,
+        result_qos: Profile,
+        cancel_qos: Profile,
+        feedback_qos: Profile,
+        status_qos: Profile,
+        result_timeout: float,
+    ) -> None:
+        self._destroyed = True
+        names, kinds = _named(name, "server"), action_class.Impl
+        self.goal = _made("server", name, Service, node, kinds.SendGoalService, names["send_goal"], goal_qos)
+        self.cancel = Service(node, kinds.CancelGoalService, names["cancel_goal"], cancel_qos)
+        self.result = Service(node, kinds.GetResultService, names["get_result"], result_qos)
+        self.feedback = Publisher(node, kinds.FeedbackMessage, names["feedback"], feedback_qos)
+        self.status = Publisher(node, kinds.GoalStatusMessage, names["status"], status_qos)
+        self.expiry = Timer(clock, node.context, 0, autostart=False)
+        self._hold(self.goal, self.cancel, self.result, self.feedback, self.status, self.expiry)
+        self._clock, self._kinds = clock, kinds
+        self._timeout = int(result_timeout * 10**9)
+        self.goals: list[ActionGoalHandle] = []
+        super().__init__()
+
+    def _waited(self) -> tuple[Any, ...]:
+        return self.goal, self.cancel, self.result, self.expiry
+
+    def get_num_entities(self) -> tuple[int, int, int, int, int]:
+        """Subscriptions, guard conditions, timers, clients, services."""
+        return 0, 0, 1, 0, 3
+
+    def add_to_waitset(self, wait_set: WaitSet) -> None:
+        """Wait for every part."""
+        for service in (self.goal, self.cancel, self.result):
+            wait_set.add_service(service)
+        wait_set.add_timer(self.expiry)
+
+    def take_goal_request(self, request_class: Any) -> tuple[rmw_request_id_t | None, Any]:
+        """A request's header and the request, or (None, None)."""
+        return _headed(self.goal, request_class)
+
+    def take_cancel_request(self, request_class: Any) -> tuple[rmw_request_id_t | None, Any]:
+        """A request's header and the request, or (None, None)."""
+        return _headed(self.cancel, request_class)
+
+    def take_result_request(self, request_class: Any) -> tuple[rmw_request_id_t | None, Any]:
+        """A request's header and the request, or (None, None)."""
+        return _headed(self.result, request_class)
+
+    def send_goal_response(self, header: rmw_request_id_t, response: Any) -> None:
+        """Say whether a goal is accepted."""
+        self.goal.service_send_response(response, header)
+
+    def send_cancel_response(self, header: rmw_request_id_t, response: Any) -> None:
+        """Say which goals are being canceled."""
+        self.cancel.service_send_response(response, header)
+
+    def send_result_response(self, header: rmw_request_id_t, response: Any) -> None:
+        """Send a goal's result."""
+        self.result.service_send_response(response, header)
+
+    def publish_feedback(self, message: Any) -> None:
+        """Publish feedback."""
+        self.feedback.publish(message)
+
+    def publish_status(self) -> None:
+        """Publish the state of every goal."""
+        from action_msgs.msg import GoalStatus
+
+        states = [GoalStatus(goal_info=goal.info, status=goal.state) for goal in self.goals]
+        self.status.publish(self._kinds.GoalStatusMessage(status_list=states))
+
+    def goal_exists(self, info: Any) -> bool:
+        """Whether the goal is known."""
+        return self._find(info) is not None
+
+    def _find(self, info: Any) -> ActionGoalHandle | None:
+        wanted = bytes(info.goal_id.uuid)
+        return next((goal for goal in self.goals if goal.identity == wanted), None)
+
+    def accept(self, goal: ActionGoalHandle) -> None:
+        """Keep track of a goal. Raises RCLError if it is known."""
+        if self.goal_exists(goal.info):
+            raise RCLError("Failed to accept new goal: goal ID already exists")
+        self.goals.append(goal)
+
+    def notify_goal_done(self) -> None:
+        """Let results expire in time."""
+        ends = [goal.ended + self._timeout for goal in self.goals if goal.ended is not None]
+        if ends and self._timeout >= 0:
+            self.expiry.expire_at(min(ends))
+        else:
+            self.expiry.cancel_timer()
+
+    def expire_goals(self, most: int) -> tuple[Any, ...]:
+        """Forget at most so many goals whose results have been kept long enough; their GoalInfo."""
+        now = self._clock.now()
+        old = [goal for goal in self.goals if goal.ended is not None and now - goal.ended >= self._timeout >= 0]
+        for goal in old[:most]:
+            self.goals.remove(goal)
+        self.notify_goal_done()
+        return tuple(goal.info for goal in old[:most])
+
+    def process_cancel_request(self, request: Any, response_class: Any) -> Any:
+        """Which goals a request means: one, those accepted up to a time, or all."""
+        identity, stamp = bytes(request.goal_info.goal_id.uuid), _nanoseconds(request.goal_info.stamp)
+        response = response_class()
+        if any(identity) and not stamp:
+            goal = self._find(request.goal_info)
+            chosen = [goal] if goal and goal.is_cancelable() else []
+            if not chosen:
+                response.return_code = _GOAL_TERMINATED if goal else _UNKNOWN_GOAL
+        else:
+            every = not any(identity) and not stamp
+            cancelable = [goal for goal in self.goals if goal.is_cancelable()]
+            chosen = [g for g in cancelable if every or _nanoseconds(g.info.stamp) <= stamp or g.identity == identity]
+        response.goals_canceling = [goal.info for goal in chosen]
+        return response
+
+
+def _headed(service: Service, request_class: Any) -> tuple[rmw_request_id_t | None, Any]:
+    request, header = service.service_take_request(request_class)
+    return (header.request_id if header else None), request
+
+
+def _nanoseconds(stamp: Any) -> int:
+    return int(stamp.sec) * 10**9 + int(stamp.nanosec)
+
+
+class ActionGoalHandle(Destroyable):
+    """A goal that a server has accepted."""
+
+    def __init__(self, server: ActionServer, info: Any) -> None:
+        super().__init__()
+        self.info = info
+        self.identity = bytes(info.goal_id.uuid)
+        self.state = ACCEPTED
+        self.ended: int | None = None
+        """When it reached a final state (ns of the server's clock)."""
+        self._clock = server._clock
+        server.accept(self)
+
+    def get_status(self) -> int:
+        """The state, as in action_msgs/msg/GoalStatus."""
+        return self.state
+
+    def is_active(self) -> bool:
+        """Whether it has not come to an end."""
+        return self.state in _ACTIVE
+
+    def is_cancelable(self) -> bool:
+        """Whether it can still be canceled."""
+        return (self.state, GoalEvent.CANCEL_GOAL) in _NEXT
+
+    def update_goal_state(self, event: GoalEvent) -> None:
+        """Go on to the next state. Raises RCLError where there is none."""
+        following = _NEXT.get((self.state, GoalEvent(int(event))))
+        if following is None:
+            reason = "goal_handle attempted invalid transition from state"
+            raise RCLError(f"Failed to update goal state: {reason} {_WORDS[self.state]} with event {event.name}")
+        self.state = following
+        if not self.is_active():
+            self.ended = self._clock.now()
+
+
+_WORDS = {1: "ACCEPTED", 2: "EXECUTING", 3: "CANCELING", 4: "SUCCEEDED", 5: "CANCELED", 6: "ABORTED"}

@@ -1,0 +1,51 @@
+"""Puts this package in the place of rclpy's compiled modules."""
+
+from __future__ import annotations
+
+import importlib.abc
+import importlib.machinery
+import sys
+import types
+from collections.abc import Sequence
+from typing import Any
+
+_PYBIND = "rclpy._rclpy_pybind11"
+_TYPE_SUPPORT = "_s__rosidl_typesupport_c"
+
+
+class _TypeSupport(types.ModuleType):
+    """The converters of a package's messages, which nobody calls: messages are read and written by cdr.py."""
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return self.__name__, name
+
+
+class _Finder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
+    """Finds the compiled modules here, before anybody looks for them on the path."""
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: types.ModuleType | None = None
+    ) -> importlib.machinery.ModuleSpec | None:
+        if fullname == _PYBIND or fullname.endswith(_TYPE_SUPPORT):
+            return importlib.machinery.ModuleSpec(fullname, self)
+        return None
+
+    def create_module(self, spec: importlib.machinery.ModuleSpec) -> types.ModuleType:
+        if spec.name == _PYBIND:
+            from rcl_python.pybind import module
+
+            return module(spec.name)
+        return _TypeSupport(spec.name)
+
+    def exec_module(self, module: types.ModuleType) -> None:
+        """Everything is there already."""
+
+
+def install() -> None:
+    """Let rclpy find this package instead of its compiled module. Raises RuntimeError where it is too late."""
+    if _PYBIND in sys.modules:
+        raise RuntimeError("rclpy has been imported already: call rcl_python.install() first")
+    if not any(isinstance(finder, _Finder) for finder in sys.meta_path):
+        sys.meta_path.insert(0, _Finder())

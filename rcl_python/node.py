@@ -1,0 +1,268 @@
+"""Nodes: their names, their parameters from arguments, and what they see of the graph."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from rcl_python import logs, names, participant, qos
+from rcl_python.arguments import Arguments, Remap, parse, remapped, remapped_node
+from rcl_python.context import Context
+from rcl_python.graph import CLIENT, PUBLISHER, SERVICE, SUBSCRIPTION, EndpointInfo, NodeInfo, names_and_types
+from rcl_python.handle import Destroyable
+from rcl_python.parameters import applies
+from rcl_python.type_hash import hash_of
+from rcl_python.values import NodeNameNonExistentError, RCLError, at
+
+_FEEDBACK = "/_action/feedback"
+_FEEDBACK_TYPE = "_FeedbackMessage"
+
+
+class Node(Destroyable):
+    """A node. Raises ValueError for a name or a namespace that is none."""
+
+    def __init__(
+        self,
+        name: str,
+        namespace: str,
+        context: Context,
+        cli_args: Sequence[str] | None,
+        use_global_arguments: bool,
+        enable_rosout: bool,
+    ) -> None:
+        self._destroyed = True
+        own = parse(cli_args or [])
+        own.refuse_unknown()
+        context.require_valid("error creating node", "rcl/node.c:137")
+        # A node's own arguments come first; parameters that come later win.
+        self.sources: list[Arguments] = [own, *([context.arguments] if use_global_arguments else [])]
+        self.remaps: list[Remap] = [rule for source in self.sources for rule in source.remaps]
+        self._name_it(name, namespace)
+        self.context = context
+        enclave = context.arguments.enclave
+        self.info: NodeInfo = participant.current().add_node(self.name, self.namespace, context.domain, enclave)
+        self._rosout: Any = None
+        if enable_rosout and context.arguments.rosout:
+            self._open_rosout()
+        super().__init__()
+
+    def _name_it(self, name: str, namespace: str) -> None:
+        _refuse("node name", names.node_name_fault(name), 156)
+        namespace = namespace if namespace.startswith("/") else f"/{namespace}"
+        fault = names.namespace_fault(namespace)
+        if fault:
+            raise ValueError(
+                f"invalid node namespace: {at(f'{fault[0]}, result: {_namespace_result(fault[0])}', 'rcl/node.c:184')}"
+            )
+        self.name = remapped_node(self.remaps, "__node", name) or name
+        self.namespace = remapped_node(self.remaps, "__ns", name) or namespace
+
+    def _open_rosout(self) -> None:
+        from rcl_interfaces.msg import Log
+
+        from rcl_python.endpoints import Publisher
+
+        self._rosout = Publisher(self, Log, "/rosout", qos.ROSOUT)
+        logs.add_rosout(self.logger_name(), self._rosout.publish)
+
+    def _destroy(self) -> None:
+        if self._rosout is not None:
+            logs.remove_rosout(self.logger_name(), self._rosout.publish)
+            self._rosout.destroy_when_not_in_use()
+        participant.current().remove_node(self.info.key)
+
+    def get_node_name(self) -> str:
+        """The name without its namespace."""
+        return self.name
+
+    def get_namespace(self) -> str:
+        """The namespace, `/` for none."""
+        return self.namespace
+
+    def get_fully_qualified_name(self) -> str:
+        """The namespace and the name."""
+        return f"{self.namespace.rstrip('/')}/{self.name}"
+
+    def logger_name(self) -> str:
+        """The name of the node's logger: its full name with dots."""
+        return self.get_fully_qualified_name().strip("/").replace("/", ".")
+
+    def resolve(self, name: str, kind: str, only_expand: bool = False) -> str:
+        """The absolute name of a topic or a service (`kind`), remapped."""
+        absolute = names.expand(name, self.name, self.namespace)
+        return absolute if only_expand else remapped(self.remaps, kind, absolute, self.name, self.namespace)
+
+    def get_parameters(self, parameter_class: Any) -> dict[str, Any]:
+        """The parameters that the arguments give this node: name -> Parameter."""
+        found: dict[str, Any] = {}
+        for source in reversed(self.sources):
+            for pattern, name, value in source.parameters:
+                if applies(pattern, self.get_fully_qualified_name()):
+                    found[name] = parameter_class(name, parameter_class.Type.from_parameter_value(value), value)
+        return found
+
+    def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
+        """Every node of the domain."""
+        return [(node.name, node.namespace) for node in self.seen().nodes_in(self.info.domain)]
+
+    def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
+        """Every node of the domain, and its enclave."""
+        return [(node.name, node.namespace, node.enclave) for node in self.seen().nodes_in(self.info.domain)]
+
+    def seen(self) -> Any:
+        """The graph as it is now."""
+        here = participant.current()
+        here.pump()
+        return here.graph
+
+    def get_count_publishers(self, topic: str) -> int:
+        """How many publish on a topic."""
+        return self._count(PUBLISHER, topic, "publishers", "topic_name")
+
+    def get_count_subscribers(self, topic: str) -> int:
+        """How many subscribe to a topic."""
+        return self._count(SUBSCRIPTION, topic, "subscribers", "topic_name")
+
+    def get_count_services(self, service: str) -> int:
+        """How many answer a service."""
+        return self._count(SERVICE, service, "services", "service_name")
+
+    def get_count_clients(self, service: str) -> int:
+        """How many call a service."""
+        return self._count(CLIENT, service, "clients", "service_name")
+
+    def _count(self, kind: str, topic: str, what: str, argument: str) -> int:
+        fault = names.full_topic_fault(topic)
+        if fault:
+            reason = at(f"{argument} argument is invalid: {fault[0]}", "rmw_count.cpp:60")
+            raise RCLError(f"Error in rcl_count_{what}: {reason}")
+        return len(self.seen().ends(self.info.domain, kind, topic=topic))
+
+    def get_action_names_and_types(self) -> list[tuple[str, list[str]]]:
+        """Every action that a server or a client has."""
+        return _actions(self.seen().ends(self.info.domain, PUBLISHER, SUBSCRIPTION))
+
+    def get_action_server_names_and_types_by_node(self, name: str, namespace: str) -> list[tuple[str, list[str]]]:
+        """The actions that a node serves."""
+        return _actions(ends_of(self, name, namespace, PUBLISHER, "action server"))
+
+    def get_action_client_names_and_types_by_node(self, name: str, namespace: str) -> list[tuple[str, list[str]]]:
+        """The actions that a node calls."""
+        return _actions(ends_of(self, name, namespace, SUBSCRIPTION, "action client"))
+
+
+def _refuse(what: str, fault: names.Fault, line: int) -> None:
+    if fault:
+        raise ValueError(f"invalid {what}: {at(fault[0], f'rcl/node.c:{line}')}")
+
+
+def _namespace_result(text: str) -> int:
+    """The number that rmw gives a fault of a namespace (rmw/validate_namespace.h)."""
+    endings = [
+        "must not be empty",
+        "lead with a '/'",
+        "unless only a '/'",
+        "alphanumerics, '_', or '/'",
+        "repeated '/'",
+    ]
+    return next((number for number, ending in enumerate(endings, 1) if ending in text), 6)
+
+
+def _actions(ends: Sequence[EndpointInfo]) -> list[tuple[str, list[str]]]:
+    found = [
+        (topic.removesuffix(_FEEDBACK), [kind.removesuffix(_FEEDBACK_TYPE) for kind in kinds])
+        for topic, kinds in names_and_types(ends)
+        if topic.endswith(_FEEDBACK)
+    ]
+    return sorted(found)
+
+
+def ends_of(node: Node, name: str, namespace: str, kind: str, what: str) -> list[EndpointInfo]:
+    """What a node has of one kind. Raises NodeNameNonExistentError if nobody is called so."""
+    graph = node.seen()
+    found = graph.named(node.info.domain, name, namespace)
+    if not found:
+        text = f"cannot get {what} names and types for nonexistent node: error not set"
+        raise NodeNameNonExistentError(text)
+    return [end for one in found for end in graph.ends(node.info.domain, kind, node=one.key)]
+
+
+def topic_names_and_types(node: Node, no_demangle: bool) -> list[tuple[str, list[str]]]:
+    """Every topic and its types."""
+    return names_and_types(node.seen().ends(node.info.domain, PUBLISHER, SUBSCRIPTION), mangled=no_demangle)
+
+
+def service_names_and_types(node: Node) -> list[tuple[str, list[str]]]:
+    """Every service and its types."""
+    return names_and_types(node.seen().ends(node.info.domain, SERVICE, CLIENT))
+
+
+def publisher_names_and_types_by_node(
+    node: Node, no_demangle: bool, name: str, namespace: str
+) -> list[tuple[str, list[str]]]:
+    """What a node publishes."""
+    return names_and_types(ends_of(node, name, namespace, PUBLISHER, "publisher"), mangled=no_demangle)
+
+
+def subscriber_names_and_types_by_node(
+    node: Node, no_demangle: bool, name: str, namespace: str
+) -> list[tuple[str, list[str]]]:
+    """What a node subscribes to."""
+    return names_and_types(ends_of(node, name, namespace, SUBSCRIPTION, "subscriber"), mangled=no_demangle)
+
+
+def service_names_and_types_by_node(node: Node, name: str, namespace: str) -> list[tuple[str, list[str]]]:
+    """What a node answers."""
+    return names_and_types(ends_of(node, name, namespace, SERVICE, "service"))
+
+
+def client_names_and_types_by_node(node: Node, name: str, namespace: str) -> list[tuple[str, list[str]]]:
+    """What a node calls."""
+    return names_and_types(ends_of(node, name, namespace, CLIENT, "client"))
+
+
+def publishers_info_by_topic(node: Node, topic: str, no_mangle: bool) -> list[dict[str, object]]:
+    """Who publishes on a topic, and how."""
+    return _infos(node, PUBLISHER, topic, 1)
+
+
+def subscriptions_info_by_topic(node: Node, topic: str, no_mangle: bool) -> list[dict[str, object]]:
+    """Who subscribes to a topic, and how."""
+    return _infos(node, SUBSCRIPTION, topic, 2)
+
+
+def _infos(node: Node, kind: str, topic: str, number: int) -> list[dict[str, object]]:
+    graph = node.seen()
+    return [_info(graph, end, number) for end in graph.ends(node.info.domain, kind, topic=topic)]
+
+
+def _info(graph: Any, end: EndpointInfo, number: int) -> dict[str, object]:
+    owner = graph.nodes.get(end.node)
+    return {
+        "node_name": owner.name if owner else "_NODE_NAME_UNKNOWN_",
+        "node_namespace": owner.namespace if owner else "_NODE_NAMESPACE_UNKNOWN_",
+        "topic_type": end.type,
+        "topic_type_hash": {"version": 1, "value": hash_of(end.type)},
+        "endpoint_type": number,
+        "endpoint_gid": _gid(end.gid),
+        "qos_profile": qos.reported(end.qos).to_dict(),
+    }
+
+
+def _gid(text: str) -> list[int]:
+    """Sixteen numbers that no other endpoint has."""
+    process, _, number = text.rpartition(".")
+    return list(process.encode()[-12:].rjust(12, b"\0") + int(number).to_bytes(4, "big"))
+
+
+def resolve_name(node: Node, name: str, only_expand: bool, is_service: bool) -> str:
+    """The absolute name of a topic or a service, remapped unless `only_expand`. Raises RCLError for a wrong name."""
+    try:
+        return node.resolve(name, "service" if is_service else "topic", only_expand)
+    except ValueError as error:
+        raise RCLError(f"failed to resolve name: {error}") from None
+
+
+def remap_topic_name(node: Node, name: str) -> str:
+    """What an absolute name of a topic becomes."""
+    return remapped(node.remaps, "topic", name, node.name, node.namespace)

@@ -1,0 +1,110 @@
+"""Wait sets: where a program waits until one of its things is ready."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rcl_python import participant
+from rcl_python.context import Context, GuardCondition
+from rcl_python.handle import Destroyable
+from rcl_python.values import RCLError
+
+KINDS = ("subscription", "guard_condition", "timer", "client", "service", "event")
+
+
+class WaitSet(Destroyable):
+    """What a program waits for. The numbers say how many of each kind there will be; they are not needed here."""
+
+    def __init__(
+        self, subscriptions: int, guards: int, timers: int, clients: int, services: int, events: int, context: Context
+    ) -> None:
+        self._destroyed = True
+        context.require_valid("failed to initialize wait set", "rcl/wait.c:135")
+        super().__init__()
+        self.context = context
+        self.clear_entities()
+
+    def clear_entities(self) -> None:
+        """Wait for nothing."""
+        self._entities: dict[str, list[Any]] = {kind: [] for kind in KINDS}
+        self._ready: dict[str, list[bool]] = {kind: [] for kind in KINDS}
+
+    def add_subscription(self, entity: Any) -> int:
+        """Wait for a subscription's messages; its index."""
+        return self._add("subscription", entity)
+
+    def add_guard_condition(self, entity: GuardCondition) -> int:
+        """Wait for a guard condition; its index."""
+        return self._add("guard_condition", entity)
+
+    def add_timer(self, entity: Any) -> int:
+        """Wait for a timer; its index."""
+        return self._add("timer", entity)
+
+    def add_client(self, entity: Any) -> int:
+        """Wait for a client's responses; its index."""
+        return self._add("client", entity)
+
+    def add_service(self, entity: Any) -> int:
+        """Wait for a service's requests; its index."""
+        return self._add("service", entity)
+
+    def add_event(self, entity: Any) -> int:
+        """Wait for an event; its index."""
+        return self._add("event", entity)
+
+    def _add(self, kind: str, entity: Any) -> int:
+        self._entities[kind].append(entity)
+        return len(self._entities[kind]) - 1
+
+    def wait(self, timeout: int) -> None:
+        """Wait until something is ready, or for `timeout` ns; for ever where it is negative."""
+        if not any(self._entities.values()):
+            raise RCLError("failed to wait on wait set: wait set is empty")
+        here = participant.current()
+        with here.link.lock:
+            here.link.breathe()
+            until = None if timeout < 0 else here.link.steady() + timeout
+            here.pump()
+            while not self._collect() and (until is None or here.link.steady() < until):
+                here.link.wait(self._left(until))
+                here.pump()
+
+    def _collect(self) -> bool:
+        """Note what is ready. Guard conditions that end the wait are reset."""
+        for kind, entities in self._entities.items():
+            self._ready[kind] = [entity.is_ready() for entity in entities]
+        for guard, ready in zip(self._entities["guard_condition"], self._ready["guard_condition"], strict=True):
+            if ready:
+                guard.taken()
+        return any(map(any, self._ready.values()))
+
+    def _left(self, until: int | None) -> int | None:
+        """How long the wait can be at most (ns): until the time is up, a timer comes or a deadline passes."""
+        now = participant.current().link.steady()
+        spans = [] if until is None else [until - now]
+        spans += [span for span in (timer.due() for timer in self._entities["timer"]) if span is not None]
+        spans += [due - now for due in (event.due() for event in self._entities["event"]) if due is not None]
+        return max(0, min(spans)) if spans else None
+
+    def is_ready(self, kind: str, index: int) -> bool:
+        """Whether the last wait found this one ready. Raises RuntimeError for a kind that is none."""
+        if kind not in KINDS:
+            raise RuntimeError(f"'{kind}' is not a known entity")
+        if index >= len(self._entities[kind]):
+            raise IndexError("wait set index too big")
+        return bool(self._ready[kind]) and self._ready[kind][index]
+
+    def get_ready_entities(self, kind: str) -> list[int]:
+        """The pointers of those of a kind that the last wait found ready."""
+        if kind not in KINDS or kind == "event":
+            raise RuntimeError(f"'{kind}' is not a known entity")
+        return [entity.pointer for entity, ready in zip(self._entities[kind], self._ready[kind], strict=False) if ready]
+
+    def found_ready(self, entity: Any) -> bool:
+        """Whether the last wait found this very thing ready."""
+        return any(
+            ready and one is entity
+            for kind in KINDS
+            for one, ready in zip(self._entities[kind], self._ready[kind], strict=False)
+        )

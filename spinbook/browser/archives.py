@@ -1,0 +1,139 @@
+"""The archives that a page loads: rclpy and the message classes with rcl_python, the checks, the interface files.
+
+rclpy's files and the message classes are those of the installed wheels, unchanged. Archives are the same, byte for
+byte, whenever they are made of the same files.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import io
+import json
+import sys
+import zipfile
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+
+import rcl_python
+import spinbook
+
+#: Modules of the environment that rclpy and `ros2` need, besides the interface packages.
+_ROS = ("rclpy", "rpyutils", "rosidl_parser", "rosidl_generator_py", "ament_index_python", "yaml", "click")
+_CHECKS = ("pytest", "_pytest", "py", "pluggy", "iniconfig", "packaging", "pygments")
+#: Of its hundreds, pytest needs the lexers of Python.
+_LEXERS = ("__init__.py", "_mapping.py", "python.py", "diff.py")
+_SPINBOOK = ("__init__.py", "problem.py", "ros2", "turtlesim", "browser")
+#: What of the grader judges recordings; the rest starts and confines programs.
+_GRADER = ("__init__.py", "checking", "exercise", "recording", "scenario", "report", "feedback")
+_INTERFACES = Path(sys.prefix, "share", "ament_index", "resource_index", "rosidl_interfaces")
+_INDEXED = ("rosidl_interfaces", "packages")
+_TEXTS = (".msg", ".srv", ".action")
+
+
+def ros_archive() -> bytes:
+    """rclpy, every interface package, rcl_python, and the parts of Spinbook that run in the page."""
+    packages = [*_ROS, *interface_packages()]
+    files = {name: data for package in packages for name, data in _module(package)}
+    # The original imports what finds compiled libraries.
+    files["rosidl_generator_py/__init__.py"] = b"from .import_type_support_impl import import_type_support\n"
+    files |= dict(_python_files(Path(rcl_python.__file__).parent, "rcl_python"))
+    files["rcl_python/type_hashes.json"] = json.dumps(_type_hashes(), sort_keys=True).encode()
+    root = Path(spinbook.__file__).parent
+    for part in _SPINBOOK:
+        files |= _part(root / part, f"spinbook/{part}")
+    files["numpy.py"] = (root / "browser" / "numpy_standin" / "numpy.py").read_bytes()
+    files |= _messages_as_fields(root.parent / "grader")
+    files |= dict(_python_files(root.parent / "grader" / "recording", "grader/recording"))
+    return zipped(files)
+
+
+def interface_packages() -> list[str]:
+    """The installed packages of messages, services and actions."""
+    return sorted(file.name for file in _INTERFACES.iterdir() if importlib.util.find_spec(file.name))
+
+
+def share_archive() -> bytes:
+    """The ament index and the interface files that `ros2 interface show` prints."""
+    share = Path(sys.prefix, "share")
+    files = {}
+    for package in interface_packages():
+        for kind in _INDEXED:
+            entry = share / "ament_index" / "resource_index" / kind / package
+            if entry.is_file():
+                files[entry.relative_to(share.parent).as_posix()] = entry.read_bytes()
+        for file in sorted((share / package).rglob("*")):
+            if file.suffix in _TEXTS:
+                files[file.relative_to(share.parent).as_posix()] = file.read_bytes()
+    return zipped(files)
+
+
+def check_archive(exercises: Mapping[str, bytes]) -> bytes:
+    """pytest, the part of the grader that judges, and the exercises' public parts: path -> content."""
+    found = {name: data for package in _CHECKS for name, data in _module(package)}
+    files = {name: data for name, data in found.items() if _needed(name)}
+    root = Path(spinbook.__file__).parent.parent / "grader"
+    for part in _GRADER:
+        files |= _part(root / part, f"grader/{part}")
+    return zipped({**files, **_messages_as_fields(root), **exercises})
+
+
+def _messages_as_fields(grader: Path) -> dict[str, bytes]:
+    """Of the grader's runner what reads and writes messages: plots need it, and checks."""
+    empty = {f"grader/{name}": b"" for name in ("__init__.py", "runner/__init__.py")}
+    return {**empty, "grader/runner/message.py": (grader / "runner" / "message.py").read_bytes()}
+
+
+def _needed(name: str) -> bool:
+    package, _, file = name.rpartition("/")
+    return package != "pygments/lexers" or file in _LEXERS
+
+
+def _module(name: str) -> Iterator[tuple[str, bytes]]:
+    """The files of an installed module: one, or a package's."""
+    spec = importlib.util.find_spec(name)
+    if spec is None or spec.origin is None:
+        raise ModuleNotFoundError(f"{name} is not installed in {sys.prefix}")
+    file = Path(spec.origin)
+    if spec.submodule_search_locations:
+        yield from _python_files(file.parent, name)
+    else:
+        yield file.name, file.read_bytes()
+
+
+def _part(path: Path, name: str) -> dict[str, bytes]:
+    return {name: path.read_bytes()} if path.is_file() else dict(_python_files(path, name))
+
+
+def _python_files(folder: Path, name: str) -> Iterator[tuple[str, bytes]]:
+    for file in sorted(folder.rglob("*")):
+        inside = file.relative_to(folder)
+        if file.suffix in (".py", ".html", ".json", ".lark") and "__pycache__" not in inside.parts:
+            yield f"{name}/{inside.as_posix()}", file.read_bytes()
+
+
+def _type_hashes() -> dict[str, str]:
+    found: dict[str, str] = {}
+    for package in interface_packages():
+        for file in sorted(Path(sys.prefix, "share", package).rglob("*.json")):
+            for item in json.loads(file.read_text(encoding="utf-8")).get("type_hashes", ()):
+                found[item["type_name"]] = item["hash_string"]
+    return found
+
+
+def zipped(files: Mapping[str, bytes]) -> bytes:
+    """An archive of these files: the same bytes for the same files."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+        for name in sorted(files):
+            archive.writestr(zipfile.ZipInfo(name), files[name], zipfile.ZIP_DEFLATED, 9)
+    return out.getvalue()
+
+
+def sizes(archive: bytes) -> Iterable[tuple[str, int]]:
+    """What each top-level package takes of an archive, compressed."""
+    found: dict[str, int] = {}
+    with zipfile.ZipFile(io.BytesIO(archive)) as opened:
+        for item in opened.infolist():
+            package = item.filename.partition("/")[0]
+            found[package] = found.get(package, 0) + item.compress_size
+    return sorted(found.items(), key=lambda item: -item[1])

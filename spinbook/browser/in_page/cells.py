@@ -1,0 +1,100 @@
+"""Cells that are no nodes: plain Python, a terminal's `ros2 …`, and plots. They share one process."""
+
+from __future__ import annotations
+
+import ast
+import os
+import shlex
+import signal
+import time
+from collections.abc import Sequence
+from typing import Any
+
+from spinbook.browser.in_page.process import status_of
+
+_variables: dict[str, Any] = {"__name__": "__main__"}
+
+
+def run_python(source: str) -> int:
+    """Run a plain cell and show the value of its last expression, as a notebook does; 0 if it went well."""
+    return status_of(lambda: _run(source))
+
+
+def _run(source: str) -> None:
+    tree = ast.parse(source, "<cell>")
+    last = tree.body[-1] if tree.body else None
+    if isinstance(last, ast.Expr):
+        tree.body.pop()
+    exec(compile(tree, "<cell>", "exec"), _variables)
+    if isinstance(last, ast.Expr):
+        value = eval(compile(ast.Expression(last.value), "<cell>", "eval"), _variables)
+        if value is not None:
+            print(repr(value))
+
+
+def run_command(line: str) -> int:
+    """Run one `ros2 …` of a terminal; its exit status."""
+    os.environ["SPINBOOK_ROS2"] = "own"
+    # One command leaves the signals as it wants them, and the next expects them as they were.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    words = shlex.split(line)
+    status = status_of(lambda: _ros2(words[1:]))
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    return status
+
+
+def _ros2(words: Sequence[str]) -> None:
+    from spinbook.ros2.command import ros2
+
+    ros2(list(words), prog_name="ros2")
+
+
+def record(topics: Sequence[str], seconds: float) -> list[dict[str, Any]]:
+    """What the values at these paths (`/joint_commands/position[2]`) were for so long: name, times (s), values."""
+    import rclpy
+    from rclpy.executors import SingleThreadedExecutor
+
+    context = rclpy.Context()
+    rclpy.init(context=context, args=[])
+    node = rclpy.create_node("plot", context=context, enable_rosout=False, start_parameter_services=False)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    lines = [{"name": topic, "times": [], "values": []} for topic in topics]
+    began = time.monotonic()
+    try:
+        waiting = list(zip(topics, lines, strict=True))
+        while time.monotonic() < began + seconds:
+            waiting = [pair for pair in waiting if not _subscribed(node, *pair, began)]
+            executor.spin_once(timeout_sec=0.05)
+    finally:
+        rclpy.shutdown(context=context)
+    return lines
+
+
+def _subscribed(node: Any, path: str, line: dict[str, Any], began: float) -> bool:
+    """Whether a topic is there that the path begins with; then it is heard from now on."""
+    from grader.runner.message import message_class
+
+    for topic, kinds in node.get_topic_names_and_types():
+        if path.startswith(topic) and path[len(topic) : len(topic) + 1] in ("/", "[", "."):
+            value = _reader(path[len(topic) :].lstrip("/."))
+
+            def heard(message: Any, value: Any = value) -> None:
+                line["times"].append(time.monotonic() - began)
+                line["values"].append(float(value(message)))
+
+            node.create_subscription(message_class(kinds[0]), topic, heard, 10)
+            return True
+    return False
+
+
+def _reader(path: str) -> Any:
+    """What reads a field: `position[2]`, `twist.linear.x` or `twist/linear/x`."""
+    steps = path.replace("/", ".").replace("[", ".").replace("]", "").split(".")
+
+    def read(message: Any) -> Any:
+        for step in steps:
+            message = message[int(step)] if step.isdigit() else getattr(message, step)
+        return message
+
+    return read

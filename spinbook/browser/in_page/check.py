@@ -1,0 +1,123 @@
+"""Check in the page: the public checks of an exercise on the code in the editor. It is a preview: the grade is the
+grader's."""
+
+from __future__ import annotations
+
+import ast
+import json
+import zipfile
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from grader.checking.verdict import Verdict
+from grader.exercise import Exercise, load
+from grader.recording import Recording
+from grader.recording.store import from_plain
+from grader.scenario import Message, Scenario
+from spinbook.browser.in_page.rig import Program, Rig
+
+_ARCHIVE = Path("/check.zip")
+_FOLDER = Path("/exercises")
+_CANNOT = {
+    "numpy": "Your program imports numpy, which a web page does not have. Check it in the notebook.",
+    "threading": "Your program uses threads, which a web page does not have. Check it in the notebook.",
+    "concurrent": "Your program uses threads, which a web page does not have. Check it in the notebook.",
+    "asyncio": "Your program uses asyncio, which needs the browser for itself. Check it in the notebook.",
+    "multiprocessing": "Your program starts processes, which a web page can't. Check it in the notebook.",
+}
+_THREADED = "MultiThreadedExecutor"
+
+
+def check(name: str, source: str) -> str:
+    """What the public checks say of the code, as JSON: `problem` alone, or `total`, `full`, `rows` and more."""
+    hindrance = hindrance_of(source)
+    if hindrance:
+        return json.dumps({"problem": hindrance})
+    exercise = load(_unpacked(name)).public()
+    scenarios, references, hidden = public_part(exercise)
+    recordings = record(exercise, scenarios, Program(exercise.file_name, source))
+    return json.dumps(shown(verdicts(exercise, scenarios, recordings, references), recordings, hidden))
+
+
+def hindrance_of(source: str) -> str:
+    """Why this program can't be checked in a page, in one sentence; "" if it can."""
+    try:
+        tree = ast.parse(source)
+    except (SyntaxError, ValueError):
+        return ""  # the run says where
+    for node in ast.walk(tree):
+        for name in _imported(node):
+            if name in _CANNOT:
+                return _CANNOT[name]
+        if isinstance(node, (ast.Name, ast.Attribute, ast.alias)) and _THREADED in ast.dump(node):
+            return _CANNOT["threading"]
+    return ""
+
+
+def _imported(node: ast.AST) -> list[str]:
+    if isinstance(node, ast.Import):
+        return [item.name.partition(".")[0] for item in node.names]
+    return [(node.module or "").partition(".")[0]] if isinstance(node, ast.ImportFrom) else []
+
+
+def _unpacked(name: str) -> Path:
+    folder = _FOLDER / name
+    if not folder.is_dir():
+        with zipfile.ZipFile(_ARCHIVE) as archive:
+            archive.extractall("/", [item for item in archive.namelist() if item.startswith(f"exercises/{name}/")])
+    return folder
+
+
+def public_part(exercise: Exercise) -> tuple[list[Scenario], dict[str, Recording], dict[str, Any]]:
+    """The scenarios, the solution's recordings of them, and what stays hidden, from public.json."""
+    entries = json.loads(exercise.public_file.read_text(encoding="utf-8"))
+    scenarios = [
+        Scenario(**{**item, "messages": tuple(Message(**message) for message in item["messages"])})
+        for item in entries["scenarios"]
+    ]
+    return scenarios, from_plain(entries["expected"]), entries["hidden"]
+
+
+def record(exercise: Exercise, scenarios: list[Scenario], program: Program) -> dict[str, Recording]:
+    """Run the program through each scenario."""
+    return {scenario.name: Rig(exercise, scenario, program).run() for scenario in scenarios}
+
+
+def verdicts(
+    exercise: Exercise, scenarios: list[Scenario], recordings: dict[str, Recording], references: dict[str, Recording]
+) -> tuple[Verdict, ...]:
+    """What the checks say."""
+    from grader.checking.judging import judge
+
+    return judge(exercise, recordings, references, {scenario.name: scenario.title for scenario in scenarios})
+
+
+def shown(found: tuple[Verdict, ...], recordings: dict[str, Recording], hidden: dict[str, Any]) -> dict[str, Any]:
+    """The result as the page shows it."""
+    titles = {verdict.name: verdict.title for verdict in found}
+    earned, points = sum(v.earned for v in found), sum(v.points for v in found)
+    passed = sum(verdict.status == "passed" for verdict in found)
+    broken = next((r for r in recordings.values() if r.ending.outcome != "completed"), None)
+    return {
+        "total": f"{passed} of {len(found)} public checks, {earned:g} of {points:g} points",
+        "full": passed == len(found),
+        "message": broken.ending.story if broken else "",
+        "log": broken.log[-4000:] if broken else "",
+        "hidden": hidden,
+        "rows": [_row(verdict, titles) for verdict in found],
+    }
+
+
+def _row(verdict: Verdict, titles: dict[str, str]) -> dict[str, Any]:
+    failed = verdict.status == "failed"
+    finding = asdict(verdict.finding) if failed and verdict.finding else {}
+    return {
+        "title": verdict.title,
+        "status": verdict.status,
+        "earned": verdict.earned,
+        "points": verdict.points,
+        "text": finding.get("text", ""),
+        "hint": verdict.hint if failed else "",
+        "needs": [titles.get(name, name) for name in verdict.blocked_by],
+    }

@@ -1,0 +1,65 @@
+"""How a process in a web worker reaches the others: through the page, which is the hub.
+
+Waiting is a promise, awaited on the program's own stack (JavaScript Promise Integration, JSPI), so that a program
+blocks in `rclpy.spin` while the worker's event loop goes on.
+"""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from collections.abc import Iterator
+from typing import Any, SupportsFloat
+
+from rcl_python.link import Frame
+
+#: A program that never waits lets others in after this (s).
+_BREATH_S = 0.02
+
+
+class PageLink:
+    """The link of one worker. `page` is the worker's JavaScript side (worker.js)."""
+
+    def __init__(self, page: Any) -> None:
+        from pyodide.ffi import run_sync, to_js  # type: ignore[import-not-found]
+
+        self.lock = threading.Condition(threading.RLock())
+        self._page, self._await, self._to_js = page, run_sync, to_js
+        self._breathed = time.monotonic()
+
+    def send(self, frame: Frame, data: bytes = b"") -> None:
+        """Hand a frame to the page."""
+        self._page.send(json.dumps(frame), self._to_js(data) if data else None)
+
+    def receive(self) -> Iterator[tuple[Frame, bytes]]:
+        """Yield what the page has handed on."""
+        while (item := self._page.receive()) is not None:
+            yield json.loads(item.head), item.data.to_bytes() if item.data else b""
+
+    def wait(self, nanoseconds: int | None) -> None:
+        """Wait for a frame, or for this long."""
+        self._breathed = time.monotonic()
+        self._await(self._page.wait(-1 if nanoseconds is None else nanoseconds / 1e6))
+
+    def breathe(self) -> None:
+        """Let frames in, if none could come for a while."""
+        if time.monotonic() - self._breathed > _BREATH_S:
+            self.wait(0)
+
+    def steady(self) -> int:
+        """The steady clock (ns)."""
+        return time.monotonic_ns()
+
+    def system(self) -> int:
+        """The system clock (ns since the epoch)."""
+        return time.time_ns()
+
+    def sleep(self, seconds: SupportsFloat) -> None:
+        """Do what time.sleep does; signals end it."""
+        from rcl_python import participant
+
+        until = time.monotonic() + float(seconds)
+        while (left := until - time.monotonic()) > 0:
+            self.wait(int(left * 1e9))
+            participant.current().pump()

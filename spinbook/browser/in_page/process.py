@@ -1,0 +1,102 @@
+"""A process of the page: a program runs as `python3 FILE` would run it, and ends as a process ends."""
+
+from __future__ import annotations
+
+import linecache
+import os
+import sys
+import time
+import traceback
+import types
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import rcl_python
+from rcl_python import logs, participant
+from spinbook.browser.in_page.link import PageLink
+
+_FAILED, _INTERRUPTED = 1, 130
+_NO_THREADS = (
+    "This program starts a thread, and a web page has none. It runs in a notebook and in the grader; "
+    "here, do the same with a timer."
+)
+_NO_NUMPY = "This program imports {name}, which a web page does not have. It runs in a notebook and in the grader."
+_ABSENT = ("numpy", "matplotlib", "scipy", "cv2", "pandas")
+
+
+def open_process(page: Any, identity: str) -> None:
+    """Get ready: join the graph, and let waiting be what a page can do."""
+    link = PageLink(page)
+    participant.use(link, identity)
+    time.sleep = link.sleep  # type: ignore[assignment]
+    logs.write = lambda line: print(line, file=sys.stderr)
+    rcl_python.install()
+    _refuse_threads()
+
+
+def _refuse_threads() -> None:
+    import threading
+
+    def start(self: threading.Thread) -> None:
+        raise RuntimeError(_NO_THREADS)
+
+    threading.Thread.start = start  # type: ignore[method-assign]
+
+
+def import_rclpy() -> None:
+    """Import what nearly every program imports, so that the first one starts at once."""
+    import rclpy.executors
+    import rclpy.node
+    import rclpy.qos  # noqa: F401
+
+
+def run_program(source: str, file: str, args: Sequence[str], environment: Mapping[str, str]) -> int:
+    """Run a program; its exit status. What it prints, tracebacks included, goes to the page."""
+    os.environ.update(environment)
+    main = types.ModuleType("__main__")
+    main.__file__ = file
+    sys.modules["__main__"] = main
+    sys.argv = [file, *args]
+    # Tracebacks show lines of the program, which lies in no file.
+    linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
+    return status_of(lambda: exec(compile(source, file, "exec"), main.__dict__))
+
+
+def status_of(program: Any) -> int:
+    """Call `program`; the status with which a process would end."""
+    try:
+        program()
+    except SystemExit as error:
+        return _exit_status(error)
+    except KeyboardInterrupt:
+        _show_traceback()
+        return _INTERRUPTED
+    except BaseException as error:
+        _show_traceback()
+        _explain(error)
+        return _FAILED
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+    return 0
+
+
+def _exit_status(error: SystemExit) -> int:
+    if error.code is None or isinstance(error.code, int):
+        return error.code or 0
+    print(error.code, file=sys.stderr)
+    return _FAILED
+
+
+def _show_traceback() -> None:
+    """Print the traceback without what is around the program."""
+    kind, error, trace = sys.exc_info()
+    while trace is not None and trace.tb_frame.f_code.co_filename.startswith(("/ros.zip/spinbook/browser", "/lib/")):
+        trace = trace.tb_next
+    traceback.print_exception(kind, error, trace)
+
+
+def _explain(error: BaseException) -> None:
+    name = (getattr(error, "name", None) or "").partition(".")[0]
+    if isinstance(error, ImportError) and name in _ABSENT:
+        print(_NO_NUMPY.format(name=name), file=sys.stderr)

@@ -1,0 +1,69 @@
+// Code that can be changed in place. Changes are kept in this browser.
+
+const STEP = "    ";
+
+function stored(key) {
+  try {
+    return localStorage.getItem(`code:${key}`);
+  } catch {
+    return null; // It then holds for this page only.
+  }
+}
+
+function store(key, text) {
+  try {
+    if (text === null) localStorage.removeItem(`code:${key}`);
+    else localStorage.setItem(`code:${key}`, text);
+  } catch {
+    // As above.
+  }
+}
+
+// Makes the code in `place`, a <pre>, a field. Tab indents; Escape, then Tab, leaves it.
+export function editing(place, key, name) {
+  // A field of its own: the page gives the <pre> another role where it scrolls.
+  const code = document.createElement("span");
+  code.className = "editor";
+  code.append(...place.childNodes);
+  place.append(code);
+  const original = code.innerHTML;
+  const written = code.textContent;
+  let leaving = false;
+  const field = {
+    onchange: () => {},
+    focus: () => code.focus(),
+    get text() {
+      return code.textContent;
+    },
+    get changed() {
+      return code.textContent !== written;
+    },
+    replace(text) {
+      code.textContent = text;
+      code.dispatchEvent(new Event("input"));
+    },
+    restore() {
+      store(key, null);
+      code.innerHTML = original;
+    },
+  };
+  const before = stored(key);
+  if (before !== null && before !== written) code.textContent = before;
+  code.contentEditable = "plaintext-only";
+  code.spellcheck = false;
+  code.setAttribute("role", "textbox");
+  code.setAttribute("aria-multiline", "true");
+  code.setAttribute("aria-label", `Code of ${name}. Escape, then Tab, leaves it.`);
+  code.addEventListener("input", () => {
+    store(key, field.changed ? code.textContent : null);
+    field.onchange();
+  });
+  code.addEventListener("keydown", (event) => {
+    if (event.key === "Escape") leaving = true;
+    else if (event.key === "Tab" && !event.shiftKey && !leaving) {
+      event.preventDefault();
+      document.execCommand("insertText", false, STEP);
+    } else if (event.key !== "Tab" && event.key !== "Shift") leaving = false;
+  });
+  return field;
+}

@@ -1,0 +1,104 @@
+// The editor of an exercise's page, and Check: the public checks, in this page.
+import { editing } from "./editing.js";
+import { Process } from "./processes.js";
+import { button, element, hindrance, style } from "./page.js";
+
+const LIMIT_S = 60;
+const SIGNS = { passed: "✓", failed: "✗", blocked: "–", error: "!" };
+
+let process = null;
+
+// The process that checks: one for the page, until it has to be ended.
+function checker(hears) {
+  process ??= new Process("check", {});
+  Object.assign(process.hears, hears, { end: () => (process = null) });
+  return process;
+}
+
+async function check(exercise, source, say) {
+  const worker = checker({ progress: (part) => say(`Loading ${part} …`) });
+  await worker.ready;
+  say("Checking …");
+  const late = new Promise((resolve) => setTimeout(resolve, 1000 * LIMIT_S, "late"));
+  const result = await Promise.race([worker.call("check", { exercise, source }), late]);
+  if (result !== "late") return result;
+  worker.end();
+  return { problem: `The check did not finish within ${LIMIT_S} s. Is there a loop in your program that never ends?` };
+}
+
+function row(found) {
+  const { status, title, earned, points, text, hint, needs } = found;
+  const notes = [text, needs.length ? `Can't be judged before this is right: ${needs.join(" ")}` : "", hint && `Hint: ${hint}`];
+  return element(
+    "li",
+    { className: `check-${status}` },
+    element("span", { className: "check-sign", textContent: SIGNS[status], ariaLabel: status }),
+    element("span", { className: "check-title", textContent: title }),
+    element("span", { className: "check-points", textContent: `${earned} of ${points}` }),
+    ...notes.filter(Boolean).map((note) => element("p", { textContent: note })),
+  );
+}
+
+function panel(result) {
+  if (result.problem) return [element("p", { className: "check-message", textContent: result.problem })];
+  const { checks, points } = result.hidden;
+  const later = checks ? `${checks} hidden check${checks > 1 ? "s" : ""} (${points} points) will be judged after you hand in. ` : "";
+  return [
+    element("p", { className: "check-total", textContent: result.total }),
+    ...(result.message ? [element("p", { className: "check-message", textContent: result.message })] : []),
+    ...(result.log && result.message ? [element("pre", { textContent: result.log, tabIndex: 0 })] : []),
+    element("ul", {}, ...result.rows.map(row)),
+    element("p", { textContent: `${later}This is a preview, not your grade: the grade is the grader's.` }),
+  ];
+}
+
+function download(name, text) {
+  const url = URL.createObjectURL(new Blob([text], { type: "text/x-python" }));
+  element("a", { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 1000);
+}
+
+// Turns the starter of an exercise's page into an editor with Check. Returns its field.
+export function open(section) {
+  style();
+  const name = location.pathname.split("/").pop().replace(/\.html$/, "");
+  const file = document.querySelector(".facts code").textContent;
+  const editor = editing(section.querySelector("pre"), location.pathname, file);
+  const state = element("p", { className: "run-state" });
+  state.setAttribute("role", "status");
+  const result = element("div", { className: "check-result" });
+  const say = (text) => (state.textContent = text);
+
+  const act = async () => {
+    result.replaceChildren();
+    const hindered = hindrance();
+    if (hindered) return say(hindered);
+    say("Starting …");
+    checking.disabled = true;
+    try {
+      const found = await check(name, editor.text, say);
+      say(found.total ?? "");
+      result.replaceChildren(...panel(found));
+    } catch (error) {
+      const words = error.message.split("\n").filter((line) => /^[\w.]+(Error|Exception|Fault)\b/.test(line));
+      say(`The check could not run here: ${words.at(-1) ?? error.message}`);
+    } finally {
+      checking.disabled = false;
+    }
+  };
+  const checking = button("Check", `Check ${file}`, act);
+  const upload = element("input", { type: "file", accept: ".py,text/x-python", className: "hidden-text", tabIndex: -1 });
+  upload.setAttribute("aria-label", "A file to go on with");
+  upload.addEventListener("change", async () => editor.replace(await upload.files[0].text()));
+  const tools = element(
+    "div",
+    { className: "check-tools" },
+    checking,
+    button("Download", `Download your ${file}`, () => download(file, editor.text)),
+    button("Upload", "Go on with a file of yours", () => upload.click()),
+    button("Reset", "Back to the starter", () => editor.restore()),
+    upload,
+  );
+  section.append(tools, state, result);
+  return editor;
+}

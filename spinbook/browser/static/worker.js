@@ -1,0 +1,114 @@
+// A process of the page: one web worker, in which Pyodide runs one program, or the page's cells one after another.
+import { loadPyodide } from "./pyodide.mjs";
+
+const inbox = [];
+const keys = [];
+let wake = null;
+
+// What in_page/link.py calls: frames out, frames in, and waiting, which is a promise.
+const page = {
+  send: (head, data) => self.postMessage({ op: "frame", head, data }),
+  receive: () => inbox.shift(),
+  key: () => keys.shift(),
+  picture: (text) => self.postMessage({ op: "picture", text }),
+  wait: (ms) =>
+    new Promise((resolve) => {
+      // Even a wait for nothing lets the event loop turn.
+      if (inbox.length > 0 || ms === 0) return void setTimeout(resolve, 0);
+      wake = resolve;
+      if (ms > 0) setTimeout(() => wake === resolve && arrived(), ms);
+    }),
+};
+
+function arrived() {
+  const resolve = wake;
+  wake = null;
+  resolve?.();
+}
+
+const print = (stream) => (text) => self.postMessage({ op: "output", stream, text });
+
+async function archive(py, name, part) {
+  const response = await fetch(new URL(name, import.meta.url));
+  if (!response.ok) throw new Error(`${name}: ${response.status}`);
+  py.FS.writeFile(`/${name}`, new Uint8Array(await response.arrayBuffer()));
+  py.runPython(`import sys; sys.path.insert(0, "/${name}")`);
+  self.postMessage({ op: "progress", part });
+}
+
+async function start(identity) {
+  self.postMessage({ op: "progress", part: "Python" });
+  const py = await loadPyodide({
+    indexURL: new URL("./", import.meta.url).href,
+    stdout: print("stdout"),
+    stderr: print("stderr"),
+  });
+  await archive(py, "ros.zip", "ROS 2");
+  const process = py.pyimport("spinbook.browser.in_page.process");
+  process.open_process(page, identity);
+  process.import_rclpy();
+  return { py, process };
+}
+
+let ready = null;
+
+const does = {
+  start: ({ identity }) => {
+    ready = start(identity);
+    return ready.then(() => null);
+  },
+  program: async ({ source, file, args, environment }) => {
+    const { py, process } = await ready;
+    return await process.run_program.callPromising(source, file, py.toPy(args), py.toPy(environment));
+  },
+  python: async ({ source }) => (await cells()).run_python.callPromising(source),
+  command: async ({ source }) => {
+    const { py } = await ready;
+    await shares(py);
+    return (await cells()).run_command.callPromising(source);
+  },
+  record: async ({ topics, seconds }) => {
+    const { py } = await ready;
+    const lines = await (await cells()).record.callPromising(py.toPy(topics), seconds);
+    return lines.toJs({ dict_converter: Object.fromEntries });
+  },
+  turtle: async () => {
+    const { py } = await ready;
+    return py.pyimport("spinbook.browser.in_page.turtle").show.callPromising(page);
+  },
+  check: async ({ exercise, source }) => {
+    const { py } = await ready;
+    if (!py.checks) py.checks = archive(py, "check.zip", "checks");
+    await py.checks;
+    const result = await py.pyimport("spinbook.browser.in_page.check").check.callPromising(exercise, source);
+    return JSON.parse(result);
+  },
+};
+
+async function cells() {
+  const { py } = await ready;
+  return py.pyimport("spinbook.browser.in_page.cells");
+}
+
+// The interface files that `ros2 interface show` reads: unpacked when the first command runs.
+async function shares(py) {
+  if (py.shared) return;
+  py.shared = true;
+  const response = await fetch(new URL("share.zip", import.meta.url));
+  py.unpackArchive(await response.arrayBuffer(), "zip", { extractDir: "/opt/ros" });
+  py.runPython('import os; os.environ["AMENT_PREFIX_PATH"] = "/opt/ros"');
+}
+
+self.onmessage = async ({ data: message }) => {
+  if (message.op === "frame") {
+    inbox.push({ head: message.head, data: message.data });
+    arrived();
+    return;
+  }
+  if (message.op === "key") return void keys.push(message);
+  try {
+    self.postMessage({ op: "done", id: message.id, value: await does[message.op](message) });
+  } catch (error) {
+    self.postMessage({ op: "done", id: message.id, error: String(error?.stack ?? error) });
+  }
+};

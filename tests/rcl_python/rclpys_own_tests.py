@@ -1,0 +1,110 @@
+"""Runs rclpy's own tests over rcl_python, and prints how many pass.
+
+    python tests/rcl_python/rclpys_own_tests.py FOLDER [--real] [--only NAME]
+
+FOLDER is `rclpy/test` of https://github.com/ros2/rclpy at the release that is installed. Each file runs in a process
+of its own. With --real they run over the compiled module, for comparison. What fails is listed; expected_failures.toml
+says what is expected to fail, and why. A test that fails or passes unexpectedly makes the exit code 1.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as ET
+from collections import Counter
+from pathlib import Path
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+ROOT = Path(__file__).resolve().parents[2]
+EXPECTED = Path(__file__).with_name("expected_failures.toml")
+_RUN = """
+import sys, types
+sys.path.insert(0, {root!r})
+# The package's own __init__ looks for a module that only rclpy's build makes.
+sys.modules["test"] = types.ModuleType("test")
+sys.modules["test"].__path__ = [{tests!r}]
+{install}
+import pytest
+sys.exit(pytest.main(sys.argv[1:]))
+"""
+_INSTALL = "import rcl_python; rcl_python.install()"
+KINDS = ("passed", "failed", "skipped")
+#: A test that hangs is ended after this (s), a file after ten times as much.
+_LIMIT = 30
+
+
+def outcomes(file: Path, real: bool) -> dict[str, str]:
+    """Run one file: the name of each test -> passed, failed or skipped."""
+    code = _RUN.format(root=str(ROOT), tests=str(file.parent.resolve()), install="pass" if real else _INSTALL)
+    with tempfile.TemporaryDirectory() as folder:
+        report = Path(folder, "report.xml")
+        options = ["-q", "-p", "no:cacheprovider", "-p", "pytest_timeout", f"--timeout={_LIMIT}"]
+        options += [
+            f"--junitxml={report}",
+            "--rootdir",
+            str(file.parent.parent),
+            "-o",
+            "junit_family=xunit2",
+            str(file),
+        ]
+        environment = {**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1", "ROS_LOG_DIR": folder}
+        command = [sys.executable, "-c", code, *options]
+        try:
+            subprocess.run(
+                command, env=environment, cwd=file.parent.parent, capture_output=True, timeout=10 * _LIMIT, check=False
+            )
+            return _read(report)
+        except (subprocess.TimeoutExpired, OSError, ET.ParseError):
+            return {f"{file.stem}::(the file)": "failed"}
+
+
+def _read(report: Path) -> dict[str, str]:
+    found = {}
+    for case in ET.parse(report).iter("testcase"):
+        name = f"{case.get('classname', '').rpartition('test.')[2]}::{case.get('name')}"
+        kinds = {child.tag for child in case}
+        found[name] = "failed" if kinds & {"failure", "error"} else "skipped" if "skipped" in kinds else "passed"
+    return found
+
+
+def main() -> int:
+    """Run every file and print the figures."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--real", action="store_true")
+    parser.add_argument("--only", default="")
+    given = parser.parse_args()
+    expected = {} if given.real else tomllib.loads(EXPECTED.read_text(encoding="utf-8"))["expected"]
+    total: Counter[str] = Counter()
+    surprises = []
+    for file in sorted(given.folder.glob("test_*.py")):
+        if given.only not in file.name:
+            continue
+        found = outcomes(file, given.real)
+        counts = Counter(found.values())
+        total += counts
+        print(
+            f"{file.name:45} {counts['passed']:4} passed {counts['failed']:3} failed {counts['skipped']:3} skipped",
+            flush=True,
+        )
+        for name, outcome in found.items():
+            if outcome == "failed":
+                print(f"    {name}  {expected.get(name, '(unexpected)')}", flush=True)
+            if (outcome == "failed") != (name in expected) and not given.real:
+                surprises.append(f"{name}: {outcome}")
+    judged = total["passed"] + total["failed"]
+    print(f"{total['passed']} of {judged} passed ({total['passed'] / max(judged, 1):.1%}), {total['skipped']} skipped")
+    print("\n".join(["", "Against expected_failures.toml:", *surprises]) if surprises else "")
+    return 1 if surprises else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,117 @@
+"""Pages run their own nodes: in a real Chromium, from a plain server with a strict content security policy."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from browser import Opened, opened
+from playwright.sync_api import Browser, expect
+from small_course import SmallCourse
+
+from spinbook.browser.files import can_run
+
+pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Pyodide from npm")
+
+ROOT = Path(__file__).parents[2]
+#: Pyodide starts in a few seconds; on a machine with much else to do, in many.
+PATIENCE_MS = 120_000
+
+
+def requested(shown: Opened, address: str) -> list[str]:
+    """What loading the page again asks the server for."""
+    asked: list[str] = []
+    shown.page.on("request", lambda request: asked.append(request.url.removeprefix(address)))
+    shown.page.reload(wait_until="networkidle")
+    return asked
+
+
+def test_nothing_is_loaded_before_run(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/01-talk.html") as shown:
+        asked = requested(shown, address)
+        assert "/_static/run.js" in asked
+        assert not [path for path in asked if path.startswith("/run/")]
+        assert shown.faults == []
+
+
+def test_a_page_runs_its_nodes(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/01-talk.html") as shown:
+        page = shown.page
+        cell = page.locator(".cell-node")
+        log, bar = cell.get_by_role("log"), page.get_by_role("region", name="Running nodes")
+
+        page.get_by_role("button", name="Run talker.py").click()
+        expect(log).to_contain_text("[INFO] [talker]: number 3", timeout=PATIENCE_MS)
+        expect(log).to_contain_text("[WARN] [talker]: SAFETY: two")
+        expect(cell.locator(".cell_output")).to_be_hidden()
+        expect(bar).to_contain_text("talker")
+        assert shown.violations() == []
+
+        code = cell.get_by_role("textbox")
+        before = code.inner_text()
+        code.evaluate("field => field.textContent = field.textContent.replace('number', 'edited')")
+        code.dispatch_event("input")
+        page.get_by_role("button", name="Run talker.py").click()
+        expect(log).to_contain_text("[talker]: edited 3", timeout=PATIENCE_MS)
+        expect(bar.get_by_role("listitem")).to_have_count(1)
+
+        bar.get_by_role("button", name="Stop talker").click()
+        expect(cell.get_by_role("status")).to_have_text("talker ended with 0.", timeout=PATIENCE_MS)
+        expect(bar).to_be_hidden()
+
+        page.reload()
+        page.get_by_role("button", name="Run talker.py").click()
+        expect(log).to_contain_text("[talker]: edited 3", timeout=PATIENCE_MS)
+        page.get_by_role("button", name="Reset talker").click()
+        assert code.inner_text() == before
+        expect(cell.locator(".cell_output")).to_be_visible()
+        page.get_by_role("button", name="Stop all nodes").click()
+        expect(bar).to_be_hidden(timeout=PATIENCE_MS)
+
+        failing = page.locator(".cell-snippet").first
+        failing.get_by_role("button", name="Run").click()
+        expect(failing.get_by_role("log")).to_contain_text("ZeroDivisionError", timeout=PATIENCE_MS)
+        assert "spinbook" not in failing.get_by_role("log").inner_text()
+        assert shown.faults == []
+
+
+def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str) -> None:
+    solutions = ROOT / "solutions" / "joint_velocity"
+    with opened(browser, f"{address}/exercises/joint_velocity.html", width=390) as shown:
+        page = shown.page
+        page.get_by_role("button", name="Edit and check the starter here").click()
+        total = page.locator(".check-total")
+
+        def check(file: Path, comes_to: str) -> None:
+            page.get_by_label("A file to go on with").set_input_files(file)
+            expect(page.get_by_role("textbox", name="Code of joint_velocity.py")).to_contain_text(file.read_text()[:40])
+            page.get_by_role("button", name="Check joint_velocity.py").click()
+            expect(total).to_have_text(comes_to, timeout=PATIENCE_MS)
+
+        check(solutions / "mistakes" / "degrees.py", "7 of 8 public checks, 26 of 36 points")
+        expect(page.locator(".check-failed")).to_contain_text("All values are in degrees.")
+        assert shown.violations() == []
+        assert not shown.scrolls_sideways()
+        check(solutions / "solution.py", "8 of 8 public checks, 36 of 36 points")
+        expect(page.locator(".check-result")).to_contain_text("This is a preview, not your grade")
+
+        with page.expect_download() as download:
+            page.get_by_role("button", name="Download your joint_velocity.py").click()
+        assert download.value.suggested_filename == "joint_velocity.py"
+        assert Path(download.value.path()).read_text() == (solutions / "solution.py").read_text()
+
+        page.reload()
+        page.get_by_role("button", name="Edit and check the starter here").click()
+        draft = page.get_by_role("textbox", name="Code of joint_velocity.py")
+        expect(draft).to_contain_text((solutions / "solution.py").read_text()[:40])
+
+        page.get_by_label("A file to go on with").set_input_files(solutions / "right" / "numpy_arrays.py")
+        page.get_by_role("button", name="Check joint_velocity.py").click()
+        expect(page.locator(".check-message")).to_contain_text("imports numpy", timeout=PATIENCE_MS)
+        assert shown.faults == []
+
+
+def test_a_page_from_a_file_says_that_it_can_not_run(browser: Browser, built: SmallCourse) -> None:
+    with opened(browser, built.site / "chapters" / "01-talk.html") as shown:
+        shown.page.get_by_role("button", name="Run talker.py").click()
+        expect(shown.page.locator("#said")).to_have_text("Nodes can't run in a page that is opened from a file.")
