@@ -16,16 +16,16 @@ from pathlib import Path
 
 import rcl_python
 import spinbook
+from interface_compiler import prefixes
 
 #: Modules of the environment that rclpy and `ros2` need, besides the interface packages.
 _ROS = ("rclpy", "rpyutils", "rosidl_parser", "rosidl_generator_py", "ament_index_python", "yaml", "click")
 _CHECKS = ("pytest", "_pytest", "py", "pluggy", "iniconfig", "packaging", "pygments")
 #: Of its hundreds, pytest needs the lexers of Python.
 _LEXERS = ("__init__.py", "_mapping.py", "python.py", "diff.py")
-_SPINBOOK = ("__init__.py", "problem.py", "ros2", "turtlesim", "browser")
+_SPINBOOK = ("__init__.py", "problem.py", "ros2", "runtime/__init__.py", "runtime/entry.py", "turtlesim", "browser")
 #: What of the grader judges recordings; the rest starts and confines programs.
 _GRADER = ("__init__.py", "checking", "exercise", "recording", "scenario", "report", "feedback")
-_INTERFACES = Path(sys.prefix, "share", "ament_index", "resource_index", "rosidl_interfaces")
 _INDEXED = ("rosidl_interfaces", "packages")
 _TEXTS = (".msg", ".srv", ".action")
 
@@ -48,15 +48,21 @@ def ros_archive() -> bytes:
 
 
 def interface_packages() -> list[str]:
-    """The installed packages of messages, services and actions."""
-    return sorted(file.name for file in _INTERFACES.iterdir() if importlib.util.find_spec(file.name))
+    """The packages of messages, services and actions that are installed, or compiled for the course."""
+    return sorted(name for name in _places() if importlib.util.find_spec(name))
+
+
+def _places() -> dict[str, Path]:
+    """Package of interfaces -> the folder `share` in which it is."""
+    markers = prefixes.resources("rosidl_interfaces", prefixes.installed())
+    return {name: marker.parents[3] for name, marker in markers.items()}
 
 
 def share_archive() -> bytes:
     """The ament index and the interface files that `ros2 interface show` prints."""
-    share = Path(sys.prefix, "share")
-    files = {}
+    files, places = {}, _places()
     for package in interface_packages():
+        share = places[package]
         for kind in _INDEXED:
             entry = share / "ament_index" / "resource_index" / kind / package
             if entry.is_file():
@@ -113,8 +119,9 @@ def _python_files(folder: Path, name: str) -> Iterator[tuple[str, bytes]]:
 
 def _type_hashes() -> dict[str, str]:
     found: dict[str, str] = {}
+    places = _places()
     for package in interface_packages():
-        for file in sorted(Path(sys.prefix, "share", package).rglob("*.json")):
+        for file in sorted((places[package] / package).rglob("*.json")):
             for item in json.loads(file.read_text(encoding="utf-8")).get("type_hashes", ()):
                 found[item["type_name"]] = item["hash_string"]
     return found

@@ -10,7 +10,7 @@ import contextlib
 import inspect
 import runpy
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +23,11 @@ def main() -> None:
     file, words = Path(sys.argv[1]), sys.argv[2:]
     own, rest = (words[: words.index("--")], words[words.index("--") + 1 :]) if "--" in words else (words, [])
     sys.argv = [str(file), *rest]
-    module = runpy.run_path(str(file), run_name=file.stem)
+    start(runpy.run_path(str(file), run_name=file.stem), own)
+
+
+def start(module: Mapping[str, Any], own: Sequence[str]) -> None:
+    """Start a module's `main` or its classes; `own` are the words HOW."""
     if "--main" in own:
         sys.exit(_call(module["main"]))
     _spin([module[name] for name in own if name != "--class"])

@@ -103,7 +103,9 @@ def _code(cell: Cell, ran: Ran, source_link: str, download: str) -> dict[str, An
         "fails": cell.raises,
     }
     if cell.kind is CellKind.NODE:
-        about |= {"file": cell.module, "download": download, "after": _after(cell)}
+        about |= {"file": cell.module, "download": download, "after": _after(cell), "run": _run(cell)}
+    elif cell.kind is CellKind.PART and cell.runs_in_kernel:
+        about["runs_as"] = CellKind.SNIPPET.value
     elif cell.kind is CellKind.INTERFACE:
         about["interface"] = cell.name
     return {
@@ -120,6 +122,14 @@ def _after(cell: Cell) -> str:
     """What a node that is shown in pieces runs with, in words."""
     with_what = [*cell.after] or (["the usual imports"] if cell.before else [])
     return f"runs with {', '.join(with_what)}" if with_what else ""
+
+
+def _run(cell: Cell) -> dict[str, Any]:
+    """What a page adds to the code of a node that is not whole by itself, and what `ros2 run` calls it."""
+    how = ["--main"] if cell.runs_main else ["--class", *cell.spin_classes] if cell.spin_classes else []
+    names = [f"{package}/{executable}" for package, executable in cell.executables]
+    about = {"before": cell.before, "start": how, "executables": names}
+    return {key: value for key, value in about.items() if value}
 
 
 def _published(output: dict[str, Any]) -> dict[str, Any]:

@@ -43,6 +43,8 @@ class Cell {
     this.file = node.querySelector(".cell-file")?.textContent ?? "";
     this.kind = ["node", "shell", "snippet"].find((kind) => node.classList.contains(`cell-${kind}`));
     this.name = this.file.replace(/\.py$/, "") || `cell ${cells.size + 1}`;
+    // What makes the code a whole program, where the chapter shows it in pieces.
+    this.run = JSON.parse(node.querySelector(".cell-head").dataset.run ?? "{}");
     this.code = node.querySelector(".cell_input pre, .highlight pre");
     this.recorded = node.querySelector(".cell_output");
     this.links = node.querySelector(".cell-links");
@@ -55,6 +57,12 @@ class Cell {
 
   get source() {
     return this.editor.text;
+  }
+
+  get program() {
+    const { before = "", start } = this.run;
+    const call = start ? `\n\nfrom spinbook.runtime import entry as _entry\n_entry.start(globals(), ${JSON.stringify(start)})\n` : "";
+    return before + this.source + call;
   }
 
   restore() {
@@ -104,13 +112,14 @@ class Cell {
 }
 
 // The cell that belongs to a module of the chapter, as `ros2 run` names it.
-const cellOf = (name) => [...cells.values()].find((cell) => cell.kind === "node" && cell.name === name);
+const cellOf = (name, full = "") =>
+  [...cells.values()].find((cell) => cell.kind === "node" && (cell.name === name || cell.run.executables?.includes(full)));
 
 async function runNode(cell, into = cell, args = []) {
   await named(cell.name)?.stop();
   logs.delete(cell.name);
   const process = new Process(cell.name, into.hears(cell.name));
-  const ended = process.program(cell.source, cell.file, args);
+  const ended = process.program(cell.program, cell.file, args);
   bar();
   await process.ready;
   into.say(`${cell.name} runs.`);
@@ -195,7 +204,7 @@ async function runTerminal(cell) {
 
 async function runExecutable(cell, words) {
   if (words[3] === "turtlesim_node") return void (await runTurtlesim(cell, words.slice(4)));
-  const wanted = cellOf(words[3]);
+  const wanted = cellOf(words[3], `${words[2]}/${words[3]}`);
   if (!wanted) return void cell.print(`There is no node ${words[3]} on this page.`, "stderr");
   const args = words.slice(4);
   await Promise.race([runNode(wanted, cell, args), new Promise((resolve) => setTimeout(resolve, 1000 * LOOK_S))]);

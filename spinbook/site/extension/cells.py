@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from html import escape
 from typing import Any
 
@@ -33,7 +34,7 @@ class DescribeCells(SphinxTransform):
 
 def _describe(cell: nodes.container, about: dict[str, Any]) -> None:
     kind = about["kind"]
-    cell["classes"].append(f"cell-{kind}")
+    cell["classes"] += [f"cell-{name}" for name in (kind, about.get("runs_as")) if name]
     for part in cell.children:
         if not isinstance(part, nodes.container):
             continue
@@ -66,7 +67,8 @@ def _head(kind: str, about: dict[str, Any]) -> str:
         else ""
     )
     kind_name = f'<span class="cell-kind">{_KINDS.get(kind, "Cell")}</span>'
-    return f'<div class="cell-head">{kind_name}{name}<span class="cell-links">{download}{source}</span></div>'
+    run = f' data-run="{escape(json.dumps(about["run"]))}"' if about.get("run") else ""
+    return f'<div class="cell-head"{run}>{kind_name}{name}<span class="cell-links">{download}{source}</span></div>'
 
 
 def _pictures(output: nodes.container, alts: list[str], stills: list[str]) -> None:

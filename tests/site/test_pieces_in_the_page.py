@@ -1,0 +1,74 @@
+"""A page runs what the chapter shows in pieces, with the messages that the chapter defines, in a real Chromium."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from browser import opened
+from course_folder import CourseFolder
+from playwright.sync_api import Browser, expect
+from small_course import served
+
+from spinbook.browser.files import can_run
+
+pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Pyodide from npm")
+
+#: Pyodide starts in a few seconds; on a machine with much else to do, in many.
+PATIENCE_MS = 60_000
+CHAPTER = """\
+# Pieces
+
+```text title="msg/Count.msg"
+int64 number 7
+```
+
+```python
+import rclpy
+from rclpy.node import Node
+from robot_interfaces.msg import Count
+```
+
+```python title="counter.py" seconds=20 until="counted 7"
+class Counter(Node):
+    def __init__(self):
+        super().__init__("counter")
+        self.create_subscription(Count, "count", self.heard, 10)
+        self.publisher = self.create_publisher(Count, "count", 10)
+        self.create_timer(0.1, lambda: self.publisher.publish(Count()))
+
+    def heard(self, count):
+        self.get_logger().info(f"counted {count.number}")
+```
+
+```bash
+ros2 run arm counter_node
+```
+"""
+SETUP = """
+```python title="setup.py"
+from setuptools import setup
+
+setup(name="arm", entry_points={"console_scripts": ["counter_node = arm.counter:main"]})
+```
+"""
+
+
+def test_a_node_in_pieces_runs_with_the_messages_of_its_chapter(tmp_path: Path, browser: Browser) -> None:
+    course = CourseFolder(tmp_path).write(pieces=CHAPTER + SETUP)
+    made = course.spinbook("site", "--strict")
+    assert made.returncode == 0, made.stdout + made.stderr
+    with served(tmp_path / "build" / "site") as address, opened(browser, f"{address}/chapters/pieces.html") as shown:
+        cell = shown.page.locator(".cell-node")
+        cell.get_by_role("button", name="Run counter.py").click()
+        expect(cell.get_by_role("log")).to_contain_text("[counter]: counted 7", timeout=PATIENCE_MS)
+
+        part = shown.page.locator(".cell-part")
+        part.get_by_role("button", name="Run").click()
+        expect(shown.page.locator("#said")).to_have_text("cell 1: done", timeout=PATIENCE_MS)
+
+        terminal = shown.page.locator(".cell-shell")
+        terminal.get_by_role("button", name="Run").click()
+        expect(terminal.get_by_role("log")).to_contain_text("[counter]: counted 7", timeout=PATIENCE_MS)
+        assert shown.violations() == []
+        assert shown.faults == []
