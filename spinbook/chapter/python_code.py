@@ -283,6 +283,8 @@ def programs_started(calls: list[ast.Call]) -> dict[str, int]:
     """The programs that calls of os.system and subprocess name -> line."""
     found: dict[str, int] = {}
     for call in calls:
+        if ast.unparse(call.func) == "shutil.rmtree":
+            found.setdefault("rm", call.lineno)
         if ast.unparse(call.func) in _SHELLS and call.args:
             words = [
                 item.value

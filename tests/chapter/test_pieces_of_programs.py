@@ -86,6 +86,7 @@ def test_nothing_is_run_that_changes_the_machine(tmp_path: Path) -> None:
         "import os\nos.system('sudo apt install x')\n",
         "import subprocess\nsubprocess.run(['pip', 'install', 'x'])\n",
         "!rm -rf build\n",
+        "import shutil\nshutil.rmtree('build')\n",
         "%pip install x\n",
         "```bash\ngit clone x && colcon build\n```\n",
         "```bash\nsudo apt update\nros2 topic list\n```\n",
