@@ -16,7 +16,8 @@ RUN apt-get update \
 
 FROM ros:jazzy-ros-base-noble AS base-arm64
 RUN apt-get update \
-    && apt-get install -y --no-install-recommends bubblewrap g++ git make procps python3-venv ros-jazzy-test-msgs \
+    && apt-get install -y --no-install-recommends bubblewrap g++ git make procps python3-venv \
+       ros-jazzy-example-interfaces ros-jazzy-test-msgs ros-jazzy-turtlesim \
     && rm -rf /var/lib/apt/lists/* \
     && if id ubuntu >/dev/null 2>&1; then userdel --remove ubuntu; fi
 

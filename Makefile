@@ -42,8 +42,9 @@ test: setup   ## Check types and style, then run every test.
 	$(BIN)/mypy
 	$(PYTEST) -n 2
 
-soak: setup   ## The long suites in their full size.
+soak: setup   ## Run the long suites in full, and count how often the same program gets another recording or grade.
 	$(PYTEST) -m soak
+	$(BIN)/python benchmarks/determinism/determinism.py --rounds 12 --json build/determinism.json
 
 audit: setup   ## Show what every exercise's checks are worth; the report lies in build/audit.html.
 	@mkdir -p build

@@ -73,6 +73,12 @@ read_wishes() {
     # Nothing may shadow a sourced ROS 2, so its wheels are then left out.
     if [ "$ros" = wheels ]; then LOCKS="$LOCKS constraints-ros.txt"; fi
     pins=$(cat $LOCKS pyproject.toml | cksum)
+    # What the interfaces are compiled from; where ROS 2 is sourced, its own tools compile them.
+    interfaces=none
+    if [ "$ros" = wheels ]; then
+        interfaces=$(find interface_compiler -name __pycache__ -prune -o -type f -print 2>/dev/null | LC_ALL=C sort |
+            while read -r file; do echo "$file"; cat "$file"; done | cksum)
+    fi
 }
 
 need_venv_module() {
@@ -82,12 +88,14 @@ need_venv_module() {
     command -v apt-get >/dev/null 2>&1 ||
         fail "'$PYTHON' has no ensurepip, so it can't make virtual environments. Name another one: make PYTHON=python3.12 ..."
     say "Python's venv module is not installed: installing the system package $package ..."
-    apt_install "$package" ||
+    install_system "$package" ||
         fail "It could not be installed from here. Install it, then run make again:
     sudo apt-get install $package"
 }
 
-apt_install() {
+# Whether these packages of Debian's or Ubuntu's could be installed.
+install_system() {
+    command -v apt-get >/dev/null 2>&1 || return 1
     if [ "$(id -u)" = 0 ]; then as_root=""; else as_root="sudo -n"; fi
     { $as_root apt-get update -qq && $as_root apt-get install -y -qq --no-install-recommends "$@"; } >/dev/null 2>&1
 }
@@ -157,32 +165,58 @@ own may get another result each time."
 need_compiler() {
     if command -v "${CXX:-g++}" >/dev/null 2>&1 || ! command -v apt-get >/dev/null 2>&1; then return; fi
     say "The C++ compiler is not installed: installing the system package g++ ..."
-    apt_install g++ || true
+    install_system g++ || true
 }
+
+# The interfaces that PyPI lacks: example_interfaces and turtlesim. Without a compiler, all else works.
+compile_interfaces() {
+    if [ "$ros" != wheels ]; then return; fi
+    say "Compiling example_interfaces and turtlesim: about 20 seconds ..."
+    code=0
+    "$VENV/bin/python" -m interface_compiler >"$VENV/interfaces.txt" 2>&1 || code=$?
+    if [ "$code" = 3 ]; then
+        needs=$("$VENV/bin/python" -m interface_compiler needs)
+        if [ -n "$needs" ] && install_system $needs; then
+            code=0
+            "$VENV/bin/python" -m interface_compiler >"$VENV/interfaces.txt" 2>&1 || code=$?
+        fi
+    fi
+    if [ "$code" = 0 ]; then return; fi
+    interfaces=missing
+    say "$(cat "$VENV/interfaces.txt")" "Until then turtlesim and example_interfaces can't be used. All else works."
+}
+
+mark() { printf '%s\npins %s\ninterfaces %s\n' "$wanted" "$pins" "$1"; }
 
 refuse_bad_folder
 wait_for_turn
 choose_python
 read_wishes
-if [ "$(cat "$MARK" 2>/dev/null)" = "$(printf '%s\npins %s' "$wanted" "$pins")" ] && [ -x "$VENV/bin/python" ]; then
+if [ "$(cat "$MARK" 2>/dev/null)" = "$(mark "$interfaces")" ] && [ -x "$VENV/bin/python" ]; then
     compile_middleware again
     exit 0
 fi
 
-if [ "$(sed '/^pins /d' "$MARK" 2>/dev/null)" = "$wanted" ] && [ -x "$VENV/bin/python" ]; then
-    say "The pinned dependencies have changed: bringing $VENV up to date ..."
-    : >"$MARK"
-    : >"$LOG"
+made=$(sed '/^interfaces /d' "$MARK" 2>/dev/null || true)
+if [ "$made" = "$(mark - | sed '/^interfaces /d')" ] && [ -x "$VENV/bin/python" ]; then
+    : # Only the interfaces have changed, or are still missing.
 else
-    need_venv_module
-    if [ -s "$MARK" ]; then say "$VENV was made for something else ($(made_for ros), $(made_for python)): making it anew."; fi
-    case "$ros" in
-        wheels) say "Installing Spinbook's pinned dependencies and ROS 2 Jazzy from PyPI into $VENV: about a minute ..." ;;
-        *) say "Installing Spinbook's pinned dependencies into $VENV; ROS 2 is the sourced one in ${ros#sourced } ..." ;;
-    esac
-    make_environment
+    if [ "$(sed '/^pins /d; /^interfaces /d' "$MARK" 2>/dev/null)" = "$wanted" ] && [ -x "$VENV/bin/python" ]; then
+        say "The pinned dependencies have changed: bringing $VENV up to date ..."
+        : >"$MARK"
+        : >"$LOG"
+    else
+        need_venv_module
+        if [ -s "$MARK" ]; then say "$VENV was made for something else ($(made_for ros), $(made_for python)): making it anew."; fi
+        case "$ros" in
+            wheels) say "Installing Spinbook's pinned dependencies and ROS 2 Jazzy from PyPI into $VENV: about a minute ..." ;;
+            *) say "Installing Spinbook's pinned dependencies into $VENV; ROS 2 is the sourced one in ${ros#sourced } ..." ;;
+        esac
+        make_environment
+    fi
+    install_pins
+    try_ros
 fi
-install_pins
-try_ros
 compile_middleware anew
-printf '%s\npins %s\n' "$wanted" "$pins" >"$MARK"
+compile_interfaces
+mark "$interfaces" >"$MARK"

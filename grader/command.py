@@ -19,7 +19,7 @@ from grader.marking.order import Order
 from grader.marking.results import Busy
 from grader.report.as_json import as_json
 from grader.report.terminal import show
-from grader.sandbox import Isolation, Middleware, SandboxUnavailable, choose_middleware
+from grader.sandbox import Isolation, Middleware, SandboxUnavailable, choose_middleware, to_be_compiled
 from grader.submission import NoSubmission, Submission, read
 
 #: Exit codes. 2 is click's own, for usage.
@@ -114,6 +114,8 @@ def grade(
         middleware=Middleware(middleware) if middleware else None,
     )
     try:
+        if options.middleware is not Middleware.FASTDDS and to_be_compiled():
+            click.echo("Compiling the grader's middleware, once ...", err=True)
         if warning := choose_middleware(options.middleware).warning:
             click.echo(warning, err=True)
         found = load(_folder(exercise))

@@ -16,6 +16,7 @@ VERBS = {
     "lint": "spinbook.lint.command:lint",
     "package": "spinbook.package.command:package",
     "site": "spinbook.site.command:site",
+    "interfaces": "spinbook.interfaces.command:interfaces",
     "ros2": "spinbook.ros2.command:ros2",
     "turtle": "spinbook.turtlesim.command:turtle",
     "grade": "grader.command:grade",
@@ -55,6 +56,7 @@ def spinbook() -> None:
       spinbook lint               what will not run in the chapters, and why
       spinbook build --execute    chapters -> notebooks, run with real nodes
       spinbook site               the course's website, from the notebooks as they ran
+      spinbook interfaces list    the messages, services and actions that it defines
       spinbook package            the chapters' nodes as a ROS 2 package
       spinbook grade EXERCISE F   what is right and wrong in a student's node
       spinbook new COURSE         a small course of your own that works at once, to go on from

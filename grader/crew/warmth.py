@@ -7,6 +7,7 @@ import gc
 
 from grader.crew.environment import PROFILE
 from grader.sandbox import type_support, view
+from interface_compiler import activation
 
 #: Whose compiled support the rig uses in every spin; loading it takes half as long as a short scenario.
 PACKAGES = (
@@ -17,7 +18,7 @@ PACKAGES = (
 
 def warm() -> None:
     """Load message types, look at the file system, and leave the memory as it is shared best with forks."""
-    for package in PACKAGES:
+    for package in (*PACKAGES, *(f"{name}.msg" for name in activation.active_packages())):
         type_support.load(package)
     view.steps((PROFILE,), (), 0)
     _share()

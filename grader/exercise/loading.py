@@ -10,6 +10,8 @@ from typing import Any
 from grader.exercise.error import ExerciseError
 from grader.exercise.exercise import Exercise
 from grader.exercise.interface import Topic
+from interface_compiler import prefixes
+from interface_compiler.near import use_near
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -22,9 +24,12 @@ TYPE = re.compile(r"[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*")
 def load(folder: Path | str) -> Exercise:
     """The exercise in `folder`, which lies in a course's `exercises/`.
 
+    The course's own message types, as they were compiled last, can be imported from then on, here and in the sandbox.
+
     Raises `ExerciseError` when a file is missing, can't be read or lacks an entry.
     """
     folder = Path(folder).resolve()
+    use_near(folder)
     file = folder / "exercise.toml"
     entries = _read(file)
     task = folder / "task.md"
@@ -72,6 +77,17 @@ def _points(entries: dict[str, Any], file: Path) -> float:
     return float(value)
 
 
+def _must_be_known(kind: str, file: Path) -> None:
+    package, _, name = kind.partition("/")
+    known = prefixes.interfaces(prefixes.installed())
+    if package not in known:
+        mend = f"If the course defines it: spinbook build. If Spinbook brings it: spinbook interfaces add {package}."
+        raise ExerciseError(file, f"type = {kind!r}: the package {package} is not installed here", mend)
+    if name not in known[package]:
+        mend = "Look at its name. If the course has just defined it: spinbook build."
+        raise ExerciseError(file, f"type = {kind!r}: the package {package} has no {name}", mend)
+
+
 def _topics(entries: dict[str, Any], file: Path) -> tuple[Topic, ...]:
     topics = []
     for direction in ("subscribe", "publish"):
@@ -81,6 +97,7 @@ def _topics(entries: dict[str, Any], file: Path) -> tuple[Topic, ...]:
                 raise ExerciseError(file, f"topic = {name!r}", "Write a topic's full name, beginning with '/'.")
             if not TYPE.fullmatch(kind):
                 raise ExerciseError(file, f"type = {kind!r}", "Write a type as 'sensor_msgs/msg/JointState'.")
+            _must_be_known(kind, file)
             topics.append(Topic(name, kind, direction, entry.get("depth", 10), entry.get("units", {})))
     if not topics:
         raise ExerciseError(file, "no topics", "Declare each topic of the node under [[subscribe]] or [[publish]].")

@@ -11,6 +11,8 @@ from pathlib import Path
 from grader.exercise import Exercise
 from grader.grading.reference import solution_file
 from grader.sandbox import Isolation
+from interface_compiler import activation
+from interface_compiler.building import DEFINITIONS
 
 #: Where this software's own source is: the folder with pyproject.toml.
 SOURCE = Path(__file__).parents[2]
@@ -54,12 +56,19 @@ def _files(exercise: Exercise) -> Iterator[tuple[str, Path]]:
     """Every file of the container's course, with its name there."""
     for name in NEEDED:
         yield name, SOURCE / name
-    for package in ("grader", "spinbook", "rmw_lockstep"):
+    for package in ("grader", "spinbook", "rmw_lockstep", "interface_compiler"):
         for file in _within(SOURCE / package):
             yield f"{package}/{file.relative_to(SOURCE / package)}", file
     for file in _within(exercise.folder):
         yield f"exercises/{exercise.name}/{file.relative_to(exercise.folder)}", file
     yield f"solutions/{exercise.name}/solution.py", solution_file(exercise)
+    # The course's own messages, which the container compiles for its own Python.
+    course = exercise.folder.parent.parent / "course.toml"
+    if course.is_file():
+        yield course.name, course
+    for prefix in activation.active():
+        for file in _within(prefix / DEFINITIONS):
+            yield f"interfaces/{file.relative_to(prefix / DEFINITIONS)}", file
 
 
 def _within(folder: Path) -> list[Path]:

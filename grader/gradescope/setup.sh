@@ -9,6 +9,8 @@ missing=()
 python3 -c 'import ensurepip, venv' 2>/dev/null || missing+=(python3 python3-venv)
 command -v bwrap >/dev/null || missing+=(bubblewrap)
 command -v g++ >/dev/null || missing+=(g++)
+python3 -c 'import os, sys, sysconfig; sys.exit(not os.path.exists(sysconfig.get_path("include") + "/Python.h"))' ||
+    missing+=(python3-dev)
 if [ "${#missing[@]}" -gt 0 ]; then
     apt-get update -qq
     DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
@@ -22,6 +24,8 @@ python3 -m venv "$here/venv"
 
 # The grader's own middleware. Where it can't be compiled Fast DDS is used, and the build's output has the reason.
 "$here/venv/bin/python" -m rmw_lockstep.build || true
+# What PyPI lacks, example_interfaces and turtlesim, and the course's own messages.
+"$here/venv/bin/python" -m interface_compiler install "$here/course" || echo "Some messages could not be compiled." >&2
 
 # Proves that grading works in here, and keeps what the solution publishes. What is wrong stands in the build's output.
 "$here/venv/bin/python" -m grader.gradescope.prepare "$here/course/exercises/$EXERCISE" $ISOLATION

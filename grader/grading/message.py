@@ -19,6 +19,10 @@ ADVICE = (
     ),
     (re.compile(r"SyntaxError: .*non-utf-8|SyntaxError: \(unicode", re.IGNORECASE), "Save the file as UTF-8."),
     (re.compile(r"SyntaxError"), "Python can't read this line; look at the end of the line before it, too."),
+    (
+        re.compile(r"Address family not supported"),
+        "A node has no network while it is graded, and needs none: it talks over ROS 2 alone.",
+    ),
     (re.compile(r"NameError"), "Is the name spelled as where it was made, and made before it is used?"),
     (re.compile(r"ZeroDivisionError"), "What if two messages have the same stamp?"),
     (re.compile(r"KeyError|IndexError"), "What if a joint is in this message and was not in the one before?"),

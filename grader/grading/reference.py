@@ -18,6 +18,7 @@ from grader.grading.versions import digest_of, versions
 from grader.recording import Recording
 from grader.recording.store import from_json, to_json
 from grader.submission.reading import of_source
+from interface_compiler import activation
 
 
 def reference(spinner: Spinner) -> dict[str, Recording]:
@@ -70,6 +71,7 @@ def key_of(spinner: Spinner) -> str:
         "exercise": digest_of([exercise.folder / "exercise.toml", *exercise.check_files]),
         "scenarios": [scenario.digest for scenario in spinner.scenarios],
         "versions": versions(spinner.middleware),
+        "interfaces": [prefix.name for prefix in activation.active()],
         "pace": spinner.options.pace,
     }
     return hashlib.sha256(json.dumps(key, sort_keys=True).encode()).hexdigest()

@@ -9,7 +9,7 @@ with nursery.start(Program("node.py", {"node.py": source}, hub=socket), isolatio
 from .faults import SandboxError, SandboxUnavailable
 from .level import Isolation, available, choose
 from .limits import Limits
-from .middleware import Choice, Middleware, MiddlewareUnavailable, choose_middleware
+from .middleware import Choice, Middleware, MiddlewareUnavailable, choose_middleware, to_be_compiled
 from .nursery import Nursery
 from .output import Output
 from .program import Program
@@ -34,4 +34,5 @@ __all__ = [
     "choose",
     "choose_middleware",
     "enter",
+    "to_be_compiled",
 ]

@@ -1,7 +1,8 @@
 """Where a machine allows no user namespaces: Landlock keeps a student's program off the files of this machine.
 
-Weaker than the namespaces: it sees the machine's loopback network and the numbers of other processes; it can neither
-read their memory nor, from Linux 6.12 on, signal them (before that, a seccomp filter refuses it every signal).
+Weaker than the namespaces: it sees the numbers and command lines of other processes, and can connect to Unix sockets
+that its user may write to; over Fast DDS also the machine's loopback network. It can neither read the memory of others
+nor, from Linux 6.12 on, signal them (before that, a seccomp filter refuses it every signal).
 
 Source: landlock(7) and Documentation/userspace-api/landlock.rst of the Linux kernel.
 """

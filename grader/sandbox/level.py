@@ -22,7 +22,7 @@ class Isolation(str, Enum):
     NAMESPACES = "namespaces"
     """The same namespaces, made by our own system calls."""
     LANDLOCK = "landlock"
-    """No namespaces: the kernel's Landlock for files, a ROS domain for the network."""
+    """No namespaces: the kernel's Landlock for files, seccomp for the network (over Fast DDS only a ROS domain)."""
     NONE = "none"
     """A plain process of the same user, with limits. For code that you trust."""
 

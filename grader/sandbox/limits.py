@@ -57,7 +57,7 @@ def apply(limits: Limits, *, processes_beside: int = 0) -> None:
         resource.RLIMIT_AS: limits.memory_bytes,
         resource.RLIMIT_NPROC: limits.processes + processes_beside,
         resource.RLIMIT_FSIZE: limits.file_bytes,
-        resource.RLIMIT_NOFILE: 256,
+        resource.RLIMIT_NOFILE: 1024,  # liblockstep looks at each thread of the program through three files
         resource.RLIMIT_CORE: 0,
         resource.RLIMIT_MEMLOCK: 8 * _MIB,
         resource.RLIMIT_MSGQUEUE: 0,

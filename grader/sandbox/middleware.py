@@ -10,7 +10,7 @@ from enum import Enum
 from functools import cache
 from pathlib import Path
 
-from rmw_lockstep.library import IDENTIFIER, Library, Unavailable, library
+from rmw_lockstep.library import IDENTIFIER, Library, Unavailable, compiler, library
 from rmw_lockstep.ros import installed_ros
 
 from .faults import SandboxUnavailable
@@ -64,6 +64,11 @@ def choose_middleware(wanted: Middleware | None = None) -> Choice:
         "Graded over Fast DDS: the grader has to infer when a node is done, so one with threads or sleeps of its own "
         f"may get another result each time. Its own middleware can't be used here: {reason}",
     )
+
+
+def to_be_compiled() -> bool:
+    """Whether `choose_middleware` will compile lockstep, which takes seconds."""
+    return isinstance(library(), Unavailable) and installed_ros() is not None and compiler() is not None
 
 
 def _reason_against_lockstep() -> str | None:

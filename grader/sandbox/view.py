@@ -16,6 +16,8 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import Literal
 
+from interface_compiler import activation
+
 from .middleware import library_folder
 from .program import HUB, SUBMISSION, Place, Program
 
@@ -186,7 +188,7 @@ def system() -> tuple[Path, ...]:
 
 @cache
 def interpreter() -> tuple[Path, ...]:
-    """The folders of this Python, of the one that its virtual environment was made from, and of ROS 2."""
+    """The folders of this Python, of the one its environment was made from, of ROS 2, and of a course's interfaces."""
     prefixes: dict[Path, None] = {}
     for prefix in (sys.prefix, sys.exec_prefix, sys.base_prefix, sys.base_exec_prefix):
         prefixes[Path(prefix)] = None
@@ -194,7 +196,7 @@ def interpreter() -> tuple[Path, ...]:
     prefixes[Path(sys.executable).resolve().parents[1]] = None
     found = [prefix / part for prefix in prefixes for part in _PARTS if prefix != Path("/usr")]
     library = filter(None, (library_folder(),))
-    return tuple(path for path in (*found, *ros_prefixes(), *library) if path.exists())
+    return tuple(path for path in (*found, *ros_prefixes(), *library, *activation.active()) if path.exists())
 
 
 def own_packages() -> tuple[Path, ...]:

@@ -101,18 +101,19 @@ unsigned Threads::count() {
 
 void Threads::read() {
   std::vector<pid_t> there;
-  if (DIR * folder = opendir(FOLDER)) {
-    while (const dirent * entry = readdir(folder))
-      if (const pid_t number = atoi(entry->d_name)) there.push_back(number);
-    closedir(folder);
-  }
+  DIR * const folder = opendir(FOLDER);
+  complete_ = folder != nullptr;
+  if (!folder) { links_ = 0; return; }
+  while (const dirent * entry = readdir(folder))
+    if (const pid_t number = atoi(entry->d_name)) there.push_back(number);
+  closedir(folder);
   for (auto it = threads_.begin(); it != threads_.end();) {
     const bool gone = std::find(there.begin(), there.end(), it->first) == there.end();
     if (gone) { close(it->second.stat); close(it->second.schedule); close(it->second.call); it = threads_.erase(it); }
     else ++it;
   }
   for (const pid_t number : there)
-    if (!threads_.count(number) && !open_thread(number)) links_ = 0;
+    if (!threads_.count(number) && !open_thread(number)) { links_ = 0; complete_ = false; }
 }
 
 bool Threads::open_thread(pid_t number) {
@@ -127,6 +128,8 @@ bool Threads::open_thread(pid_t number) {
 
 // Twice what each got of the CPU, and between the two the state of each: if nobody ran, all slept at one moment.
 Threads::Look Threads::look(const std::vector<pid_t> & known, bool children) {
+  // One that has ended meanwhile is not there any more when they are read again. The program may also have no files left.
+  if (!complete_) return Look::busy;
   auto skipped = [&](pid_t number) { return std::find(known.begin(), known.end(), number) != known.end(); };
   for (auto & [number, thread] : threads_)
     if (!skipped(number) && (thread.before = text_of(thread.schedule)).empty()) { links_ = 0; return Look::busy; }

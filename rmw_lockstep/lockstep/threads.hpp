@@ -34,6 +34,7 @@ private:
 
   int folder_ = -1;
   unsigned links_ = 0;
+  bool complete_ = false;  // whether every thread is in `threads_`
   std::map<pid_t, Thread> threads_;
 };
 

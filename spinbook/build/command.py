@@ -14,6 +14,8 @@ from rich.progress import Progress as Bars
 from spinbook.build.execution import DEADLINE_S, Executed, Job, Progress, execute
 from spinbook.build.notebooks import Built, build_notebooks
 from spinbook.course.course import Course, find_course
+from spinbook.interfaces.compiled import compile_course
+from spinbook.problem import SpinbookError
 
 #: Nodes wait more than they compute: twice the cores keep a machine busy and responsive.
 _AT_ONCE = 2 * (os.cpu_count() or 1)
@@ -37,10 +39,11 @@ def build(start: Path, run: bool, jobs: int, deadline: float, again: bool, chapt
     """
     course = find_course(start)
     console = Console(soft_wrap=True, highlight=False)
+    compiled = _compile_interfaces(console, course)
     built = list(build_notebooks(course))
     _report_built(console, built)
-    failed = any(item.failed for item in built)
-    if run:
+    failed = not compiled or any(item.failed for item in built)
+    if run and compiled:
         chosen = [item for item in built if not item.failed and _is_chosen(item, chapters)]
         try:
             failed = _execute(console, course, chosen, jobs, deadline, again) or failed
@@ -49,6 +52,20 @@ def build(start: Path, run: bool, jobs: int, deadline: float, again: bool, chapt
             sys.exit(130)
     console.print(f"Notebooks: {_shown(course, 'executed' if run else 'notebooks')}", markup=False)
     sys.exit(1 if failed else 0)
+
+
+def _compile_interfaces(console: Console, course: Course) -> bool:
+    """Compile the course's messages, services and actions, and report what is wrong in them. Whether all is well."""
+    try:
+        compiled = compile_course(course)
+    except SpinbookError as error:
+        for problem in error.problems:
+            console.print(str(problem), markup=False, style="red")
+        return False
+    if compiled is not None:
+        how = "compiled" if compiled.fresh else "unchanged"
+        console.print(f"Interfaces {how}: {', '.join(compiled.packages)}", markup=False)
+    return True
 
 
 def _shown(course: Course, folder: str) -> str:

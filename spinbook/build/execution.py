@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import grader
+from interface_compiler import activation
 from spinbook.build.digest import code_digest, digest, folders_digest, versions
 from spinbook.build.failures import CellFailure, find_failures
 from spinbook.runtime.process import KeptProcess
@@ -24,7 +25,7 @@ from spinbook.written import write_if_changed
 DEADLINE_S = 300.0
 _TO_SAY_SO_S = 20.0
 #: What of Spinbook a notebook's cells use.
-_USED_BY_CELLS = ("check", "graph", "runtime", "ros2", "turtlesim", "package")
+_USED_BY_CELLS = ("check", "graph", "runtime", "ros2", "turtlesim", "package", "interfaces")
 
 
 @dataclass(frozen=True)
@@ -164,7 +165,8 @@ def _key(notebook: dict[str, Any], job: Job) -> str:
         course = job.build_folder.parent
         judging = folders_digest(Path(grader.__file__).parent, ".")
         judged_by = digest(folders_digest(course, "exercises", "solutions"), judging)
-    return digest(repr(code), judged_by, code_digest(*_USED_BY_CELLS), versions())
+    interfaces = " ".join(prefix.name for prefix in activation.active())
+    return digest(repr(code), judged_by, interfaces, code_digest(*_USED_BY_CELLS), versions())
 
 
 def _remembered(job: Job, key: str) -> dict[str, Any] | None:

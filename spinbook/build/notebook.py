@@ -71,6 +71,9 @@ def _runnable(cell: Cell) -> dict[str, Any]:
         metadata["node"] = cell.name
         spin_class = f" --class {cell.spin_class}" if cell.spin_class else ""
         source = f"%%node {cell.name}{_bounds(cell)}{spin_class}\n{cell.source}"
+    elif cell.kind is CellKind.INTERFACE:
+        metadata["interface"] = cell.name
+        source = f"%%interface {cell.name}\n{cell.source}"
     elif cell.kind is CellKind.SHELL:
         source = "\n".join(_shell_line(command, cell) for command in cell.commands)
     else:

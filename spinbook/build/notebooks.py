@@ -44,7 +44,7 @@ def build_notebooks(course: Course) -> Iterator[Built]:
     record = course.build_folder / ".cache" / "notebooks.json"
     before = _read_record(record)
     known = surroundings(course)
-    common = digest(code_digest("chapter", "build", "course"), repr(course), repr(_sorted(known)))
+    common = digest(code_digest("chapter", "build", "course", "interfaces"), repr(course), repr(_sorted(known)))
     parts = ("exercises", "solutions")
     exercise_files = files_digest(
         (file for part in parts for file in (course.root / part).rglob("*") if file.is_file()), course.root
@@ -78,8 +78,8 @@ def _build(course: Course, chapter: Path, notebook: Path, known: Surroundings) -
     return Built(chapter, notebook, tuple(problems), fresh=True)
 
 
-def _sorted(known: Surroundings) -> tuple[str, list[str], list[str]]:
-    return known.package, sorted(known.modules), sorted(known.exercises)
+def _sorted(known: Surroundings) -> tuple[str, list[str], list[str], list[str]]:
+    return known.package, sorted(known.modules), sorted(known.exercises), sorted(known.interfaces)
 
 
 def _read_record(file: Path) -> Mapping[str, Any]:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from spinbook.chapter.read import Reading, Surroundings, read_chapter
 from spinbook.course.course import Course
+from spinbook.interfaces.collect import collect
 
 _TITLE = re.compile(rb"""^[`~]{3,}.*\btitle=["']?(\w+)\.py\b""", re.MULTILINE)
 
@@ -17,7 +18,8 @@ def surroundings(course: Course) -> Surroundings:
     modules: set[str] = set()
     for file in course.chapters:
         modules |= {name.decode() for name in _TITLE.findall(_bytes(course.root / file))}
-    return Surroundings(course.package.name, frozenset(modules), course.exercises)
+    interfaces = frozenset(item.full_name for item in collect(course).definitions)
+    return Surroundings(course.package.name, frozenset(modules), course.exercises, interfaces)
 
 
 def _bytes(file: Path) -> bytes:

@@ -82,9 +82,12 @@ def _runnable(item: Classified, ids: _Ids) -> Cell:
         FenceKind.NODE: CellKind.NODE,
         FenceKind.SNIPPET: CellKind.SNIPPET,
         FenceKind.SHELL: CellKind.SHELL,
+        FenceKind.INTERFACE: CellKind.INTERFACE,
     }[item.kind]
     if item.kind is FenceKind.NODE:
         cell_id = ids.named(f"node-{item.name}")
+    elif item.kind is FenceKind.INTERFACE:
+        cell_id = ids.named(f"interface-{(item.name or '').rpartition('/')[2]}")
     elif item.kind is FenceKind.SHELL:
         first = next(command for command in item.commands if command.kind is not CommandKind.NOTE)
         cell_id = ids.named(first.text)

@@ -17,6 +17,7 @@ class CellKind(str, Enum):
     NODE = "node"
     SNIPPET = "snippet"
     SHELL = "shell"
+    INTERFACE = "interface"
     EXERCISE = "exercise"
 
 
@@ -24,7 +25,8 @@ class CellKind(str, Enum):
 class Cell:
     """One cell of a chapter. `line` is the chapter's line on which its source begins, counted from 1.
 
-    `name` is a node's name (its file without .py) or an exercise's. `seconds` bounds how long it shows or runs
+    `name` is a node's name (its file without .py), an exercise's, or an interface's, such as
+    `my_interfaces/msg/Pose.msg`. `seconds` bounds how long it shows or runs
     (None: the runtime's default), `until` is a text in its log that ends that time early. `raises` says that failing
     is the lesson. `spin_class` is the class to spin where a node's code only defines one.
     """
@@ -65,6 +67,11 @@ class Chapter:
     summary: str
     cells: tuple[Cell, ...]
     static_fences: tuple[StaticFence, ...] = ()
+
+    @property
+    def interfaces(self) -> Iterator[Cell]:
+        """The cells that define messages, services and actions, in order."""
+        return (cell for cell in self.cells if cell.kind is CellKind.INTERFACE)
 
     @property
     def nodes(self) -> Iterator[Cell]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 
+from spinbook.chapter.definition_title import interface_path, is_someone_elses
 from spinbook.chapter.fence import ATTRIBUTES, Fence
 from spinbook.chapter.python_code import CodeError, PythonCode, has_magics, inspect
 from spinbook.chapter.terminal import Command, CommandKind, NotRunnable, read_commands
@@ -20,12 +21,13 @@ class FenceKind(str, Enum):
     NODE = "node"
     SNIPPET = "snippet"
     SHELL = "shell"
+    INTERFACE = "interface"
     STATIC = "static"
 
 
 @dataclass(frozen=True)
 class Classified:
-    """A fence and what it is. `why` says why a static one is not run; `name` is a node's."""
+    """A fence and what it is. `why` says why a static one is not run; `name` is a node's or an interface's."""
 
     fence: Fence
     kind: FenceKind
@@ -42,14 +44,23 @@ class Classified:
         return None
 
 
-def classify(fence: Fence, defined: Iterable[str], file: Path) -> tuple[Classified, list[Problem]]:
+def classify(
+    fence: Fence, defined: Iterable[str], file: Path, interface_package: str = ""
+) -> tuple[Classified, list[Problem]]:
     """Say what a fence is.
 
     `defined` are the names that earlier snippets of the chapter left in the kernel; `file` is what problems name.
+    `interface_package` is the package of an interface whose title does not name one.
     """
     problems = _unknown_attributes(fence, file)
     if fence.has("static"):
         return Classified(fence, FenceKind.STATIC, "it says `static`"), problems
+    if interface := interface_path(fence.title or "", interface_package):
+        package = interface.partition("/")[0]
+        if is_someone_elses(package, interface_package):
+            why = f"it shows an interface of {package}, which is installed"
+            return Classified(fence, FenceKind.STATIC, why), problems
+        return Classified(fence, FenceKind.INTERFACE, name=interface), problems
     if fence.is_shell:
         return _shell(fence, file, problems)
     if fence.is_python:

@@ -10,16 +10,20 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
+from interface_compiler import shipped
 from spinbook.chapter.classify import Classified
 from spinbook.chapter.terminal import CommandKind
 from spinbook.problem import Problem
 from spinbook.ros2 import interface_files, prefixes
 
 
-def missing_imports(item: Classified, own_modules: frozenset[str], file: Path) -> list[Problem]:
+def missing_imports(
+    item: Classified, own_modules: frozenset[str], file: Path, own_interfaces: Iterable[str] = ()
+) -> list[Problem]:
     """What a fence's Python imports and this environment does not have.
 
-    `own_modules` are the course's: its package, and the modules that its node cells make.
+    `own_modules` are the course's: its package, and the modules that its node cells make; `own_interfaces` those
+    that it defines, such as `my_interfaces/msg/Pose`.
     """
     code = item.code
     if code is None:
@@ -33,15 +37,23 @@ def missing_imports(item: Classified, own_modules: frozenset[str], file: Path) -
                 f"{_similar(top, own_modules)}Install it and add it to the course's dependencies, "
                 "or write `static` behind the fence's language."
             )
+            if top in (*shipped.standard(), *shipped.optional()):
+                mend = f"Compile it, once: spinbook interfaces add {top}"
             problems.append(Problem(file, item.fence.first_code_line + line - 1, found, mend))
     for (module, name), line in code.interfaces.items():
-        known = interfaces_of(module)
+        known = _own_names(module, own_interfaces) or interfaces_of(module)
         if known and name != "*" and name not in known:
             close = difflib.get_close_matches(name, known, n=1)
             mend = f"Did you mean `{close[0]}`?" if close else f"It has {', '.join(sorted(known)[:8])} …"
             found = f"`{module}` has no `{name}`."
             problems.append(Problem(file, item.fence.first_code_line + line - 1, found, mend))
     return problems
+
+
+def _own_names(module: str, own_interfaces: Iterable[str]) -> frozenset[str]:
+    """The names of a module such as `my_interfaces.msg` that the course defines itself."""
+    beginning = module.replace(".", "/") + "/"
+    return frozenset(name.removeprefix(beginning) for name in own_interfaces if name.startswith(beginning))
 
 
 def unknown_executables(item: Classified, package: str, executables: Iterable[str], file: Path) -> list[Problem]:

@@ -20,12 +20,14 @@ class Surroundings:
     """What a chapter may refer to outside itself.
 
     `package` is the course's ROS package, `modules` the node modules of the course's other chapters, `exercises`
-    the exercises that exist.
+    the exercises that exist, `interfaces` the messages, services and actions that the course defines, such as
+    `my_robot_interfaces/msg/JointLimits`.
     """
 
     package: str
     modules: frozenset[str] = frozenset()
     exercises: frozenset[str] = frozenset()
+    interfaces: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,7 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> Reading:
         return Reading(None, tuple(problems))
     outlined, outline_problems = outline(source.text, file)
     problems += outline_problems
-    classified, fence_problems = _classify_all(outlined, file)
+    classified, fence_problems = _classify_all(outlined, file, interface_package(surroundings.package))
     problems += fence_problems
     problems += _two_of_one_name(classified, file)
     problems += _references(classified, outlined, surroundings, root, file)
@@ -67,14 +69,19 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> Reading:
     return Reading(chapter, tuple(problems))
 
 
-def _classify_all(outlined: Outline, file: Path) -> tuple[list[Classified], list[Problem]]:
+def interface_package(package: str) -> str:
+    """The package of the interfaces that chapters define, where the nodes' package is `package`."""
+    return f"{package}_interfaces"
+
+
+def _classify_all(outlined: Outline, file: Path, interfaces: str) -> tuple[list[Classified], list[Problem]]:
     classified: list[Classified] = []
     problems: list[Problem] = []
     defined: set[str] = set()
     for span in outlined.spans:
         if span.fence is None:
             continue
-        item, found = classify(span.fence, defined, file)
+        item, found = classify(span.fence, defined, file, interfaces)
         classified.append(item)
         problems += found
         problems += _bad_seconds(item, file)
@@ -121,11 +128,11 @@ def _references(
 ) -> list[Problem]:
     nodes = {item.name for item in classified if item.kind is FenceKind.NODE and item.name}
     modules = frozenset(nodes) | surroundings.modules
-    own = modules | {surroundings.package}
+    own = modules | {surroundings.package} | {name.partition("/")[0] for name in surroundings.interfaces}
     problems = []
     for item in classified:
         if item.kind is not FenceKind.STATIC:
-            problems += missing_imports(item, own, file)
+            problems += missing_imports(item, own, file, surroundings.interfaces)
             problems += unknown_executables(item, surroundings.package, modules, file)
     for span in outlined.spans:
         if span.exercise and span.exercise not in surroundings.exercises:

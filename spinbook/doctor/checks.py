@@ -36,6 +36,7 @@ CHECKS = (
     Check("memory", "Shared memory", "spinbook.doctor.shared_memory"),
     Check("kernel", "Jupyter kernel", "spinbook.doctor.kernel", 60.0),
     Check("colcon", "colcon", "spinbook.doctor.colcon", 90.0),
+    Check("compiler", "Compiler", "spinbook.doctor.compiler"),
     Check("namespaces", "Namespaces", "spinbook.doctor.namespaces"),
     Check("sandbox", "Sandbox", "spinbook.doctor.sandbox", 150.0, _NODE),
     Check("bubblewrap", "bubblewrap", "spinbook.doctor.bubblewrap"),

@@ -28,9 +28,9 @@ def doctor(checks: tuple[str, ...], as_json: bool) -> None:
     \b
       python       folder       libraries    ros
       middleware   logs         message      environment
-      memory       kernel       colcon       namespaces
-      sandbox      bubblewrap   lockstep     ros2
-      browser
+      memory       kernel       colcon       compiler
+      namespaces   sandbox      bubblewrap   lockstep
+      ros2         browser
 
     \b
       ✓  works

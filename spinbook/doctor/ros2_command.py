@@ -1,4 +1,4 @@
-"""Whether the real `ros2` and turtlesim are installed, or Spinbook's own take their place."""
+"""Whether the real `ros2` and turtlesim's window are installed, or Spinbook's own take their place."""
 
 from __future__ import annotations
 
@@ -6,14 +6,16 @@ import shutil
 
 from spinbook.doctor.finding import Finding, ok
 from spinbook.ros2 import prefixes
+from spinbook.ros2.executables import is_built_in
 
 
 def examine(name: str) -> Finding:
     """Look for them. Either way the chapters run, so this is never a fault."""
     ros2 = shutil.which("ros2")
-    turtlesim = prefixes.prefix_of("turtlesim", prefixes.installed())
+    prefix = prefixes.prefix_of("turtlesim", prefixes.installed())
+    turtlesim = None if is_built_in("turtlesim", prefix) else prefix
     parts = [
         f"ros2 at {ros2}" if ros2 else "no ros2: Spinbook's own answers (spinbook ros2)",
-        f"turtlesim in {turtlesim}" if turtlesim else "no turtlesim: Spinbook's own turtle",
+        f"turtlesim in {turtlesim}" if turtlesim else "turtlesim's nodes: Spinbook's own",
     ]
     return ok(name, "; ".join(parts))

@@ -8,8 +8,8 @@ from pathlib import Path
 import click
 
 from grader.crew import HostFault
+from interface_compiler.archive import zipped
 from spinbook.course.course import find_course
-from spinbook.handout.archive import zipped
 from spinbook.handout.contents import Handout, handout
 from spinbook.problem import Problem, SpinbookError
 from spinbook.written import write_if_changed

@@ -15,10 +15,12 @@ from spinbook.build.notebooks import build_notebooks
 from spinbook.course.course import Course
 from spinbook.handout.exercise import exercise_files
 from spinbook.handout.guide import Listing, guide_files
+from spinbook.handout.interface_wheels import interface_wheels
 from spinbook.handout.leaks import leaks
 from spinbook.handout.notebook import for_students
 from spinbook.handout.secrets import Secret, hidden_names, secrets
 from spinbook.handout.wheel import wheel
+from spinbook.interfaces.compiled import compile_course
 from spinbook.problem import Problem, SpinbookError
 from spinbook.update.base import base_files
 
@@ -37,6 +39,8 @@ def handout(course: Course) -> Handout:
 
     Raises SpinbookError where a chapter or an exercise has an error, or where a secret would be handed out.
     """
+    # First: exercises may be on the course's own messages.
+    compile_course(course)
     notebooks = _notebooks(course)
     files = dict(notebooks)
     exercises = [_load(course, name) for name in sorted(_used(course, notebooks))]
@@ -54,9 +58,11 @@ def handout(course: Course) -> Handout:
     known = [secret for exercise in every for secret in secrets(exercise, taught)]
     _prove(files, known + [secret for exercise in every for secret in hidden_names(exercise)])
     name, content = wheel()
+    compiled = interface_wheels(course, files.values())
     files[f"wheels/{name}"] = content
+    files |= {f"wheels/{file}": data for file, data in compiled.items()}
     slug = re.sub(r"[^a-z0-9]+", "-", course.title.lower()).strip("-") or "course"
-    files |= guide_files(course.title, slug, course.ros_distro, name, sorted(notebooks), listings)
+    files |= guide_files(course.title, slug, course.ros_distro, name, sorted(notebooks), listings, sorted(compiled))
     files |= base_files(files)
     _prove(files, known)
     return Handout(slug, files, tuple(listings))

@@ -8,6 +8,7 @@ from importlib import metadata
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from spinbook import __version__
+from spinbook.handout.interface_wheels import requirement
 
 #: What must be the same for students as for the instructor who made the handout, so that checks come out the same.
 _PINNED = ("ros-{distro}-rclpy", "ros-{distro}-rmw-fastrtps-cpp", "ros-{distro}-common-interfaces")
@@ -33,9 +34,15 @@ class Listing:
 
 
 def guide_files(
-    title: str, slug: str, distro: str, wheel: str, notebooks: list[str], exercises: list[Listing]
+    title: str,
+    slug: str,
+    distro: str,
+    wheel: str,
+    notebooks: list[str],
+    exercises: list[Listing],
+    interfaces: list[str],
 ) -> dict[str, bytes]:
-    """README.md and the files that install, by name."""
+    """README.md and the files that install, by name. `interfaces` are the names of wheels with compiled interfaces."""
     # Plain text and JSON, no HTML.
     environment = Environment(
         loader=PackageLoader("spinbook.handout", "template"),
@@ -53,6 +60,8 @@ def guide_files(
         "notebooks": notebooks,
         "exercises": exercises,
         "pins": _pins(distro),
+        "interfaces": [requirement(file) for file in interfaces],
+        "pythons": sorted({file.split("-")[2].replace("cp3", "3.") for file in interfaces}),
         "version": __version__,
     }
     return {name: environment.get_template(template).render(values).encode() for name, template in _TEMPLATES.items()}

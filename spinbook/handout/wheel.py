@@ -5,10 +5,6 @@ A wheel is a zip whose RECORD lists every file with its hash (PEP 427, and "Reco
 
 from __future__ import annotations
 
-import base64
-import csv
-import hashlib
-import io
 import shutil
 import subprocess
 import sys
@@ -18,14 +14,16 @@ from importlib import metadata
 from pathlib import Path
 
 import spinbook
-from spinbook.handout.archive import zipped
+from interface_compiler.archive import zipped
+from interface_compiler.wheel import record
 from spinbook.problem import Problem, SpinbookError
 
 #: What `spinbook new` starts from has solutions and hidden checks in it; courses may still use them.
 FOR_AUTHORS = ("spinbook/new/template/",)
 
 _BUILD = "import sys; from setuptools.build_meta import build_wheel; print(build_wheel(sys.argv[1]))"
-_SOURCES = ("pyproject.toml", "README.md", "LICENSE", "spinbook", "grader")
+_PACKAGES = ("spinbook/", "grader/", "interface_compiler/")
+_SOURCES = ("pyproject.toml", "README.md", "LICENSE", "spinbook", "grader", "interface_compiler")
 
 
 def wheel() -> tuple[str, bytes]:
@@ -33,12 +31,12 @@ def wheel() -> tuple[str, bytes]:
     source = Path(spinbook.__file__).parents[1]
     files = _built(source) if (source / "pyproject.toml").is_file() else _installed()
     kept = {name: content for name, content in files.items() if not name.startswith(FOR_AUTHORS)}
-    record = next(name for name in kept if name.endswith(".dist-info/RECORD"))
+    listing = next(name for name in kept if name.endswith(".dist-info/RECORD"))
     # Without the project's README below its header, which has examples from a course in it.
-    described = record.replace("RECORD", "METADATA")
+    described = listing.replace("RECORD", "METADATA")
     kept[described] = kept[described].partition(b"\n\n")[0] + b"\n"
-    kept[record] = _record(kept, record)
-    return f"spinbook-{spinbook.__version__}-py3-none-any.whl", zipped(kept, last=record)
+    kept[listing] = record(kept, listing)
+    return f"spinbook-{spinbook.__version__}-py3-none-any.whl", zipped(kept, last=listing)
 
 
 def _built(source: Path) -> dict[str, bytes]:
@@ -69,18 +67,10 @@ def _installed() -> dict[str, bytes]:
     files = {}
     for file in distribution.files or ():
         name = file.as_posix()
-        wanted = name.startswith(("spinbook/", "grader/", f"spinbook-{spinbook.__version__}.dist-info/"))
+        wanted = name.startswith(
+            ("spinbook/", "grader/", "interface_compiler/", f"spinbook-{spinbook.__version__}.dist-info/")
+        )
         own = name.rpartition("/")[2] not in ("INSTALLER", "REQUESTED", "direct_url.json") and "__pycache__" not in name
         if wanted and own:
             files[name] = Path(str(distribution.locate_file(file))).read_bytes()
     return files
-
-
-def _record(files: dict[str, bytes], record: str) -> bytes:
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    for name in sorted(set(files) - {record}):
-        digest = base64.urlsafe_b64encode(hashlib.sha256(files[name]).digest()).rstrip(b"=").decode()
-        writer.writerow((name, f"sha256={digest}", len(files[name])))
-    writer.writerow((record, "", ""))
-    return out.getvalue().encode()

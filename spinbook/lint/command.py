@@ -11,7 +11,9 @@ import click
 from spinbook.build.reading import read_all
 from spinbook.chapter.chapter import CellKind
 from spinbook.chapter.read import Reading
-from spinbook.course.course import find_course
+from spinbook.course.course import Course, find_course
+from spinbook.interfaces.collect import checked
+from spinbook.problem import Problem, SpinbookError
 
 
 @click.command()
@@ -27,8 +29,9 @@ def lint(start: Path, strict: bool, show_static: bool, as_json: bool) -> None:
     Each message names file and line, what stands there, and what to do. Exit code: 0 nothing to mend, 1 an error
     (or, with --strict, a warning).
     """
-    readings = list(read_all(find_course(start)))
-    problems = [problem for reading in readings for problem in reading.problems]
+    course = find_course(start)
+    readings = list(read_all(course))
+    problems = [*_interfaces(course), *(problem for reading in readings for problem in reading.problems)]
     if as_json:
         click.echo(json.dumps([_as_json(reading) for reading in readings], indent=1))
     else:
@@ -40,6 +43,15 @@ def lint(start: Path, strict: bool, show_static: bool, as_json: bool) -> None:
     if not as_json:
         click.echo(f"{errors} errors, {len(problems) - errors} warnings")
     sys.exit(1 if errors or (strict and problems) else 0)
+
+
+def _interfaces(course: Course) -> tuple[Problem, ...]:
+    """What is wrong in the course's messages, services and actions."""
+    try:
+        checked(course)
+    except SpinbookError as error:
+        return error.problems
+    return ()
 
 
 def _summary(reading: Reading, show_static: bool) -> None:

@@ -9,8 +9,10 @@ import click
 from spinbook.build.reading import read_all
 from spinbook.chapter.chapter import Cell
 from spinbook.course.course import Course, find_course
+from spinbook.interfaces.collect import checked
 from spinbook.package.files import Module
 from spinbook.package.write import write_package
+from spinbook.package.write_interfaces import write_interface_packages
 from spinbook.problem import Problem, SpinbookError
 
 
@@ -29,11 +31,17 @@ def package(start: Path, workspace: Path | None) -> None:
     course = find_course(start)
     modules = course_modules(course)
     target = workspace or course.root / course.package.workspace
-    folder = write_package(target, course.package, modules)
+    interfaces = checked(course)
+    folder = write_package(target, course.package, modules, interfaces.packages)
     click.echo(f"{folder}: {len(modules)} modules")
     for module in modules:
         runs = f"ros2 run {course.package.name} {module.name}" if module.has_main else "(no main(): a module only)"
         click.echo(f"  {module.name}.py".ljust(28) + runs)
+    for package_folder in write_interface_packages(target, course.package, interfaces.definitions):
+        members = [item for item in interfaces.definitions if item.package == package_folder.name]
+        click.echo(f"{package_folder}: {len(members)} interfaces")
+        for item in sorted(members, key=lambda item: item.path):
+            click.echo(f"  {item.path}".ljust(28) + f"ros2 interface show {item.full_name}")
 
 
 def course_modules(course: Course) -> list[Module]:

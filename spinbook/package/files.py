@@ -31,10 +31,10 @@ class Module:
             return False
 
 
-def package_files(package: Package, modules: Sequence[Module]) -> dict[str, str]:
-    """Path within the package's folder -> content."""
+def package_files(package: Package, modules: Sequence[Module], interfaces: Sequence[str] = ()) -> dict[str, str]:
+    """Path within the package's folder -> content. `interfaces` are the course's own packages of interfaces."""
     files = {
-        "package.xml": _package_xml(package, _dependencies(modules)),
+        "package.xml": _package_xml(package, _dependencies(modules, interfaces)),
         "setup.py": _setup_py(package, [module.name for module in modules if module.has_main]),
         "setup.cfg": _setup_cfg(package),
         f"resource/{package.name}": "",
@@ -44,7 +44,7 @@ def package_files(package: Package, modules: Sequence[Module]) -> dict[str, str]
     return files
 
 
-def _dependencies(modules: Sequence[Module]) -> list[str]:
+def _dependencies(modules: Sequence[Module], interfaces: Sequence[str]) -> list[str]:
     """The ROS packages that the modules import."""
     imported: set[str] = set()
     for module in modules:
@@ -53,7 +53,7 @@ def _dependencies(modules: Sequence[Module]) -> list[str]:
         except CodeError:
             continue
         imported |= {name.partition(".")[0] for name in code.imports}
-    return sorted(imported & (ros_packages() | {"rclpy"}))
+    return sorted(imported & (ros_packages() | {"rclpy", *interfaces}))
 
 
 def _package_xml(package: Package, dependencies: Sequence[str]) -> str:

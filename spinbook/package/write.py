@@ -15,13 +15,14 @@ def package_folder(workspace: Path, package: Package) -> Path:
     return workspace / "src" / package.name
 
 
-def write_package(workspace: Path, package: Package, modules: Sequence[Module]) -> Path:
+def write_package(workspace: Path, package: Package, modules: Sequence[Module], interfaces: Sequence[str] = ()) -> Path:
     """Make the package's sources exactly these modules; files that a person put beside them stay. Returns its folder.
 
     A module that was written before and is no longer among them is removed: its executable is gone too.
+    `interfaces` are the course's own packages of interfaces, on which modules may depend.
     """
     folder = package_folder(workspace, package)
-    files = package_files(package, modules)
+    files = package_files(package, modules, interfaces)
     for path, content in files.items():
         write_if_changed(folder / path, content)
     written = folder / ".spinbook-modules"

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import click
 
+from interface_compiler.near import use_near
 from spinbook.ros2 import stopping
 from spinbook.ros2.groups import Entry, Menu
 from spinbook.ros2.real import hand_over
@@ -29,6 +31,8 @@ class Ros2(Menu):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         if not ctx.resilient_parsing:
             hand_over(args)
+            # A course's own types are known in its folder; nothing has to be sourced.
+            use_near(Path.cwd())
         return super().parse_args(ctx, args)
 
     def invoke(self, ctx: click.Context) -> Any:

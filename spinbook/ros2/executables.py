@@ -11,10 +11,13 @@ from spinbook.ros2 import prefixes, workspace
 from spinbook.ros2.bootstrap import without_bootstrap
 from spinbook.ros2.refusal import Refusal
 
-#: Package -> executable -> the module that is it. Used where the package is not installed.
+#: Package -> executable -> the module that is it. Used where the package has no executables: of turtlesim, set-up
+#: compiles the messages alone.
 BUILT_IN = {
     "turtlesim": {
         "draw_square": "spinbook.turtlesim.draw_square",
+        "mimic": "spinbook.turtlesim.mimic",
+        "turtle_teleop_key": "spinbook.turtlesim.teleop_key",
         "turtlesim_node": "spinbook.turtlesim.node",
     }
 }
@@ -43,8 +46,9 @@ def find(package: str, executable: str, cwd: Path) -> Launch:
             if prefix is not None:
                 near.extend(environment)
                 break
-    if prefix is not None:
-        return Launch([str(_only(in_prefix(prefix, package), package, executable))], environment)
+    there = in_prefix(prefix, package) if prefix is not None else []
+    if there or (prefix is not None and package not in BUILT_IN):
+        return Launch([str(_only(there, package, executable))], environment)
     modules = BUILT_IN.get(package)
     if modules is None:
         raise Refusal(
@@ -55,6 +59,11 @@ def find(package: str, executable: str, cwd: Path) -> Launch:
     if executable not in modules:
         raise Refusal("No executable found", f"Executables of {package}: {', '.join(sorted(modules))}.")
     return Launch([sys.executable, "-m", modules[executable]], environment)
+
+
+def is_built_in(package: str, prefix: Path | None) -> bool:
+    """Whether Spinbook's own executables of a package are used: those of its prefix come first."""
+    return package in BUILT_IN and (prefix is None or not in_prefix(prefix, package))
 
 
 def in_prefix(prefix: Path, package: str) -> list[Path]:

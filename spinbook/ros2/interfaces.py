@@ -6,22 +6,13 @@ import difflib
 import importlib
 from typing import Any, Literal
 
+from interface_compiler import shipped
 from spinbook.ros2 import interface_files
 from spinbook.ros2.refusal import Refusal
 
 Kind = Literal["msg", "srv", "action"]
 
 KINDS: dict[Kind, str] = {"msg": "message", "srv": "service", "action": "action"}
-
-#: Types that courses name but that no wheel brings -> what has the same or nearly the same fields.
-STAND_INS = {
-    "turtlesim/msg/Pose": "geometry_msgs/msg/Pose2D (x, y, theta; our turtlesim publishes it as /turtle1/pose)",
-    "example_interfaces/action/Fibonacci": "test_msgs/action/Fibonacci (the same fields)",
-    "example_interfaces/srv/SetBool": "std_srvs/srv/SetBool (the same fields)",
-    "example_interfaces/srv/Trigger": "std_srvs/srv/Trigger (the same fields)",
-    "example_interfaces/srv/AddTwoInts": "nothing with its fields; std_srvs/srv/SetBool or std_srvs/srv/Trigger"
-    " show how services work",
-}
 
 
 def message_class(name: str) -> Any:
@@ -77,34 +68,18 @@ def full_name(name: str, kind: Kind) -> str:
 
 
 def check_installed(full: str) -> None:
-    """Raise `Refusal` where the type `PACKAGE/KIND/NAME` is not installed: what stands in, or what is like it."""
+    """Raise `Refusal` where the type `PACKAGE/KIND/NAME` is not installed: how to get it, or what is like it."""
     package, kind, short = full.split("/")
     known = interface_files.interfaces_of(package)
     if known is not None and f"{kind}/{short}" in known:
         return
-    stand_in = _stand_in(full)
-    if known is None:
-        lines = [f"Unknown package '{package}': the type '{full}' is not installed here."]
+    if known is not None:
+        raise Refusal(f"The package '{package}' has no type '{kind}/{short}'.", _alike(full))
+    if package in (*shipped.standard(), *shipped.optional()):
+        advice = f"Compile it, once: spinbook interfaces add {package}"
     else:
-        lines = [f"The package '{package}' has no type '{kind}/{short}'."]
-    if stand_in:
-        lines.append(f"In its place: {stand_in}.")
-    else:
-        lines.append(_alike(full))
-    raise Refusal(*lines)
-
-
-def _stand_in(full: str) -> str | None:
-    package, kind, short = full.split("/")
-    if full in STAND_INS:
-        return STAND_INS[full]
-    if (
-        package == "example_interfaces"
-        and kind == "msg"
-        and f"msg/{short}" in (interface_files.interfaces_of("std_msgs") or ())
-    ):
-        return f"std_msgs/msg/{short} (the same fields)"
-    return None
+        advice = _alike(full)
+    raise Refusal(f"Unknown package '{package}': the type '{full}' is not installed here.", advice)
 
 
 def _alike(full: str) -> str:

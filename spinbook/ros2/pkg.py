@@ -46,13 +46,15 @@ def executables(package_name: str | None, full_path: bool) -> None:
     \b
       ros2 pkg executables turtlesim
       turtlesim draw_square
+      turtlesim mimic
+      turtlesim turtle_teleop_key
       turtlesim turtlesim_node
     """
     packages = search.everywhere(Path.cwd())
     if package_name is not None and package_name not in packages and package_name not in search.BUILT_IN:
         raise Refusal(f"Package '{package_name}' not found", "`ros2 pkg list` shows those that are there.")
     for name in [package_name] if package_name else sorted({*packages, *search.BUILT_IN}):
-        if name in packages:
+        if not search.is_built_in(name, packages.get(name)):
             for path in search.in_prefix(packages[name], name):
                 click.echo(str(path) if full_path else f"{name} {path.name}")
         else:

@@ -1,51 +1,5 @@
-"""Where ROS packages are installed: ament prefixes, and the packages found in their index."""
+"""Where ROS packages are installed: what the interface compiler knows of it, under the name that is used here."""
 
-from __future__ import annotations
+from interface_compiler.prefixes import RESOURCES, installed, packages, prefix_of, resources
 
-import os
-import sys
-from collections.abc import Iterable
-from pathlib import Path
-
-RESOURCES = Path("share", "ament_index", "resource_index")
-
-
-def installed() -> list[Path]:
-    """The prefixes of AMENT_PREFIX_PATH, then this Python's own (the wheels'), each once and in that order."""
-    named = [Path(entry) for entry in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]
-    own = Path(sys.prefix)
-    found = [prefix for prefix in [*named, own] if (prefix / RESOURCES).is_dir()]
-    return list(dict.fromkeys(found))
-
-
-def packages(prefixes: Iterable[Path]) -> dict[str, Path]:
-    """Package -> its prefix; the first prefix that has it wins."""
-    found: dict[str, Path] = {}
-    for prefix in prefixes:
-        for marker in sorted(_markers(prefix, "packages")):
-            found.setdefault(marker.name, prefix)
-    return found
-
-
-def prefix_of(package: str, prefixes: Iterable[Path]) -> Path | None:
-    """The first prefix that has `package`."""
-    for prefix in prefixes:
-        if (prefix / RESOURCES / "packages" / package).is_file():
-            return prefix
-    return None
-
-
-def resources(kind: str, prefixes: Iterable[Path]) -> dict[str, Path]:
-    """Name -> marker file of every resource of a `kind`, such as `rosidl_interfaces` or `rmw_typesupport`."""
-    found: dict[str, Path] = {}
-    for prefix in prefixes:
-        for marker in sorted(_markers(prefix, kind)):
-            found.setdefault(marker.name, marker)
-    return found
-
-
-def _markers(prefix: Path, kind: str) -> list[Path]:
-    folder = prefix / RESOURCES / kind
-    if not folder.is_dir():
-        return []
-    return [marker for marker in folder.iterdir() if marker.is_file() and not marker.name.startswith(".")]
+__all__ = ["RESOURCES", "installed", "packages", "prefix_of", "resources"]

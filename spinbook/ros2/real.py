@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 
 from spinbook.ros2 import prefixes
 from spinbook.ros2.bootstrap import without_bootstrap
+from spinbook.ros2.executables import is_built_in
 
 #: `own` here keeps this package's command even where the real one is installed.
 CHOICE = "SPINBOOK_ROS2"
@@ -43,4 +44,4 @@ def _ours_all_the_same(arguments: Sequence[str]) -> bool:
     while rest and rest[0].startswith("-"):
         takes_value = rest[0] == "--prefix"
         rest = rest[2 if takes_value else 1 :]
-    return bool(rest) and rest[0] == "turtlesim" and prefixes.prefix_of("turtlesim", prefixes.installed()) is None
+    return rest[:1] == ["turtlesim"] and is_built_in("turtlesim", prefixes.prefix_of("turtlesim", prefixes.installed()))

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import sys
 
+from interface_compiler import toolchain
+from spinbook.package.write_interfaces import written_definitions
 from spinbook.runtime.failure import CellFailed
 from spinbook.runtime.session import Session
 from spinbook.runtime.showing import Bound
@@ -25,5 +27,15 @@ def run(session: Session, words: list[str], bound: Bound) -> None:
         # It would warn that this prefix has no local_setup script; nothing here needs one.
         "COLCON_LOG_LEVEL": os.environ.get("COLCON_LOG_LEVEL", "error"),
     }
+    if words[:1] == ["build"]:
+        words = [*words, *_without_interfaces(session)]
     argv = [sys.executable, "-m", "colcon", "--log-base", os.fspath(workspace / "log"), *words]
     session.run_command(argv, settings, workspace, bound, "colcon")
+
+
+def _without_interfaces(session: Session) -> list[str]:
+    """Options that leave out packages of interfaces where there is no ament_cmake: Spinbook compiles them itself."""
+    if toolchain.sourced_ros() is not None:
+        return []
+    packages = sorted({item.package for item in written_definitions(session.workspace)})
+    return ["--packages-ignore", *packages] if packages else []

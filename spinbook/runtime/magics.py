@@ -14,7 +14,7 @@ from typing import Any, NoReturn
 from IPython.core.magic import Magics, cell_magic, line_magic, magics_class, no_var_expand
 
 from spinbook.course.course import Package
-from spinbook.runtime import colcon_cell, domain, graph_cell, plot_cell, ros2_cell, turtle_cell
+from spinbook.runtime import colcon_cell, domain, graph_cell, interface_cell, plot_cell, ros2_cell, turtle_cell
 from spinbook.runtime.failure import CellFailed
 from spinbook.runtime.session import COMMAND_SECONDS, GRAPH_SECONDS, NODE_SECONDS, Session
 from spinbook.runtime.showing import Bound
@@ -88,6 +88,16 @@ class SpinbookMagics(Magics):
         reader.add_argument("--workspace", default="notebook_ws")
         if given := reader.read(line):
             self.session.package = Package(name=given.package, workspace=given.workspace)
+            interface_cell.begin(self.session)
+
+    @no_var_expand
+    @cell_magic
+    def interface(self, line: str, cell: str) -> None:
+        """%%interface msg/NAME.msg: define a message, a service or an action, and compile it if it is new."""
+        reader = LineReader("%%interface", "Define a message, a service or an action: this cell's text is its file.")
+        reader.add_argument("path", help="msg/NAME.msg, srv/NAME.srv or action/NAME.action; a package may come first")
+        if given := reader.read(line):
+            interface_cell.run(self.session, given.path, cell.rstrip("\n") + "\n" if cell.strip() else "")
 
     @no_var_expand
     @cell_magic

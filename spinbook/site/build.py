@@ -31,7 +31,19 @@ class Site:
 
 
 #: What Spinbook's own code makes of a course, down to the outputs of its notebooks.
-_CODE = ("site", "chapter", "build", "course", "runtime", "ros2", "turtlesim", "package", "graph", "animation")
+_CODE = (
+    "site",
+    "chapter",
+    "build",
+    "course",
+    "runtime",
+    "ros2",
+    "turtlesim",
+    "package",
+    "graph",
+    "animation",
+    "interfaces",
+)
 
 
 def unchanged_site(course: Course, *, as_it_ran: bool) -> Site | None:
@@ -90,7 +102,7 @@ def _key(course: Course, *, as_it_ran: bool) -> str:
     """All that the site depends on."""
     inputs = [course.root / FILE, *(course.root / chapter for chapter in course.chapters)]
     inputs += [course.root / course.glossary] if course.glossary else []
-    for part in ("exercises", "solutions"):
+    for part in ("exercises", "solutions", "interfaces"):
         inputs += [file for file in (course.root / part).rglob("*") if file.is_file() and file.suffix != ".pyc"]
     for made in ("executed", "notebooks"):
         inputs += (course.build_folder / made).glob("*.*")

@@ -102,6 +102,8 @@ def _code(cell: Cell, ran: Ran, source_link: str) -> dict[str, Any]:
     }
     if cell.kind is CellKind.NODE:
         about["file"] = cell.module
+    elif cell.kind is CellKind.INTERFACE:
+        about["interface"] = cell.name
     return {
         "cell_type": "code",
         "id": cell.id,

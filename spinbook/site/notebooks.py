@@ -7,10 +7,20 @@ from rich.console import Console
 from spinbook.build.execution import Job, execute
 from spinbook.build.notebooks import build_notebooks
 from spinbook.course.course import Course
+from spinbook.interfaces.compiled import compile_course
+from spinbook.problem import SpinbookError
 
 
 def bring_up_to_date(course: Course, console: Console) -> bool:
-    """Build each chapter's notebook, and run those whose code has changed. False if a chapter has to be mended."""
+    """Compile the course's interfaces, build each chapter's notebook, and run those whose code has changed.
+
+    False if something has to be fixed first.
+    """
+    try:
+        compile_course(course)
+    except SpinbookError as error:
+        console.print(str(error), markup=False)
+        return False
     built = list(build_notebooks(course))
     for problem in (problem for item in built for problem in item.problems):
         console.print(str(problem), markup=False)

@@ -13,8 +13,8 @@ from rclpy.node import Node
 from std_srvs.srv import Empty
 
 from spinbook.turtlesim.geometry import DT, normalized
-from spinbook.turtlesim.listening import pose_types
 from spinbook.turtlesim.spinning import spin_until_told
+from spinbook.turtlesim.types import Pose
 
 #: Side of the square (units), speeds (units/s and rad/s), and how near is near enough (units, rad; units/s, rad/s).
 SIDE, SPEED, TURN = 2.0, 1.0, 0.4
@@ -50,50 +50,28 @@ class DrawSquare:
         self.node = Node("draw_square")
         self._phase = Phase.FORWARD
         self._goal: Goal | None = None
-        self._pose: Any = None
+        self._pose: Pose | None = None
         self._resting = False
-        self._subscription: Any = None
         self._twists = self.node.create_publisher(Twist, "turtle1/cmd_vel", 1)
         self._reset = self.node.create_client(Empty, "reset")
         self._reset_answer: Any = None
+        self.node.create_subscription(Pose, "turtle1/pose", self._hear, 1)
         self.node.create_timer(DT, self._step)
 
     def _step(self) -> None:
-        if self._subscription is None:
-            self._subscribe()
-        elif self._reset_answer is None:
+        if self._reset_answer is None:
             if self._reset.service_is_ready():
                 self._reset_answer = self._reset.call_async(Empty.Request())
         elif self._reset_answer.done() and self._pose is not None:
-            self._drive()
+            self._drive(self._pose)
 
-    def _subscribe(self) -> None:
-        """Listen to the turtle's poses in whichever type they come."""
-        topic = self.node.resolve_topic_name("turtle1/pose")
-        published = {each.topic_type for each in self.node.get_publishers_info_by_topic(topic)}
-        for name, kind in pose_types().items():
-            if name in published:
-                self._subscription = self.node.create_subscription(kind, "turtle1/pose", self._hear, 1)
-                return
+    def _hear(self, pose: Pose) -> None:
+        if self._reset_answer is not None and self._reset_answer.done():
+            self._pose = pose
+            self._resting = max(abs(pose.linear_velocity), abs(pose.angular_velocity)) < AT_REST
 
-    def _hear(self, pose: Any) -> None:
-        if self._reset_answer is None or not self._reset_answer.done():
-            return
-        self._resting = self._at_rest(pose)
-        self._pose = pose
-
-    def _at_rest(self, pose: Any) -> bool:
-        """Whether the turtle stands still. Pose2D tells no velocities: there, whether a tick has changed nothing."""
-        if hasattr(pose, "linear_velocity"):
-            return bool(max(abs(pose.linear_velocity), abs(pose.angular_velocity)) < AT_REST)
-        before = self._pose
-        if before is None:
-            return False
-        moved = math.hypot(pose.x - before.x, pose.y - before.y)
-        return moved < AT_REST * DT and abs(normalized(pose.theta - before.theta)) < AT_REST * DT
-
-    def _drive(self) -> None:
-        pose, goal = self._pose, self._goal
+    def _drive(self, pose: Pose) -> None:
+        goal = self._goal
         if goal is None:
             self._begin(Phase.FORWARD, Goal(*_ahead(pose), pose.theta))
         elif self._phase in (Phase.FORWARD, Phase.TURN):
@@ -121,7 +99,7 @@ class DrawSquare:
         self._twists.publish(twist)
 
 
-def _ahead(pose: Any) -> tuple[float, float]:
+def _ahead(pose: Pose) -> tuple[float, float]:
     """The end of a side that begins at `pose`."""
     return (pose.x + math.cos(pose.theta) * SIDE, pose.y + math.sin(pose.theta) * SIDE)
 

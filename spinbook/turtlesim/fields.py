@@ -1,6 +1,6 @@
 """turtlesim's message fields: how they are filled, and what a request with them asks of the world.
 
-No message type is imported here: whatever has the fields will do, turtlesim's own types and our stand-ins alike.
+No message type is imported here: whatever has the fields will do.
 """
 
 from __future__ import annotations

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import contextlib
-import importlib
 import time
 from typing import Any
 
-from geometry_msgs.msg import Pose2D
 from rclpy.node import Node
 
 from spinbook.turtlesim.geometry import DT, SIDE
 from spinbook.turtlesim.pen import Pen
 from spinbook.turtlesim.track import Track
 from spinbook.turtlesim.trail import Point, Trail
+from spinbook.turtlesim.types import Pose
 from spinbook.turtlesim.world_picture import BLUE, TurtlePicture, WorldPicture, strokes, tracks
+
+#: The type of a turtle's poses.
+POSE = "turtlesim/msg/Pose"
 
 
 class Heard:
@@ -24,7 +25,6 @@ class Heard:
         self.topic = topic
         self._turtle = topic.split("/")[-2]
         self._node = node
-        self._types = pose_types()
         self._trail = Trail()
         self._track = Track()
         self._last: Any = None
@@ -32,17 +32,15 @@ class Heard:
         self._listening = False
 
     def look(self) -> None:
-        """Listen as soon as somebody publishes: the type is theirs, and a node may have one type a topic only."""
-        for found in self._published_types() if not self._listening else []:
-            if found in self._types:
-                self._node.create_subscription(self._types[found], self.topic, self._hear, 50)
-                self._listening = True
-                return
+        """Listen as soon as somebody publishes poses."""
+        if not self._listening and POSE in self._published_types():
+            self._node.create_subscription(Pose, self.topic, self._hear, 50)
+            self._listening = True
 
     def _published_types(self) -> list[str]:
         return sorted({each.topic_type for each in self._node.get_publishers_info_by_topic(self.topic)})
 
-    def _hear(self, pose: Any) -> None:
+    def _hear(self, pose: Pose) -> None:
         here: Point = (pose.x, pose.y)
         before = here if self._last is None else (self._last.x, self._last.y)
         if here != before:
@@ -61,13 +59,5 @@ class Heard:
         return WorldPicture(SIDE, BLUE, (turtle,), trails, incomplete, moved)
 
     def unreadable_types(self) -> list[str]:
-        """What is published on the topic though this Python has no such message."""
-        return [found for found in self._published_types() if found not in self._types]
-
-
-def pose_types() -> dict[str, type]:
-    """The types a pose may have here, by name: turtlesim's own where it is installed, and its stand-in."""
-    types: dict[str, type] = {"geometry_msgs/msg/Pose2D": Pose2D}
-    with contextlib.suppress(ImportError):
-        types["turtlesim/msg/Pose"] = importlib.import_module("turtlesim.msg").Pose
-    return types
+        """What is published on the topic and is not a turtle's pose."""
+        return [found for found in self._published_types() if found != POSE]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import sys
 
 from geometry_msgs.msg import Twist
@@ -15,10 +14,9 @@ from std_srvs.srv import Empty, Trigger
 
 from spinbook.turtlesim.events import Event, Killed, LogLine, Severity, Spawned
 from spinbook.turtlesim.geometry import TICK_NS
-from spinbook.turtlesim.interface import Interface
+from spinbook.turtlesim.interface import DEPTH, Interface
 from spinbook.turtlesim.pacing import Pacing
 from spinbook.turtlesim.spinning import spin_until_told
-from spinbook.turtlesim.standin import DEPTH, StandIn
 from spinbook.turtlesim.world import World
 from spinbook.turtlesim.world_picture import BLUE, picture_of
 
@@ -34,14 +32,12 @@ class Turtlesim:
         self._world = World()
         self._pacing = Pacing()
         self._commands: dict[str, Subscription] = {}
-        self._interface = self._choose_interface()
+        self._interface = Interface(self.node, self._world, self._perform)
         self.node.create_service(Empty, "clear", self._clear)
         self.node.create_service(Empty, "reset", self._reset)
         self.node.create_service(Trigger, "~/picture", self._picture)
         self.node.get_logger().info(f"Starting turtlesim with node name {self.node.get_fully_qualified_name()}")
         self._perform(self._world.start())
-        if self._interface.statement:
-            self.node.get_logger().info(self._interface.statement)
         self.node.create_timer(TICK_NS / _NS_PER_S, self._tick)
 
     def _declare_parameters(self) -> None:
@@ -52,15 +48,6 @@ class Turtlesim:
             self.node.declare_parameter(f"background_{name}", default, descriptor)
         told = "Whether linear.y of a command moves a turtle sideways"
         self.node.declare_parameter("holonomic", False, ParameterDescriptor(description=told))
-
-    def _choose_interface(self) -> Interface:
-        try:
-            importlib.import_module("turtlesim.msg")
-        except ImportError:
-            return StandIn(self.node, self._world, self._perform)
-        from spinbook.turtlesim.real import Real
-
-        return Real(self.node, self._world, self._perform)
 
     def _perform(self, events: list[Event]) -> None:
         """Log and publish what has happened."""

@@ -127,6 +127,14 @@ def test_a_newer_setuptools_that_copies_in_place_of_linking_is_warned_of(tmp_pat
     assert "setuptools 80.9.0" in finding["found"]
 
 
+def test_a_missing_compiler_is_a_warning_with_what_to_install(tmp_path: Path) -> None:
+    program(tmp_path, "apt-get", "exit 0")
+    finding = finding_of("compiler", PATH=os.fspath(tmp_path))
+    assert finding["state"] == "warning"
+    assert finding["found"] == "not found: gcc, g++"
+    assert "sudo apt-get install g++" in finding["mend"]
+
+
 def test_namespaces_that_are_not_allowed_are_a_warning_with_the_kernels_own_words(tmp_path: Path) -> None:
     path = program(tmp_path, "unshare", "echo 'unshare: unshare failed: Operation not permitted' >&2; exit 1")
     finding = finding_of("namespaces", PATH=path)

@@ -84,6 +84,20 @@ def test_the_zip_holds_the_two_scripts_and_of_the_solutions_only_one(autograder:
     assert solutions == ["solution.py"]
 
 
+def test_the_zip_holds_what_compiles_messages_and_the_courses_own_definitions(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    definition = tmp_path / "prefix" / "definitions" / "arm_msgs" / "msg" / "Joint.msg"
+    definition.parent.mkdir(parents=True)
+    definition.write_text("string name\n")
+    monkeypatch.setenv("SPINBOOK_INTERFACES", str(tmp_path / "prefix"))
+    with zipfile.ZipFile(BytesIO(bundle(load(TEMPLATE / "exercises" / EXERCISE)))) as archive:
+        names = archive.namelist()
+    assert "course/interfaces/arm_msgs/msg/Joint.msg" in names
+    assert "course/interface_compiler/definitions/standard/turtlesim/msg/Pose.msg" in names
+    assert "course/course.toml" in names
+
+
 def test_the_same_content_makes_the_same_zip() -> None:
     exercise = load(TEMPLATE / "exercises" / EXERCISE)
     assert bundle(exercise) == bundle(exercise)

@@ -13,7 +13,7 @@ import yaml
 
 from grader.exercise import load
 from handout.conftest import CHAPTER, NOTE, ROOT, HandedOut, append, copy_course
-from spinbook.handout.archive import zipped
+from interface_compiler.archive import zipped
 from spinbook.handout.comments import without_comments
 from spinbook.handout.leaks import leaks
 from spinbook.handout.notebook import for_students
@@ -123,6 +123,8 @@ def test_the_means_to_install_are_there_and_can_be_read(real: HandedOut) -> None
         "## Step 3: do the exercises, check, hand in",
     ]
     wheel = next((real.folder / "wheels").glob("spinbook-*.whl"))
+    turtlesim = next((real.folder / "wheels").glob("spinbook_interfaces_turtlesim-*.whl"))
+    assert f"./wheels/{turtlesim.name} ; python_version" in (real.folder / "requirements.txt").read_text()
     assert f"./wheels/{wheel.name}[ros,colcon,lab]" in (real.folder / "requirements.txt").read_text().splitlines()
     conda = yaml.safe_load((real.folder / "environment.yml").read_text())
     assert conda["channels"] == ["robostack-jazzy", "conda-forge"]

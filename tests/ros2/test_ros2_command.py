@@ -120,7 +120,7 @@ def test_the_variable_keeps_ours(terminal: Terminal, monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.usefixtures("installed")
-def test_turtlesim_stays_ours_where_the_installation_has_none(
+def test_turtlesim_stays_ours_where_the_installation_has_no_executables_of_it(
     tmp_path: Path, terminal: Terminal, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert terminal.ros2("run", "turtlesim", "nothing").err.startswith("No executable found\n")
@@ -128,6 +128,9 @@ def test_turtlesim_stays_ours_where_the_installation_has_none(
     packages = tmp_path / "share/ament_index/resource_index/packages"
     packages.mkdir(parents=True)
     (packages / "turtlesim").touch()
+    executable = tmp_path / "lib" / "turtlesim" / "turtlesim_node"
+    executable.parent.mkdir(parents=True)
+    executable.touch(mode=0o755)
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
     assert terminal.ros2("run", "turtlesim", "turtlesim_node").out.startswith("real run turtlesim turtlesim_node\n")
 

@@ -57,7 +57,8 @@ def test_proto_is_yaml_in_quotes(terminal: Terminal) -> None:
 
 def test_lists(terminal: Terminal) -> None:
     assert terminal.ros2("interface", "list", "-a").out == (
-        "Actions:\n    test_msgs/action/Fibonacci\n    test_msgs/action/NestedMessage\n"
+        "Actions:\n    example_interfaces/action/Fibonacci\n"
+        "    test_msgs/action/Fibonacci\n    test_msgs/action/NestedMessage\n    turtlesim/action/RotateAbsolute\n"
     )
     everything = terminal.ros2("interface", "list").out.splitlines()
     assert everything[:2] == ["Messages:", "    action_msgs/msg/GoalInfo"]
@@ -73,9 +74,10 @@ def test_lists(terminal: Terminal) -> None:
 
 
 def test_what_is_not_installed(terminal: Terminal) -> None:
-    pose = terminal.ros2("interface", "show", "turtlesim/msg/Pose")
+    pose = terminal.ros2("interface", "show", "turtlesim/msg/Pos")
     assert pose.code == 1
-    assert "geometry_msgs/msg/Pose2D" in pose.err
+    assert "Did you mean" in pose.err
+    assert "turtlesim/msg/Pose" in pose.err
     close = terminal.ros2("interface", "show", "sensor_msgs/msg/JointStates")
     assert "Did you mean sensor_msgs/msg/JointState" in close.err
     short = terminal.ros2("interface", "show", "sensor_msgs/JointState")

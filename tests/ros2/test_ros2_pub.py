@@ -71,8 +71,8 @@ def test_auto_and_now_are_the_time_of_publishing(terminal: Terminal) -> None:
         ("std_msgs/msg/Int8", "{data: 3", "is not YAML", "Quote it"),
         ("std_msgs/msg/Int9", "{}", "no type 'msg/Int9'", "std_msgs/msg/Int8"),
         ("Int8", "{}", "message type is invalid: 'Int8'", "PACKAGE/msg/NAME"),
-        ("turtlesim/msg/Pose", "{}", "Unknown package 'turtlesim'", "geometry_msgs/msg/Pose2D"),
-        ("example_interfaces/msg/Int64", "{}", "not installed here", "std_msgs/msg/Int64 (the same fields)"),
+        ("turtlesim/msg/Pos", "{}", "no type 'msg/Pos'", "turtlesim/msg/Pose"),
+        ("nopkg/msg/Int64", "{}", "Unknown package 'nopkg'", "std_msgs/msg/Int64"),
     ],
 )
 def test_what_was_typed_wrong_is_said_at_once(

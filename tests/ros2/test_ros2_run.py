@@ -110,10 +110,23 @@ def test_an_installed_prefix_comes_before_a_workspace(
     assert Path(told["module"]).parent == sourced
 
 
-def test_turtlesim_is_ours_where_it_is_not_installed(tmp_path: Path) -> None:
+def test_turtlesim_is_ours_where_only_its_messages_are_installed(tmp_path: Path) -> None:
     launch = find("turtlesim", "turtlesim_node", tmp_path)
     assert launch.argv == [sys.executable, "-m", "spinbook.turtlesim.node"]
     assert find("turtlesim", "draw_square", tmp_path).argv[-1] == "spinbook.turtlesim.draw_square"
+    for executable in ("mimic", "turtle_teleop_key"):
+        find("turtlesim", executable, tmp_path)
+
+
+def test_an_installed_turtlesim_comes_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    prefix = tmp_path / "opt"
+    (prefix / "share" / "ament_index" / "resource_index" / "packages").mkdir(parents=True)
+    (prefix / "share" / "ament_index" / "resource_index" / "packages" / "turtlesim").touch()
+    node = prefix / "lib" / "turtlesim" / "turtlesim_node"
+    node.parent.mkdir(parents=True)
+    node.touch(mode=0o755)
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(prefix))
+    assert find("turtlesim", "turtlesim_node", tmp_path).argv == [str(node)]
 
 
 def test_another_program_does_not_inherit_the_wheels_bootstrap(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

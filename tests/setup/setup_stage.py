@@ -45,6 +45,12 @@ if [ "$1 $2" = "-m rmw_lockstep.build" ]; then
     [ ! -e "$STAGE/compiling-fails" ] || { cat "$STAGE/compiling-fails" >&2; exit 1; }
     exit 0
 fi
+if [ "$2" = interface_compiler ]; then
+    echo "interfaces $3" >>"$STAGE/calls"
+    [ -z "$3" ] || { cat "$STAGE/compiler-is"; exit; }
+    [ ! -e "$STAGE/no-compiler" ] || { cat "$STAGE/no-compiler" >&2; exit 3; }
+    exit 0
+fi
 [ ! -e "$STAGE/ros-fails" ] || { cat "$STAGE/ros-fails" >&2; exit 1; }
 """
 
@@ -104,6 +110,8 @@ def make_checkout(parent: Path) -> Checkout:
     """A checkout in a folder below `parent`."""
     folder, stage = parent / "spinbook", parent / "stage"
     (folder / "spinbook" / "doctor").mkdir(parents=True)
+    (folder / "interface_compiler").mkdir()
+    (folder / "interface_compiler" / "Pose.msg").write_text("float32 x\n")
     for name in ("setup.sh", "Makefile", "pyproject.toml", "spinbook/doctor/ros_origin.py"):
         shutil.copy(ROOT / name, folder / name)
     (folder / "constraints.txt").write_text(

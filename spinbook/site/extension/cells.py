@@ -8,8 +8,8 @@ from typing import Any
 from docutils import nodes
 from sphinx.transforms import SphinxTransform
 
-_LANGUAGES = {"shell": "bash", "node": "python"}
-_KINDS = {"shell": "Terminal", "node": "Node", "snippet": "Notebook"}
+_LANGUAGES = {"shell": "bash", "node": "python", "interface": "text"}
+_KINDS = {"shell": "Terminal", "node": "Node", "snippet": "Notebook", "interface": "Interface"}
 
 
 class DescribeCells(SphinxTransform):
@@ -43,8 +43,9 @@ def _describe(cell: nodes.container, about: dict[str, Any]) -> None:
 
 def _head(kind: str, about: dict[str, Any]) -> str:
     file = about.get("file", "")
-    name = f'<span class="cell-file">{escape(file)}</span>' if file else ""
-    of = file or f"this {_KINDS.get(kind, 'cell').lower()} block"
+    shown = file or about.get("interface", "")
+    name = f'<span class="cell-file">{escape(shown)}</span>' if shown else ""
+    of = shown or f"this {_KINDS.get(kind, 'cell').lower()} block"
     source = (
         f'<a class="cell-source" href="{escape(about["source"])}" '
         f'aria-label="Source of {escape(of)}, line {about["line"]}">line {about["line"]}</a>'

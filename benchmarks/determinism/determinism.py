@@ -1,0 +1,149 @@
+"""How often does the same program get another recording or another grade? It should be never.
+
+    python benchmarks/determinism/determinism.py --rounds 4 --json build/determinism.json
+
+Every file in solutions/joint_velocity is graded in each round, and so are the programs in the folder programs/, which
+do what makes a grader flaky: they answer from threads, timers, processes and asyncio, they sleep, poll, and wait by the
+clock. Every other round runs next to busy loops, four per core. A recording differs if any message in it does, by one
+bit, or the time at which it came, or the order; a grade differs if any verdict does.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from grader.crew import Crew
+from grader.exercise.loading import load
+from grader.grading import Grade, Options
+from grader.grading.grading import Grading, grading_of
+from grader.recording.store import to_json
+from grader.submission.reading import read
+
+HERE = Path(__file__).parent
+COURSE = HERE.parents[1]
+
+#: Busy loops for each core in every other round.
+LOOPS_PER_CORE = 4
+
+
+@dataclass
+class Counts:
+    """What was seen of one program."""
+
+    spins: int = 0
+    grades: int = 0
+    other_recordings: int = 0
+    other_grades: int = 0
+    host_errors: int = 0
+    first: Grade | None = field(default=None, repr=False)
+
+    def add(self, grade: Grade) -> None:
+        """Compare a grade with the first one."""
+        self.grades += 1
+        self.spins += len(grade.recordings)
+        if grade.outcome == "host-error":
+            self.host_errors += 1
+            return
+        self.first = first = self.first or grade
+        self.other_grades += grade != first
+        before, now = _texts(first), _texts(grade)
+        self.other_recordings += sum(before.get(name) != text for name, text in now.items())
+
+    @property
+    def plain(self) -> dict[str, int]:
+        """As it is written."""
+        return {name: value for name, value in vars(self).items() if name != "first"}
+
+
+def _texts(grade: Grade) -> dict[str, str]:
+    """Each recording as a text: two NaN are the same there. How long it took, and the log, do not count."""
+    return {
+        name: to_json({name: replace(recording, log="", seconds=0.0, lockstep_seconds=0.0)})
+        for name, recording in grade.recordings.items()
+    }
+
+
+def main() -> int:
+    """Run all rounds, print a line for each program, and return 1 if anything differed."""
+    options = _options()
+    with Crew() as crew:
+        grading = grading_of(load(COURSE / "exercises" / "joint_velocity"), Options(parallel=1), crew)
+        counts = {file: Counts() for file in _files(options.only)}
+        for number in range(options.rounds):
+            began = time.monotonic()
+            with _load(number % 2 == 1):
+                _round(grading, counts)
+            how = "next to busy loops" if number % 2 else "alone"
+            print(f"round {number + 1}, {how}: {time.monotonic() - began:.0f} s", file=sys.stderr, flush=True)
+    return _report(counts, options.json)
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument(
+        "--rounds", type=int, default=2, help="how often each program is graded  (default: %(default)s)"
+    )
+    parser.add_argument("--only", default="", help="only programs whose path contains this")
+    parser.add_argument("--json", type=Path, help="write the counts to this file, too")
+    return parser.parse_args()
+
+
+def _files(only: str) -> list[Path]:
+    found = [*sorted((HERE / "programs").glob("*.py")), *sorted((COURSE / "solutions/joint_velocity").rglob("*.py"))]
+    return [file for file in found if only in str(file)]
+
+
+def _round(grading: Grading, counts: dict[Path, Counts]) -> None:
+    exercise = grading.spinner.exercise
+    with ThreadPoolExecutor(2 * len(os.sched_getaffinity(0))) as pool:
+        grades = {file: pool.submit(grading.grade, read(str(file), exercise)) for file in counts}
+        for file, grade in grades.items():
+            counts[file].add(grade.result())
+
+
+@contextlib.contextmanager
+def _load(busy: bool) -> Iterator[None]:
+    """For as long as this lasts, something else keeps the machine busy."""
+    count = LOOPS_PER_CORE * len(os.sched_getaffinity(0)) if busy else 0
+    loops = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
+    try:
+        yield
+    finally:
+        for loop in loops:
+            loop.kill()
+            loop.wait()
+
+
+def _report(counts: dict[Path, Counts], file: Path | None) -> int:
+    total = Counts()
+    print("| program | spins | other recordings | grades | other grades | faults of the machine |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    for path, count in counts.items():
+        _print(path.relative_to(COURSE).as_posix(), count)
+        for name, value in count.plain.items():
+            setattr(total, name, getattr(total, name) + value)
+    _print("**all**", total)
+    if file:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        each = {path.relative_to(COURSE).as_posix(): count.plain for path, count in counts.items()}
+        file.write_text(json.dumps({"all": total.plain, "programs": each}, indent=2) + "\n")
+    return 1 if total.other_recordings or total.other_grades or total.host_errors else 0
+
+
+def _print(name: str, count: Counts) -> None:
+    cells = (name, count.spins, count.other_recordings, count.grades, count.other_grades, count.host_errors)
+    print("| " + " | ".join(map(str, cells)) + " |")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

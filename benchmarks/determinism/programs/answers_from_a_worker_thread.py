@@ -1,0 +1,35 @@
+"""A queue hands each message to a worker thread."""
+
+import queue
+import threading
+
+import rclpy
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+
+
+class Relay(Node):
+    """Publishes each message's joints again, with their positions as velocities."""
+
+    def __init__(self):
+        super().__init__('joint_velocity')
+        self.publisher = self.create_publisher(JointState, '/joint_velocities', 10)
+        self.create_subscription(JointState, '/joint_commands', self.on_joints, 10)
+        self.work = queue.Queue()
+        threading.Thread(target=self.run, daemon=True).start()
+
+    def answer(self, message, name=''):
+        names = [name + joint for joint in message.name]
+        self.publisher.publish(JointState(header=message.header, name=names, velocity=message.position))
+
+    def on_joints(self, message):
+        self.work.put(message)
+
+    def run(self):
+        while True:
+            self.answer(self.work.get())
+
+
+rclpy.init()
+node = Relay()
+rclpy.spin(node)

@@ -1,0 +1,182 @@
+"""Runs gcc over the generated code of one package: everything native becomes one Python extension module.
+
+CMake makes eight libraries of a package, which find one another by name on LD_LIBRARY_PATH. Here they are one, so
+nothing has to be found: a table in it (`dispatch.cpp`) stands in for the search of `librosidl_typesupport_c`.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sysconfig
+from collections.abc import Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+from interface_compiler import toolchain
+from interface_compiler.definition import CompileError
+from interface_compiler.generating import Generated
+from interface_compiler.prefixes import PYTHON
+
+#: The wheels' libraries that the code calls, and those whose headers it includes.
+_LIBRARIES = (
+    *("rosidl_runtime_c", "rosidl_typesupport_c", "rosidl_typesupport_fastrtps_c", "rosidl_typesupport_fastrtps_cpp"),
+    *("rosidl_typesupport_introspection_c", "fastcdr", "rcutils", "rmw"),
+)
+_HEADERS = (
+    *("rosidl_runtime_c", "rosidl_runtime_cpp", "rosidl_typesupport_interface", "rosidl_typesupport_c"),
+    *("rosidl_typesupport_introspection_c", "rosidl_typesupport_fastrtps_c", "rosidl_typesupport_fastrtps_cpp"),
+    *("fastcdr", "rmw", "rcutils", "rcpputils", "rosidl_dynamic_typesupport", "tracetools"),
+)
+#: The libraries into which CMake puts a package.
+_PARTS_BY_CMAKE = (
+    *("rosidl_generator_c", "rosidl_generator_py", "rosidl_typesupport_c"),
+    *("rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c"),
+)
+_FLAGS = ("-O1", "-fPIC", "-g0", "-w", "-fvisibility=default")
+_DISPATCH = Path(__file__).with_name("dispatch.cpp.in")
+_SYMBOL = re.compile(r"STRINGIFY\(ROSIDL_TYPESUPPORT_INTERFACE__(MESSAGE|SERVICE)_SYMBOL_NAME\((\w+), ([^)]*)\)\)")
+#: The file in which the compiler's own words are kept where it fails.
+LOG = "compiler.log"
+
+
+@dataclass(frozen=True)
+class Dependency:
+    """Another package whose types this one uses, and the prefix it is installed in."""
+
+    package: str
+    prefix: Path
+
+    @property
+    def module(self) -> Path:
+        """Its extension module, where the package was compiled here; absent where CMake made it."""
+        return self.prefix / PYTHON / self.package / module_name(self.package)
+
+    @property
+    def is_ours(self) -> bool:
+        """Whether it was compiled here."""
+        return self.module.is_file()
+
+    def libraries(self) -> list[Path]:
+        """What to link against."""
+        if self.is_ours:
+            return [self.module]
+        found = [self.prefix / "lib" / f"lib{self.package}__{part}.so" for part in _PARTS_BY_CMAKE]
+        return [library for library in found if library.is_file()]
+
+
+def module_name(package: str) -> str:
+    """The file name of a package's extension module, which rosidl's Python code imports by this name."""
+    return f"{package}_s__rosidl_typesupport_c{sysconfig.get_config_var('EXT_SUFFIX')}"
+
+
+def compile_package(generated: Generated, work: Path, dependencies: Sequence[Dependency], wheels: Path) -> Path:
+    """Compile a package's code. Returns the extension module, which is in its Python package.
+
+    Args:
+        generated: the code.
+        work: a folder for objects.
+        dependencies: the packages whose types it uses.
+        wheels: the prefix with ROS's own headers and libraries.
+
+    Raises:
+        CompileError: if gcc fails.
+    """
+    units = _units(generated, work)
+    # Assertions in the code name its file: without the folder, so that the result is the same wherever it is made.
+    places = [f"-ffile-prefix-map={folder}=." for folder in (work, generated.python)]
+    flags = [*_FLAGS, *places, *_includes(generated, dependencies, wheels)]
+    objects = [work / f"{number}.o" for number in range(len(units))]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        done = pool.map(lambda unit, target: _compile(unit, target, flags, generated.package), units, objects)
+        # To raise what a compiler has raised.
+        list(done)
+    module = generated.python / module_name(generated.package)
+    libraries = [str(library) for dependency in dependencies for library in dependency.libraries()]
+    libraries += [str(wheels / "lib" / f"lib{name}.so") for name in _LIBRARIES]
+    link = ["-shared", "-s", "-Wl,--as-needed", f"-Wl,-soname,{module.name}", "-Wl,-rpath,$ORIGIN/../../.."]
+    _run(["g++", *link, "-o", str(module), *map(str, objects), *libraries], generated.package)
+    for source in _python_sources(generated):
+        source.unlink()
+    return module
+
+
+def _units(generated: Generated, work: Path) -> list[Path]:
+    """What the compiler is started for: as few as there can be, as most of its time goes into reading headers."""
+    c, introspection = generated.c / generated.package, generated.introspection / generated.package
+    units = []
+    for kind in ("msg", "srv", "action"):
+        detail = c / kind / "detail"
+        cpp = [*sorted(detail.glob("*.cpp")), *sorted((c / kind).glob("*__type_support.cpp"))]
+        plain = [*sorted(detail.glob("*__functions.c")), *sorted(detail.glob("*__type_support.c"))]
+        units += _joined(work / f"{kind}_fastrtps.cpp", cpp)
+        units += _joined(work / f"{kind}_introspection.c", sorted((introspection / kind / "detail").glob("*.c")))
+        units += _joined(work / f"{kind}_functions.c", plain)
+        # These define the same static names and can't be joined.
+        units += sorted(detail.glob("*__description.c"))
+    units += _joined(work / "python.c", _python_sources(generated))
+    dispatch = work / "dispatch.cpp"
+    dispatch.write_text(_dispatch(c), encoding="utf-8")
+    return [*units, dispatch]
+
+
+def _joined(unit: Path, sources: Sequence[Path]) -> list[Path]:
+    if not sources:
+        return []
+    unit.write_text("".join(f'#include "{source}"\n' for source in sources), encoding="utf-8")
+    return [unit]
+
+
+def _python_sources(generated: Generated) -> list[Path]:
+    converters = sorted(generated.python.glob("*/*_s.c"))
+    return [*converters, *sorted(generated.python.glob(f"_{generated.package}_s.ep.*.c"))]
+
+
+def _dispatch(c: Path) -> str:
+    """The table's code: each type support that the generated code would search for, by the name it searches for."""
+    found: dict[str, list[str]] = {"message": [], "service": []}
+    for source in sorted(c.glob("*/*__type_support.cpp")):
+        for kind, support, names in _SYMBOL.findall(source.read_text(encoding="utf-8")):
+            interface = "__".join(part.strip() for part in names.split(","))
+            found[kind.lower()].append(f"{support}__get_{kind.lower()}_type_support_handle__{interface}")
+    text = _DISPATCH.read_text(encoding="utf-8")
+    declared = [f"const rosidl_{kind}_type_support_t * {name}();" for kind, names in found.items() for name in names]
+    text = text.replace("@DECLARATIONS@", "\n".join(declared))
+    for kind, names in found.items():
+        text = text.replace(f"@{kind.upper()}S@", "".join(f'  {{"{name}", {name}}},\n' for name in names))
+    return text
+
+
+def _includes(generated: Generated, dependencies: Iterable[Dependency], wheels: Path) -> list[str]:
+    import numpy
+
+    folders = [generated.c, generated.introspection, toolchain.headers(), Path(numpy.get_include())]
+    folders += [wheels / "include", *(wheels / "include" / name for name in _HEADERS)]
+    folders += [dependency.prefix / "include" / dependency.package for dependency in dependencies]
+    return [f"-I{folder}" for folder in folders if folder.is_dir()]
+
+
+def _compile(unit: Path, target: Path, flags: Sequence[str], package: str) -> None:
+    if unit.suffix == ".cpp":
+        renamed = [
+            f"-Drosidl_typesupport_c__get_{kind}_typesupport_handle_function=own_{kind}_typesupport"
+            for kind in ("message", "service")
+        ]
+        compiler = ["g++", "-std=c++17", *renamed]
+    else:
+        compiler = ["gcc", "-std=gnu11"]
+    _run([*compiler, *flags, "-c", str(unit), "-o", str(target)], package)
+
+
+def _run(command: Sequence[str], package: str) -> None:
+    done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
+    if done.returncode == 0:
+        return
+    lines = [line for line in done.stderr.splitlines() if "error" in line.lower()] or done.stderr.splitlines()
+    first = re.sub(r"^\S*/", "", lines[0])[:300] if lines else f"{command[0]} ended with exit code {done.returncode}"
+    raise CompileError(
+        f"{command[0]} failed on the package {package}: {first}. Its definitions are valid, so this is a fault of "
+        "the compiler's installation or of Spinbook. `spinbook doctor` looks at the installation."
+    )

@@ -1,0 +1,71 @@
+"""Where ROS packages are installed: ament prefixes, and the packages and interfaces found in their index."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+
+RESOURCES = Path("share", "ament_index", "resource_index")
+#: Where a prefix keeps its Python packages.
+PYTHON = Path("lib", f"python{sys.version_info.major}.{sys.version_info.minor}", "site-packages")
+
+
+def installed() -> list[Path]:
+    """The prefixes of AMENT_PREFIX_PATH, then this Python's own (the wheels'), each once and in that order."""
+    named = [Path(entry) for entry in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]
+    own = Path(sys.prefix)
+    found = [prefix for prefix in [*named, own] if (prefix / RESOURCES).is_dir()]
+    return list(dict.fromkeys(found))
+
+
+def packages(prefixes: Iterable[Path]) -> dict[str, Path]:
+    """Package -> its prefix; the first prefix that has it wins."""
+    found: dict[str, Path] = {}
+    for prefix in prefixes:
+        for marker in sorted(_markers(prefix, "packages")):
+            found.setdefault(marker.name, prefix)
+    return found
+
+
+def prefix_of(package: str, prefixes: Iterable[Path]) -> Path | None:
+    """The first prefix that has `package`."""
+    for prefix in prefixes:
+        if (prefix / RESOURCES / "packages" / package).is_file():
+            return prefix
+    return None
+
+
+def resources(kind: str, prefixes: Iterable[Path]) -> dict[str, Path]:
+    """Name -> marker file of every resource of a `kind`, such as `rosidl_interfaces` or `rmw_typesupport`."""
+    found: dict[str, Path] = {}
+    for prefix in prefixes:
+        for marker in sorted(_markers(prefix, kind)):
+            found.setdefault(marker.name, marker)
+    return found
+
+
+def interfaces(prefixes: Iterable[Path]) -> dict[str, frozenset[str]]:
+    """Package -> its interfaces as `msg/String`, of every package in these prefixes that has any."""
+    return {package: _listed(marker) for package, marker in resources("rosidl_interfaces", prefixes).items()}
+
+
+def definitions_of(package: str, prefix: Path) -> dict[str, str]:
+    """Path such as `msg/String.msg` -> text, of the definitions that an installed package keeps."""
+    share = prefix / "share" / package
+    files = (file for kind in ("msg", "srv", "action") for file in sorted(share.glob(f"{kind}/*.{kind}")))
+    return {file.relative_to(share).as_posix(): file.read_text(encoding="utf-8") for file in files}
+
+
+def _listed(marker: Path) -> frozenset[str]:
+    names = (line.strip().rpartition(".") for line in marker.read_text(encoding="utf-8").splitlines())
+    wanted = ("msg", "srv", "action", "idl")
+    return frozenset(stem for stem, _, ending in names if ending in wanted and stem.split("/")[0] in wanted[:3])
+
+
+def _markers(prefix: Path, kind: str) -> list[Path]:
+    folder = prefix / RESOURCES / kind
+    if not folder.is_dir():
+        return []
+    return [marker for marker in folder.iterdir() if marker.is_file() and not marker.name.startswith(".")]

@@ -1,0 +1,182 @@
+"""Compiled packages, kept for as long as nothing that they are made of changes."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import functools
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+
+from interface_compiler import checks, prefixes, toolchain
+from interface_compiler.building import DEFINITIONS
+from interface_compiler.definition import CompileError, Definition, DefinitionError, by_package
+from interface_compiler.prefixes import PYTHON, RESOURCES
+
+#: Wheels whose version decides how the code turns out.
+_WHEELS = ("ros-rosidl-adapter", "ros-rosidl-generator-py", "ros-rosidl-typesupport-fastrtps-c", "ros-fastcdr")
+#: The files of this folder that decide it, too.
+_OWN = ("generating.py", "compiling.py", "building.py", "dispatch.cpp.in")
+#: Prefixes that a store keeps: notebooks that are open may still use one of an earlier text.
+_KEPT = 8
+_KEY = "spinbook-key"
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """Packages that were compiled into a prefix, and whether that was done just now."""
+
+    prefix: Path
+    packages: tuple[str, ...]
+    fresh: bool = False
+
+    @property
+    def python(self) -> Path:
+        """The folder for PYTHONPATH."""
+        return self.prefix / PYTHON
+
+    @property
+    def key(self) -> str:
+        """What stands for the definitions and for all else that decides the result."""
+        return self.prefix.name
+
+
+def ensure(definitions: Sequence[Definition], store: Path) -> Compiled:
+    """The compiled packages of these definitions, compiled now if they are not in the store yet.
+
+    Two processes that want the same wait for one another.
+
+    Raises:
+        DefinitionError: if a definition is wrong.
+        CompileError: if this machine can't compile.
+    """
+    found = keys(definitions)
+    prefix = store.resolve() / digest(*found.values())
+    packages = tuple(found)
+    if not prefix.is_dir():
+        _check(definitions)
+        with _locked(store):
+            if not prefix.is_dir():
+                _compile(definitions, found, prefix)
+                _prune(store, prefix)
+                return Compiled(prefix, packages, fresh=True)
+    return Compiled(prefix, packages)
+
+
+def find(definitions: Sequence[Definition], store: Path) -> Compiled | None:
+    """The compiled packages of these definitions, if the store has them."""
+    found = keys(definitions)
+    prefix = store.resolve() / digest(*found.values())
+    return Compiled(prefix, tuple(found)) if prefix.is_dir() else None
+
+
+def digest(*texts: str) -> str:
+    """SHA-256 of these texts and their borders, the first 16 hexadecimal digits."""
+    total = hashlib.sha256()
+    for text in texts:
+        data = text.encode()
+        total.update(f"{len(data)}\n".encode() + data)
+    return total.hexdigest()[:16]
+
+
+def key_of(package: str, prefix: Path) -> str:
+    """The key of a package that was compiled into a prefix, or of an installed one; empty if CMake made it."""
+    with contextlib.suppress(OSError):
+        return (prefix / "share" / package / _KEY).read_text(encoding="utf-8")
+    return ""
+
+
+def _check(definitions: Sequence[Definition]) -> None:
+    faults = checks.check(definitions, prefixes.interfaces(prefixes.installed()))
+    if faults:
+        raise DefinitionError(faults)
+
+
+def keys(definitions: Sequence[Definition]) -> dict[str, str]:
+    """Package -> its key: two texts that differ, also in a package that it needs, never have the same one."""
+    packages = by_package(definitions)
+    plain = {
+        package: digest(_machine(), package, *(part for item in members for part in (item.path, item.text)))
+        for package, members in packages.items()
+    }
+    if len(plain) < 2:
+        return plain
+    # Which ones need which is known only after reading them: with several, each depends on all.
+    return {package: digest(key, *plain.values()) for package, key in plain.items()}
+
+
+@functools.cache
+def _machine() -> str:
+    """What decides the result besides the definitions: how it is made here, Python, and ROS's generators."""
+    own = [Path(__file__).with_name(name) for name in _OWN]
+    told = [sysconfig.get_config_var("EXT_SUFFIX") or "", *(file.read_text(encoding="utf-8") for file in own)]
+    for wheel in _WHEELS:
+        with contextlib.suppress(metadata.PackageNotFoundError):
+            told.append(f"{wheel} {metadata.version(wheel)}")
+    return digest(*told)
+
+
+@contextlib.contextmanager
+def _locked(store: Path) -> Iterator[None]:
+    store.mkdir(parents=True, exist_ok=True)
+    with (store / ".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+def _compile(definitions: Sequence[Definition], found: dict[str, str], prefix: Path) -> None:
+    """Compile everything beside its place and move it there once it is whole."""
+    if reason := toolchain.missing():
+        raise CompileError(reason)
+    unfinished = prefix.with_name(f"{prefix.name}.part")
+    shutil.rmtree(unfinished, ignore_errors=True)
+    for definition in definitions:
+        file = unfinished / DEFINITIONS / definition.package / definition.path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(definition.text, encoding="utf-8")
+    _run_compiler(unfinished, checks.in_order(definitions))
+    for package, key in found.items():
+        (unfinished / "share" / package / _KEY).write_text(key, encoding="utf-8")
+    unfinished.rename(prefix)
+
+
+def _run_compiler(prefix: Path, packages: Sequence[str]) -> None:
+    command = [sys.executable, "-m", "interface_compiler.building", str(prefix), *packages]
+    environment = {**os.environ, "PYTHONPATH": _python_path()}
+    done = subprocess.run(command, capture_output=True, text=True, errors="replace", env=environment, check=False)
+    if done.returncode == 0:
+        return
+    said = done.stderr.strip().splitlines() or [f"it ended with exit code {done.returncode}"]
+    if done.returncode == 1 and len(said) == 1:
+        raise CompileError(said[0])
+    raise CompileError(f"ROS's code generators failed on {', '.join(packages)}: {said[-1]}")
+
+
+def _python_path() -> str:
+    """PYTHONPATH with the folder of this package, which a process started elsewhere may not find."""
+    here = str(Path(__file__).resolve().parents[1])
+    return os.pathsep.join(filter(None, [os.environ.get("PYTHONPATH"), here]))
+
+
+def _prune(store: Path, newest: Path) -> None:
+    """Remove the oldest prefixes beyond those that are kept."""
+    old = [folder for folder in store.iterdir() if folder.is_dir() and folder != newest]
+    old.sort(key=lambda folder: folder.stat().st_mtime, reverse=True)
+    for folder in old[_KEPT - 1 :]:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def is_installed(package: str, members: Sequence[Definition], places: Sequence[Path]) -> bool:
+    """Whether one of these prefixes has the package with exactly these definitions."""
+    prefix = prefixes.prefix_of(package, places)
+    if prefix is None or not (prefix / RESOURCES / "rosidl_interfaces" / package).is_file():
+        return False
+    return prefixes.definitions_of(package, prefix) == {item.path: item.text for item in members}

@@ -1,0 +1,121 @@
+"""A compiled package as a wheel, for an environment of the same Python: the same bytes each time.
+
+A wheel is a zip whose RECORD lists every file with its hash (PEP 427, and "Recording installed projects").
+"""
+
+from __future__ import annotations
+
+import base64
+import csv
+import hashlib
+import io
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from collections.abc import Iterator, Sequence
+from importlib import metadata
+from pathlib import Path
+
+from interface_compiler import shipped, store
+from interface_compiler.archive import zipped
+from interface_compiler.checks import dependencies
+from interface_compiler.definition import CompileError, Definition
+from interface_compiler.prefixes import PYTHON, RESOURCES
+
+_VERSION = "0.1.0"
+
+
+def wheel(package: str, prefix: Path) -> tuple[str, bytes]:
+    """The file name and content of the wheel with one package of a prefix.
+
+    Its version ends in the package's key, so that pip replaces one that was made of other definitions.
+    """
+    version = f"{_VERSION}+{store.key_of(package, prefix)}"
+    name = f"{_project(package).replace('-', '_')}-{version}"
+    python = f"cp{sys.version_info.major}{sys.version_info.minor}"
+    tag = f"{python}-{python}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
+    files = dict(_files(package, prefix, f"{name}.data/data"))
+    files[f"{name}.dist-info/METADATA"] = (
+        f"Metadata-Version: 2.1\nName: {_project(package)}\nVersion: {version}\n"
+        f"Summary: The ROS 2 interfaces of {package}, compiled by Spinbook\n"
+    ).encode()
+    files[f"{name}.dist-info/WHEEL"] = (
+        f"Wheel-Version: 1.0\nGenerator: spinbook\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
+    )
+    listing = f"{name}.dist-info/RECORD"
+    files[listing] = record(files, listing)
+    return f"{name}-{tag}.whl", zipped(files, last=listing)
+
+
+def record(files: dict[str, bytes], listing: str) -> bytes:
+    """The content of a wheel's RECORD, which is the file `listing` itself."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    for name in sorted(set(files) - {listing}):
+        digest = base64.urlsafe_b64encode(hashlib.sha256(files[name]).digest()).rstrip(b"=").decode()
+        writer.writerow((name, f"sha256={digest}", len(files[name])))
+    writer.writerow((listing, "", ""))
+    return out.getvalue().encode()
+
+
+def install(package: str) -> bool:
+    """Compile a package that comes with Spinbook and install it into this environment. False: it is there already.
+
+    Raises KeyError for a package that does not come with it, and CompileError where it can't be compiled or installed.
+    """
+    definitions = shipped.definitions(package)
+    if _is_current(package, definitions):
+        return False
+    with tempfile.TemporaryDirectory(prefix="spinbook-") as temporary:
+        compiled = store.ensure(definitions, Path(temporary))
+        name, content = wheel(package, compiled.prefix)
+        file = Path(temporary) / name
+        file.write_bytes(content)
+        _pip_install([file])
+    return True
+
+
+def needed(package: str) -> list[str]:
+    """The packages that one of these needs, each after those that it needs itself."""
+    found: list[str] = []
+    for name in sorted(dependencies(shipped.definitions(package))[package]):
+        if name in (*shipped.standard(), *shipped.optional()):
+            found += [each for each in (*needed(name), name) if each not in found]
+    return found
+
+
+def _is_current(package: str, definitions: Sequence[Definition]) -> bool:
+    """Whether this environment has the wheel of just these definitions, made by just this compiler."""
+    try:
+        version = metadata.version(_project(package))
+    except metadata.PackageNotFoundError:
+        return False
+    return version == f"{_VERSION}+{store.keys(definitions)[package]}"
+
+
+def _project(package: str) -> str:
+    return f"spinbook-interfaces-{package.replace('_', '-')}"
+
+
+def _files(package: str, prefix: Path, data: str) -> Iterator[tuple[str, bytes]]:
+    """The wheel's own files by name: the Python package, and what goes into the environment's share and include."""
+    for file in _below(prefix / PYTHON / package):
+        if "__pycache__" not in file.parts:
+            yield file.relative_to(prefix / PYTHON).as_posix(), file.read_bytes()
+    markers = sorted((prefix / RESOURCES).glob(f"*/{package}"))
+    for file in (*_below(prefix / "share" / package), *_below(prefix / "include" / package), *markers):
+        yield f"{data}/{file.relative_to(prefix).as_posix()}", file.read_bytes()
+
+
+def _below(folder: Path) -> list[Path]:
+    return sorted(file for file in folder.rglob("*") if file.is_file())
+
+
+def _pip_install(files: Sequence[Path]) -> None:
+    options = ["--quiet", "--disable-pip-version-check", "--no-deps", "--no-index"]
+    command = [sys.executable, "-m", "pip", "install", *options, *map(str, files)]
+    done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
+    if done.returncode:
+        said = (done.stderr.strip().splitlines() or [f"pip ended with exit code {done.returncode}"])[-1]
+        raise CompileError(f"The compiled package could not be installed with pip: {said}")

@@ -1,0 +1,58 @@
+"""`spinbook audit --shadow` grades every file of the solutions over both middlewares, and lists what differs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+from small_exercise import SmallExercise
+
+from grader.audit.command import audit
+from grader.sandbox import Middleware, choose_middleware
+
+pytestmark = pytest.mark.skipif(
+    choose_middleware().middleware is not Middleware.LOCKSTEP, reason=choose_middleware().warning
+)
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(audit, [*arguments], catch_exceptions=False)
+
+
+@pytest.fixture(autouse=True)
+def in_the_course(small: SmallExercise, cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Start in the small exercise's course."""
+    monkeypatch.chdir(small.course)
+
+
+def test_where_both_agree_it_ends_with_0(small: SmallExercise) -> None:
+    done = run("--shadow")
+
+    assert done.exit_code == 0, done.stdout
+    programs = len(list((small.course / "solutions" / "doubler").rglob("*.py")))
+    assert f"{programs} programs over both middlewares: 0 of" in done.stdout
+
+
+def test_each_verdict_that_differs_is_listed_with_the_reason(small: SmallExercise) -> None:
+    solution = small.course / "solutions" / "doubler" / "solution.py"
+    right = solution.with_name("right")
+    right.mkdir(exist_ok=True)
+    # Over Fast DDS a node has a network.
+    (right / "has_a_network.py").write_text("import socket\n\nsocket.socket(socket.AF_INET)\n" + solution.read_text())
+
+    done = run("doubler", "--shadow")
+
+    assert done.exit_code == 1, done.stdout
+    text = " ".join(done.stdout.split())
+    assert "≠ right/has_a_network.py, outcome lockstep did-not-start:" in text
+    assert "A node has no network while it is graded" in text
+    assert "fastdds graded" in text
+    assert "its run is did-not-start over lockstep, completed over Fast DDS" in text
+
+
+def test_it_goes_with_no_other_option() -> None:
+    done = run("--shadow", "--quick")
+
+    assert done.exit_code == 2
+    assert "--shadow goes with no other option but --parallel" in done.output
