@@ -11,7 +11,7 @@ from notebook_kernel import Kernel
 MESSAGE = "%%interface msg/Limits.msg\nstring name\n"
 NODE = (
     "%%node holder --until ready\nimport time\nfrom robot_interfaces.msg import Limits\n"
-    'print("ready", Limits(), flush=True)\ntime.sleep(60)\n'
+    'print(Limits(), "ready", flush=True)\ntime.sleep(60)\n'
 )
 
 
