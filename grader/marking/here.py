@@ -16,7 +16,6 @@ from grader.marking.picture import picture
 from grader.sandbox import Middleware
 from grader.submission import Submission
 
-
 #: How many submissions to grade at once on each core: grader and program wait for one another, and over Fast DDS both
 #: wait for the network most of the time.
 PER_CORE = {Middleware.LOCKSTEP: 2, Middleware.FASTDDS: 4}
