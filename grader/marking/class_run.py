@@ -116,7 +116,7 @@ def _markers(grading: Grading, order: Order) -> Iterator[Markers]:
         with cluster(grading, order.scheduler) as workers:
             yield workers
     else:
-        yield Here(grading, order.jobs or at_once())
+        yield Here(grading, order.jobs or at_once(grading.spinner.middleware))
 
 
 @contextlib.contextmanager

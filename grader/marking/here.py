@@ -13,12 +13,17 @@ from grader.grading.helping import Helping
 from grader.marking.key import key_of
 from grader.marking.marks import Marked
 from grader.marking.picture import picture
+from grader.sandbox import Middleware
 from grader.submission import Submission
 
+#: How many submissions to grade at once on each core: grader and program wait for one another, and over Fast DDS both
+#: wait for the network most of the time.
+PER_CORE = {Middleware.LOCKSTEP: 2, Middleware.FASTDDS: 4}
 
-def at_once() -> int:
-    """How many submissions to grade at once: more than there are cores, for rig and student wait for one another."""
-    return 4 * len(os.sched_getaffinity(0))
+
+def at_once(middleware: Middleware) -> int:
+    """How many submissions to grade at once on this machine."""
+    return PER_CORE[middleware] * len(os.sched_getaffinity(0))
 
 
 @dataclass(frozen=True)

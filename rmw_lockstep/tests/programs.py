@@ -1,4 +1,4 @@
-"""Real programs with rclpy over the compiled middleware, and a hub around them that watches and lets time go on."""
+"""Real programs with rclpy over the compiled middleware, and a hub that only watches and lets time go on."""
 
 from __future__ import annotations
 
