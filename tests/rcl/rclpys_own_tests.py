@@ -1,6 +1,6 @@
 """Runs rclpy's own tests over rcl_python, and prints how many pass.
 
-    python tests/rcl_python/rclpys_own_tests.py FOLDER [--real] [--only NAME]
+    python tests/rcl/rclpys_own_tests.py FOLDER [--real] [--only NAME]
 
 FOLDER is `rclpy/test` of https://github.com/ros2/rclpy at the release that is installed. Each file runs in a process
 of its own. With --real they run over the compiled module, for comparison. What fails is listed; expected_failures.toml
