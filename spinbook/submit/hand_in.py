@@ -9,6 +9,7 @@ from pathlib import Path
 
 from grader.exercise import Exercise
 from grader.grading.versions import versions
+from grader.sandbox import choose_middleware
 from grader.submission.upload import pack
 from spinbook import __version__
 from spinbook.submit.candidates import Candidate
@@ -41,7 +42,7 @@ def write_upload(hand_in: HandIn, target: Path) -> None:
         "student": hand_in.student,
         "from": hand_in.work.origin,
         "time": _now().isoformat(),
-        "versions": {**versions(), "spinbook": __version__},
+        "versions": {**versions(choose_middleware().middleware), "spinbook": __version__},
         "self_check": hand_in.check.record,
     }
     write_if_changed(target, pack(record, files))
