@@ -205,7 +205,7 @@ def test_a_python_that_is_not_there_is_told(checkout: Checkout) -> None:
 
 def test_the_middleware_is_compiled_once_and_again_when_its_sources_have_changed(checkout: Checkout) -> None:
     checkout.set_up()
-    assert checkout.calls[-1] == "compile"
+    assert checkout.calls.count("compile") == 1
     checkout.forget_calls()
 
     source = checkout.folder / "rmw_lockstep" / "lockstep" / "core.cpp"
