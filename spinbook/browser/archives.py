@@ -14,6 +14,7 @@ import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
+import interface_compiler
 import rcl_python
 import spinbook
 from interface_compiler import prefixes
@@ -37,6 +38,7 @@ def ros_archive() -> bytes:
     # The original imports what finds compiled libraries.
     files["rosidl_generator_py/__init__.py"] = b"from .import_type_support_impl import import_type_support\n"
     files |= dict(_python_files(Path(rcl_python.__file__).parent, "rcl_python"))
+    files |= dict(_python_files(Path(interface_compiler.__file__).parent, "interface_compiler"))  # `ros2` reads with it
     files["rcl_python/type_hashes.json"] = json.dumps(_type_hashes(), sort_keys=True).encode()
     root = Path(spinbook.__file__).parent
     for part in _SPINBOOK:

@@ -79,7 +79,7 @@ const does = {
   check: async ({ exercise, source }) => {
     const { py } = await ready;
     if (!py.checks) py.checks = archive(py, "check.zip", "checks");
-    await py.checks;
+    await Promise.all([py.checks, shares(py)]);
     const result = await py.pyimport("spinbook.browser.in_page.check").check.callPromising(exercise, source);
     return JSON.parse(result);
   },
@@ -90,10 +90,13 @@ async function cells() {
   return py.pyimport("spinbook.browser.in_page.cells");
 }
 
-// The interface files that `ros2 interface show` reads: unpacked when the first command runs.
-async function shares(py) {
-  if (py.shared) return;
-  py.shared = true;
+// What interfaces there are, and their files: unpacked when the first command or check runs.
+function shares(py) {
+  py.shared ??= unpackShares(py);
+  return py.shared;
+}
+
+async function unpackShares(py) {
   const response = await fetch(new URL("share.zip", import.meta.url));
   py.unpackArchive(await response.arrayBuffer(), "zip", { extractDir: "/opt/ros" });
   py.runPython('import os; os.environ["AMENT_PREFIX_PATH"] = "/opt/ros"');
