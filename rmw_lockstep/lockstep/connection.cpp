@@ -120,7 +120,7 @@ void Core::poke() {
   (void)!write(poke_, &one, sizeof one);
 }
 
-bool Core::receive() {
+void Core::receive() {
   if (in_at_ == in_.size()) { in_.clear(); in_at_ = 0; }
   else if (in_at_ > 1 << 20) { in_.erase(in_.begin(), in_.begin() + static_cast<long>(in_at_)); in_at_ = 0; }
   constexpr size_t PIECE = 65536;
@@ -130,7 +130,6 @@ bool Core::receive() {
   do got = recv(socket_, in_.data() + had, PIECE, 0); while (got < 0 && errno == EINTR);
   in_.resize(had + static_cast<size_t>(std::max<ssize_t>(got, 0)));
   if (got <= 0) lost();
-  return got > 0;
 }
 
 // The hub is gone: nothing will come any more, nobody waits for what this process does, and time is the computer's own.

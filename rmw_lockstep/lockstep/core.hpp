@@ -84,7 +84,7 @@ private:
   void send(const uint8_t * frame, size_t size);
   void keep();                     // the library's own thread
   static void * keep_of(void * core);
-  bool receive();
+  void receive();
   void lost();
   void step();                     // handle what may be handled now
   const uint8_t * front(uint32_t & size) const;
@@ -94,7 +94,6 @@ private:
   Idle idle();
   bool nudge(const Sleeper & sleeper);
   void announce();
-  void write_children(std::vector<uint8_t> & frame);
 
   pthread_mutex_t mutex_ = PTHREAD_MUTEX_INITIALIZER;
   std::atomic<int> entering_{0}, calling_{0};

@@ -1,9 +1,9 @@
 // Service servers and clients; actions are made of them.
 #include "checks.hpp"
 #include "graph.hpp"
+#include "names.hpp"
 #include "qos.hpp"
 #include "rmw/rmw.h"
-#include "rmw/validate_full_topic_name.h"
 
 using namespace rmw_lockstep;
 
@@ -11,16 +11,6 @@ namespace {
 
 EndPoint & of(const rmw_client_t * handle) { return *static_cast<EndPoint *>(handle->data); }
 EndPoint & of(const rmw_service_t * handle) { return *static_cast<EndPoint *>(handle->data); }
-
-bool valid_service(const char * name, const rmw_qos_profile_t & qos) {
-  int result = 0;
-  if (!*name) { RMW_SET_ERROR_MSG("the service's name is empty"); return false; }
-  if (qos.avoid_ros_namespace_conventions) return true;
-  if (rmw_validate_full_topic_name(name, &result, nullptr) != RMW_RET_OK) return false;
-  if (result == RMW_TOPIC_VALID) return true;
-  RMW_SET_ERROR_MSG_WITH_FORMAT_STRING("invalid service name: %s", rmw_full_topic_name_validation_result_string(result));
-  return false;
-}
 
 // Null, with rmw's error set, where something is missing or wrong.
 std::unique_ptr<EndPoint> end_point_of(
@@ -31,7 +21,7 @@ std::unique_ptr<EndPoint> end_point_of(
   REQUIRE_OR_NULL(name);
   REQUIRE_OR_NULL(qos);
   ServiceType type;
-  if (!is_ours(node->implementation_identifier) || !valid_service(name, *qos) || !find_type(support, type)) return nullptr;
+  if (!is_ours(node->implementation_identifier) || !valid_name("service", name, *qos) || !find_type(support, type)) return nullptr;
   auto made = std::make_unique<EndPoint>();
   made->kind = kind;
   made->local = true;

@@ -1,25 +1,15 @@
 // Publishers and subscriptions.
 #include "checks.hpp"
 #include "graph.hpp"
+#include "names.hpp"
 #include "qos.hpp"
 #include "rmw/dynamic_message_type_support.h"
 #include "rmw/get_network_flow_endpoints.h"
 #include "rmw/rmw.h"
-#include "rmw/validate_full_topic_name.h"
 
 using namespace rmw_lockstep;
 
 namespace {
-
-bool valid_topic(const char * name, const rmw_qos_profile_t & qos) {
-  int result = 0;
-  if (!*name) { RMW_SET_ERROR_MSG("the topic's name is empty"); return false; }
-  if (qos.avoid_ros_namespace_conventions) return true;
-  if (rmw_validate_full_topic_name(name, &result, nullptr) != RMW_RET_OK) return false;
-  if (result == RMW_TOPIC_VALID) return true;
-  RMW_SET_ERROR_MSG_WITH_FORMAT_STRING("invalid topic name: %s", rmw_full_topic_name_validation_result_string(result));
-  return false;
-}
 
 std::unique_ptr<EndPoint> end_point_of(
     Kind kind, const rmw_node_t * node, const MessageType & type, const char * topic, const rmw_qos_profile_t & qos) {
@@ -112,7 +102,7 @@ RMW_LOCKSTEP_API rmw_publisher_t * rmw_create_publisher(
   REQUIRE_OR_NULL(qos);
   REQUIRE_OR_NULL(options);
   MessageType type;
-  if (!is_ours(node->implementation_identifier) || !valid_topic(topic, *qos) || !find_type(support, type)) return nullptr;
+  if (!is_ours(node->implementation_identifier) || !valid_name("topic", topic, *qos) || !find_type(support, type)) return nullptr;
   if (options->require_unique_network_flow_endpoints == RMW_UNIQUE_NETWORK_FLOW_ENDPOINTS_STRICTLY_REQUIRED) {
     RMW_SET_ERROR_MSG("rmw_lockstep_cpp uses no network, so it has no network flow endpoints");
     return nullptr;
@@ -191,7 +181,7 @@ RMW_LOCKSTEP_API rmw_subscription_t * rmw_create_subscription(
   REQUIRE_OR_NULL(qos);
   REQUIRE_OR_NULL(options);
   MessageType type;
-  if (!is_ours(node->implementation_identifier) || !valid_topic(topic, *qos) || !find_type(support, type)) return nullptr;
+  if (!is_ours(node->implementation_identifier) || !valid_name("topic", topic, *qos) || !find_type(support, type)) return nullptr;
   if (options->require_unique_network_flow_endpoints == RMW_UNIQUE_NETWORK_FLOW_ENDPOINTS_STRICTLY_REQUIRED) {
     RMW_SET_ERROR_MSG("rmw_lockstep_cpp uses no network, so it has no network flow endpoints");
     return nullptr;
