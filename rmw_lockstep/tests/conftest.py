@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from programs import Watch
 from stand_in import Process, Raw, Waits
 
 from rmw_lockstep.hub import Hub, Limits
@@ -50,3 +51,10 @@ def raw(hub: Hub) -> Iterator[Raw]:
     connection = Raw(hub.path)
     yield connection
     connection.close()
+
+
+@pytest.fixture
+def watch(folder: Path) -> Iterator[Watch]:
+    """A hub around real programs."""
+    with Watch(folder) as watch:
+        yield watch

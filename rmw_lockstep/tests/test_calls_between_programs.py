@@ -2,18 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from pathlib import Path
-
-import pytest
 from programs import Watch
-
-
-@pytest.fixture
-def watch(folder: Path) -> Iterator[Watch]:
-    with Watch(folder) as watch:
-        yield watch
-
 
 SERVER = """
     from std_srvs.srv import SetBool

@@ -2,17 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from pathlib import Path
-
-import pytest
 from programs import Watch
-
-
-@pytest.fixture
-def watch(folder: Path) -> Iterator[Watch]:
-    with Watch(folder) as watch:
-        yield watch
 
 
 def test_a_missed_deadline_is_told_to_both_ends_at_the_time_at_which_it_is_missed(watch: Watch) -> None:

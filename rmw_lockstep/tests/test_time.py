@@ -2,17 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from pathlib import Path
-
 import pytest
 from programs import Watch
-
-
-@pytest.fixture
-def watch(folder: Path) -> Iterator[Watch]:
-    with Watch(folder) as watch:
-        yield watch
 
 
 def test_time_goes_on_only_when_the_hub_says_so(watch: Watch) -> None:
