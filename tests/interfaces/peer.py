@@ -1,8 +1,8 @@
 """A node that answers, for tests of types between two processes: `python peer.py TYPE …`.
 
 For each message type N it sends back on /back_N what comes on /there_N. A service's response gets the request's fields
-of the same names, or the sum of a and b. An action is Fibonacci, which feeds back each step and waits to be cancelled
-where more than ten are wanted.
+of the same names, or the sum of a and b. An action is Fibonacci, which feeds back each step; where more than ten are
+wanted, it repeats the tenth until it is cancelled.
 """
 
 from __future__ import annotations
@@ -56,9 +56,9 @@ class Peer(Node):
                 return self.kind.Result(sequence=sequence)
             if len(sequence) <= 10:
                 sequence.append(sequence[-1] + sequence[-2])
-                goal.publish_feedback(self.kind.Feedback(sequence=sequence))
             else:
                 clock.sleep_for(rclpy.duration.Duration(seconds=0.02))
+            goal.publish_feedback(self.kind.Feedback(sequence=sequence))
         goal.succeed()
         return self.kind.Result(sequence=sequence)
 
