@@ -188,7 +188,13 @@ class Run:
             self._see_that_it_was_the_program()
             if self._team and self._team.ended:
                 program = (self._team.ended, task.source)
-            return cut_short(self._student, *program, self._is_up, len(self._publishers.sent))
+            return cut_short(self._student, *program, self._is_up, self._when())
+
+    def _when(self) -> str:
+        """The present moment, in words."""
+        if self._script is None:
+            return f"at message {len(self._publishers.sent)}"
+        return f"{(self._clocks.at - START) / SECOND:.2f} s after the start"
 
     def _see_that_it_was_the_program(self) -> None:
         """Raise what says otherwise."""
