@@ -67,7 +67,8 @@ class Counter(Node):
         return response
 
     def execute(self, goal_handle):
-        if goal_handle.is_cancel_requested:
+        stop = goal_handle.is_cancel_requested
+        if stop:
             goal_handle.canceled()
             return Fibonacci.Result()
         goal_handle.publish_feedback(Fibonacci.Feedback())
@@ -149,7 +150,7 @@ def test_a_timer_has_another_period() -> None:
         ("outcome", "            goal_handle.succeed()"),
         ("choice", "CancelResponse.REJECT"),
         ("choice", "DurabilityPolicy.VOLATILE"),
-        ("not asked", "if False:"),
+        ("not asked", "stop = False"),
         ("blocking", "self.client.call(SetBool.Request())"),
         ("blocking", "rclpy.callback_groups.MutuallyExclusiveCallbackGroup()"),
         ("blocking", "executor = rclpy.executors.SingleThreadedExecutor()"),
@@ -163,7 +164,7 @@ def test_a_timer_has_another_period() -> None:
         ("message type", "std_srvs.srv.Empty, '/power'"),
         ("message type", "test_msgs.action.NestedMessage, '/count'"),
         ("callback left out", "'/power', lambda *_: None"),
-        ("argument", "create_client(SetBool, '/light')"),
+        ("argument", "create_client(SetBool, '/light', )"),
     ],
 )
 def test_services_actions_and_parameters_have_operators_of_their_own(
