@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.grading import Grade
-from grader.recording import Event, Recording
+from grader.recording import Event, Received, Recording, Sent
 from grader.recording.recording import Fields
 from interface_compiler import prefixes
 
