@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from grader.checking.comparator import TOLERANCE
-from grader.checking.recorded import Recorded, seconds
+from grader.checking.recorded import Recorded
 from grader.checking.shown import shown
 from grader.recording.events import By, Goal
 from grader.scenario.scenario import SECOND
@@ -114,17 +114,20 @@ class ActionChecks(Recorded):
         for number, (expected, got) in enumerate(pairs, start=1):
             part = f"{_part(one)}, feedback {number}"
             self.compare_at(got.at, part, field, got.fields, expected.fields, tolerance, one.action, messages)
-            if time is not None and abs(got.at - expected.at) > time * SECOND + 1:
-                wanted, came = f"{seconds(expected.at):.2f} s", f"{seconds(got.at):.2f} s"
-                self.wrong_at(got.at, f"it was expected at {wanted}, got it at {came}.", part, wanted, came)
+            self.time_at(got.at, expected.at, part, time)
         wanted_, came_ = len(reference.feedback), len(one.feedback)
         if wanted_ != came_:
             told = f"expected {wanted_} feedback messages, got {came_}."
             never = "" if came_ else "Your node never publishes feedback."
             self.wrong_at(one.at, told, _part(one), f"{wanted_} messages", came_, never)
 
-    def must_match_goals(self, field: str = "", action: str = "", tolerance: float = TOLERANCE) -> None:
-        """The node, a client, must send as many goals as the solution, with the same `field`."""
+    def must_match_goals(
+        self, field: str = "", action: str = "", tolerance: float = TOLERANCE, time: float | None = None
+    ) -> None:
+        """The node, a client, must send as many goals as the solution, with the same `field`.
+
+        With `time`, each within so many seconds of the solution's.
+        """
         name = action or self.only("action_client")
         got, wanted = len(self.goals(name, by="node")), len(self._reference_goals(name, "node"))
         if got != wanted:
@@ -135,7 +138,8 @@ class ActionChecks(Recorded):
         def sent(goal: Goal) -> dict[str, Any] | None:
             return goal.goal
 
-        list(self._match(name, "node", field, tolerance, sent, "goal"))
+        for one, reference in self._match(name, "node", field, tolerance, sent, "goal"):
+            self.time_at(one.at, reference.at, _part(one), time)
 
     def must_ask_only_for_accepted(self, action: str = "") -> None:
         """The node, a client, must not ask for the result of a goal that was rejected."""

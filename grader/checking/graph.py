@@ -20,6 +20,9 @@ _WORDS = {
     "action client": ("have an action client of", "It has action clients of"),
 }
 
+#: What a node has that takes its time from the grader.
+OF_EVERY_NODE = ("/clock", "/rosout", "/parameter_events")
+
 _KINDS: dict[str, Kind] = {
     "publish": "publisher",
     "subscribe": "subscription",
@@ -37,8 +40,11 @@ class GraphChecks(Recorded):
         """The student's end points of a kind, such as "publisher" or "action server"; with `name`, of that topic."""
         return [end for end in self.recording.end_points if end.kind == kind and name in ("", end.topic)]
 
-    def must_have_interface(self) -> None:
-        """The node must have every topic, service and action of exercise.toml, each with its type."""
+    def must_have_interface(self, only: bool = False) -> None:
+        """The node must have every topic, service and action of exercise.toml, each with its type.
+
+        With `only`, it must have no others, and one end point of each.
+        """
         declared = [(_KINDS[topic.direction], topic.name, topic.type) for topic in self.exercise.topics]
         declared += [(_KINDS[one.role], one.name, one.type) for one in self.exercise.endpoints]
         for kind, name, type_ in declared:
@@ -49,6 +55,8 @@ class GraphChecks(Recorded):
                 if end.type != type_:
                     told = f"your {kind} on {name} has another type. Expected {type_}, got {end.type}."
                     _wrong(told, type_, end.type)
+        if only:
+            self._has_no_others([(kind, name) for kind, name, _ in declared])
 
     def must_have_qos(self, topic: str = "") -> None:
         """The node's end points must have the reliability and durability of exercise.toml: of `topic`, or of all."""
@@ -92,6 +100,14 @@ class GraphChecks(Recorded):
                 how = f"with code {exit_.code}" if exit_.signal is None else f"by signal {exit_.signal}"
                 told = f"{exit_.program} ended by itself, {how}, but must go on."
                 self.wrong_at(exit_.at, told, "", "to go on", f"an end {how}")
+
+    def _has_no_others(self, declared: list[tuple[Kind, str]]) -> None:
+        for end in self.recording.end_points:
+            if (end.kind, end.topic) not in declared and end.topic not in OF_EVERY_NODE:
+                _wrong(f"your node has a {end.kind} on {end.topic}, which is not in the task.", "none", end.topic)
+        for kind, name in declared:
+            if (count := len(self.end_points(kind, name))) > 1:
+                _wrong(f"your node has {count} {kind}s on {name}. Expected 1.", "1", str(count))
 
     def _lacks(self, kind: Kind, name: str) -> NoReturn:
         does, others = _WORDS[kind]

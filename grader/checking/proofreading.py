@@ -99,7 +99,7 @@ def line_with(file: Path, pattern: str) -> int | None:
 
 def _of_solution(exercise: Exercise) -> Iterator[ExerciseError]:
     file = exercise.solution_file
-    if file is None or exercise.programs:
+    if file is None:
         return
     if not file.exists():
         yield ExerciseError(file, "there is no such file", "The checks compare with the solution; write it here.")

@@ -77,6 +77,12 @@ class Recorded:
         general = common(known, found.path, unit, clock=self.recording.hold == "lockstep")
         self.wrong_at(at, f"expected {found.path} {wanted}, got {came}.", part, wanted, came, general)
 
+    def time_at(self, at: int, expected: int, part: str, time: float | None) -> None:
+        """End the check where something happened more than `time` s before or after it was expected."""
+        if time is not None and abs(at - expected) > time * SECOND + 1:
+            wanted, came = f"{seconds(expected):.2f} s", f"{seconds(at):.2f} s"
+            self.wrong_at(at, f"it was expected at {wanted}, got it at {came}.", part, wanted, came)
+
     def unit_of(self, field: str, name: str = "") -> str:
         """The unit of a field by exercise.toml: of the topic, service or action `name`, or of any."""
         declared: list[Topic | Endpoint] = [

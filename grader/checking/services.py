@@ -60,14 +60,20 @@ class ServiceChecks(Recorded):
         never += (", ".join(clients) or "none") + "." if never else ""
         self.wrong_at(None, told, "", f"{wanted} requests", len(got), never)
 
-    def must_match_requests(self, field: str = "", service: str = "", tolerance: float = TOLERANCE) -> None:
-        """The node's first request must have the same `field` as the solution's first, and so on."""
+    def must_match_requests(
+        self, field: str = "", service: str = "", tolerance: float = TOLERANCE, time: float | None = None
+    ) -> None:
+        """The node's first request must have the same `field` as the solution's first, and so on.
+
+        With `time`, each must come within so many seconds of the solution's.
+        """
         self.must_call(service)
         calls = self._numbered(service, "node")
         pairs = [(reference.request, call.request) for _, call, reference in calls]
         for number, call, reference in calls:
             part = f"request {number} to {call.service}"
             self.compare_at(call.at, part, field, call.request, reference.request, tolerance, call.service, pairs)
+            self.time_at(call.at, reference.at, part, time)
 
     def _numbered(self, service: str, by: By) -> list[tuple[int, Call, Call]]:
         """(number from 1, the student's, the solution's) of each call."""

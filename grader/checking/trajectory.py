@@ -52,6 +52,14 @@ class TrajectoryChecks(Recorded):
             told = f"it reached {words} at {reached:.2f} s, but did not stay there."
             self.wrong_at(_ns(left), told, "", f"to stay within {_measure(tolerance, unit)}", f"left at {left:.2f} s")
 
+    def must_stay_between(self, topic: str, field: str, lowest: float, highest: float, start: float = 0.0) -> None:
+        """Each value of `field` on `topic`, from `start` on (s), must be between these two, whoever published it."""
+        unit = self.unit_of(field, topic)
+        for at, (value,) in self.trajectory(topic, field):
+            if at >= start - 1e-9 and not lowest - 1e-9 <= value <= highest + 1e-9:
+                wanted, came = f"{lowest:g} to {_measure(highest, unit)}", _measure(value, unit)
+                self.wrong_at(_ns(at), f"expected {field} from {wanted}, got {came}.", topic, wanted, came)
+
     def _never_there(
         self,
         way: list[tuple[float, tuple[float, ...]]],

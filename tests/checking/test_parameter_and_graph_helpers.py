@@ -93,6 +93,16 @@ def test_an_end_point_that_is_missing(number: int, fields: dict[str, Any], told:
     assert says(run(replace(EMPTY, end_points=ends)).must_have_interface).startswith(told)
 
 
+def test_end_points_that_are_too_many() -> None:
+    run(EMPTY).must_have_interface(only=True)
+    more = replace(EMPTY, end_points=(*ENDS, replace(ENDS[1], topic="/clock"), replace(ENDS[0], topic="/other")))
+    assert says(lambda: run(more).must_have_interface(only=True)) == (
+        "Your node has a subscription on /other, which is not in the task."
+    )
+    twice = replace(EMPTY, end_points=(*ENDS, ENDS[1]))
+    assert says(lambda: run(twice).must_have_interface(only=True)) == "Your node has 2 publishers on /out. Expected 1."
+
+
 def test_qos() -> None:
     latched = Topic("/out", "std_msgs/msg/Float64", "publish", durability="transient_local")
     exercise = replace(EXERCISE, topics=(latched,))

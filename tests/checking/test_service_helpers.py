@@ -77,6 +77,15 @@ def test_requests_of_a_client() -> None:
     assert "request 1 to /add: expected a 1, got 7." in says(lambda: run(other, right, CLIENT).must_match_requests())
 
 
+def test_requests_that_come_too_late() -> None:
+    right = calls(2, 3, by="node")
+    late = replace(right, calls=tuple(replace(call, at=call.at + ns(0.45) - ns(0)) for call in right.calls))
+    run(late, right, CLIENT).must_match_requests()
+    assert "request 1 to /add: it was expected at 1.00 s, got it at 1.45 s." in says(
+        lambda: run(late, right, CLIENT).must_match_requests(time=0.1)
+    )
+
+
 def test_an_author_who_has_to_name_the_service_is_told_so() -> None:
     with pytest.raises(ValueError, match=r"name the client: exercise.toml has none under \[\[client\]\]"):
         run(RIGHT).must_call()

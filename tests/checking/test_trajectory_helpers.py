@@ -36,6 +36,12 @@ def test_what_need_not_stay() -> None:
     run(moved(START, (2.0, 4.0, 3.0), (3.0, 3.0, 3.0))).must_reach("/pose", PLACE, 0.1, 2.0, stay=False)
 
 
+def test_what_must_stay_between_two_values() -> None:
+    run(RIGHT).must_stay_between("/pose", "x", 0.0, 4.05)
+    told = says(lambda: run(RIGHT).must_stay_between("/pose", "x", 0.0, 4.0))
+    assert told == "At 3.00 s (as usual), /pose: expected x from 0 to 4, got 4.05."
+
+
 def test_a_topic_without_messages_is_the_authors_fault() -> None:
     with pytest.raises(ValueError, match="there is no message on /poses in the scenario plain"):
         run(RIGHT).must_reach("/poses", PLACE, 0.1, 2.0)

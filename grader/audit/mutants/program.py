@@ -118,9 +118,21 @@ class Program:
         else:
             result = cast(cst.Module, self.module.deep_replace(change.old, change.new)).code
         missing = [name for name in change.imports if f"import {name}\n" not in result]
-        lines = result.splitlines(keepends=True)
-        first = next((i for i, line in enumerate(lines) if line.startswith(("import ", "from "))), 0)
-        return "".join([*lines[:first], *(f"import {name}\n" for name in missing), *lines[first:]])
+        return "".join(_with_imports(result.splitlines(keepends=True), missing))
+
+
+def _with_imports(lines: list[str], names: list[str]) -> Iterator[str]:
+    """The lines with imports above the first one there is, in each of several programs."""
+    wanted, in_file = bool(names), any(line.startswith(("import ", "from ")) for line in lines)
+    if wanted and not in_file:
+        yield from (f"import {name}\n" for name in names)
+    for line in lines:
+        if line.startswith("# file: "):
+            wanted = bool(names)
+        if wanted and in_file and line.startswith(("import ", "from ")):
+            yield from (f"import {name}\n" for name in names)
+            wanted = False
+        yield line
 
 
 def parsed(statement: cst.CSTNode | str) -> cst.CSTNode:
