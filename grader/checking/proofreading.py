@@ -107,7 +107,9 @@ def _of_solution(exercise: Exercise) -> Iterator[ExerciseError]:
     try:
         starter(file.read_text(encoding="utf-8"))
     except MarkError as error:
-        yield ExerciseError(file, str(error), "Fix the markers; the starter is made from them.", error.line)
+        yield ExerciseError(
+            file, str(error).partition(": ")[2], "Fix the markers; the starter is made from them.", error.line
+        )
 
 
 def _of_mistakes(exercise: Exercise, checks: tuple[Listed, ...]) -> Iterator[ExerciseError]:

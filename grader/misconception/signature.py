@@ -40,8 +40,9 @@ class Signature:
         return " Or: ".join(self.sentences)
 
 
-#: "Message 3 of 16 (0.30 s after the start; one in three messages is lost), left_elbow: "
-WHERE = re.compile(r"^Message \d+ of \d+ \([^)]*\)(, [^:]*)?: ")
+#: "Message 3 of 16 (0.30 s after the start; one in three messages is lost), left_elbow: ", or what stands before a
+#: finding that is about no message of ours: "At 2.00 s (a goal, canceled), goal 1 for /count (order 3): "
+WHERE = re.compile(r"^(Message \d+ of \d+|At [\d.]+ s|Before the start) \([^)]*\)(, [^:]*)?: |^In “[^”]*”(, [^:]*)?: ")
 ENDED = re.compile(r"\b([A-Z]\w*(?:Error|Exception|Interrupt))\b.* in line \d+")
 BARE = re.compile(r"expected \S+ ⟨expected⟩( \S+)?, got ⟨got⟩( \S+)?\.|no \S+ was expected, got ⟨got⟩\.")
 
@@ -58,7 +59,7 @@ def failure_of(finding: Finding) -> Failure:
     """The failure that a finding tells of.
 
     Its kind is the finding without the message and joint at which it was seen first, and without the values: "expected
-    velocity ⟨expected⟩, got ⟨got⟩. All signs are turned round." Of a run that ended by itself the
+    velocity ⟨expected⟩, got ⟨got⟩. Every value has the wrong sign." Of a run that ended by itself the
     exception is left.
     """
     if ended := ENDED.search(finding.text):

@@ -53,6 +53,19 @@ def test_another_message_joint_and_number_is_the_same_mistake() -> None:
     assert groups(entry("ada", test_lost=OTHER_JOINT, test_gap=OTHER_JOINT)) == ({"fixed_dt": ["ada"]}, [])
 
 
+def test_another_moment_of_a_goal_is_the_same_mistake() -> None:
+    told = "it was expected to end as canceled, got succeeded. Your node accepted the request to cancel."
+    kinds = {
+        failure_of(Finding(f"{where}: {told}", "cancelled", None, 2.0, "", "canceled", "succeeded")).kind
+        for where in (
+            "At 2.00 s (a goal, canceled), goal 1 for /count (order 3)",
+            "At 4.50 s (two goals), goal 2 for /count (order 7)",
+            "In “two goals”",
+        )
+    }
+    assert len(kinds) == 1
+
+
 def test_who_makes_two_mistakes_stands_under_both() -> None:
     both = entry("ada", test_lost=HALF_AS_LARGE, test_gap=HALF_AS_LARGE, test_first=SILENT)
     assert groups(both) == ({"fixed_dt": ["ada"], "mute": ["ada"]}, [])

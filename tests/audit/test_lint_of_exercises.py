@@ -1,0 +1,55 @@
+"""`spinbook lint` reads exercises, too: each fault with its file, its line and what to do, and no node is run."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+from small_exercise import SmallExercise
+
+COURSE = """title = "Small"
+chapters = ["chapters/one.md"]
+
+[package]
+name = "small"
+"""
+
+
+def linted(small: SmallExercise) -> tuple[int, str]:
+    """The exit code and the output of `spinbook lint` in the exercise's course."""
+    (small.course / "course.toml").write_text(COURSE)
+    (small.course / "chapters").mkdir()
+    (small.course / "chapters" / "one.md").write_text("# One\n\nNothing to run.\n")
+    run = subprocess.run(
+        [sys.executable, "-m", "spinbook", "lint"], cwd=small.course, capture_output=True, text=True, timeout=120
+    )
+    return run.returncode, run.stdout + run.stderr
+
+
+def test_an_exercise_without_faults(small: SmallExercise) -> None:
+    code, told = linted(small)
+    assert (code, "0 errors" in told) == (0, True), told
+
+
+def test_every_fault_is_told_with_file_and_line(small: SmallExercise) -> None:
+    small.change("exercises/doubler/checks.py", "def test_once(", "def test_twice_the_number(")
+    small.change("solutions/doubler/mistakes/adds_two.py", "- test_twice_the_number", "- test_no_such_check")
+    small.change("solutions/doubler/solution.py", "        # END SOLUTION\n", "")
+    code, told = linted(small)
+    assert code == 1
+    for fault in (
+        "exercises/doubler/checks.py:20: error: there are two checks called test_twice_the_number; the other is in lin",
+        "solutions/doubler/solution.py:12: error: BEGIN SOLUTION without an END SOLUTION after it",
+        "adds_two.py:4: error: it is to be caught by test_no_such_check, and there is no such check",
+        "exercises/doubler/exercise.toml:3: error: the checks give 7 points together (checks.py 5, hidden_checks.py 2)",
+        "twice.py:4: error: it is to be caught by test_once",
+    ):
+        assert fault in told, told
+
+
+def test_a_scenario_that_is_not_there_is_told_with_those_that_are(small: SmallExercise) -> None:
+    small.change("exercises/doubler/hidden_checks.py", "(negative: Run)", "(negativ: Run)")
+    code, told = linted(small)
+    assert code == 1
+    assert "test_nothing_below_zero asks for the scenario negativ, which scenarios.py does not have" in told
+    assert "Its scenarios are: positive, negative, any." in told
