@@ -69,7 +69,7 @@ def over_seed(trials: Trials, store: Store, seed: Seed, candidates: list[Candida
 def _spun(trials: Trials, submission: Submission, scenarios: tuple[Scenario, ...]) -> dict[str, Recording]:
     """The recordings, by scenario.
 
-    What has the very same messages and steps as another is not spun a second time: here only the numbers are in question.
+    What has the same messages and steps as another is not run again: here only the numbers are in question.
     """
     spun: list[Scenario] = []
     made: dict[str, Recording] = {}
