@@ -62,7 +62,7 @@ def to_json(exercise: Exercise, public: PublicPart) -> str:
     """The text of public.json: the same for the same scenarios and solution, whenever it is made."""
     expected = {name: _timeless(recording) for name, recording in public.references.items()}
     entries = {
-        "format": FORMAT,
+        "format": 1 if all(_only_publishes(scenario) for scenario in public.scenarios) else FORMAT,
         "exercise": exercise.name,
         "hidden": {"checks": public.hidden_checks, "points": public.hidden_points},
         "scenarios": [_for_students(exercise, scenario) for scenario in public.scenarios],
@@ -99,7 +99,22 @@ def _read(exercise: Exercise) -> PublicPart:
     return public
 
 
+def _only_publishes(scenario: Scenario) -> bool:
+    started = scenario.parameters or scenario.remappings or scenario.namespace or scenario.arguments
+    return scenario.is_filter and not started
+
+
+def _of_messages(scenario: Scenario) -> Any:
+    """As format 1 has it, which older versions can read, and web pages."""
+    names = ("at", "topic", "type", "fields", "publisher")
+    messages = [{name: getattr(message, name) for name in names} for message in scenario.messages]
+    found = {"name": scenario.name, "title": scenario.title, "messages": messages, "interrupt": scenario.interrupt}
+    return {**found, "computer_time": scenario.computer_time}
+
+
 def _for_students(exercise: Exercise, scenario: Scenario) -> Any:
+    if _only_publishes(scenario):
+        return _of_messages(scenario)
     try:
         return plain_scenario(scenario)
     except NotForStudents as error:
@@ -115,4 +130,6 @@ def _scenario(entries: dict[str, Any]) -> Scenario:
             raise TypeError("a scenario is something else")
         return scenario
     messages = tuple(Message(**message) for message in entries["messages"])
-    return Scenario(entries["name"], entries["title"], messages, entries["interrupt"])
+    return Scenario(
+        entries["name"], entries["title"], messages, entries["interrupt"], entries.get("computer_time", "apart")
+    )

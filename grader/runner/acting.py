@@ -11,9 +11,10 @@ from rclpy.serialization import serialize_message
 
 from grader.recording import Cancel, Feedback, Goal, GoalState
 from grader.recording.events import STATES
+from grader.runner.cdr import deserialized
 from grader.runner.ends import Ends, Schedule, nanoseconds
 from grader.runner.goals import CANCEL, STATUS
-from grader.runner.message import deserialized, filled, message_class, to_fields
+from grader.runner.message import filled, message_class, to_fields
 from grader.scenario.scenario import SECOND
 from grader.scenario.servers import ActionServer as Declared
 from grader.scenario.servers import GoalScript

@@ -10,8 +10,9 @@ from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.serialization import serialize_message
 
 from grader.recording import Call, ParameterChange, ParameterReading
+from grader.runner.cdr import deserialized, fields_of, serialized
 from grader.runner.ends import Ends
-from grader.runner.message import deserialized, fields_of, message_class, serialized
+from grader.runner.message import message_class
 from grader.scenario.scenario import GetParameter, Request, Scenario, SetParameter
 from rmw_lockstep.hub import Client
 

@@ -11,8 +11,9 @@ from rclpy.serialization import serialize_message
 
 from grader.recording import Cancel, Feedback, Goal, GoalState
 from grader.recording.events import STATES
+from grader.runner.cdr import deserialized
 from grader.runner.ends import Ends
-from grader.runner.message import deserialized, filled, message_class, to_fields
+from grader.runner.message import filled, message_class, to_fields
 from grader.runner.recorder import ACCEPT_ANY
 from grader.scenario.scenario import CancelAll, CancelGoal, Scenario, SendGoal
 from rmw_lockstep.hub import Client, Heard, Subscription

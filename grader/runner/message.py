@@ -3,24 +3,13 @@
 from __future__ import annotations
 
 import array
-import importlib
 import re
-from functools import cache
 from typing import Any
 
-from rclpy.serialization import deserialize_message, serialize_message
-
 from grader.recording.recording import Fields
-from grader.runner.stopped import Stopped
+from grader.recording.types import message_class as message_class
 
 _LIST = re.compile(r"sequence<(?P<sequence>[^,>]+)(, \d+)?>|(?P<array>.+)\[\d+\]")
-
-
-@cache
-def message_class(type_name: str) -> Any:
-    """The Python class of `package/msg/Name`. Raises ImportError or AttributeError where there is none."""
-    package, kind, name = type_name.split("/")
-    return getattr(importlib.import_module(f"{package}.{kind}"), name)
 
 
 def to_fields(message: Any) -> Fields:
@@ -44,28 +33,6 @@ def filled(message: Any, fields: Fields) -> Any:
         else:
             setattr(message, name, value)
     return message
-
-
-def serialized(kind: Any, fields: Fields) -> bytes:
-    """A message, request or response of the class `kind` with these fields, as bytes."""
-    content: bytes = serialize_message(filled(kind(), fields))
-    return content
-
-
-def deserialized(cdr: bytes, kind: Any) -> Any:
-    """What a program sent, as a message of the class `kind`. Raises `Stopped` for bytes that are none."""
-    try:
-        return deserialize_message(cdr, kind)
-    except Exception as error:  # whatever made-up bytes lead to
-        raise Stopped("over-limit", f"Your node published bytes that are no message: {error}") from None
-
-
-def fields_of(cdr: bytes, kind: Any) -> Fields:
-    """What a program sent, as plain fields. Raises `Stopped` for bytes that are no message of the class `kind`."""
-    try:
-        return to_fields(deserialize_message(cdr, kind))
-    except Exception as error:  # whatever made-up bytes lead to
-        raise Stopped("over-limit", f"Your node published bytes that are no message: {error}") from None
 
 
 def _element_class(message: Any, field: str) -> Any:

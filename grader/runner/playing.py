@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
+from grader.runner.cdr import deserialized
 from grader.runner.ends import Ends, Schedule, nanoseconds
-from grader.runner.message import deserialized, message_class
+from grader.runner.message import message_class
 from grader.runner.publishers import ReferencePublishers
 from grader.runner.recorder import ACCEPT_ANY, in_canonical_order
 from grader.runner.serving import AuthorFault

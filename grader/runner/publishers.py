@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from grader.recording import Sent
+from grader.runner.cdr import serialized
 from grader.runner.ends import hub_qos
-from grader.runner.message import message_class, serialized
+from grader.runner.message import message_class
 from grader.scenario import Message, Scenario
 from rmw_lockstep.hub import HubNode, Publisher, Qos
 from rmw_lockstep.hub.qos import TRANSIENT_LOCAL

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from grader.recording import Received
+from grader.runner.cdr import fields_of
 from grader.runner.clocks import Clocks
-from grader.runner.message import fields_of, message_class
+from grader.runner.message import message_class
 from grader.runner.stopped import Stopped
 from grader.runner.task import Task
 from rmw_lockstep.hub import Heard, HubNode, Qos, Subscription

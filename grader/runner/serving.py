@@ -7,8 +7,9 @@ from typing import Any
 
 from grader.exercise import Exercise
 from grader.recording import Call
+from grader.runner.cdr import deserialized, fields_of, serialized
 from grader.runner.ends import Ends, Schedule, nanoseconds
-from grader.runner.message import deserialized, fields_of, message_class, serialized, to_fields
+from grader.runner.message import message_class, to_fields
 from grader.scenario.code import Code
 from grader.scenario.servers import Reply
 from grader.scenario.servers import Server as Declared

@@ -11,7 +11,7 @@ from typing import Any, NoReturn, TypeVar
 from grader.exercise import Exercise, ExerciseError
 from grader.exercise.interface import Endpoint
 from grader.recording.recording import Fields
-from grader.runner.message import message_class
+from grader.recording.types import message_class
 from grader.scenario.scenario import (
     CancelAll,
     CancelGoal,

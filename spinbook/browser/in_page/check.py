@@ -26,6 +26,7 @@ _CANNOT = {
     "asyncio": "Your program uses asyncio, which needs the browser for itself. Check it in the notebook.",
     "multiprocessing": "Your program starts processes, which a web page can't. Check it in the notebook.",
 }
+_MORE_THAN_TOPICS = "This exercise has more than topics in it, which a web page can't check. Check it in the notebook."
 _THREADED = "MultiThreadedExecutor"
 
 
@@ -35,6 +36,8 @@ def check(name: str, source: str) -> str:
     if hindrance:
         return json.dumps({"problem": hindrance})
     exercise = load(_unpacked(name)).public()
+    if not can_be_run(exercise):
+        return json.dumps({"problem": _MORE_THAN_TOPICS})
     scenarios, references, hidden = public_part(exercise)
     recordings = record(exercise, scenarios, Program(exercise.file_name, source))
     return json.dumps(shown(verdicts(exercise, scenarios, recordings, references), recordings, hidden))
@@ -67,6 +70,11 @@ def _unpacked(name: str) -> Path:
         with zipfile.ZipFile(_ARCHIVE) as archive:
             archive.extractall("/", [item for item in archive.namelist() if item.startswith(f"exercises/{name}/")])
     return folder
+
+
+def can_be_run(exercise: Exercise) -> bool:
+    """Whether the rig of a page can do what the public scenarios say: publish messages, and nothing else."""
+    return bool(json.loads(exercise.public_file.read_text(encoding="utf-8"))["format"] == 1)
 
 
 def public_part(exercise: Exercise) -> tuple[list[Scenario], dict[str, Recording], dict[str, Any]]:

@@ -1,0 +1,33 @@
+"""Between serialized messages and plain fields."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rclpy.serialization import deserialize_message, serialize_message
+
+from grader.recording.recording import Fields
+from grader.runner.message import filled, to_fields
+from grader.runner.stopped import Stopped
+
+
+def serialized(kind: Any, fields: Fields) -> bytes:
+    """A message, request or response of the class `kind` with these fields, as bytes."""
+    content: bytes = serialize_message(filled(kind(), fields))
+    return content
+
+
+def deserialized(cdr: bytes, kind: Any) -> Any:
+    """What a program sent, as a message of the class `kind`. Raises `Stopped` for bytes that are none."""
+    try:
+        return deserialize_message(cdr, kind)
+    except Exception as error:  # whatever made-up bytes lead to
+        raise Stopped("over-limit", f"Your node published bytes that are no message: {error}") from None
+
+
+def fields_of(cdr: bytes, kind: Any) -> Fields:
+    """What a program sent, as plain fields. Raises `Stopped` for bytes that are no message of the class `kind`."""
+    try:
+        return to_fields(deserialize_message(cdr, kind))
+    except Exception as error:  # whatever made-up bytes lead to
+        raise Stopped("over-limit", f"Your node published bytes that are no message: {error}") from None
