@@ -11,13 +11,18 @@ from typing import Any
 from grader.checking.comparator import TOLERANCE
 from grader.checking.recorded import Recorded
 from grader.checking.shown import shown
-from grader.recording.events import By, Goal
+from grader.recording.events import By, Cancel, Goal
 from grader.scenario.scenario import SECOND
 
 _FORGOT = "The result is filled in, but the goal was aborted: a server has to call goal_handle.succeed()."
 _ABORTED = "Does execute raise, or return without goal_handle.succeed()?"
 _DISREGARDED = "Your node accepted the request to cancel, and then called succeed() all the same."
 _REFUSED = "Your node rejected the request to cancel: without a cancel callback a server rejects each of them."
+_WENT_ON = (
+    "Your node accepted the request to cancel, and went on: execute has to look at goal_handle.is_cancel_requested."
+)
+_NO_ANSWER = "Your node never answered the request to cancel: execute keeps the executor from doing it."
+_OVER = "The goal was over before the request to cancel came."
 _TOO_LATE = "The request to cancel was answered only when the goal was over: execute keeps the executor from doing it."
 _NEVER = "The goal never ended."
 
@@ -114,7 +119,7 @@ class ActionChecks(Recorded):
         for number, (expected, got) in enumerate(pairs, start=1):
             part = f"{_part(one)}, feedback {number}"
             self.compare_at(got.at, part, field, got.fields, expected.fields, tolerance, one.action, messages)
-            self.time_at(got.at, expected.at, part, time)
+            self.time_at(got.at, expected.at, part, time, since=one.at)
         wanted_, came_ = len(reference.feedback), len(one.feedback)
         if wanted_ != came_:
             told = f"expected {wanted_} feedback messages, got {came_}."
@@ -185,11 +190,7 @@ class ActionChecks(Recorded):
         """The usual mistake behind an end that is another than the wanted one; empty where none is known."""
         got, cancel = _ended_as(goal), goal.cancels[0] if goal.cancels else None
         if wanted == "canceled" and cancel:
-            if cancel.answered is not None and goal.finished is not None and cancel.answered >= goal.finished:
-                return _TOO_LATE
-            if cancel.accepted is False:
-                return _REFUSED
-            return _DISREGARDED if cancel.accepted and got == "succeeded" else ""
+            return _why_not_canceled(goal, cancel, got)
         if wanted == "succeeded" and got == "aborted":
             return _FORGOT if goal.result and _is_filled(goal.result) else _ABORTED
         return _NEVER if _ended_at(goal) is None else ""
@@ -199,6 +200,19 @@ class ActionChecks(Recorded):
 
     def _reference_goals(self, action: str, by: By) -> tuple[Goal, ...]:
         return tuple(goal for goal in self._reference.goals if goal.action == action and goal.by == by)
+
+
+def _why_not_canceled(goal: Goal, cancel: Cancel, got: str) -> str:
+    ended = _ended_at(goal)
+    if ended is not None and ended < cancel.at:
+        return _OVER
+    if cancel.answered is None:
+        return _NO_ANSWER
+    if ended is not None and cancel.answered >= ended > cancel.at:
+        return _TOO_LATE
+    if cancel.accepted is False:
+        return _REFUSED
+    return {"succeeded": _DISREGARDED, "aborted": "", "canceled": ""}.get(got, _WENT_ON)
 
 
 def _part(goal: Goal) -> str:

@@ -69,7 +69,7 @@ class ParameterChecks(Recorded):
             return
         wanted, got = ("taken", "refused") if taken else ("refused", "taken")
         told = f"the value {shown(change.value)} must be {wanted}, but your node {'took' if change.taken else got} it."
-        told += f" It said: {change.reason}" if change.reason and taken else ""
+        told += f" It said: {change.reason.rstrip('.')}." if change.reason and taken else ""
         self.wrong_at(change.at, told, f"parameter {change.name}", wanted, got, self._never_refuses(taken))
 
     def _never_refuses(self, taken: bool) -> str:

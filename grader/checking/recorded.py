@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import Any, NoReturn
 
 from grader.checking.comparator import difference
-from grader.checking.pattern import common
+from grader.checking.pattern import COMPUTER_CLOCK, common
 from grader.checking.shown import shown
 from grader.checking.wrong import Finding, Wrong
 from grader.exercise import Exercise
 from grader.exercise.interface import Endpoint, Role, Topic
 from grader.recording import Ending, Received, Recording
 from grader.scenario.scenario import SECOND, START
+
+_SLEEPS = "Does your node wait by the computer's clock, such as with time.sleep? It goes at another speed here."
 
 
 class Recorded:
@@ -77,11 +80,18 @@ class Recorded:
         general = common(known, found.path, unit, clock=self.recording.hold == "lockstep")
         self.wrong_at(at, f"expected {found.path} {wanted}, got {came}.", part, wanted, came, general)
 
-    def time_at(self, at: int, expected: int, part: str, time: float | None) -> None:
-        """End the check where something happened more than `time` s before or after it was expected."""
+    def time_at(self, at: int, expected: int, part: str, time: float | None, since: int = START) -> None:
+        """End the check where something happened more than `time` s before or after it was expected.
+
+        `since` is when the node began to wait for it.
+        """
         if time is not None and abs(at - expected) > time * SECOND + 1:
             wanted, came = f"{seconds(expected):.2f} s", f"{seconds(at):.2f} s"
-            self.wrong_at(at, f"it was expected at {wanted}, got it at {came}.", part, wanted, came)
+            by_computer = expected > since and math.isclose(
+                (at - since) / (expected - since), COMPUTER_CLOCK, rel_tol=0.03
+            )
+            told = f"it was expected at {wanted}, got it at {came}."
+            self.wrong_at(at, told, part, wanted, came, _SLEEPS if by_computer else "")
 
     def unit_of(self, field: str, name: str = "") -> str:
         """The unit of a field by exercise.toml: of the topic, service or action `name`, or of any."""

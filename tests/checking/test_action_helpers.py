@@ -83,10 +83,14 @@ def test_execute_raises() -> None:
          "The request to cancel was answered only when the goal was over: execute keeps the executor from doing it."),
         (goal(*BEGIN, (2.0, "canceling"), (2.9, "canceled"), cancels=ASKED),
          "it was expected to end within 0.5 s of the request to cancel, got 0.90 s."),
+        (goal(*BEGIN, (2.0, "canceling"), cancels=ASKED), "and went on: execute has to look at goal_handle.is_can"),
+        (goal(*BEGIN, cancels=(Cancel(ns(2.0)),)), "Your node never answered the request to cancel: execute keeps the"),
+        (goal(*BEGIN, (1.0, "aborted"), cancels=(Cancel(ns(2.0), ns(2.0), accepted=False, code=3),)),
+         "got aborted. The goal was over before the request to cancel came."),
         (replace(CANCELED, goals=(replace(CANCELED.goals[0], feedback=(Feedback(ns(2.5), {"left": 0}),)),)),
          "At 2.50 s (as usual), goal 1 for /count (order 3): no feedback was expected after the goal was canceled"),
     ],
-    ids=["rejected", "succeed all the same", "single-threaded", "slow", "feedback goes on"],
+    ids=["rejected", "succeed all the same", "answered late", "slow", "ignored", "single-threaded", "over", "feedback"],
 )  # fmt: skip
 def test_a_request_to_cancel_that_is_not_obeyed(mine: Recording, told: str) -> None:
     assert told in says(lambda: run(mine, CANCELED).must_cancel(within=0.5))
@@ -121,6 +125,10 @@ def test_no_answer_to_a_goal() -> None:
         ((Feedback(ns(1.5), {"left": 2}),), "expected 2 feedback messages, got 1."),
         ((Feedback(ns(1.5), {"left": 2}), Feedback(ns(2.0), {"left": 7})), "feedback 2: expected left 1, got 7."),
         ((Feedback(ns(1.5), {"left": 2}), Feedback(ns(2.4), {"left": 1})), "expected at 2.00 s, got it at 2.40 s."),
+        (
+            (Feedback(ns(1.4), {"left": 2}),),
+            "got it at 1.40 s. Does your node wait by the computer's clock, such as with",
+        ),
     ],
 )
 def test_feedback(feedback: tuple[Feedback, ...], told: str) -> None:

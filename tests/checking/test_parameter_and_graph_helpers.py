@@ -41,7 +41,7 @@ def test_parameters_that_are_taken_or_refused_wrongly() -> None:
         "Your node takes every value. Did you add an on-set callback?"
     )
     told = says(lambda: run(refuses, right).must_take_and_refuse_as_the_solution())
-    assert "the value 3 must be taken, but your node refused it. It said: too small Your node refuses every" in told
+    assert "the value 3 must be taken, but your node refused it. It said: too small. Your node refuses every" in told
     assert "your node gave no answer about it." in says(lambda: run(mute, right).must_take("gain"))
 
 
