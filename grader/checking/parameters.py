@@ -67,6 +67,8 @@ class ParameterChecks(Recorded):
             self._unknown(change.at, change.name, answered=False)
         if change.taken == taken:
             return
+        if taken and "undeclared" in change.reason:
+            self._unknown(change.at, change.name, answered=True)
         wanted, got = ("taken", "refused") if taken else ("refused", "taken")
         told = f"the value {shown(change.value)} must be {wanted}, but your node {'took' if change.taken else got} it."
         told += f" It said: {change.reason.rstrip('.')}." if change.reason and taken else ""

@@ -42,6 +42,8 @@ def test_parameters_that_are_taken_or_refused_wrongly() -> None:
     )
     told = says(lambda: run(refuses, right).must_take_and_refuse_as_the_solution())
     assert "the value 3 must be taken, but your node refused it. It said: too small. Your node refuses every" in told
+    undeclared = replace(EMPTY, parameters=(replace(refuses.parameters[0], reason="access to undeclared parameter"),))
+    assert "your node does not have it. Declare it" in says(lambda: run(undeclared, right).must_take("gain", 3.0))
     assert "your node gave no answer about it." in says(lambda: run(mute, right).must_take("gain"))
 
 
