@@ -1,0 +1,33 @@
+"""Without a class: closures."""
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from std_msgs.msg import Bool, String
+
+
+def main():
+    rclpy.init()
+    node = rclpy.create_node("bottle_sorter")
+    publisher = node.create_publisher(String, "gate", 10)
+
+    def on_silence():
+        timer.cancel()
+        publisher.publish(String(data="closed"))
+
+    def on_bottle(message):
+        timer.reset()
+        publisher.publish(String(data=("reject", "pass")[message.data]))
+
+    timer = node.create_timer(2.0, on_silence)
+    node.create_subscription(Bool, "full", on_bottle, 10)
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

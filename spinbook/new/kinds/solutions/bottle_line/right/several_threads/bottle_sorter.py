@@ -1,0 +1,46 @@
+"""Several threads; a lock keeps the bottle and the timer apart."""
+
+import threading
+
+import rclpy
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.node import Node
+from std_msgs.msg import Bool, String
+
+
+class BottleSorter(Node):
+    def __init__(self):
+        super().__init__("bottle_sorter")
+        group = ReentrantCallbackGroup()
+        self.lock = threading.Lock()
+        self.publisher = self.create_publisher(String, "/gate", 10)
+        self.timer = self.create_timer(2.0, self.on_silence, callback_group=group)
+        self.create_subscription(Bool, "/full", self.on_bottle, 10, callback_group=group)
+
+    def on_bottle(self, message):
+        with self.lock:
+            self.timer.reset()
+            self.publisher.publish(String(data="pass" if message.data else "reject"))
+
+    def on_silence(self):
+        with self.lock:
+            self.timer.cancel()
+            self.publisher.publish(String(data="closed"))
+
+
+def main():
+    rclpy.init()
+    node = BottleSorter()
+    executor = MultiThreadedExecutor(num_threads=3)
+    executor.add_node(node)
+    try:
+        executor.spin()
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

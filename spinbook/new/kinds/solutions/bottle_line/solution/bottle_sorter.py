@@ -1,0 +1,54 @@
+"""The sorter of a bottling line: a gate that lets full bottles pass, and closes when the scale is silent."""
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from std_msgs.msg import Bool, String
+
+PATIENCE = 2.0  # s
+
+
+class BottleSorter(Node):
+    """Hears what the scale says and moves the gate."""
+
+    def __init__(self):
+        super().__init__("bottle_sorter")
+        self.create_subscription(Bool, "/full", self.on_bottle, 10)
+        # TODO: create a publisher of String messages on "/gate", with a queue depth of 10.
+        # TODO: create a timer that calls self.on_silence after PATIENCE seconds.
+        # BEGIN SOLUTION
+        self.publisher = self.create_publisher(String, "/gate", 10)
+        self.timer = self.create_timer(PATIENCE, self.on_silence)
+        # END SOLUTION
+
+    def on_bottle(self, message):
+        """Called once for each bottle that was weighed."""
+        # TODO: start the timer anew, and publish "pass" or "reject".
+        # BEGIN SOLUTION
+        self.timer.reset()
+        self.publisher.publish(String(data="pass" if message.data else "reject"))
+        # END SOLUTION
+
+    def on_silence(self):
+        """Called when nothing was heard for PATIENCE seconds."""
+        # TODO: publish "closed", once.
+        # BEGIN SOLUTION
+        self.timer.cancel()
+        self.publisher.publish(String(data="closed"))
+        # END SOLUTION
+
+
+def main():
+    rclpy.init()
+    node = BottleSorter()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()
