@@ -16,17 +16,13 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
     bottles = numbers("/weight", [(0.55 + 0.5 * i, weight) for i, weight in enumerate(WEIGHTS)])
     few = numbers("/weight", [(0.55, 500.0), (1.55, 480.0), (6.05, 500.0)])
     comes_back = (at(1.8).kill(SCALE), at(5.8).start(SCALE))
+    late_scale = (Program(SCALE, starts=3.0), Program(SORTER))
+    late_sorter = (Program(SCALE), Program(SORTER, starts=1.0))
     return (
         Scenario("line", "nine bottles", bottles, duration=5.0, interrupt=True),
         Scenario("pause", "no bottle for 4.5 s", few, duration=9.0),
         Scenario("nothing", "no bottle at all", duration=7.0),
-        Scenario(
-            "scale_ends", "the scale is killed, and starts again 4 s later", (bottles, few[2], comes_back), duration=9.0
-        ),
-        Scenario(
-            "scale_late", "the scale starts after 3 s", few, programs=(Program(SCALE, starts=3.0), Program(SORTER))
-        ),
-        Scenario(
-            "sorter_late", "the sorter starts after 1 s", few, programs=(Program(SCALE), Program(SORTER, starts=1.0))
-        ),
+        Scenario("scale_ends", "the scale is killed, and comes back", (bottles, few[2], comes_back), duration=9.0),
+        Scenario("scale_late", "the scale starts after 3 s", few, programs=late_scale, duration=9.0),
+        Scenario("sorter_late", "the sorter starts after 1 s", few, programs=late_sorter, duration=9.0),
     )

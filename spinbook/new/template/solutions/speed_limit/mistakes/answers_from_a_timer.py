@@ -2,10 +2,8 @@
 
 Caught by:
 - test_answers_each_message_once
-- test_safe_speeds_pass
 - test_too_fast_is_slowed_down
 - test_too_fast_backwards
-- test_not_a_number
 """
 
 import math
