@@ -15,10 +15,11 @@ class BottleSorter(Node):
         super().__init__("bottle_sorter")
         self.create_subscription(Bool, "/full", self.on_bottle, 10)
         # TODO: create a publisher of String messages on "/gate", with a queue depth of 10.
-        # TODO: create a timer that calls self.on_silence after PATIENCE seconds.
+        # TODO: create a timer that calls self.on_silence after PATIENCE seconds, and cancel it until there is a bottle.
         # BEGIN SOLUTION
         self.publisher = self.create_publisher(String, "/gate", 10)
         self.timer = self.create_timer(PATIENCE, self.on_silence)
+        self.timer.cancel()
         # END SOLUTION
 
     def on_bottle(self, message):

@@ -1,7 +1,7 @@
 """Makes the board best effort.
 
 Caught by:
-- test_ends_are_latched
+- test_ends_are_as_described
 - test_a_late_passenger_sees_the_line
 - test_a_late_passenger_sees_no_older_line
 """

@@ -1,7 +1,7 @@
 """Creates a publisher for each line and destroys the one before, with what it had kept.
 
 Caught by:
-- test_one_publisher
+- test_ends_are_as_described
 """
 
 import rclpy

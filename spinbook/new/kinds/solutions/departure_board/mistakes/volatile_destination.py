@@ -1,7 +1,7 @@
 """Subscribes to the destination with a plain 1, which is volatile: it misses what was published before.
 
 Caught by:
-- test_ends_are_latched
+- test_ends_are_as_described
 - test_a_destination_from_before_the_start
 """
 

@@ -19,6 +19,7 @@ def main():
         publisher.publish(String(data=("reject", "pass")[message.data]))
 
     timer = node.create_timer(2.0, on_silence)
+    timer.cancel()
     node.create_subscription(Bool, "full", on_bottle, 10)
     try:
         rclpy.spin(node)

@@ -19,7 +19,6 @@ class BottleSorter(Node):
         super().__init__("bottle_sorter")
         self.gate = Gate(self)
         self.timer = None
-        self.wait()
         self.create_subscription(Bool, "/full", self.sort, 10)
 
     def wait(self):

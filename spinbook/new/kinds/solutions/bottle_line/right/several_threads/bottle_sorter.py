@@ -16,6 +16,7 @@ class BottleSorter(Node):
         self.lock = threading.Lock()
         self.publisher = self.create_publisher(String, "/gate", 10)
         self.timer = self.create_timer(2.0, self.on_silence, callback_group=group)
+        self.timer.cancel()
         self.create_subscription(Bool, "/full", self.on_bottle, 10, callback_group=group)
 
     def on_bottle(self, message):

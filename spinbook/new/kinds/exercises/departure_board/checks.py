@@ -1,0 +1,35 @@
+"""What every student may read: the checks of `departure_board`. Each fixture is a scenario of scenarios.py."""
+
+from __future__ import annotations
+
+from grader.checking import Run, check, fail
+
+
+@check(points=4, hint="Publish the line in both callbacks.")
+def test_shows_destination_and_delay(one_train: Run) -> None:
+    """It shows a destination, and then the destination with the delay."""
+    one_train.must_match_series("data", topic="/board")
+
+
+@check(
+    points=4,
+    hint="Both ends of a topic must be transient local. A publisher with a plain number is volatile.",
+    depends=[test_shows_destination_and_delay],
+    misconception="volatile where transient local is needed",
+)
+def test_a_late_passenger_sees_the_line(passenger: Run) -> None:
+    """Whoever subscribes to /board late gets the line that it shows."""
+    passenger.must_match_series("data", topic="/board", subscriber="late")
+
+
+@check(
+    points=2,
+    hint="Catch KeyboardInterrupt and ExternalShutdownException around rclpy.spin, then call rclpy.try_shutdown().",
+    depends=[test_shows_destination_and_delay],
+)
+def test_ends_on_ctrl_c(one_train: Run) -> None:
+    """On Ctrl-C it ends within 2 s, with no traceback."""
+    if not one_train.ending.ended_in_time:
+        fail("After Ctrl-C the node went on.", expected="an end within 2 s", got="none")
+    if one_train.ending.traceback:
+        fail("After Ctrl-C the node printed a traceback.", expected="none", got=one_train.ending.traceback)

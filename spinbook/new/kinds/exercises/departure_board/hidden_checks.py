@@ -1,0 +1,75 @@
+"""What students may not read: the rest of `departure_board`. Every rule that is relied on is in task.md."""
+
+from __future__ import annotations
+
+from grader.checking import Run, check, fail
+
+SHOWS = ["test_shows_destination_and_delay"]
+
+
+@check(
+    points=3,
+    hint="Compare each delay with the one before.",
+    depends=SHOWS,
+    rule="A delay that differs from the one before is shown with one message. The same delay again is not.",
+)
+def test_shows_each_change_once(delays: Run) -> None:
+    """Each delay that differs from the one before is shown once; without a delay the line is the destination."""
+    delays.must_match_series("data", topic="/board")
+
+
+@check(
+    points=2,
+    hint="The depth says how many messages are kept for late subscribers.",
+    depends=["test_a_late_passenger_sees_the_line"],
+    misconception="keeps old messages",
+    rule="Whoever subscribes late gets the line of that moment, and no older one.",
+)
+def test_a_late_passenger_sees_no_older_line(passenger: Run) -> None:
+    """Whoever subscribes late gets one line, the latest."""
+    count = sum(one.subscriber == "late" for one in passenger.recording.received)
+    if count > 1:
+        fail("A late subscriber got old lines, too.", expected="1 message", got=f"{count} messages")
+
+
+@check(
+    points=2,
+    hint="A volatile subscription misses what was published before it was there.",
+    depends=SHOWS,
+    misconception="volatile where transient local is needed",
+    rule="A destination is published rarely, maybe before your node starts.",
+)
+def test_a_destination_from_before_the_start(early: Run) -> None:
+    """A destination that was published before the node started is shown."""
+    early.must_match_series("data", topic="/board")
+
+
+@check(
+    points=2,
+    hint="Remember each delay, and show it as soon as there is a destination. Show each destination.",
+    depends=SHOWS,
+    rule="A delay that arrives then is remembered.",
+)
+def test_a_delay_before_there_is_a_destination(delay_first: Run) -> None:
+    """A delay from before the first destination is remembered, and each destination is shown."""
+    delay_first.must_match_series("data", topic="/board")
+
+
+@check(
+    points=1,
+    hint="Compare the three ends with the table, column by column.",
+    depends=SHOWS,
+    rule="reliable, transient local, depth 1",
+)
+def test_ends_are_as_described(one_train: Run) -> None:
+    """The node is called departure_board, and its three ends have the quality of service of the task."""
+    if one_train.nodes != ("/departure_board",):
+        fail("The node has another name.", expected="/departure_board", got=", ".join(one_train.nodes))
+    publishers = [end for topic in one_train.topics("publisher") for end in one_train.publishers(topic)]
+    if [end.topic for end in publishers] != ["/board"]:
+        fail("Your node's publishers.", expected="one, on /board", got=", ".join(end.topic for end in publishers))
+    wanted = {"/destination": "transient_local", "/delay": "volatile", "/board": "transient_local"}
+    for end in (*publishers, *one_train.subscriptions("/destination"), *one_train.subscriptions("/delay")):
+        if (end.reliability, end.durability) != ("reliable", wanted[end.topic]):
+            got = f"{end.reliability} and {end.durability}"
+            fail(f"The QoS of {end.topic}.", expected=f"reliable and {wanted[end.topic]}", got=got)
