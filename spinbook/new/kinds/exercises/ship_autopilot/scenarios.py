@@ -9,23 +9,27 @@ from grader.scenario import Scenario, World, at
 
 
 class Ship:
-    """A ship that turns with half of its rudder's angle per second, half a second after the rudder (Nomoto, 1957)."""
+    """A ship that turns with half of its rudder's angle per second, half a second after the rudder (Nomoto, 1957).
+
+    It also publishes how far it has turned (rad), which is for the checks: it never jumps, as a heading does at π.
+    """
 
     reads: ClassVar = {"/rudder": "std_msgs/msg/Float64"}
-    publishes: ClassVar = {"/heading": "std_msgs/msg/Float64"}
+    publishes: ClassVar = {"/heading": "std_msgs/msg/Float64", "/turned": "std_msgs/msg/Float64"}
 
     def __init__(self, heading: float) -> None:
-        self.heading, self.rate, self.rudder = heading, 0.0, 0.0
+        self.heading, self.turned, self.rate, self.rudder = heading, 0.0, 0.0, 0.0
 
     def hear(self, topic: str, message: Any) -> None:
         self.rudder = max(-0.6, min(0.6, message.data))
 
     def step(self, dt: float) -> None:
         self.rate += (0.5 * self.rudder - self.rate) * dt / 0.5
-        self.heading = math.remainder(self.heading + self.rate * dt, 2 * math.pi)
+        self.turned += self.rate * dt
 
     def state(self) -> dict[str, dict[str, Any]]:
-        return {"/heading": {"data": self.heading}}
+        heading = math.remainder(self.heading + self.turned, 2 * math.pi)
+        return {"/heading": {"data": heading}, "/turned": {"data": self.turned}}
 
 
 def scenarios(seed: int) -> tuple[Scenario, ...]:

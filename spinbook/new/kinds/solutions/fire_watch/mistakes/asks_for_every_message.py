@@ -1,14 +1,8 @@
 """Calls for each message, and not only for each change.
 
 Caught by:
-- test_calls_the_sprinkler
-- test_smoke_at_the_edge
-- test_reports_a_refusal
-- test_siren_while_the_sprinkler_is_slow
-- test_a_change_before_the_answer
-- test_a_sprinkler_that_never_answers
-- test_a_sprinkler_that_appears_late
-- test_a_sprinkler_that_appears_too_late
+- test_one_call_for_each_change
+- test_reports_the_answer
 """
 
 import rclpy

@@ -2,6 +2,7 @@
 
 Caught by:
 - test_siren_goes_on
+- test_one_call_for_each_change
 - test_reports_the_answer
 """
 

@@ -2,7 +2,7 @@
 
 Caught by:
 - test_reports_a_refusal
-- test_siren_while_the_sprinkler_is_slow
+- test_a_sprinkler_that_is_slow
 - test_a_change_before_the_answer
 - test_a_sprinkler_that_never_answers
 """

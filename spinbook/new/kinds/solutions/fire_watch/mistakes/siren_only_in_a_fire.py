@@ -2,7 +2,6 @@
 
 Caught by:
 - test_siren_goes_on
-- test_siren_while_the_sprinkler_is_slow
 """
 
 import rclpy

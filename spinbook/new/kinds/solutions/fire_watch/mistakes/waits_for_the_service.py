@@ -2,7 +2,6 @@
 
 Caught by:
 - test_a_sprinkler_that_appears_late
-- test_a_sprinkler_that_appears_too_late
 """
 
 import rclpy
