@@ -19,6 +19,7 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
     ends = [("target", 30.0), ("margin", 5.0), ("target", 5.0), ("margin", 0.0)]
     taken = tuple(at(1.2 + 2 * i).set_parameter(name, value) for i, (name, value) in enumerate(ends))
     types = (at(1.2).set_parameter("target", 22), at(2.2).set_parameter("margin", "wide"))
+    read = (at(1.2).get_parameter("target"), at(1.2).get_parameter("margin"))
     return (
         Scenario("defaults", "a room cools down and warms up", room, interrupt=True),
         Scenario("started", "target 22.5 and margin 3 at the start", room, parameters=warm),
@@ -26,5 +27,5 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         Scenario("refused", "values outside of their ranges", (room, refused)),
         Scenario("ends", "values at the ends of their ranges", (room, taken)),
         Scenario("types", "an integer and a text for a double", (room, types)),
-        Scenario("read", "the parameters are read", (room, at(1.2).get_parameter("target", "margin"))),
+        Scenario("read", "the parameters are read", (room, read)),
     )

@@ -9,6 +9,18 @@ from grader.checking import Run, check
 ANSWERS = ["test_answers_each_heading"]
 LEFT = ["test_reaches_a_course_to_the_left"]
 RIGHT = ["test_reaches_a_course_to_the_right"]
+TURNS = ["test_turns_towards_the_course"]
+
+
+@check(
+    points=2,
+    hint="Put the rudder amidships when the ship is on its course.",
+    depends=TURNS,
+    rule="12 s after a course was given, the ship heads within 0.05 rad of it, and stays there.",
+)
+def test_reaches_a_course_to_the_left(left: Run) -> None:
+    """It reaches a course to the left, and stays there."""
+    left.must_reach("/turned", {"data": 1.0}, tolerance=0.05, within=12.0, start=1.05)
 
 
 @check(
@@ -112,7 +124,7 @@ def test_amidships_without_a_course(adrift: Run) -> None:
     depends=ANSWERS,
     rule="Its node is called ship_autopilot.",
 )
-def test_node_is_as_described(left: Run) -> None:
+def test_node_is_as_described(bench: Run) -> None:
     """The node has the name and the quality of service of the task."""
-    left.must_have_nodes()
-    left.must_have_qos()
+    bench.must_have_nodes()
+    bench.must_have_qos()

@@ -6,6 +6,8 @@ import math
 from typing import Any, ClassVar
 
 from grader.scenario import Scenario, World, at
+from grader.scenario.numbers import numbers, wave
+from grader.scenario.times import every
 
 
 class Ship:
@@ -44,10 +46,12 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
             steps,
             world=World(Ship, heading=heading, period=0.1),
             duration=duration,
-            interrupt=name == "left",
+            ,
         )
 
+    bench = (numbers("/heading", wave(2.0, every(0.1, 4.0))), at(1.05).publish("/course", data=0.5))
     return (
+        Scenario("bench", "headings from a table: there is no ship yet", bench, interrupt=True),
         voyage("left", "a course to the left", 0.0, 1.0),
         voyage("right", "a course to the right", 0.5, -0.5),
         voyage("across", "a course on the other side of π", 3.0, -3.0),
