@@ -38,7 +38,7 @@ def test_one_call_for_each_change(fire: Run) -> None:
 
 
 @check(
-    points=3,
+    points=2,
     hint="What call_async() returns is a future. Add a done-callback.",
     depends=[test_calls_the_sprinkler],
 )

@@ -6,7 +6,7 @@ from grader.checking import Run, check
 
 
 @check(
-    points=4,
+    points=3,
     hint="send_goal_async() sends a goal.",
 )
 def test_sends_a_goal(one_star: Run) -> None:
@@ -16,7 +16,7 @@ def test_sends_a_goal(one_star: Run) -> None:
 
 
 @check(
-    points=4,
+    points=3,
     hint="The handle has get_result_async(). Add a done-callback to what it returns.",
     depends=[test_sends_a_goal],
 )

@@ -41,7 +41,7 @@ def test_a_goal_that_is_rejected(rejected: Run) -> None:
 
 
 @check(
-    points=2,
+    points=1,
     hint="The result comes with a status: GoalStatus.STATUS_SUCCEEDED is one of several.",
     depends=TURNS,
     misconception="ignores the status",

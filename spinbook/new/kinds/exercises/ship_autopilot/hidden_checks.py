@@ -35,7 +35,7 @@ def test_reaches_a_course_to_the_right(right: Run) -> None:
 
 
 @check(
-    points=2,
+    points=1,
     hint="A smaller gain turns more gently.",
     depends=LEFT,
     misconception="a gain that is too great",
@@ -93,7 +93,7 @@ def test_a_new_course(two_courses: Run) -> None:
 
 
 @check(
-    points=2,
+    points=1,
     hint="max(-0.6, min(0.6, …)).",
     depends=ANSWERS,
     rule="The rudder goes from −0.6 to 0.6 rad.",

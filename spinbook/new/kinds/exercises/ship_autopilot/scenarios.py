@@ -40,14 +40,8 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
     def voyage(name: str, title: str, heading: float, *courses: float, seconds: float = 15.0) -> Scenario:
         steps = tuple(at(1.05 + seconds * i).publish("/course", data=course) for i, course in enumerate(courses))
         duration = 1.05 + seconds * max(1, len(courses))
-        return Scenario(
-            name,
-            title,
-            steps,
-            world=World(Ship, heading=heading, period=0.1),
-            duration=duration,
-            ,
-        )
+        ship = World(Ship, heading=heading, period=0.1)
+        return Scenario(name, title, steps, world=ship, duration=duration)
 
     bench = (numbers("/heading", wave(2.0, every(0.1, 4.0))), at(1.05).publish("/course", data=0.5))
     return (

@@ -6,7 +6,7 @@ from grader.checking import Run, check
 
 
 @check(
-    points=4,
+    points=3,
     hint="Call succeed() at the end of execute, and return the result. Spin with a MultiThreadedExecutor.",
 )
 def test_serves_a_goal(one_goal: Run) -> None:

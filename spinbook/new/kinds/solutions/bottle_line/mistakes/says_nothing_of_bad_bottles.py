@@ -48,8 +48,10 @@ if __name__ == "__main__":
 # file: bottle_sorter.py
 """The sorter of a bottling line: a gate that lets full bottles pass, and closes when the scale is silent."""
 
+import rclpy
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
-from std_msgs.msg import String
+from std_msgs.msg import Bool, String
 
 PATIENCE = 2.0  # s
 

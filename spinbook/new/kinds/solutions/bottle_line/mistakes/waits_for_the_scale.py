@@ -49,8 +49,10 @@ if __name__ == "__main__":
 
 import time
 
+import rclpy
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
-from std_msgs.msg import String
+from std_msgs.msg import Bool, String
 
 PATIENCE = 2.0  # s
 

@@ -29,7 +29,9 @@ if __name__ == "__main__":
 # file: bottle_sorter.py
 """Without a class: closures."""
 
-from std_msgs.msg import String
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from std_msgs.msg import Bool, String
 
 
 def main():

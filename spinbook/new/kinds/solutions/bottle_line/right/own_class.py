@@ -48,8 +48,10 @@ if __name__ == "__main__":
 # file: bottle_sorter.py
 """A gate of its own; a new timer for each bottle."""
 
+import rclpy
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
-from std_msgs.msg import String
+from std_msgs.msg import Bool, String
 
 
 class Gate:

@@ -43,11 +43,13 @@ if __name__ == "__main__":
 # file: bottle_sorter.py
 """Several threads; a lock keeps the bottle and the timer apart."""
 
+import threading
 
+import rclpy
 from rclpy.callback_groups import ReentrantCallbackGroup
-from rclpy.executors import MultiThreadedExecutor
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.node import Node
-from std_msgs.msg import String
+from std_msgs.msg import Bool, String
 
 
 class BottleSorter(Node):
