@@ -2,7 +2,6 @@
 
 Caught by:
 - test_a_visitor_with_enough_gets_through
-- test_a_visitor_with_less_is_told_what_is_missing
 """
 
 import rclpy

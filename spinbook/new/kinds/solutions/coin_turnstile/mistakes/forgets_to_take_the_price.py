@@ -1,10 +1,7 @@
 """Lets people through and does not take the price.
 
 Caught by:
-- test_a_visitor_with_less_is_told_what_is_missing
-- test_change_stays_for_the_next_visitor
-- test_every_coin_counts
-- test_five_pushes_at_one_moment
+- test_a_visitor_with_enough_gets_through
 """
 
 import rclpy

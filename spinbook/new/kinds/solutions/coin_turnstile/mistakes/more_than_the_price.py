@@ -2,9 +2,6 @@
 
 Caught by:
 - test_a_visitor_with_enough_gets_through
-- test_change_stays_for_the_next_visitor
-- test_every_coin_counts
-- test_five_pushes_at_one_moment
 """
 
 import rclpy

@@ -1,12 +1,7 @@
 """Raises an exception for a push with too little: it leaves spin(), and the node dies.
 
 Caught by:
-- test_a_visitor_with_less_is_told_what_is_missing
-- test_every_coin_counts
-- test_what_is_no_coin_falls_through
-- test_five_pushes_at_one_moment
-- test_change_stays_for_the_next_visitor
-- test_a_visitor_with_enough_gets_through
+- test_serves_push
 """
 
 import rclpy

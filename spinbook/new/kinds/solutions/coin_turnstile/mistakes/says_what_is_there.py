@@ -2,8 +2,6 @@
 
 Caught by:
 - test_a_visitor_with_less_is_told_what_is_missing
-- test_every_coin_counts
-- test_what_is_no_coin_falls_through
 """
 
 import rclpy

@@ -2,6 +2,8 @@
 
 Caught by:
 - test_answers_at_once
+- test_every_coin_counts
+- test_five_pushes_at_one_moment
 """
 
 import time

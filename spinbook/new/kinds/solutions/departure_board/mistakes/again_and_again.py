@@ -2,9 +2,6 @@
 
 Caught by:
 - test_shows_destination_and_delay
-- test_shows_each_change_once
-- test_a_delay_before_there_is_a_destination
-- test_shows_each_destination
 """
 
 import rclpy

@@ -1,9 +1,8 @@
 """Makes the board best effort.
 
 Caught by:
-- test_ends_are_as_described
 - test_a_late_passenger_sees_the_line
-- test_a_late_passenger_sees_no_older_line
+- test_ends_are_as_described
 """
 
 import rclpy

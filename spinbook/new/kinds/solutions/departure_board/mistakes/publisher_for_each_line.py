@@ -1,6 +1,7 @@
 """Creates a publisher for each line and destroys the one before, with what it had kept.
 
 Caught by:
+- test_a_late_passenger_sees_the_line
 - test_ends_are_as_described
 """
 

@@ -3,7 +3,6 @@
 Caught by:
 - test_a_late_passenger_sees_the_line
 - test_ends_are_as_described
-- test_a_late_passenger_sees_no_older_line
 """
 
 import rclpy

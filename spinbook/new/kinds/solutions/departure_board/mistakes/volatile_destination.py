@@ -1,8 +1,8 @@
 """Subscribes to the destination with a plain 1, which is volatile: it misses what was published before.
 
 Caught by:
-- test_ends_are_as_described
 - test_a_destination_from_before_the_start
+- test_ends_are_as_described
 """
 
 import rclpy

@@ -2,10 +2,6 @@
 
 Caught by:
 - test_shows_destination_and_delay
-- test_a_late_passenger_sees_the_line
-- test_shows_each_change_once
-- test_a_late_passenger_sees_no_older_line
-- test_a_destination_from_before_the_start
 """
 
 import rclpy

@@ -2,7 +2,6 @@
 
 Caught by:
 - test_five_messages_per_second
-- test_punctual_after_a_minute
 """
 
 import math
