@@ -39,12 +39,12 @@ def test_reaches_a_course_to_the_right(right: Run) -> None:
     hint="A smaller gain turns more gently.",
     depends=LEFT,
     misconception="a gain that is too great",
-    rule="The ship swings past its course by 0.03 rad at most.",
+    rule="The ship swings past its course by 0.01 rad at most.",
 )
 def test_does_not_overshoot(left: Run, right: Run) -> None:
     """The ship does not swing past its course."""
-    left.must_reach("/turned", {"data": 1.0}, tolerance=0.05, within=12.0, overshoot=0.03, start=1.05)
-    right.must_reach("/turned", {"data": -1.0}, tolerance=0.05, within=12.0, overshoot=0.03, start=1.05)
+    left.must_reach("/turned", {"data": 1.0}, tolerance=0.05, within=12.0, overshoot=0.01, start=1.05)
+    right.must_reach("/turned", {"data": -1.0}, tolerance=0.05, within=12.0, overshoot=0.01, start=1.05)
 
 
 @check(
@@ -56,7 +56,7 @@ def test_does_not_overshoot(left: Run, right: Run) -> None:
 )
 def test_turns_the_short_way_round(across: Run) -> None:
     """It turns the short way round, through pi."""
-    across.must_reach("/turned", {"data": 2 * math.pi - 6.0}, tolerance=0.05, within=12.0, overshoot=0.03, start=1.05)
+    across.must_reach("/turned", {"data": 2 * math.pi - 6.0}, tolerance=0.05, within=12.0, overshoot=0.01, start=1.05)
 
 
 @check(
@@ -67,7 +67,7 @@ def test_turns_the_short_way_round(across: Run) -> None:
 )
 def test_half_a_turn(about: Run) -> None:
     """It makes half a turn."""
-    about.must_reach("/turned", {"data": -3.1}, tolerance=0.05, within=20.0, overshoot=0.03, start=1.05)
+    about.must_reach("/turned", {"data": -3.1}, tolerance=0.05, within=20.0, overshoot=0.01, start=1.05)
 
 
 @check(
@@ -78,7 +78,7 @@ def test_half_a_turn(about: Run) -> None:
 )
 def test_a_course_beyond_two_pi(beyond: Run) -> None:
     """A course beyond two pi is the same as one turn less."""
-    beyond.must_reach("/turned", {"data": 7.0 - 2 * math.pi}, tolerance=0.05, within=12.0, overshoot=0.03, start=1.05)
+    beyond.must_reach("/turned", {"data": 7.0 - 2 * math.pi}, tolerance=0.05, within=12.0, overshoot=0.01, start=1.05)
 
 
 @check(

@@ -3,9 +3,8 @@
 Caught by:
 - test_parameters_at_the_start
 - test_parameters_set_while_it_runs
-- test_refuses_what_is_out_of_range
-- test_takes_the_ends_of_the_ranges
 - test_refuses_other_types
+- test_node_is_as_described
 """
 
 import rclpy

@@ -2,11 +2,6 @@
 
 Caught by:
 - test_switches_the_heater
-- test_parameters_at_the_start
-- test_parameters_set_while_it_runs
-- test_refuses_what_is_out_of_range
-- test_takes_the_ends_of_the_ranges
-- test_refuses_other_types
 """
 
 import rclpy

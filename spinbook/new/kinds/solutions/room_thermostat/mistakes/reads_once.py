@@ -2,7 +2,6 @@
 
 Caught by:
 - test_parameters_set_while_it_runs
-- test_takes_the_ends_of_the_ranges
 """
 
 import rclpy

@@ -2,7 +2,6 @@
 
 Caught by:
 - test_parameters_set_while_it_runs
-- test_takes_the_ends_of_the_ranges
 """
 
 import rclpy
@@ -23,9 +22,9 @@ class RoomThermostat(Node):
         self.publisher = self.create_publisher(Bool, "/heater", 10)
         self.create_subscription(Float64, "/temperature", self.on_temperature, 10)
         self.heating = False
-        self.add_on_set_parameters_callback(self.on_set)
         self.declare_parameter("target", 20.0)
         self.declare_parameter("margin", 0.5)
+        self.add_on_set_parameters_callback(self.on_set)
 
     def on_set(self, parameters):
         """Called before parameters change. Says whether they may."""

@@ -3,8 +3,7 @@
 Caught by:
 - test_parameters_at_the_start
 - test_parameters_set_while_it_runs
-- test_takes_the_ends_of_the_ranges
-- test_parameters_can_be_read
+- test_node_is_as_described
 """
 
 import rclpy
