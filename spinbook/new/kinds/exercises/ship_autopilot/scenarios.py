@@ -41,7 +41,7 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         steps = tuple(at(1.05 + seconds * i).publish("/course", data=course) for i, course in enumerate(courses))
         duration = 1.05 + seconds * max(1, len(courses))
         ship = World(Ship, heading=heading, period=0.1)
-        return Scenario(name, title, steps, world=ship, duration=duration)
+        return Scenario(name, title, steps, world=ship, duration=duration, rate=20.0)
 
     bench = (numbers("/heading", wave(2.0, every(0.1, 4.0))), at(1.05).publish("/course", data=0.5))
     return (
