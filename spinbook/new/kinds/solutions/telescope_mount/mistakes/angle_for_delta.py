@@ -2,10 +2,6 @@
 
 Caught by:
 - test_goals_one_after_another
-- test_a_goal_where_it_is
-- test_goals_as_far_as_it_turns
-- test_a_goal_after_a_cancel
-- test_a_second_goal_while_one_is_served
 """
 
 import math

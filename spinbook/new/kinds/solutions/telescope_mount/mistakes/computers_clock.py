@@ -1,7 +1,7 @@
 """Sleeps with time.sleep(), which goes by the computer's clock.
 
 Caught by:
-- test_serves_a_goal
+- test_feedback_after_each_step
 """
 
 import math

@@ -2,8 +2,6 @@
 
 Caught by:
 - test_goals_one_after_another
-- test_goals_as_far_as_it_turns
-- test_a_goal_after_a_cancel
 """
 
 import math

@@ -2,12 +2,6 @@
 
 Caught by:
 - test_serves_a_goal
-- test_goals_one_after_another
-- test_a_goal_where_it_is
-- test_goals_as_far_as_it_turns
-- test_goals_that_are_too_far
-- test_a_second_goal_while_one_is_served
-- test_a_goal_after_a_cancel
 """
 
 import math

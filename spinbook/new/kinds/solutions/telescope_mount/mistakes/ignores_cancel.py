@@ -2,7 +2,6 @@
 
 Caught by:
 - test_cancel
-- test_a_goal_after_a_cancel
 """
 
 import math
