@@ -24,7 +24,7 @@ class NightObserver(Node):
         super().__init__("night_observer")
         self.stars = deque()  # rad, those that wait
         self.busy = False  # is there a goal that is not done?
-        self.handle = None  # of the goal that was accepted and is not done
+        self.goal_handle = None  # of the goal that was accepted and is not done
         self.create_subscription(Float32, "/star", self.on_star, 10)
         self.create_subscription(Empty, "/clouds", self.on_clouds, 10)
         self.photo = self.create_publisher(Float32, "/photo", 10)
@@ -40,8 +40,8 @@ class NightObserver(Node):
 
     def on_clouds(self, message):
         """Called when clouds come up."""
-        if self.handle is not None:
-            self.handle.cancel_goal_async()
+        if self.goal_handle is not None:
+            self.goal_handle.cancel_goal_async()
 
     def next(self):
         """Send a goal for the next star, if there is one, and the telescope is there and free."""
@@ -57,7 +57,7 @@ class NightObserver(Node):
         if not handle.accepted:
             self.finish(self.missed, star)
             return
-        self.handle = handle
+        self.goal_handle = handle
         handle.get_result_async().add_done_callback(lambda done: self.on_result(star, done.result()))
 
     def on_result(self, star, answer):
@@ -67,7 +67,7 @@ class NightObserver(Node):
     def finish(self, publisher, star):
         """Publish what became of the star, and go on with the next one."""
         self.busy = False
-        self.handle = None
+        self.goal_handle = None
         publisher.publish(Float32(data=star))
         self.next()
 

@@ -17,7 +17,7 @@ class NightObserver(Node):
         super().__init__("night_observer")
         self.stars = queue.Queue()
         self.there = threading.Event()
-        self.handle = None
+        self.goal_handle = None
         self.photo = self.create_publisher(Float32, "/photo", 10)
         self.missed = self.create_publisher(Float32, "/missed", 10)
         self.client = ActionClient(self, RotateAbsolute, "/turn")
@@ -31,8 +31,8 @@ class NightObserver(Node):
             self.there.set()
 
     def on_clouds(self, _):
-        if self.handle is not None:
-            self.handle.cancel_goal_async()
+        if self.goal_handle is not None:
+            self.goal_handle.cancel_goal_async()
 
     def photograph(self):
         while True:
@@ -44,12 +44,12 @@ class NightObserver(Node):
             publisher.publish(Float32(data=star))
 
     def turned(self, star):
-        self.handle = waited(self.client.send_goal_async(RotateAbsolute.Goal(theta=star)))
-        if not self.handle.accepted:
-            self.handle = None
+        self.goal_handle = waited(self.client.send_goal_async(RotateAbsolute.Goal(theta=star)))
+        if not self.goal_handle.accepted:
+            self.goal_handle = None
             return False
-        status = waited(self.handle.get_result_async()).status
-        self.handle = None
+        status = waited(self.goal_handle.get_result_async()).status
+        self.goal_handle = None
         return status == GoalStatus.STATUS_SUCCEEDED
 
 
