@@ -60,7 +60,7 @@ class Spinner:
         """
         jobs = [self.job(submission, scenario, i) for i, scenario in enumerate(self.scenarios)]
         # The longest first, so that none is left over at the end; the very first is needed at once.
-        spins = Spins((jobs[0], *sorted(jobs[1:], key=lambda job: -len(job.scenario.messages))), self.crew)
+        spins = Spins((jobs[0], *sorted(jobs[1:], key=lambda job: -job.scenario.size)), self.crew)
         with ThreadPoolExecutor(self.options.parallel) as pool, self.helping.wanted(spins):
             for _ in range(self.options.parallel):
                 pool.submit(spins.work)

@@ -3,24 +3,16 @@
 from __future__ import annotations
 
 import array
-import importlib
 import re
-from functools import cache
 from typing import Any
 
 from rclpy.serialization import deserialize_message, serialize_message
 
 from grader.recording.recording import Fields
 from grader.runner.stopped import Stopped
+from grader.scenario.types import message_class as message_class
 
 _LIST = re.compile(r"sequence<(?P<sequence>[^,>]+)(, \d+)?>|(?P<array>.+)\[\d+\]")
-
-
-@cache
-def message_class(type_name: str) -> Any:
-    """The Python class of `package/msg/Name`. Raises ImportError or AttributeError where there is none."""
-    package, kind, name = type_name.split("/")
-    return getattr(importlib.import_module(f"{package}.{kind}"), name)
 
 
 def to_fields(message: Any) -> Fields:

@@ -11,7 +11,6 @@ from typing import Any, NoReturn, TypeVar
 from grader.exercise import Exercise, ExerciseError
 from grader.exercise.interface import Endpoint
 from grader.recording.recording import Fields
-from grader.runner.message import message_class
 from grader.scenario.scenario import (
     CancelAll,
     CancelGoal,
@@ -30,6 +29,7 @@ from grader.scenario.scenario import (
     Subscribe,
 )
 from grader.scenario.servers import ActionServer, Reply, Server
+from grader.scenario.types import message_class
 from grader.scenario.values import Invalid, check_fields
 from interface_compiler import prefixes
 

@@ -243,6 +243,11 @@ class Scenario:
         return 0.0 if self.is_filter else self.rate or RATE
 
     @property
+    def size(self) -> float:
+        """How much there is to do in it, in messages: to run the largest first."""
+        return len(self.messages) + self.seconds * self.clock_rate
+
+    @property
     def digest(self) -> str:
         """The same for two scenarios only if everything in them is."""
         return hashlib.sha256(json.dumps(_digestible(self), sort_keys=True).encode()).hexdigest()

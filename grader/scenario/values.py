@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from grader.recording.recording import Fields
-from grader.runner.message import message_class
+from grader.scenario.types import message_class
 
 _INTEGERS = {f"{sign}int{bits}": (bits, sign == "") for bits in (8, 16, 32, 64) for sign in ("", "u")}
 _LIST = re.compile(r"sequence<(?P<of>.+?)(, (?P<most>\d+))?>|(?P<array>.+)\[(?P<size>\d+)\]")
