@@ -19,10 +19,12 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
     late_scale = (Program(SCALE, starts=3.0), Program(SORTER))
     late_sorter = (Program(SCALE), Program(SORTER, starts=1.0))
     return (
-        Scenario("line", "nine bottles", bottles, duration=5.0, interrupt=True),
-        Scenario("pause", "no bottle for 4.5 s", few, duration=9.0),
-        Scenario("nothing", "no bottle at all", duration=7.0),
-        Scenario("scale_ends", "the scale is killed, and comes back", (bottles, few[2], comes_back), duration=9.0),
-        Scenario("scale_late", "the scale starts after 3 s", few, programs=late_scale, duration=9.0),
-        Scenario("sorter_late", "the sorter starts after 1 s", few, programs=late_sorter, duration=9.0),
+        Scenario("line", "nine bottles", bottles, duration=5.0, interrupt=True, rate=20.0),
+        Scenario("pause", "no bottle for 4.5 s", few, duration=9.0, rate=20.0),
+        Scenario("nothing", "no bottle at all", duration=7.0, rate=20.0),
+        Scenario(
+            "scale_ends", "the scale is killed, and comes back", (bottles, few[2], comes_back), duration=9.0, rate=20.0
+        ),
+        Scenario("scale_late", "the scale starts after 3 s", few, programs=late_scale, duration=9.0, rate=20.0),
+        Scenario("sorter_late", "the sorter starts after 1 s", few, programs=late_sorter, duration=9.0, rate=20.0),
     )

@@ -19,9 +19,11 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
     not_coins = tuple(at(0.5 + i).publish("/coins", data=value) for i, value in enumerate((30, 0, -100, 5, 1000)))
     crowd = (at(0.5, 0.6).publish("/coins", data=200), at(1.0, 1.0, 1.0, 1.0, 1.0).call("/push"))
     return (
-        Scenario("visitors", "two visitors, one of them with too little", visitors, interrupt=True),
-        Scenario("change", "more coins than one visit costs", change),
-        Scenario("all_coins", "each coin there is, with pushes between", (all_coins, pushes)),
-        Scenario("not_coins", "values that are no coins", (not_coins, at(1.0, 2.0, 3.0, 4.0, 5.0).call("/push"))),
-        Scenario("crowd", "five pushes at one moment", crowd),
+        Scenario("visitors", "two visitors, one of them with too little", visitors, interrupt=True, rate=20.0),
+        Scenario("change", "more coins than one visit costs", change, rate=20.0),
+        Scenario("all_coins", "each coin there is, with pushes between", (all_coins, pushes), rate=20.0),
+        Scenario(
+            "not_coins", "values that are no coins", (not_coins, at(1.0, 2.0, 3.0, 4.0, 5.0).call("/push")), rate=20.0
+        ),
+        Scenario("crowd", "five pushes at one moment", crowd, rate=20.0),
     )

@@ -14,9 +14,20 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
     known = before_start.publish("/destination", data="Linz")
     trains = tuple(at(i).publish("/destination", data=name) for i, name in ((1.0, "Wien"), (2.0, "Wien"), (3.0, "Ulm")))
     return (
-        Scenario("one_train", "a destination, then a delay", train, interrupt=True),
-        Scenario("passenger", "somebody subscribes to the board late", (train, late), duration=3.0),
-        Scenario("delays", "delays that change and stay", (train[0], delays, latest), duration=7.5),
-        Scenario("early", "the destination was published before your node started", (known, train[1]), duration=2.0),
-        Scenario("delay_first", "a delay before there is a destination", (at(0.3).publish("/delay", data=9), trains)),
+        Scenario("one_train", "a destination, then a delay", train, interrupt=True, rate=20.0),
+        Scenario("passenger", "somebody subscribes to the board late", (train, late), duration=3.0, rate=20.0),
+        Scenario("delays", "delays that change and stay", (train[0], delays, latest), duration=7.5, rate=20.0),
+        Scenario(
+            "early",
+            "the destination was published before your node started",
+            (known, train[1]),
+            duration=2.0,
+            rate=20.0,
+        ),
+        Scenario(
+            "delay_first",
+            "a delay before there is a destination",
+            (at(0.3).publish("/delay", data=9), trains),
+            rate=20.0,
+        ),
     )

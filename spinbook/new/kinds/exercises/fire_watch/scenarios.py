@@ -13,7 +13,9 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
     edges = tuple(at(0.5 + 0.5 * i).publish("/smoke", data=value) for i, value in enumerate((0.3, 0.31, 0.3, 0.0, 1.0)))
 
     def scenario(name: str, title: str, steps: object, *replies: object, **more: object) -> Scenario:
-        return Scenario(name, title, steps, servers=(Server("/sprinkler", replies=replies, **more),), duration=6.0)
+        return Scenario(
+            name, title, steps, servers=(Server("/sprinkler", replies=replies, **more),), duration=6.0, rate=20.0
+        )
 
     return (
         Scenario(
@@ -23,6 +25,7 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
             servers=(Server("/sprinkler", replies=works),),
             duration=5.0,
             interrupt=True,
+            rate=20.0,
         ),
         scenario("edges", "smoke at the edge of a fire", edges, works),
         scenario("refused", "the sprinkler refuses, then works", (fire, over), refuses, works),

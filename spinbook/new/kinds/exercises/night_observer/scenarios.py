@@ -15,11 +15,19 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
     gap = (one, clouds, at(3.0).publish("/star", data=1.0))
 
     def scenario(name: str, title: str, steps: object, *goals: object, **more: object) -> Scenario:
-        return Scenario(name, title, steps, servers=(ActionServer("/turn", goals=goals, **more),), duration=8.0)
+        return Scenario(
+            name, title, steps, servers=(ActionServer("/turn", goals=goals, **more),), duration=8.0, rate=20.0
+        )
 
     return (
         Scenario(
-            "one_star", "one star", one, servers=(ActionServer("/turn", goals=turned),), duration=3.0, interrupt=True
+            "one_star",
+            "one star",
+            one,
+            servers=(ActionServer("/turn", goals=turned),),
+            duration=3.0,
+            interrupt=True,
+            rate=20.0,
         ),
         scenario("three_stars", "three stars in quick succession", three, turned),
         scenario("rejected", "the telescope rejects the first star", three, rejects(), turned),

@@ -21,11 +21,11 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
     types = (at(1.2).set_parameter("target", 22), at(2.2).set_parameter("margin", "wide"))
     read = (at(1.2).get_parameter("target"), at(1.2).get_parameter("margin"))
     return (
-        Scenario("defaults", "a room cools down and warms up", room, interrupt=True),
-        Scenario("started", "target 22.5 and margin 3 at the start", room, parameters=warm),
-        Scenario("changed", "target and margin change while it runs", (room, changed)),
-        Scenario("refused", "values outside of their ranges", (room, refused)),
-        Scenario("ends", "values at the ends of their ranges", (room, taken)),
-        Scenario("types", "an integer and a text for a double", (room, types)),
-        Scenario("read", "the parameters are read", (room, read)),
+        Scenario("defaults", "a room cools down and warms up", room, interrupt=True, rate=20.0),
+        Scenario("started", "target 22.5 and margin 3 at the start", room, parameters=warm, rate=20.0),
+        Scenario("changed", "target and margin change while it runs", (room, changed), rate=20.0),
+        Scenario("refused", "values outside of their ranges", (room, refused), rate=20.0),
+        Scenario("ends", "values at the ends of their ranges", (room, taken), rate=20.0),
+        Scenario("types", "an integer and a text for a double", (room, types), rate=20.0),
+        Scenario("read", "the parameters are read", (room, read), rate=20.0),
     )
