@@ -51,6 +51,6 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         voyage("across", "a course on the other side of π", 3.0, -3.0),
         voyage("about", "half a turn", 0.2, -2.9, seconds=22.0),
         voyage("beyond", "a course beyond 2 π", 0.0, 7.0),
-        voyage("two_courses", "a second course", -1.0, 0.0, -1.5),
+        voyage("two_courses", "a second course", -1.0, 0.5, -1.5),
         voyage("adrift", "no course at all", 0.4),
     )

@@ -2,8 +2,6 @@
 
 Caught by:
 - test_gate_closes_when_the_scale_is_silent
-- test_scale_is_killed_and_comes_back
-- test_either_starts_late
 """
 
 # file: bottle_scale.py

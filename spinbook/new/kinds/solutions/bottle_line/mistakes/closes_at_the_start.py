@@ -2,7 +2,6 @@
 
 Caught by:
 - test_sorter_moves_the_gate
-- test_gate_without_a_bottle
 """
 
 # file: bottle_scale.py

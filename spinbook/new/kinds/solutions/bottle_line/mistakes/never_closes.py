@@ -2,8 +2,6 @@
 
 Caught by:
 - test_gate_closes_when_the_scale_is_silent
-- test_either_starts_late
-- test_scale_is_killed_and_comes_back
 """
 
 # file: bottle_scale.py

@@ -1,9 +1,9 @@
 """The sorter hears the weights itself and does not need the scale.
 
 Caught by:
-- test_node_is_as_described
 - test_scale_is_killed_and_comes_back
 - test_either_starts_late
+- test_node_is_as_described
 """
 
 # file: bottle_scale.py

@@ -1,4 +1,4 @@
-"""Never looks at `accepted`: a rejected goal has a result, too, with the status unknown, and is waited for.
+"""Never looks at `accepted`, and asks for the result of a rejected goal, too: it has none.
 
 Caught by:
 - test_a_goal_that_is_rejected
@@ -53,8 +53,6 @@ class NightObserver(Node):
 
     def on_response(self, star, handle):
         """Called when the telescope accepts or rejects a goal."""
-        if not handle.accepted:
-            return
         self.goal_handle = handle
         handle.get_result_async().add_done_callback(lambda done: self.on_result(star, done.result()))
 

@@ -2,7 +2,6 @@
 
 Caught by:
 - test_clouds_cancel_the_goal
-- test_a_telescope_that_refuses_to_cancel
 """
 
 from collections import deque

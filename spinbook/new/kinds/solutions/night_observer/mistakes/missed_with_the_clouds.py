@@ -1,7 +1,6 @@
 """Takes a star for missed as soon as it has asked to cancel.
 
 Caught by:
-- test_a_telescope_that_refuses_to_cancel
 - test_clouds_cancel_the_goal
 """
 

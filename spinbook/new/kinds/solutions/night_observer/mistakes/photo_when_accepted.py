@@ -2,14 +2,6 @@
 
 Caught by:
 - test_a_photo_of_what_succeeded
-- test_one_goal_at_a_time
-- test_a_goal_that_is_rejected
-- test_a_goal_that_is_aborted
-- test_clouds_cancel_the_goal
-- test_a_telescope_that_refuses_to_cancel
-- test_clouds_without_a_goal
-- test_a_telescope_that_appears_late
-- test_a_telescope_that_accepts_late
 """
 
 from collections import deque

@@ -32,11 +32,7 @@ class NightObserver(Node):
         self.photo = self.create_publisher(Float32, "/photo", 10)
         self.missed = self.create_publisher(Float32, "/missed", 10)
         self.client = ActionClient(self, RotateAbsolute, "/turn")
-        self.create_timer(PERIOD, self.look)
-
-    def look(self):
-        if not self.given_up:
-            self.next()
+        self.create_timer(PERIOD, self.next)
 
     def on_star(self, message):
         """Called once for each star."""
@@ -71,11 +67,10 @@ class NightObserver(Node):
 
     def finish(self, publisher, star):
         """Publish what became of the star, and go on with the next one."""
-        self.busy = False
+        self.busy = publisher is self.missed
         self.goal_handle = None
         publisher.publish(Float32(data=star))
-        if publisher is self.photo:
-            self.next()
+        self.next()
 
 
 def main():

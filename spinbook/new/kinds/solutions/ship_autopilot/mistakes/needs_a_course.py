@@ -2,7 +2,6 @@
 
 Caught by:
 - test_answers_each_heading
-- test_amidships_without_a_course
 """
 
 import math

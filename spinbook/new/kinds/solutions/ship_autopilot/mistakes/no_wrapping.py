@@ -3,7 +3,6 @@
 Caught by:
 - test_turns_the_short_way_round
 - test_a_course_beyond_two_pi
-- test_half_a_turn
 """
 
 import math

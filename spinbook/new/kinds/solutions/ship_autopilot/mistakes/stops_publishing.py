@@ -35,7 +35,7 @@ class ShipAutopilot(Node):
         if self.course is not None:
             error = wrapped(self.course - message.data)
             rudder = max(-LIMIT, min(LIMIT, GAIN * error))
-        if self.course is None or abs(rudder) > 0.01:
+        if self.course is None or abs(rudder) > 0.1:
             self.publisher.publish(Float64(data=rudder))
 
 

@@ -2,6 +2,9 @@
 
 Caught by:
 - test_does_not_overshoot
+- test_turns_the_short_way_round
+- test_half_a_turn
+- test_a_course_beyond_two_pi
 """
 
 import math

@@ -2,11 +2,6 @@
 
 Caught by:
 - test_reaches_a_course_to_the_left
-- test_reaches_a_course_to_the_right
-- test_turns_the_short_way_round
-- test_half_a_turn
-- test_a_course_beyond_two_pi
-- test_a_new_course
 """
 
 import math

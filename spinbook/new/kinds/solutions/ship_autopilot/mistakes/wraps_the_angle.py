@@ -2,7 +2,6 @@
 
 Caught by:
 - test_turns_the_short_way_round
-- test_half_a_turn
 """
 
 import math
