@@ -1,4 +1,4 @@
-"""Never looks at `accepted`, and asks for the result of a rejected goal, too: it has none.
+"""Never looks at `accepted`: a rejected goal has a result, too, whose status is none of the bad ones.
 
 Caught by:
 - test_a_goal_that_is_rejected
@@ -58,7 +58,8 @@ class NightObserver(Node):
 
     def on_result(self, star, answer):
         """Called when a goal is done."""
-        self.finish(self.photo if answer.status == GoalStatus.STATUS_SUCCEEDED else self.missed, star)
+        bad = answer.status in (GoalStatus.STATUS_ABORTED, GoalStatus.STATUS_CANCELED)
+        self.finish(self.missed if bad else self.photo, star)
 
     def finish(self, publisher, star):
         """Publish what became of the star, and go on with the next one."""
