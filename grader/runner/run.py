@@ -188,7 +188,7 @@ class Run:
             self._see_that_it_was_the_program()
             if self._team and self._team.ended:
                 program = (self._team.ended, task.source)
-            return cut_short(self._student, *program, self._is_up, self._when())
+            return cut_short(self._student, *program, self._is_up, self._when() if self._is_up else "before the start")
 
     def _when(self) -> str:
         """The present moment, in words."""

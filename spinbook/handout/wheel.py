@@ -19,7 +19,7 @@ from interface_compiler.wheel import record
 from spinbook.problem import Problem, SpinbookError
 
 #: What `spinbook new` starts from has solutions and hidden checks in it; courses may still use them.
-FOR_AUTHORS = ("spinbook/new/template/",)
+FOR_AUTHORS = ("spinbook/new/template/", "spinbook/new/kinds/")
 
 _BUILD = "import sys; from setuptools.build_meta import build_wheel; print(build_wheel(sys.argv[1]))"
 _PACKAGES = ("spinbook/", "grader/", "interface_compiler/")

@@ -1,4 +1,4 @@
-"""Makes a course or an exercise from the template, which is a whole course itself, in plain files beside this one.
+"""Makes a course or an exercise from the templates, which are plain files next to this one.
 
 Nothing is ever overwritten: what is made is put together in a folder of its own, which then gets its name.
 """
@@ -10,13 +10,12 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
+from spinbook.new.kind import COURSE, Kind
 from spinbook.new.names import class_name, words
 from spinbook.problem import Problem, SpinbookError
 
-TEMPLATE = Path(__file__).parent / "template"
-
-#: The template's own names.
-EXERCISE, COURSE = "speed_limit", "my_first_course"
+#: The exercise of a new course.
+EXERCISE = "speed_limit"
 
 #: Files whose names begin with a dot in a course, but not here, where packaging tools would leave them out.
 _DOTTED = ("_gitignore", "_github")
@@ -26,22 +25,22 @@ def write_course(folder: Path, title: str, package: str) -> None:
     """Make a course in `folder`, which must not exist. Raises `SpinbookError`."""
     names = {"My first course": title, "my_first_course": package}
     _refuse_existing(folder)
-    _put(_filled(TEMPLATE, names), folder)
+    _put(_filled(COURSE, names), folder)
 
 
-def write_exercise(course: Path, name: str, title: str) -> None:
-    """Make an exercise and its solutions in a course. Raises `SpinbookError` where one of the folders exists."""
+def write_exercise(course: Path, name: str, title: str, kind: Kind) -> None:
+    """Make an exercise of a kind, and its solutions, in a course. Raises `SpinbookError` if a folder of it exists."""
     names = {
-        EXERCISE: name,
-        class_name(EXERCISE): class_name(name),
-        "A speed limit": title,
-        "a speed limit": words(name).lower(),
+        kind.exercise: name,
+        class_name(kind.exercise): class_name(name),
+        kind.title: title,
+        words(kind.exercise).lower(): words(name).lower(),
     }
     folders = {part: course / part / name for part in ("exercises", "solutions")}
     for folder in folders.values():
         _refuse_existing(folder)
     for part, folder in folders.items():
-        _put(_filled(TEMPLATE / part / EXERCISE, names), folder)
+        _put(_filled(kind.root / part / kind.exercise, names), folder)
 
 
 def _refuse_existing(folder: Path) -> None:

@@ -1,0 +1,72 @@
+"""What students may not read: the rest of `bottle_line`. Every rule that is relied on is in task.md."""
+
+from __future__ import annotations
+
+from grader.checking import Run, check, fail
+
+SORTS = ["test_sorter_moves_the_gate"]
+
+
+@check(
+    points=3,
+    hint="A timer of 2 s that begins anew with each message, and is canceled when it has fired.",
+    depends=SORTS,
+    misconception="never closes, or again and again",
+    rule="since the last message on /full, it publishes closed, once.",
+)
+def test_gate_closes_when_the_scale_is_silent(pause: Run) -> None:
+    """After 2 s without a bottle the gate closes, once, and the next bottle opens it again."""
+    pause.must_match_series("data", topic="/gate", time=0.05)
+
+
+@check(
+    points=1,
+    hint="The 2 s begin with a message on /full.",
+    depends=SORTS,
+    rule="Before the first message the gate is closed anyway: the sorter publishes nothing.",
+)
+def test_gate_without_a_bottle(nothing: Run) -> None:
+    """Before the first bottle the sorter publishes nothing."""
+    nothing.must_match_series("data", topic="/gate")
+
+
+@check(
+    points=2,
+    hint="The sorter must not need the scale to run.",
+    depends=["test_gate_closes_when_the_scale_is_silent"],
+    rule="The next message on /full is answered as usual, and the 2 s begin anew with each.",
+)
+def test_scale_is_killed_and_comes_back(scale_ends: Run) -> None:
+    """When the scale is killed the gate closes, and when it comes back all goes on."""
+    scale_ends.must_survive("bottle_sorter.py")
+    scale_ends.must_match_series("data", topic="/gate", time=0.05)
+
+
+@check(
+    points=3,
+    hint="Create subscriptions and publishers, and spin. Wait for nobody.",
+    depends=["test_gate_closes_when_the_scale_is_silent"],
+    misconception="waits for the other node",
+    rule="Neither node waits for the other.",
+)
+def test_either_starts_late(scale_late: Run, sorter_late: Run) -> None:
+    """Either node may start later than the other."""
+    for run in (scale_late, sorter_late):
+        run.must_survive()
+        run.must_match_series("data", topic="/full")
+        run.must_match_series("data", topic="/gate", time=0.05)
+
+
+@check(
+    points=1,
+    hint="Compare the names and the queue depths in __init__ with the task.",
+    depends=SORTS,
+    rule="The nodes have these ends and no others: the sorter hears the scale, and not the weights.",
+)
+def test_node_is_as_described(line: Run) -> None:
+    """The node has the name and the quality of service of the task."""
+    line.must_have_nodes()
+    line.must_have_qos()
+    for end in line.end_points("subscription", "/weight"):
+        if end.node != "/bottle_scale":
+            fail("The weights are the scale's.", expected="/bottle_scale", got=end.node)

@@ -1,0 +1,77 @@
+"""What students may not read: the rest of `coin_turnstile`. Every rule that is relied on is in task.md."""
+
+from __future__ import annotations
+
+from grader.checking import Run, check
+
+SUCCESS = ["test_a_visitor_with_enough_gets_through"]
+MESSAGE = ["test_a_visitor_with_less_is_told_what_is_missing"]
+
+
+@check(
+    points=2,
+    hint="Take the price from the credit, and leave the rest.",
+    depends=SUCCESS,
+    misconception="keeps the change",
+    rule="The visitor pays 100 cents; the rest of the credit stays for the next visitor.",
+)
+def test_change_stays_for_the_next_visitor(change: Run) -> None:
+    """A visitor pays 100 cents, and what is left is the next visitor's."""
+    change.must_match_responses("success")
+
+
+@check(
+    points=1,
+    hint="There are five coins, from 10 to 200 cents.",
+    depends=MESSAGE,
+    rule="A coin of 10, 20, 50, 100 or 200 cents adds its value to the credit.",
+)
+def test_every_coin_counts(all_coins: Run) -> None:
+    """Each of the five coins adds its value to the credit."""
+    all_coins.must_match_responses()
+
+
+@check(
+    points=3,
+    hint="Compare the value with the coins that there are.",
+    depends=MESSAGE,
+    misconception="takes everything for a coin",
+    rule="It falls through: the credit stays as it is.",
+)
+def test_what_is_no_coin_falls_through(not_coins: Run) -> None:
+    """A value that is no coin leaves the credit as it is."""
+    not_coins.must_match_responses()
+
+
+@check(
+    points=1,
+    hint="Each request is one visitor, however many come at one moment.",
+    depends=SUCCESS,
+    rule="Every push gets one response, at once, however many come and however quickly.",
+)
+def test_five_pushes_at_one_moment(crowd: Run) -> None:
+    """Five pushes at one moment get five responses, each in its turn."""
+    crowd.must_match_responses("success")
+
+
+@check(
+    points=1,
+    hint="Never sleep in a callback: nothing else runs meanwhile.",
+    depends=["test_serves_push"],
+    misconception="sleeps in a callback",
+    rule="A response that comes within 0.1 s comes at once.",
+)
+def test_answers_at_once(visitors: Run) -> None:
+    """Each response comes at once."""
+    visitors.must_respond(within=0.1)
+
+
+@check(
+    points=1,
+    hint="Look at the name that __init__ gives to the node.",
+    depends=["test_serves_push"],
+    rule="Its node is called coin_turnstile.",
+)
+def test_node_is_as_described(visitors: Run) -> None:
+    """The node has the name of the task."""
+    visitors.must_have_nodes()

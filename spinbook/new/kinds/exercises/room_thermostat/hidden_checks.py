@@ -1,0 +1,62 @@
+"""What students may not read: the rest of `room_thermostat`. Every rule that is relied on is in task.md."""
+
+from __future__ import annotations
+
+from grader.checking import Run, check
+
+SWITCHES = ["test_switches_the_heater"]
+CHANGES = ["test_parameters_set_while_it_runs"]
+
+
+@check(
+    points=3,
+    hint="A callback added with add_on_set_parameters_callback says whether values may change.",
+    depends=SWITCHES,
+    misconception="refuses nothing",
+    rule="A value outside of its range is refused, with a reason, and everything goes on as before.",
+)
+def test_refuses_what_is_out_of_range(refused: Run) -> None:
+    """It refuses values outside of their ranges, and goes on as before."""
+    refused.must_refuse("target")
+    refused.must_refuse("margin")
+    refused.must_match("data")
+
+
+@check(
+    points=2,
+    hint="5.0 and 30.0 are allowed, and so are 0.0 and 5.0.",
+    depends=CHANGES,
+    rule="The ends of the ranges are allowed.",
+)
+def test_takes_the_ends_of_the_ranges(ends: Run) -> None:
+    """It takes the values at the ends of their ranges."""
+    ends.must_take("target")
+    ends.must_take("margin")
+    ends.must_match("data")
+
+
+@check(
+    points=1,
+    hint="A parameter declared with 20.0 takes nothing but doubles.",
+    depends=SWITCHES,
+    rule="A value of another type is refused, such as the integer 22.",
+)
+def test_refuses_other_types(types: Run) -> None:
+    """It refuses an integer and a text where a double is declared, and goes on as before."""
+    types.must_refuse("target", 22)
+    types.must_refuse("margin", "wide")
+    types.must_match("data")
+
+
+@check(
+    points=1,
+    hint="Compare the names and the queue depths in __init__ with the task.",
+    depends=SWITCHES,
+    rule="Its node is called room_thermostat.",
+)
+def test_node_is_as_described(read: Run) -> None:
+    """The node has the name, the parameters and the quality of service of the task."""
+    read.must_have_nodes()
+    read.must_have_qos()
+    read.must_have_parameter("target", 20.0)
+    read.must_have_parameter("margin", 0.5)

@@ -1,0 +1,102 @@
+# file: bottle_scale.py
+"""The scale of a bottling line: is a bottle full?"""
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from std_msgs.msg import Bool, Float64
+
+LEAST, MOST = 490.0, 510.0  # g
+
+
+class BottleScale(Node):
+    """Hears weights and says of each whether it is right."""
+
+    def __init__(self):
+        super().__init__("bottle_scale")
+        self.create_subscription(Float64, "/weight", self.on_weight, 10)
+        # TODO: create a publisher of Bool messages on "/full", with a queue depth of 10.
+        # BEGIN SOLUTION
+        self.publisher = self.create_publisher(Bool, "/full", 10)
+        # END SOLUTION
+
+    def on_weight(self, message):
+        """Called once for each bottle (g)."""
+        # TODO: publish whether the weight is right.
+        # BEGIN SOLUTION
+        self.publisher.publish(Bool(data=LEAST <= message.data <= MOST))
+        # END SOLUTION
+
+
+def main():
+    rclpy.init()
+    node = BottleScale()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()
+
+
+# file: bottle_sorter.py
+"""The sorter of a bottling line: a gate that lets full bottles pass, and closes when the scale is silent."""
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from std_msgs.msg import Bool, String
+
+PATIENCE = 2.0  # s
+
+
+class BottleSorter(Node):
+    """Hears what the scale says and moves the gate."""
+
+    def __init__(self):
+        super().__init__("bottle_sorter")
+        self.create_subscription(Bool, "/full", self.on_bottle, 10)
+        # TODO: create a publisher of String messages on "/gate", with a queue depth of 10.
+        # TODO: create a timer that calls self.on_silence after PATIENCE seconds, and cancel it until there is a bottle.
+        # BEGIN SOLUTION
+        self.publisher = self.create_publisher(String, "/gate", 10)
+        self.timer = self.create_timer(PATIENCE, self.on_silence)
+        self.timer.cancel()
+        # END SOLUTION
+
+    def on_bottle(self, message):
+        """Called once for each bottle that was weighed."""
+        # TODO: start the timer anew, and publish "pass" or "reject".
+        # BEGIN SOLUTION
+        self.timer.reset()
+        self.publisher.publish(String(data="pass" if message.data else "reject"))
+        # END SOLUTION
+
+    def on_silence(self):
+        """Called when nothing was heard for PATIENCE seconds."""
+        # TODO: publish "closed", once.
+        # BEGIN SOLUTION
+        self.timer.cancel()
+        self.publisher.publish(String(data="closed"))
+        # END SOLUTION
+
+
+def main():
+    rclpy.init()
+    node = BottleSorter()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

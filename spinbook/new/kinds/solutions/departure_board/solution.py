@@ -1,0 +1,66 @@
+"""The departure board of a station: whoever looks at it, however late, sees what it shows now."""
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import Int32, String
+
+
+class DepartureBoard(Node):
+    """Hears the destination once and delays now and then; shows both in one line."""
+
+    def __init__(self):
+        super().__init__("departure_board")
+        self.destination = None
+        self.delay = 0  # min
+        self.create_subscription(Int32, "/delay", self.on_delay, 10)
+        # TODO: make a QoS profile that keeps the last message for whoever comes late.
+        # TODO: with it, subscribe to String messages on "/destination" and create a publisher of String on "/board".
+        # BEGIN SOLUTION
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.create_subscription(String, "/destination", self.on_destination, latched)
+        self.publisher = self.create_publisher(String, "/board", latched)
+        # END SOLUTION
+
+    def on_destination(self, message):
+        """Called when the train gets a destination."""
+        # TODO: remember the destination, and show it.
+        # BEGIN SOLUTION
+        self.destination = message.data
+        self.show()
+        # END SOLUTION
+
+    def on_delay(self, message):
+        """Called when the delay (min) changes."""
+        # TODO: remember the delay, and show it if it is another one and there is a destination.
+        # BEGIN SOLUTION
+        changed = message.data != self.delay
+        self.delay = message.data
+        if changed and self.destination is not None:
+            self.show()
+        # END SOLUTION
+
+    # BEGIN SOLUTION
+    def show(self):
+        """Publish the board's one line."""
+        late = f", {self.delay} min late" if self.delay > 0 else ""
+        self.publisher.publish(String(data=f"{self.destination}{late}"))
+
+    # END SOLUTION
+
+
+def main():
+    rclpy.init()
+    node = DepartureBoard()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,55 @@
+"""Publish where the beam of a lighthouse points, five times per second."""
+
+import math
+
+import rclpy
+from geometry_msgs.msg import Vector3Stamped
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+
+PERIOD = 0.2  # s
+STEP = math.radians(18.0)  # the beam turns this far from one message to the next
+
+
+class LighthouseBeam(Node):
+    """Publishes by a timer of its own."""
+
+    def __init__(self):
+        super().__init__("lighthouse_beam")
+        self.get_logger().info("The lamp is lit.")
+        # TODO: create a publisher of Vector3Stamped messages on "/beam", with a queue depth of 10.
+        # TODO: create a timer that calls self.on_timer every PERIOD seconds.
+        # BEGIN SOLUTION
+        self.publisher = self.create_publisher(Vector3Stamped, "/beam", 10)
+        self.timer = self.create_timer(PERIOD, self.on_timer)
+        self.count = 0
+        # END SOLUTION
+
+    def on_timer(self):
+        """Called every PERIOD seconds."""
+        # TODO: publish one message: the stamp, the frame and the direction of the beam.
+        # BEGIN SOLUTION
+        message = Vector3Stamped()
+        message.header.stamp = self.get_clock().now().to_msg()
+        message.header.frame_id = "lighthouse"
+        message.vector.x = math.cos(self.count * STEP)
+        message.vector.y = math.sin(self.count * STEP)
+        self.publisher.publish(message)
+        self.count += 1
+        # END SOLUTION
+
+
+def main():
+    rclpy.init()
+    node = LighthouseBeam()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

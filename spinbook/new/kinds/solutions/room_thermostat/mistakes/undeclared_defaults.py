@@ -1,0 +1,63 @@
+"""Declares nothing and reads with a default of its own: nothing can be set.
+
+Caught by:
+- test_parameters_at_the_start
+- test_parameters_set_while_it_runs
+- test_node_is_as_described
+"""
+
+import rclpy
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from std_msgs.msg import Bool, Float64
+
+LOWEST, HIGHEST = 5.0, 30.0  # degrees Celsius, of the target
+WIDEST = 5.0  # degrees Celsius, of the margin
+
+
+class RoomThermostat(Node):
+    """Hears temperatures and switches the heater."""
+
+    def __init__(self):
+        super().__init__("room_thermostat")
+        self.publisher = self.create_publisher(Bool, "/heater", 10)
+        self.create_subscription(Float64, "/temperature", self.on_temperature, 10)
+        self.heating = False
+        self.add_on_set_parameters_callback(self.on_set)
+
+    def on_set(self, parameters):
+        """Called before parameters change. Says whether they may."""
+        for parameter in parameters:
+            if parameter.name == "target" and not LOWEST <= parameter.value <= HIGHEST:
+                return SetParametersResult(successful=False, reason="target must be from 5 to 30")
+            if parameter.name == "margin" and not 0.0 <= parameter.value <= WIDEST:
+                return SetParametersResult(successful=False, reason="margin must be from 0 to 5")
+        return SetParametersResult(successful=True)
+
+    def on_temperature(self, message):
+        """Called once for each temperature."""
+        target = self.get_parameter_or("target", Parameter("target", value=20.0)).value
+        margin = self.get_parameter_or("margin", Parameter("margin", value=0.5)).value
+        if message.data >= target:
+            self.heating = False
+        elif message.data < target - margin:
+            self.heating = True
+        self.publisher.publish(Bool(data=self.heating))
+
+
+def main():
+    rclpy.init()
+    node = RoomThermostat()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,49 @@
+"""Publishes the last speed from a timer, and not for each message.
+
+Caught by:
+- test_answers_each_message_once
+- test_too_fast_is_slowed_down
+- test_too_fast_backwards
+"""
+
+import math
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from std_msgs.msg import Float64
+
+LIMIT = 1.0  # m/s
+
+
+class SpeedLimit(Node):
+    """Hears each wish and answers with a safe speed."""
+
+    def __init__(self):
+        super().__init__("speed_limit")
+        self.subscription = self.create_subscription(Float64, "/wanted_speed", self.on_speed, 10)
+        self.publisher = self.create_publisher(Float64, "/safe_speed", 10)
+        self.speed = 0.0
+        self.create_timer(0.07, lambda: self.publisher.publish(Float64(data=self.speed)))
+
+    def on_speed(self, message):
+        """Called once for each message on /wanted_speed."""
+        self.get_logger().info(f"{message.data:.2f} m/s is wanted", throttle_duration_sec=1.0)
+        speed = 0.0 if math.isnan(message.data) else max(-LIMIT, min(LIMIT, message.data))
+        self.speed = speed
+
+
+def main():
+    rclpy.init()
+    node = SpeedLimit()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

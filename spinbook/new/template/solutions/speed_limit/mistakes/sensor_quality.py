@@ -1,0 +1,46 @@
+"""Subscribes with the quality of service for sensors.
+
+Caught by:
+- test_node_is_as_described
+"""
+
+import math
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.qos import qos_profile_sensor_data
+from std_msgs.msg import Float64
+
+LIMIT = 1.0  # m/s
+
+
+class SpeedLimit(Node):
+    """Hears each wish and answers with a safe speed."""
+
+    def __init__(self):
+        super().__init__("speed_limit")
+        self.subscription = self.create_subscription(Float64, "/wanted_speed", self.on_speed, qos_profile_sensor_data)
+        self.publisher = self.create_publisher(Float64, "/safe_speed", 10)
+
+    def on_speed(self, message):
+        """Called once for each message on /wanted_speed."""
+        self.get_logger().info(f"{message.data:.2f} m/s is wanted", throttle_duration_sec=1.0)
+        speed = 0.0 if math.isnan(message.data) else max(-LIMIT, min(LIMIT, message.data))
+        self.publisher.publish(Float64(data=speed))
+
+
+def main():
+    rclpy.init()
+    node = SpeedLimit()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,155 @@
+"""`spinbook new --kind` makes an exercise of each kind that works: right solutions pass, mistakes are caught."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from grader.crew import Crew
+from grader.exercise import load, starter
+from grader.grading import Options, grading_of
+from grader.grading.grading import Grading
+from grader.submission import read
+from grader.submission.reading import of_source
+from spinbook.new.command import new
+from spinbook.new.kind import BY_NAME, KINDS
+from spinbook.new.writing import write_course
+from spinbook.problem import SpinbookError
+
+#: Of each kind, a usual mistake that the default suite grades. All of them are graded in the soak.
+MISTAKES = {
+    "filter": "one_message_late",
+    "publisher": "computers_clock",
+    "latched-topic": "volatile_board",
+    "parameters": "reads_once",
+    "service-server": "returns_nothing",
+    "service-client": "waits_in_the_callback",
+    "action-server": "forgets_succeed",
+    "action-client": "ignores_status",
+    "closed-loop": "wraps_the_angle",
+    "several-nodes": "waits_for_the_scale",
+}
+
+
+def made(*words: str) -> Result:
+    return CliRunner().invoke(new, words)
+
+
+def exercise_of(kind: str) -> str:
+    return f"my_{kind.replace('-', '_')}"
+
+
+@pytest.fixture(scope="module")
+def course(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A new course with one exercise of each kind."""
+    folder = tmp_path_factory.mktemp("kinds") / "robots"
+    write_course(folder, "Robots", "robots")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        for kind in KINDS:
+            done = made("--exercise", exercise_of(kind.name), "--kind", kind.name)
+            assert done.exit_code == 0, done.output
+    return folder
+
+
+@pytest.fixture(scope="module")
+def crew() -> Iterator[Crew]:
+    with Crew() as crew:
+        yield crew
+
+
+@pytest.fixture(scope="module", params=MISTAKES)
+def grading(request: pytest.FixtureRequest, course: Path, crew: Crew) -> Grading:
+    """Ready to grade the exercise of a kind: its solution has passed every check."""
+    return grading_of(load(course / "exercises" / exercise_of(request.param)), Options(), crew)
+
+
+def folder_of(grading: Grading) -> Path:
+    exercise = grading.spinner.exercise
+    return exercise.folder.parents[1] / "solutions" / exercise.name
+
+
+def caught_and_named(grading: Grading, mistake: Path) -> tuple[set[str], set[str]]:
+    """The checks that a mistake fails, and those that its docstring says it fails."""
+    header = ast.get_docstring(ast.parse(mistake.read_text(encoding="utf-8"))) or ""
+    grade = grading.grade(read(str(mistake), grading.spinner.exercise))
+    failed = {verdict.name for verdict in grade.verdicts if verdict.status == "failed"}
+    return failed, set(re.findall(r"^- (test_\w+)$", header, re.MULTILINE))
+
+
+def test_the_starter_gets_nothing_and_a_usual_mistake_loses_what_it_names(
+    grading: Grading, request: pytest.FixtureRequest
+) -> None:
+    source = starter((folder_of(grading) / "solution.py").read_text(encoding="utf-8"))
+    assert grading.grade(of_source("starter", source.encode(), grading.spinner.exercise)).score == 0
+    kind = next(kind for kind in MISTAKES if exercise_of(kind) == grading.spinner.exercise.name)
+    failed, named = caught_and_named(grading, folder_of(grading) / "mistakes" / f"{MISTAKES[kind]}.py")
+    assert failed == named
+
+
+@pytest.mark.soak
+def test_every_right_solution_gets_full_marks(grading: Grading) -> None:
+    files = sorted((folder_of(grading) / "right").glob("*.py"))
+    assert len(files) >= 3
+    for file in files:
+        grade = grading.grade(read(str(file), grading.spinner.exercise))
+        assert grade.full_marks, (file.name, [v for v in grade.verdicts if v.status != "passed"])
+
+
+@pytest.mark.soak
+def test_every_mistake_loses_exactly_the_checks_that_it_names(grading: Grading) -> None:
+    files = sorted((folder_of(grading) / "mistakes").glob("*.py"))
+    assert len(files) >= 8
+    for file in files:
+        failed, named = caught_and_named(grading, file)
+        assert failed == named, file.name
+
+
+def test_the_exercise_has_its_own_names(course: Path) -> None:
+    for kind in KINDS:
+        name = exercise_of(kind.name)
+        files = [file for part in ("exercises", "solutions") for file in (course / part / name).rglob("*.*")]
+        text = "".join(file.read_text(encoding="utf-8") for file in files)
+        assert kind.exercise not in text
+        assert f'title = "{name.replace("_", " ").capitalize()}"' in text
+
+
+def test_the_command_says_what_it_made_and_how_to_grade_it(course: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(course)
+    done = made("--exercise", "front_door", "--kind", "service-server", "--title", "A door")
+    assert 'Made the exercise "A door" (service-server)' in done.output
+    assert "spinbook grade front_door solutions/front_door/solution.py" in done.output
+
+
+def test_an_unknown_kind_is_answered_with_the_kinds_that_there_are(
+    course: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(course)
+    done = made("--exercise", "front_gate", "--kind", "service")
+    assert done.exit_code == 2
+    assert all(f"{kind.name:<15} {kind.summary}" in done.output for kind in KINDS)
+    assert not (course / "exercises" / "front_gate").exists()
+
+
+def test_help_says_what_each_kind_is() -> None:
+    done = made("--help")
+    assert all(f"{kind.name:<15} {kind.summary}" in done.output for kind in KINDS)
+
+
+def test_a_kind_needs_the_name_of_an_exercise() -> None:
+    done = made("robots", "--kind", "filter")
+    assert done.exit_code == 2
+    assert "give --exercise NAME, too" in done.output
+
+
+def test_an_exercise_that_exists_is_refused_whatever_its_kind(course: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(course)
+    done = made("--exercise", exercise_of("filter"), "--kind", "publisher")
+    assert isinstance(done.exception, SpinbookError)
+    assert "already" in str(done.exception)
+    assert set(BY_NAME) == set(MISTAKES)
