@@ -1,0 +1,52 @@
+"""How the server behaves. Each scenario is a fixture in checks.py and hidden_checks.py."""
+
+from __future__ import annotations
+
+from grader.scenario import ActionServer, Scenario, aborts, at, never_ends, rejects, succeeds
+from grader.scenario.steps import Step
+
+ACTION, TARGETS = "/move_joint", "/targets"
+
+
+def target(position: float, *seconds: float) -> tuple[Step, ...]:
+    """Somebody wants the joint to be at a position."""
+    return at(*seconds).publish(TARGETS, data=position)
+
+
+def moves(after: float, *positions: float, **more: object) -> object:
+    """A goal that succeeds, with feedback at equal times on the way."""
+    gap = after / (len(positions) + 1)
+    feedback = {gap * (n + 1): {"position": position} for n, position in enumerate(positions)}
+    return succeeds(after=after, result={"position": 0.0}, feedback=feedback, **more)
+
+
+def scenarios(seed: int) -> tuple[Scenario, ...]:
+    """Every scenario. The first one must be passed by any node that works at all."""
+    one = target(0.8, 0.53)
+    three = (one, target(0.3, 0.83), target(1.2, 1.13))
+    good = moves(1.0, 0.2, 0.5)
+    scripts = {
+        "succeeds": ("one target, and a server that moves for 1.2 s", 2.5, one, (moves(1.2, 0.2, 0.4, 0.6),), {}),
+        "several": ("three targets, one soon after the other", 6.0, three, (good, moves(1.5, 0.7, 0.4), good), {}),
+        "rejects": ("the first goal is rejected", 4.5, three, (rejects(), good), {}),
+        "aborts": ("the first goal is aborted", 5.0, three, (aborts(after=0.7), good), {}),
+        "answers_late": ("the server takes 3 s to accept", 6.5, one, (moves(1.0, 0.5, answers_after=3.0),), {}),
+        "appears": ("the server appears after 3 s", 8.0, three, (good,), {"appears": 3.02}),
+        "never_ends": ("the first goal never ends", 14.0, three, (never_ends(cancel_takes=0.5), good), {}),
+        "slow": ("a goal that takes 9 s", 12.0, one, (moves(9.0, 0.2, 0.5),), {}),
+        "late_and_slow": ("accepted after 3 s, and 8 s on its way", 13.5, one, (moves(8.0, 0.2, answers_after=3.0),), {}),
+        "refuses_to_cancel": ("12 s on its way, and no way to cancel", 15.0, three[:2], (moves(12.0, 0.2, cancel="refuse"), good), {}),
+        "aborts_late": ("aborted after 11 s, whatever is asked", 14.0, three[:2], (aborts(after=11.0, cancel="refuse"), good), {}),
+    }
+    return tuple(
+        Scenario(
+            name,
+            title,
+            script,
+            duration,
+            rate=20.0,
+            servers=(ActionServer(ACTION, goals=goals, **when),),
+            interrupt=name == "succeeds",
+        )
+        for name, (title, duration, script, goals, when) in scripts.items()
+    )
