@@ -5,7 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from grader.exercise.interface import Topic
+from grader.exercise.interface import Endpoint, Parameter, ProgramFile, Topic
+
+#: What the grader's own node is called, on which the reference publishers, servers and clients are.
+REFERENCE_NODE = "reference"
 
 
 @dataclass(frozen=True)
@@ -14,7 +17,8 @@ class Exercise:
 
     `task` is the text for the student, in Markdown. `points` is what all checks give together.
     `solution_folder` holds the author's solution, and is None in a student's copy of the course. With `public_only` the
-    hidden checks are left out, as in a student's copy.
+    hidden checks are left out, as in a student's copy. `programs` are the files of a submission of several programs;
+    `file_name`, `class_name` and `node_name` are then those of the first.
     """
 
     name: str
@@ -28,6 +32,10 @@ class Exercise:
     topics: tuple[Topic, ...]
     solution_folder: Path | None
     public_only: bool = False
+    endpoints: tuple[Endpoint, ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+    programs: tuple[ProgramFile, ...] = ()
+    reference_node: str = REFERENCE_NODE
 
     @property
     def scenarios_file(self) -> Path:
@@ -63,3 +71,23 @@ class Exercise:
     def outputs(self) -> tuple[Topic, ...]:
         """The topics that the node publishes."""
         return tuple(topic for topic in self.topics if topic.direction == "publish")
+
+    @property
+    def services(self) -> tuple[Endpoint, ...]:
+        """The services that the program serves."""
+        return tuple(one for one in self.endpoints if one.role == "service")
+
+    @property
+    def clients(self) -> tuple[Endpoint, ...]:
+        """The services that the program calls."""
+        return tuple(one for one in self.endpoints if one.role == "client")
+
+    @property
+    def actions(self) -> tuple[Endpoint, ...]:
+        """The actions that the program serves."""
+        return tuple(one for one in self.endpoints if one.role == "action")
+
+    @property
+    def action_clients(self) -> tuple[Endpoint, ...]:
+        """The actions that the program sends goals to."""
+        return tuple(one for one in self.endpoints if one.role == "action_client")

@@ -7,18 +7,16 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from grader.exercise.declaring import Table, endpoints, parameters, programs, topics
 from grader.exercise.error import ExerciseError
-from grader.exercise.exercise import Exercise
-from grader.exercise.interface import Topic
-from interface_compiler import prefixes
+from grader.exercise.exercise import REFERENCE_NODE, Exercise
+from grader.exercise.interface import ProgramFile
 from interface_compiler.near import use_near
 
 if sys.version_info >= (3, 11):
     import tomllib
 else:
     import tomli as tomllib
-
-TYPE = re.compile(r"[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*")
 
 
 def load(folder: Path | str) -> Exercise:
@@ -35,22 +33,46 @@ def load(folder: Path | str) -> Exercise:
     task = folder / "task.md"
     if not task.exists():
         raise ExerciseError(task, "the exercise has no task text", "Write what the student is asked to do here.")
-    file_name = _text(entries, "file", file)
-    if not re.fullmatch(r"[a-z_][a-z0-9_]*\.py", file_name):
-        raise ExerciseError(file, f"file = {file_name!r}", "Give a Python file name, such as 'my_node.py'.")
+    top = Table(file, "", 0, entries)
+    top.see_keys()
+    parts = programs(entries, file)
+    file_name, class_name, node_name = _main_program(top, parts)
     solutions = folder.parent.parent / "solutions" / folder.name
-    return Exercise(
+    exercise = Exercise(
         name=folder.name,
         folder=folder,
-        title=_text(entries, "title", file),
-        points=_points(entries, file),
+        title=_text(top, "title"),
+        points=_points(top),
         file_name=file_name,
-        class_name=_text(entries, "class", file),
-        node_name=_text(entries, "node", file),
+        class_name=class_name,
+        node_name=node_name,
         task=task.read_text(encoding="utf-8"),
-        topics=_topics(entries, file),
+        topics=topics(entries, file),
         solution_folder=solutions if solutions.is_dir() else None,
+        endpoints=endpoints(entries, file),
+        parameters=parameters(entries, file),
+        programs=parts,
+        reference_node=top.text("reference_node", REFERENCE_NODE),
     )
+    if not exercise.topics and not exercise.endpoints and not exercise.parameters:
+        mend = "Declare each topic under [[subscribe]] or [[publish]], and services, actions and parameters likewise."
+        raise ExerciseError(file, "no topics, and nothing else of an interface", mend)
+    return exercise
+
+
+def _main_program(top: Table, parts: tuple[ProgramFile, ...]) -> tuple[str, str, str]:
+    """File, class and node of the only program, or of the first of several."""
+    if parts:
+        for key in ("file", "class", "node"):
+            if key in top.entries:
+                top.fault(
+                    key, f"{key} stands next to [[program]]", "With several programs, write it in each [[program]]."
+                )
+        return parts[0].file, parts[0].class_name, parts[0].node
+    file_name = _text(top, "file")
+    if not re.fullmatch(r"[a-z_][a-z0-9_]*\.py", file_name):
+        top.fault("file", f"file = {file_name!r}", "Give a Python file name, such as 'my_node.py'.")
+    return file_name, top.text("class"), _text(top, "node")
 
 
 def _read(file: Path) -> dict[str, Any]:
@@ -63,42 +85,15 @@ def _read(file: Path) -> dict[str, Any]:
         raise ExerciseError(file, f"it can't be read: {error}", "Write it as TOML, in UTF-8.") from None
 
 
-def _text(entries: dict[str, Any], key: str, file: Path) -> str:
-    value = entries.get(key)
+def _text(top: Table, key: str) -> str:
+    value = top.entries.get(key)
     if not isinstance(value, str) or not value:
-        raise ExerciseError(file, f"{key} = {value!r}", f'Give {key} as a text, such as {key} = "…".')
+        top.fault(key, f"{key} = {value!r}", f'Give {key} as a text, such as {key} = "…".')
     return value
 
 
-def _points(entries: dict[str, Any], file: Path) -> float:
-    value = entries.get("points")
+def _points(top: Table) -> float:
+    value = top.entries.get("points")
     if isinstance(value, bool) or not isinstance(value, (int, float)) or value <= 0:
-        raise ExerciseError(file, f"points = {value!r}", "Give the sum of all checks' points, such as points = 100.")
+        top.fault("points", f"points = {value!r}", "Give the sum of all checks' points, such as points = 100.")
     return float(value)
-
-
-def _must_be_known(kind: str, file: Path) -> None:
-    package, _, name = kind.partition("/")
-    known = prefixes.interfaces(prefixes.installed())
-    if package not in known:
-        mend = f"If the course defines it: spinbook build. If Spinbook brings it: spinbook interfaces add {package}."
-        raise ExerciseError(file, f"type = {kind!r}: the package {package} is not installed here", mend)
-    if name not in known[package]:
-        mend = "Look at its name. If the course has just defined it: spinbook build."
-        raise ExerciseError(file, f"type = {kind!r}: the package {package} has no {name}", mend)
-
-
-def _topics(entries: dict[str, Any], file: Path) -> tuple[Topic, ...]:
-    topics = []
-    for direction in ("subscribe", "publish"):
-        for entry in entries.get(direction, []):
-            name, kind = entry.get("topic", ""), entry.get("type", "")
-            if not name.startswith("/"):
-                raise ExerciseError(file, f"topic = {name!r}", "Write a topic's full name, beginning with '/'.")
-            if not TYPE.fullmatch(kind):
-                raise ExerciseError(file, f"type = {kind!r}", "Write a type as 'sensor_msgs/msg/JointState'.")
-            _must_be_known(kind, file)
-            topics.append(Topic(name, kind, direction, entry.get("depth", 10), entry.get("units", {})))
-    if not topics:
-        raise ExerciseError(file, "no topics", "Declare each topic of the node under [[subscribe]] or [[publish]].")
-    return tuple(topics)

@@ -78,7 +78,7 @@ class Run:
         rig = hub.node("rig")
         self._clock = rig.publisher("/clock", "rosgraph_msgs/msg/Clock", OFFER)
         self._recorder = Recorder(rig, task.exercise.outputs)
-        self._publishers = ReferencePublishers(hub.node("joint_command_publisher"), task.scenario)
+        self._publishers = ReferencePublishers(hub.node(task.exercise.reference_node), task.scenario)
         self._parameters = Parameters(hub, rig)
         self._budget = Budget(student, self._pids, STARTING)
         self._clocks = Clocks(task.scenario.computer_time)

@@ -1,18 +1,29 @@
-"""A scenario: which messages the reference publishers publish, and when."""
+"""A scenario: what happens around a student's program, and when."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import asdict, dataclass
-from typing import Literal
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, fields
+from typing import Any, Literal, TypeAlias
 
+from grader.exercise.interface import Qos
 from grader.recording.recording import Fields
+from grader.scenario.place import line_of_the_author
+from grader.scenario.servers import ActionServer, Server
+from grader.scenario.world import World
 
 SECOND = 1_000_000_000
 
 #: Simulated time at which every scenario begins. Not 0, which means "no time yet" in ROS.
 START = 100 * SECOND
+
+#: When something happens that happens before the student's program starts.
+BEFORE_START = START - SECOND
+
+#: How often /clock is published between steps, unless the author says otherwise (Hz).
+RATE = 100.0
 
 #: What the computer's own clock shows while simulated time goes by: see `grader.runner.clocks`.
 ComputerTime = Literal["apart", "simulated"]
@@ -22,7 +33,8 @@ ComputerTime = Literal["apart", "simulated"]
 class Message:
     """One message of a scenario, published at `at` ns of simulated time.
 
-    `publisher` tells publishers on one topic apart: when it changes, the former one is gone.
+    `publisher` tells publishers on one topic apart: when it changes, the former one is gone. Without a `type` it is the
+    one that exercise.toml gives for the topic. `line` is where in scenarios.py it was made.
     """
 
     at: int
@@ -30,35 +42,242 @@ class Message:
     type: str
     fields: Fields
     publisher: int = 1
+    line: int = field(default_factory=line_of_the_author, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Step:
+    """Something that happens at `at` ns of simulated time. `line` is where in scenarios.py it was made."""
+
+    at: int
+    line: int = field(default_factory=line_of_the_author, compare=False, repr=False, kw_only=True)
+
+
+@dataclass(frozen=True)
+class Request(Step):
+    """The grader calls a service of the student's."""
+
+    service: str
+    type: str
+    fields: Fields
+
+
+@dataclass(frozen=True)
+class SendGoal(Step):
+    """The grader sends a goal to an action server of the student's."""
+
+    action: str
+    type: str
+    fields: Fields
+
+
+@dataclass(frozen=True)
+class CancelGoal(Step):
+    """The grader asks to cancel a goal; goals count from 1, in the order of the steps."""
+
+    number: int
+
+
+@dataclass(frozen=True)
+class CancelAll(Step):
+    """The grader asks to cancel every goal of an action."""
+
+    action: str
+
+
+@dataclass(frozen=True)
+class SetParameter(Step):
+    """The grader sets a parameter of a node. Without a `node` it is the one of exercise.toml."""
+
+    name: str
+    value: Any
+    node: str = ""
+
+
+@dataclass(frozen=True)
+class GetParameter(Step):
+    """The grader asks for a parameter of a node."""
+
+    name: str
+    node: str = ""
+
+
+@dataclass(frozen=True)
+class Subscribe(Step):
+    """A subscriber of the grader's joins; what it gets is recorded under its `name`."""
+
+    topic: str
+    type: str
+    name: str
+    qos: Qos = field(default_factory=Qos)
+
+
+@dataclass(frozen=True)
+class Leave(Step):
+    """A peer is gone: the server or the subscriber of this name, or the publisher on this topic."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class ComeBack(Step):
+    """A server that left is there again."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Kill(Step):
+    """One of the submission's programs is killed."""
+
+    program: str
+
+
+@dataclass(frozen=True)
+class StartProgram(Step):
+    """One of the submission's programs is started."""
+
+    program: str
+
+
+@dataclass(frozen=True)
+class Program:
+    """One of a submission's several programs, by its file: when it starts and when it is killed (s after the start)."""
+
+    file: str
+    starts: float = 0.0
+    killed: float | None = None
+    arguments: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Companion:
+    """A program of the author's that runs next to the student's: a file in the exercise's folder.
+
+    `text` is what is in the file; it is read together with the scenarios.
+    """
+
+    file: str
+    arguments: tuple[str, ...] = ()
+    text: str = field(default="", repr=False)
+
+
+Content: TypeAlias = Message | Step
 
 
 @dataclass(frozen=True)
 class Scenario:
-    """What one spin of a node consists of.
+    """What one run of a program consists of.
 
-    `name` is the fixture by which checks ask for its recording, `title` says in words what happens. With `interrupt`
-    the node is asked to end by Ctrl-C after the last message.
+    `name` is the fixture by which checks ask for its recording, `title` says in words what happens. `messages` takes
+    messages and steps, in nested tuples and in any order; a scenario keeps the steps in `steps`.
 
-    `computer_time` says what the computer's clock shows to the node, and what `time.sleep` and wall timers take:
+    `duration` is how long simulated time goes on (s), and `rate` how often /clock is published meanwhile (Hz). Without
+    both, a scenario that only publishes has its clock set for each message.
+
+    `parameters`, `remappings`, `namespace` and `arguments` are given to the program when it starts. `servers` and
+    `world` are what it deals with; `qos` says what the reference publisher on a topic offers. `programs` says when
+    each of several programs starts, and `companions` are the author's own.
+
+    With `interrupt` the program is asked to end by Ctrl-C at the end.
+
+    `computer_time` says what the computer's clock shows to the program, and what `time.sleep` and wall timers take:
     "simulated" is the same as simulated time; "apart" is more, so that who measures with the wrong clock measures
     something else: 1.25 s for each simulated second.
     """
 
     name: str
     title: str
-    messages: tuple[Message, ...]
+    messages: tuple[Message, ...] = ()
     interrupt: bool = False
     computer_time: ComputerTime = "apart"
+    duration: float = 0.0
+    rate: float | None = None
+    parameters: dict[str, Any] = field(default_factory=dict)
+    remappings: dict[str, str] = field(default_factory=dict)
+    namespace: str = ""
+    arguments: tuple[str, ...] = ()
+    servers: tuple[Server | ActionServer, ...] = ()
+    world: World | None = None
+    qos: dict[str, Qos] = field(default_factory=dict)
+    programs: tuple[Program, ...] = ()
+    companions: tuple[Companion, ...] = ()
+    steps: tuple[Step, ...] = ()
+    line: int = field(default_factory=line_of_the_author, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Sort what was given together: messages and steps."""
+        given = tuple(_flat(self.messages))
+        steps = (*self.steps, *(one for one in given if not isinstance(one, Message)))
+        messages = tuple(one for one in given if isinstance(one, Message))
+        object.__setattr__(self, "messages", messages)
+        object.__setattr__(self, "steps", tuple(sorted(steps, key=_at)))
+        for name in ("arguments", "servers", "programs", "companions"):
+            object.__setattr__(self, name, tuple(_flat(getattr(self, name))))
 
     @property
     def seconds(self) -> float:
         """How long it lasts, in simulated seconds."""
-        return (max(message.at for message in self.messages) - START) / SECOND
+        last = max((one.at for one in self.content), default=START)
+        return max(self.duration, (last - START) / SECOND)
+
+    @property
+    def content(self) -> tuple[Content, ...]:
+        """Messages and steps in the order in which they happen; those of one moment in the order of the author."""
+        if not self.steps:
+            return self.messages
+        both: tuple[Content, ...] = (*self.messages, *self.steps)
+        return tuple(sorted(both, key=_at))
+
+    @property
+    def is_filter(self) -> bool:
+        """Whether messages go in and come out, and nothing else happens: the clock is then set for each message."""
+        only = not (self.steps or self.servers or self.world or self.programs or self.companions)
+        return only and not self.duration and self.rate is None and bool(self.messages)
+
+    @property
+    def clock_rate(self) -> float:
+        """How often /clock is published between messages and steps (Hz); 0 for a filter's scenario."""
+        return 0.0 if self.is_filter else self.rate or RATE
 
     @property
     def digest(self) -> str:
         """The same for two scenarios only if everything in them is."""
-        content = asdict(self)
-        if self.computer_time == "apart":  # the default, from before there was a choice
-            del content["computer_time"]
-        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+        return hashlib.sha256(json.dumps(_digestible(self), sort_keys=True).encode()).hexdigest()
+
+
+def _at(one: Content) -> int:
+    return one.at
+
+
+def _flat(content: Any) -> Iterator[Any]:
+    if isinstance(content, Iterable) and not isinstance(content, (str, bytes, dict)):
+        for one in content:
+            yield from _flat(one)
+    else:
+        yield content
+
+
+#: Fields that were there from the beginning are always part of a digest.
+_FROM_THE_BEGINNING = ("name", "title", "messages", "interrupt")
+
+
+def _digestible(value: Any) -> Any:
+    """Plain data of everything that matters; what has its default value came later, and changes no old digest."""
+    if isinstance(value, (list, tuple)):
+        return [_digestible(one) for one in value]
+    if isinstance(value, dict):
+        return {str(key): _digestible(one) for key, one in value.items()}
+    if not hasattr(value, "__dataclass_fields__"):
+        return value
+    # Names of classes matter only where several may stand: for messages they were never part of it.
+    found = {} if isinstance(value, (Scenario, Message)) else {"is": type(value).__name__}
+    for one in fields(value):
+        content = getattr(value, one.name)
+        if one.name != "line" and (not isinstance(value, Scenario) or _matters(one.name, content)):
+            found[one.name] = _digestible(content)
+    return found
+
+
+def _matters(name: str, content: Any) -> bool:
+    return name in _FROM_THE_BEGINNING or (content != "apart" if name == "computer_time" else bool(content))

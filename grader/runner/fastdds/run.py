@@ -47,7 +47,7 @@ class Run:
         self._task, self._student = task, student
         node = ros.node("rig")
         self._clock = Clock(node)
-        self._publishers = ReferencePublishers(ros.node("joint_command_publisher"), task.scenario)
+        self._publishers = ReferencePublishers(ros.node(task.exercise.reference_node), task.scenario)
         self._recorder = Recorder(node, task.exercise.outputs, self._moment)
         self._graph = Graph(node, ros.names)
         self._watch = Watch(student, Threads(student.pids), Receivers())

@@ -1,0 +1,230 @@
+"""Reads the interface of an exercise's program out of exercise.toml, and refuses what it does not know."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NoReturn, get_args
+
+from grader.exercise.error import ExerciseError
+from grader.exercise.interface import (
+    Durability,
+    Elements,
+    Endpoint,
+    Parameter,
+    ProgramFile,
+    Reliability,
+    Role,
+    Topic,
+)
+from interface_compiler import prefixes
+
+#: Types of parameters, as rcl_interfaces/msg/ParameterType has them.
+PARAMETER_TYPES = {
+    "bool": (bool,),
+    "integer": (int,),
+    "double": (float,),
+    "string": (str,),
+    **{f"{name}_array": (list,) for name in ("byte", "bool", "integer", "double", "string")},
+}
+
+#: The keys of exercise.toml, of its tables, and whether a table's key has to be there.
+KEYS: dict[str, dict[str, bool]] = {
+    "": dict.fromkeys(("title", "points", "file", "class", "node", "reference_node"), False),
+    **{
+        direction: {
+            "topic": True,
+            "type": True,
+            "depth": False,
+            "reliability": False,
+            "durability": False,
+            "units": False,
+            "elements": False,
+        }
+        for direction in ("subscribe", "publish")
+    },
+    **{role: {"name": True, "type": True, "units": False} for role in get_args(Role)},
+    "parameter": {"name": True, "type": True, "default": False, "unit": False, "range": False},
+    "program": {"file": True, "node": True, "class": False},
+}
+
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*")
+_PYTHON_FILE = re.compile(r"[a-z_][a-z0-9_]*\.py")
+
+
+@dataclass(frozen=True)
+class Table:
+    """One table of exercise.toml: its `kind` such as "subscribe", its number among those, and its entries."""
+
+    file: Path
+    kind: str
+    number: int
+    entries: dict[str, Any]
+
+    def fault(self, key: str, found: str, mend: str) -> NoReturn:
+        """Raise what is wrong with the value of `key`, with its line."""
+        raise ExerciseError(self.file, found, mend, line_of(self.file, self.kind, self.number, key))
+
+    def see_keys(self) -> None:
+        """Raise `ExerciseError` for a key that is not known, or one that is missing."""
+        known = KEYS[self.kind]
+        for key in self.entries:
+            if key not in known and not (not self.kind and key in KEYS):
+                allowed = sorted({*known, *(() if self.kind else (k for k in KEYS if k))})
+                self.fault(key, f"the key {key!r} is not known {self._place}", f"Known are: {', '.join(allowed)}.")
+        for key, needed in known.items():
+            if needed and key not in self.entries:
+                self.fault("", f"there is no {key} {self._place}", f'Add a line such as {key} = "…".')
+
+    @property
+    def _place(self) -> str:
+        return f"in [[{self.kind}]]" if self.kind else "here"
+
+    def text(self, key: str, default: str = "") -> str:
+        """A text."""
+        value = self.entries.get(key, default)
+        if not isinstance(value, str):
+            self.fault(key, f"{key} = {value!r}", f'Give {key} as a text, such as {key} = "…".')
+        return value
+
+    def one_of(self, key: str, choice: tuple[str, ...], default: str) -> Any:
+        """One of some texts."""
+        value = self.entries.get(key, default)
+        if value not in choice:
+            self.fault(key, f"{key} = {value!r}", f"Give one of: {', '.join(choice)}.")
+        return value
+
+    def name(self, key: str) -> str:
+        """The full name of a topic, a service or an action."""
+        value = self.text(key)
+        if not value.startswith("/"):
+            self.fault(key, f"{key} = {value!r}", f"Write the full name of the {self._what}, beginning with '/'.")
+        return value
+
+    @property
+    def _what(self) -> str:
+        return {"client": "service", "action_client": "action"}.get(
+            self.kind, "topic" if "topic" in KEYS[self.kind] else self.kind
+        )
+
+    def type(self, kind: str, example: str) -> str:
+        """The type of an interface of this kind ("msg", "srv", "action"), which must be there."""
+        value = self.text("type")
+        if not re.fullmatch(rf"[a-z][a-z0-9_]*/{kind}/[A-Z][A-Za-z0-9]*", value):
+            self.fault("type", f"type = {value!r}", f"Write a type as {example!r}.")
+        package, _, rest = value.partition("/")
+        known = prefixes.interfaces(prefixes.installed())
+        if package not in known:
+            mend = (
+                f"If the course defines it: spinbook build. If Spinbook brings it: spinbook interfaces add {package}."
+            )
+            self.fault("type", f"type = {value!r}: the package {package} is not installed here", mend)
+        if rest not in known[package]:
+            mend = "Look at its name. If the course has just defined it: spinbook build."
+            self.fault("type", f"type = {value!r}: the package {package} has no {rest}", mend)
+        return value
+
+    def units(self) -> dict[str, str]:
+        """The unit of each field."""
+        value = self.entries.get("units", {})
+        if not isinstance(value, dict) or not all(isinstance(unit, str) for unit in value.values()):
+            self.fault("units", f"units = {value!r}", 'Give a table of texts, such as units = { velocity = "rad/s" }.')
+        return value
+
+
+def tables(entries: dict[str, Any], kind: str, file: Path) -> list[Table]:
+    """Every `[[kind]]`, its keys seen."""
+    given = entries.get(kind, [])
+    if not isinstance(given, list) or not all(isinstance(one, dict) for one in given):
+        raise ExerciseError(file, f"{kind} is not a list of tables", f"Write [[{kind}]] above each.")
+    found = [Table(file, kind, number, one) for number, one in enumerate(given)]
+    for table in found:
+        table.see_keys()
+    return found
+
+
+def topics(entries: dict[str, Any], file: Path) -> tuple[Topic, ...]:
+    """What the program subscribes and publishes."""
+    return tuple(_topic(table) for direction in ("subscribe", "publish") for table in tables(entries, direction, file))
+
+
+def _topic(table: Table) -> Topic:
+    depth = table.entries.get("depth", 10)
+    if isinstance(depth, bool) or not isinstance(depth, int) or depth < 1:
+        table.fault("depth", f"depth = {depth!r}", "Give a whole number of messages, such as depth = 10.")
+    return Topic(
+        table.name("topic"),
+        table.type("msg", "sensor_msgs/msg/JointState"),
+        table.kind,  # type: ignore[arg-type]  # "subscribe" or "publish"
+        depth,
+        table.units(),
+        table.one_of("reliability", get_args(Reliability), "reliable"),
+        table.one_of("durability", get_args(Durability), "volatile"),
+        _elements(table),
+    )
+
+
+def _elements(table: Table) -> Elements | None:
+    value = table.entries.get("elements")
+    if value is None:
+        return None
+    if not isinstance(value, dict) or set(value) != {"called", "named_by"}:
+        table.fault("elements", f"elements = {value!r}", 'Write elements = { called = "joint", named_by = "name" }.')
+    return Elements(str(value["called"]), str(value["named_by"]))
+
+
+def endpoints(entries: dict[str, Any], file: Path) -> tuple[Endpoint, ...]:
+    """The services and actions that the program serves or calls."""
+    found = []
+    for role in get_args(Role):
+        kind, example = ("action", "example_interfaces/action/Fibonacci"), ("srv", "std_srvs/srv/SetBool")
+        interface = kind if role.startswith("action") else example
+        for table in tables(entries, role, file):
+            found.append(Endpoint(table.name("name"), table.type(*interface), role, table.units()))
+    return tuple(found)
+
+
+def parameters(entries: dict[str, Any], file: Path) -> tuple[Parameter, ...]:
+    """The parameters of the program's node."""
+    return tuple(_parameter(table) for table in tables(entries, "parameter", file))
+
+
+def _parameter(table: Table) -> Parameter:
+    name, kind = table.text("name"), table.one_of("type", tuple(PARAMETER_TYPES), "")
+    if not _NAME.fullmatch(name):
+        table.fault("name", f"name = {name!r}", "Write the parameter's name, such as max_speed.")
+    default = table.entries.get("default")
+    if default is not None and type(default) not in PARAMETER_TYPES[kind]:
+        found = f"default = {default!r}, but the parameter {name} is of type {kind}"
+        table.fault("default", found, "Write the default as that type, such as 1.0 for a double.")
+    limits = table.entries.get("range")
+    if limits is not None and not (isinstance(limits, list) and len(limits) == 2):
+        table.fault("range", f"range = {limits!r}", "Give the lowest and the highest value: range = [0.0, 10.0].")
+    return Parameter(name, kind, default, table.text("unit"), (limits[0], limits[1]) if limits else None)
+
+
+def programs(entries: dict[str, Any], file: Path) -> tuple[ProgramFile, ...]:
+    """The files of a submission of several programs."""
+    found = []
+    for table in tables(entries, "program", file):
+        name = table.text("file")
+        if not _PYTHON_FILE.fullmatch(name):
+            table.fault("file", f"file = {name!r}", "Give a Python file name, such as 'leader.py'.")
+        found.append(ProgramFile(name, table.text("node"), table.text("class")))
+    return tuple(found)
+
+
+def line_of(file: Path, kind: str, number: int, key: str) -> int | None:
+    """The line of `key` in table `number` (from 0) of this kind; of its header without a key, or when it is nowhere."""
+    header: int | None = None
+    here, count = "", -1
+    for index, line in enumerate(file.read_text(encoding="utf-8").splitlines(), start=1):
+        if found := re.match(r"\s*\[\[?\s*([A-Za-z_]+)", line):
+            here = found[1]
+            count += here == kind
+            if here == kind and count == number:
+                header = index
+        elif here == kind and (not kind or count == number) and key and re.match(rf'\s*"?{re.escape(key)}"?\s*=', line):
+            return index
+    return header

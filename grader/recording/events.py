@@ -1,0 +1,136 @@
+"""What can happen in a run besides messages: calls, goals, parameters, and programs that end.
+
+Times are nanoseconds of simulated time, like those of messages; None stands for "never".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+#: A message's fields by name: numbers, texts, lists and further such dictionaries, as its definition nests them.
+Fields = dict[str, Any]
+
+#: Who asked: the grader, or the student's node.
+By = Literal["grader", "node"]
+
+#: The states of action_msgs/msg/GoalStatus, by their numbers.
+STATES = ("unknown", "accepted", "executing", "canceling", "succeeded", "canceled", "aborted")
+
+
+@dataclass(frozen=True)
+class Call:
+    """One request to a service at `at`, and its response.
+
+    `by` is "grader" for a call of the student's service, and "node" for a request that the student's node sent to a
+    reference server; `node` is then the full name of that node. `answered` and `response` are None when no response
+    came. With `served` False there was no server.
+    """
+
+    at: int
+    service: str
+    type: str
+    request: Fields
+    by: By
+    answered: int | None = None
+    response: Fields | None = None
+    node: str = ""
+    served: bool = True
+
+
+@dataclass(frozen=True)
+class GoalState:
+    """A state that the action's raw status topic gave for a goal, such as "executing"."""
+
+    at: int
+    state: str
+
+
+@dataclass(frozen=True)
+class Feedback:
+    """One message of the action's raw feedback topic."""
+
+    at: int
+    fields: Fields
+
+
+@dataclass(frozen=True)
+class Cancel:
+    """A request to cancel a goal. `accepted` is whether the response names the goal; `code` is its return_code."""
+
+    at: int
+    answered: int | None = None
+    accepted: bool | None = None
+    code: int | None = None
+
+
+@dataclass(frozen=True)
+class Goal:
+    """One goal, from the request to the result.
+
+    Goals count from 1 (`number`), in the order in which they were sent. `by` is "grader" for a goal for the student's
+    action server, and "node" for one that the student's node sent to a scripted action server; `node` is then the full
+    name of that node, and `asked_result` is when it asked for the result. `accepted` is None without an answer.
+    `status` and `result` are what the response to the request for the result says, at `finished`.
+    """
+
+    number: int
+    at: int
+    action: str
+    type: str
+    goal: Fields
+    by: By
+    accepted: bool | None = None
+    answered: int | None = None
+    states: tuple[GoalState, ...] = ()
+    feedback: tuple[Feedback, ...] = ()
+    cancels: tuple[Cancel, ...] = ()
+    status: str = ""
+    result: Fields | None = None
+    finished: int | None = None
+    asked_result: int | None = None
+    node: str = ""
+
+
+@dataclass(frozen=True)
+class ParameterChange:
+    """The grader set a parameter. `taken` is None when no answer came; `reason` is what a refusal says."""
+
+    at: int
+    node: str
+    name: str
+    value: Any
+    taken: bool | None = None
+    reason: str = ""
+    answered: int | None = None
+
+
+@dataclass(frozen=True)
+class ParameterReading:
+    """The grader asked for a parameter. `value` is None when it is not set, not declared, or no answer came."""
+
+    at: int
+    node: str
+    name: str
+    value: Any = None
+    answered: int | None = None
+
+
+@dataclass(frozen=True)
+class Exit:
+    """One of several programs ended. `by` is "grader" when the scenario killed it."""
+
+    at: int
+    program: str
+    code: int | None = None
+    signal: int | None = None
+    by: Literal["grader", "itself"] = "itself"
+
+
+@dataclass(frozen=True)
+class Event:
+    """One entry of a timeline: `what` happened at `at`; `item` is the record that it belongs to."""
+
+    at: int
+    what: str
+    item: Any = field(repr=False)

@@ -1,0 +1,266 @@
+"""Completes a scenario with the types that exercise.toml declares, and checks every value in it."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, NoReturn, TypeVar
+
+from grader.exercise import Exercise, ExerciseError
+from grader.exercise.interface import Endpoint
+from grader.recording.recording import Fields
+from grader.runner.message import message_class
+from grader.scenario.scenario import (
+    CancelAll,
+    CancelGoal,
+    ComeBack,
+    Companion,
+    GetParameter,
+    Kill,
+    Leave,
+    Message,
+    Request,
+    Scenario,
+    SendGoal,
+    SetParameter,
+    StartProgram,
+    Step,
+    Subscribe,
+)
+from grader.scenario.servers import ActionServer, Reply, Server
+from grader.scenario.values import Invalid, check_fields
+from interface_compiler import prefixes
+
+_TYPE = re.compile(r"[a-z][a-z0-9_]*/(?P<kind>msg|srv|action)/[A-Z][A-Za-z0-9]*")
+_KINDS = {"msg": "message", "srv": "service", "action": "action"}
+
+Typed = TypeVar("Typed", Message, Request, SendGoal, Subscribe, Server, ActionServer)
+
+
+def resolved(exercise: Exercise, scenario: Scenario) -> Scenario:
+    """`scenario` with all types filled in, and its files read.
+
+    Raises `ExerciseError`, which names the line of scenarios.py, for whatever does not fit.
+    """
+    return Resolver(exercise, scenario).scenario()
+
+
+class Resolver:
+    """Goes through one scenario."""
+
+    def __init__(self, exercise: Exercise, scenario: Scenario) -> None:
+        self._exercise, self._scenario = exercise, scenario
+        self._topics = {topic.name: topic.type for topic in (*exercise.outputs, *exercise.inputs)}
+
+    def scenario(self) -> Scenario:
+        """See `resolved`."""
+        given = self._scenario
+        self._timing()
+        self._parameters()
+        found = replace(
+            given,
+            messages=tuple(self._message(message) for message in given.messages),
+            servers=tuple(self._server(server) for server in given.servers),
+            companions=tuple(self._companion(one) for one in given.companions),
+            steps=(),
+        )
+        steps = tuple(self._step(step) for step in given.steps)
+        self._see_world()
+        return replace(found, steps=steps)
+
+    # --- what goes wrong
+
+    def _fault(self, line: int, found: str, mend: str) -> NoReturn:
+        place = line or self._scenario.line
+        raise ExerciseError(self._exercise.scenarios_file, found, mend, place or None)
+
+    def _timing(self) -> None:
+        scenario = self._scenario
+        if not scenario.messages and not scenario.steps and not scenario.duration:
+            mend = "Let something happen in it, or give it a duration, such as duration=5.0."
+            self._fault(0, f"the scenario {scenario.name} has no messages, no other steps and no duration", mend)
+        for name in ("duration", "rate"):
+            value = getattr(scenario, name)
+            if value is not None and (isinstance(value, bool) or not isinstance(value, (int, float)) or value < 0):
+                self._fault(0, f"{name}={value!r}", "Give a number that is not negative.")
+        if scenario.computer_time not in ("apart", "simulated"):
+            self._fault(0, f"computer_time={scenario.computer_time!r}", 'Give "apart" or "simulated".')
+
+    def _parameters(self) -> None:
+        for name, value in self._scenario.parameters.items():
+            if not isinstance(value, (bool, int, float, str, list, tuple)):
+                found = f"the parameter {name} is {type(value).__name__}"
+                self._fault(0, found, "Give a number, a text, a bool or a list of these.")
+
+    # --- types
+
+    def _typed(self, given: Typed, name: str, kind: str, declared: str | None, table: str) -> Typed:
+        """`given` with its type, which is of this kind."""
+        type_name = given.type or declared
+        if not type_name:
+            mend = f"Declare it in exercise.toml under [[{table}]], or write its type after its name."
+            self._fault(given.line, f"the type of {name} is not known", mend)
+        found = _TYPE.fullmatch(type_name)
+        if not found:
+            mend = f"Write a type as {_EXAMPLES[kind]!r}."
+            self._fault(given.line, f"{type_name!r} is not the name of a {_KINDS[kind]} type", mend)
+        if found["kind"] != kind:
+            mend = f"Write a type as {_EXAMPLES[kind]!r}."
+            article = "an" if found["kind"] == "action" else "a"
+            told = f"{type_name!r} is the type of {article} {_KINDS[found['kind']]}, but {name} needs that of a "
+            self._fault(given.line, told + _KINDS[kind], mend)
+        package, _, rest = type_name.partition("/")
+        known = prefixes.interfaces(prefixes.installed())
+        if rest not in known.get(package, ()):
+            mend = "Look at its name. If the course has just defined it: spinbook build."
+            self._fault(given.line, f"there is no type {type_name} here", mend)
+        return replace(given, type=type_name) if not isinstance(given, (Server, ActionServer)) else given
+
+    def _type_of(self, name: str, endpoints: Sequence[Endpoint]) -> str | None:
+        return next((one.type for one in endpoints if one.name == name), None)
+
+    def _check(self, line: int, name: str, kind: Any, fields: Fields, type_name: str) -> None:
+        try:
+            check_fields(kind, fields, type_name)
+        except Invalid as error:
+            self._fault(line, f"{name}: {error.found}", error.mend)
+
+    # --- messages and steps
+
+    def _message(self, given: Message) -> Message:
+        message = self._typed(given, given.topic, "msg", self._topics.get(given.topic), "subscribe")
+        self._check(given.line, given.topic, message_class(message.type), given.fields, message.type)
+        return message
+
+    def _step(self, step: Step) -> Step:
+        if isinstance(step, Request):
+            return self._request(step)
+        if isinstance(step, SendGoal):
+            return self._goal(step)
+        if isinstance(step, Subscribe):
+            return self._typed(step, step.topic, "msg", self._topics.get(step.topic), "publish")
+        if isinstance(step, CancelGoal):
+            self._see_goal(step)
+        if isinstance(step, CancelAll) and not self._type_of(step.action, self._exercise.actions):
+            self._fault(step.line, f"there is no action {step.action}", "Declare it in exercise.toml under [[action]].")
+        if isinstance(step, (SetParameter, GetParameter)) and not step.node:
+            return replace(step, node=self._node())
+        if isinstance(step, (Kill, StartProgram)):
+            self._see_program(step)
+        if isinstance(step, (Leave, ComeBack)):
+            self._see_peer(step)
+        return step
+
+    def _node(self) -> str:
+        namespace = self._scenario.namespace.rstrip("/")
+        return f"{namespace}/{self._exercise.node_name.lstrip('/')}"
+
+    def _request(self, step: Request) -> Request:
+        declared = self._type_of(step.service, self._exercise.services)
+        found = self._typed(step, step.service, "srv", declared, "service")
+        self._check(step.line, step.service, message_class(found.type).Request, step.fields, f"{found.type}_Request")
+        return found
+
+    def _goal(self, step: SendGoal) -> SendGoal:
+        declared = self._type_of(step.action, self._exercise.actions)
+        found = self._typed(step, step.action, "action", declared, "action")
+        self._check(step.line, step.action, message_class(found.type).Goal, step.fields, f"{found.type}_Goal")
+        return found
+
+    def _see_goal(self, step: CancelGoal) -> None:
+        before = [one for one in self._scenario.steps if isinstance(one, SendGoal) and one.at <= step.at]
+        if not 1 <= step.number <= len(before):
+            found = f"goal {step.number!r} is cancelled, but {len(before)} goals have been sent by then"
+            self._fault(step.line, found, "Goals count from 1, in the order in which they are sent.")
+
+    def _see_program(self, step: Kill | StartProgram) -> None:
+        known = [one.file for one in self._exercise.programs]
+        if step.program not in known:
+            mend = f"There are: {', '.join(known)}." if known else "Declare each program in exercise.toml: [[program]]."
+            self._fault(step.line, f"there is no program {step.program!r}", mend)
+
+    def _see_peer(self, step: Leave | ComeBack) -> None:
+        known = [message.topic for message in self._scenario.messages]
+        known += [one.service if isinstance(one, Server) else one.action for one in self._scenario.servers]
+        known += [one.name for one in self._scenario.steps if isinstance(one, Subscribe)]
+        if step.name not in known:
+            mend = f"There are: {', '.join(dict.fromkeys(known)) or 'none'}."
+            self._fault(step.line, f"nothing here is called {step.name!r}", mend)
+
+    # --- peers
+
+    def _server(self, given: Server | ActionServer) -> Server | ActionServer:
+        if isinstance(given, Server):
+            return self._service_server(given)
+        if not isinstance(given, ActionServer):
+            self._fault(0, f"servers has {given!r}", "Give Server(…) and ActionServer(…).")
+        return self._action_server(given)
+
+    def _service_server(self, given: Server) -> Server:
+        declared = self._type_of(given.service, self._exercise.clients)
+        self._typed(given, given.service, "srv", declared, "client")
+        type_name = given.type or declared or ""
+        if isinstance(given.replies, tuple):
+            for one in given.replies:
+                if not isinstance(one, Reply):
+                    self._fault(given.line, f"replies has {one!r}", "Give reply(…) or no_reply().")
+                if one.fields is not None:
+                    kind = message_class(type_name).Response
+                    self._check(given.line, given.service, kind, one.fields, f"{type_name}_Response")
+        return _with_type(given, type_name)
+
+    def _action_server(self, given: ActionServer) -> ActionServer:
+        declared = self._type_of(given.action, self._exercise.action_clients)
+        self._typed(given, given.action, "action", declared, "action_client")
+        type_name = given.type or declared or ""
+        kind = message_class(type_name)
+        if not given.goals:
+            self._fault(given.line, f"{given.action}: no script for a goal", "Give goals=succeeds(…), for example.")
+        for script in given.goals:
+            self._check(given.line, given.action, kind.Result, script.result, f"{type_name}_Result")
+            for _, fields in script.feedback:
+                self._check(given.line, given.action, kind.Feedback, fields, f"{type_name}_Feedback")
+        return _with_type(given, type_name)
+
+    def _companion(self, given: Companion) -> Companion:
+        file = self._exercise.folder / given.file
+        if not file.is_file():
+            self._fault(0, f"there is no file {given.file} in the exercise's folder", "Write the companion there.")
+        return replace(given, text=file.read_text(encoding="utf-8"))
+
+    def _see_world(self) -> None:
+        world = self._scenario.world
+        if world is None:
+            return
+        try:
+            model = world.begin()
+            topics = {**model.reads, **model.publishes}
+            model.step(world.period)
+            state = model.state()
+        except Exception as error:
+            found = f"the world {world.code.name} fails: {type(error).__name__}: {error}"
+            self._fault(world.line, found, "It needs reads, publishes, hear(), step() and state().")
+        for topic, type_name in topics.items():
+            self._typed(Message(0, topic, type_name, {}, line=world.line), topic, "msg", None, "subscribe")
+        for topic, fields in state.items():
+            kind = message_class(topics[topic])
+            self._check(world.line, f"{world.code.name}.state() for {topic}", kind, fields, topics[topic])
+
+
+_EXAMPLES = {
+    "msg": "std_msgs/msg/String",
+    "srv": "std_srvs/srv/SetBool",
+    "action": "example_interfaces/action/Fibonacci",
+}
+
+Peer = TypeVar("Peer", Server, ActionServer)
+
+
+def _with_type(given: Peer, type_name: str) -> Peer:
+    """The same peer with its type; `replace` would lose its line."""
+    names = [field.name for field in dataclasses.fields(given) if field.name not in ("line", "type")]
+    found = type(given)(**{name: getattr(given, name) for name in names}, type=type_name)
+    object.__setattr__(found, "line", given.line)
+    return found

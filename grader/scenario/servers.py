@@ -1,0 +1,175 @@
+"""Reference servers: what answers the student's requests and goals, and how."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from grader.recording.recording import Fields
+from grader.scenario.code import Code, code_of
+from grader.scenario.place import line_of_the_author
+
+#: How an action server takes a request to cancel. "ignore": it accepts, and goes on all the same.
+OnCancel = Literal["accept", "refuse", "ignore"]
+
+End = Literal["succeeded", "aborted", "never"]
+
+
+@dataclass(frozen=True)
+class Reply:
+    """The answer to one request, `after` s of simulated time; `fields` None stands for no answer at all."""
+
+    after: float = 0.0
+    fields: Fields | None = None
+
+
+def reply(after: float = 0.0, /, **fields: Any) -> Reply:
+    """Answer with these fields, after so many seconds: `reply(sum=5)`, `reply(2.0, sum=5)`."""
+    return Reply(after, fields)
+
+
+def no_reply() -> Reply:
+    """Never answer."""
+    return Reply()
+
+
+@dataclass(frozen=True)
+class Server:
+    """A reference server of a service.
+
+    `replies` has one for each request; the last one serves all that follow. Or it is a function of the author's file,
+    which gets the request and returns the response's fields (or a `Reply`).
+
+    The server is there from before the program's start, or from `appears` on (s after the start); it is gone at `gone`
+    and back at `back`.
+    """
+
+    service: str
+    type: str = ""
+    replies: tuple[Reply, ...] | Code = ()
+    appears: float | None = None
+    gone: float | None = None
+    back: float | None = None
+    line: int = field(default_factory=line_of_the_author, compare=False, repr=False)
+
+    def __init__(
+        self,
+        service: str,
+        type: str = "",
+        replies: Reply | Sequence[Reply] | Callable[..., Any] | Code = (),
+        appears: float | None = None,
+        gone: float | None = None,
+        back: float | None = None,
+    ) -> None:
+        """Take one reply for several, and a function for its place."""
+        given: dict[str, Any] = {"service": service, "type": type, "replies": _replies(replies)}
+        given |= {"appears": appears, "gone": gone, "back": back, "line": line_of_the_author()}
+        for name, value in given.items():
+            object.__setattr__(self, name, value)
+
+
+def _replies(given: Any) -> tuple[Reply, ...] | Code:
+    if isinstance(given, Reply):
+        return (given,)
+    if isinstance(given, Code):
+        return given
+    return code_of(given) if callable(given) else tuple(given)
+
+
+@dataclass(frozen=True)
+class GoalScript:
+    """What a scripted action server does with one goal; times are s after it accepted the goal.
+
+    `answers_after` is how late it accepts or rejects.
+    """
+
+    accept: bool = True
+    answers_after: float = 0.0
+    feedback: tuple[tuple[float, Fields], ...] = ()
+    end: End = "never"
+    after: float = 0.0
+    result: Fields = field(default_factory=dict)
+    cancel: OnCancel = "accept"
+    cancel_takes: float = 0.0
+
+
+def succeeds(
+    after: float = 0.0,
+    result: Fields | None = None,
+    feedback: dict[float, Fields] | None = None,
+    cancel: OnCancel = "accept",
+    cancel_takes: float = 0.0,
+    answers_after: float = 0.0,
+) -> GoalScript:
+    """Accept the goal, give feedback at these seconds, and succeed `after` s."""
+    return _script("succeeded", after, result, feedback, cancel, cancel_takes, answers_after)
+
+
+def aborts(
+    after: float = 0.0,
+    result: Fields | None = None,
+    feedback: dict[float, Fields] | None = None,
+    cancel: OnCancel = "accept",
+    cancel_takes: float = 0.0,
+    answers_after: float = 0.0,
+) -> GoalScript:
+    """Accept the goal, give feedback at these seconds, and abort `after` s."""
+    return _script("aborted", after, result, feedback, cancel, cancel_takes, answers_after)
+
+
+def never_ends(
+    feedback: dict[float, Fields] | None = None,
+    cancel: OnCancel = "accept",
+    cancel_takes: float = 0.0,
+    answers_after: float = 0.0,
+) -> GoalScript:
+    """Accept the goal, and never end."""
+    return _script("never", 0.0, None, feedback, cancel, cancel_takes, answers_after)
+
+
+def rejects(answers_after: float = 0.0) -> GoalScript:
+    """Reject the goal."""
+    return GoalScript(accept=False, answers_after=answers_after)
+
+
+def _script(
+    end: End,
+    after: float,
+    result: Fields | None,
+    feedback: dict[float, Fields] | None,
+    cancel: OnCancel,
+    cancel_takes: float,
+    answers_after: float,
+) -> GoalScript:
+    given = tuple(sorted((feedback or {}).items(), key=lambda entry: entry[0]))
+    return GoalScript(True, answers_after, given, end, after, result or {}, cancel, cancel_takes)
+
+
+@dataclass(frozen=True)
+class ActionServer:
+    """A scripted server of an action: `goals` has a script for each goal; the last one serves all that follow."""
+
+    action: str
+    type: str = ""
+    goals: tuple[GoalScript, ...] = ()
+    appears: float | None = None
+    gone: float | None = None
+    back: float | None = None
+    line: int = field(default_factory=line_of_the_author, compare=False, repr=False)
+
+    def __init__(
+        self,
+        action: str,
+        type: str = "",
+        goals: GoalScript | Sequence[GoalScript] = (),
+        appears: float | None = None,
+        gone: float | None = None,
+        back: float | None = None,
+    ) -> None:
+        """Take one script for several."""
+        scripts = (goals,) if isinstance(goals, GoalScript) else tuple(goals)
+        given: dict[str, Any] = {"action": action, "type": type, "goals": scripts}
+        given |= {"appears": appears, "gone": gone, "back": back, "line": line_of_the_author()}
+        for name, value in given.items():
+            object.__setattr__(self, name, value)

@@ -1,0 +1,85 @@
+"""Checks the values of a scenario against the definitions of messages, services and actions."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from grader.recording.recording import Fields
+from grader.runner.message import message_class
+
+_INTEGERS = {f"{sign}int{bits}": (bits, sign == "") for bits in (8, 16, 32, 64) for sign in ("", "u")}
+_LIST = re.compile(r"sequence<(?P<of>.+?)(, (?P<most>\d+))?>|(?P<array>.+)\[(?P<size>\d+)\]")
+_TEXT = re.compile(r"w?string(<(?P<most>\d+)>)?")
+
+
+class Invalid(ValueError):
+    """Raised for a value that does not fit; `field` is its full name, such as linear.x."""
+
+    def __init__(self, field: str, found: str, mend: str) -> None:
+        super().__init__(f"{field}: {found}")
+        self.field, self.found, self.mend = field, found, mend
+
+
+def check_fields(kind: Any, fields: Fields, name: str, at: str = "") -> None:
+    """See that a message, request or goal of the class `kind`, called `name` in messages, may have these fields.
+
+    Raises `Invalid`.
+    """
+    if not isinstance(fields, dict):
+        raise Invalid(at or name, f"{_shown(fields)} is given for a {name}", "Give a dictionary of its fields.")
+    known = kind.get_fields_and_field_types()
+    for field, value in fields.items():
+        where = f"{at}.{field}" if at else field
+        if field not in known:
+            mend = f"Its fields: {', '.join(known)}." if known else "It has no fields."
+            raise Invalid(where, f"{name} has no field {field!r}", mend)
+        _check_value(known[field], value, where, name)
+
+
+def _check_value(type_name: str, value: Any, field: str, name: str) -> None:
+    if found := _LIST.fullmatch(type_name):
+        _check_list(found, type_name, value, field, name)
+    elif type_name in ("double", "float"):
+        _expect(isinstance(value, float), type_name, value, field, name, "Write it with a point, such as 1.0.")
+    elif type_name == "boolean":
+        _expect(isinstance(value, bool), type_name, value, field, name, "Write True or False.")
+    elif type_name in _INTEGERS:
+        _check_integer(type_name, value, field, name)
+    elif found := _TEXT.fullmatch(type_name):
+        fits = isinstance(value, str) and (not found["most"] or len(value) <= int(found["most"]))
+        _expect(fits, type_name, value, field, name, "Write a text in quotes.")
+    elif "/" in type_name:
+        package, _, short = type_name.partition("/")
+        check_fields(message_class(f"{package}/msg/{short}"), value, f"{package}/msg/{short}", field)
+
+
+def _check_list(found: re.Match[str], type_name: str, value: Any, field: str, name: str) -> None:
+    _expect(isinstance(value, (list, tuple)), type_name, value, field, name, "Write a list.")
+    if found["size"]:
+        mend = f"Give {found['size']} values."
+        _expect(len(value) == int(found["size"]), type_name, value, field, name, mend)
+    if found["most"]:
+        mend = f"Give at most {found['most']} values."
+        _expect(len(value) <= int(found["most"]), type_name, value, field, name, mend)
+    for index, one in enumerate(value):
+        _check_value(found["of"] or found["array"], one, f"{field}[{index}]", name)
+
+
+def _check_integer(type_name: str, value: Any, field: str, name: str) -> None:
+    whole = isinstance(value, int) and not isinstance(value, bool)
+    _expect(whole, type_name, value, field, name, "Write a whole number.")
+    bits, signed = _INTEGERS[type_name]
+    lowest, highest = (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) if signed else (0, 2**bits - 1)
+    mend = f"Give a number from {lowest} to {highest}."
+    _expect(lowest <= value <= highest, type_name, value, field, name, mend)
+
+
+def _expect(fits: bool, type_name: str, value: Any, field: str, name: str, mend: str) -> None:
+    if not fits:
+        raise Invalid(field, f"{_shown(value)} is given for {field}, which is {type_name} in {name}", mend)
+
+
+def _shown(value: Any) -> str:
+    text = f"{value!r} ({type(value).__name__})"
+    return text if len(text) < 80 else f"{text[:80]}…"

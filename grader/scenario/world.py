@@ -1,0 +1,65 @@
+"""Worlds: small models that read a program's commands and publish the state, stepped in simulated time.
+
+A model is a class with `reads` and `publishes` (topic to type), `hear(topic, message)`, `step(seconds)` and `state()`,
+which returns the fields of a message for each topic that is to be published now. It runs inside the grader.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from grader.recording.recording import Fields
+from grader.scenario.code import Code, code_of
+from grader.scenario.place import line_of_the_author
+
+#: How far a world goes on in one step, unless the author says otherwise (s).
+PERIOD = 0.02
+
+
+class Model(Protocol):
+    """What a world's class has. `reads` and `publishes` may be set by its constructor, too."""
+
+    reads: dict[str, str]
+    publishes: dict[str, str]
+
+    def hear(self, topic: str, message: Any) -> None:
+        """A message came; its fields are attributes."""
+
+    def step(self, seconds: float) -> None:
+        """Simulated time goes on."""
+
+    def state(self) -> dict[str, Fields]:
+        """What is published after a step."""
+
+
+@dataclass(frozen=True)
+class World:
+    """A model, by its class and what its constructor gets; it is stepped every `period` s of simulated time."""
+
+    code: Code
+    arguments: dict[str, Any] = field(default_factory=dict)
+    period: float = PERIOD
+    line: int = field(default_factory=line_of_the_author, compare=False, repr=False)
+
+    def __init__(self, model: Callable[..., Any] | Code, period: float = PERIOD, **arguments: Any) -> None:
+        """Take the class itself, and whatever its constructor is to get."""
+        given = {"code": model if isinstance(model, Code) else code_of(model), "arguments": arguments}
+        for name, value in {**given, "period": period, "line": line_of_the_author()}.items():
+            object.__setattr__(self, name, value)
+
+    def begin(self) -> Model:
+        """A new model, in its first state."""
+        model: Model = self.code.load()(**self.arguments)
+        return model
+
+    def __reduce__(self) -> tuple[Callable[..., World], tuple[Any, ...]]:
+        """Keep all parts when it crosses from one process to another."""
+        return _world, (self.code, self.period, self.arguments, self.line)
+
+
+def _world(code: Code, period: float, arguments: dict[str, Any], line: int) -> World:
+    world = World(code, period, **arguments)
+    object.__setattr__(world, "line", line)
+    return world
