@@ -36,7 +36,9 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
     one, three = wanted(ELBOW, 0.53), (wanted(ELBOW, 0.53), wanted(ROLL, 0.63), wanted(PITCH, 0.73))
     broken = (found(math.nan), found(math.inf), found(0.02))
     return (
-        Scenario("one", "one joint, and an answer after 1.2 s", one, 2.5, servers=server(found(0.03, 1.2)), interrupt=True),
+        Scenario(
+            "one", "one joint, and an answer after 1.2 s", one, 2.5, servers=server(found(0.03, 1.2)), interrupt=True
+        ),
         Scenario("slow", "an answer after 4 s", one, 5.5, servers=server(found(-0.04, 4.0))),
         Scenario(
             "several",
@@ -45,11 +47,21 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
             3.5,
             servers=server(found(0.01, 2.0), found(0.02, 0.5), found(0.03, 1.0)),
         ),
-        Scenario("again", "the same joint twice", wanted(ELBOW, 0.53, 1.53), 3.0, servers=server(found(0.01, 0.5), found(0.02, 0.5))),
+        Scenario(
+            "again",
+            "the same joint twice",
+            wanted(ELBOW, 0.53, 1.53),
+            3.0,
+            servers=server(found(0.01, 0.5), found(0.02, 0.5)),
+        ),
         Scenario("failing", "the first calibration fails", three, 3.0, servers=server(failed(0.5), found(0.02, 0.5))),
         Scenario("not_finite", "offsets that are no numbers", three, 2.5, servers=server(*broken)),
-        Scenario("appears", "the service appears after 2 s", three, 4.0, servers=server(found(0.01, 0.5), appears=2.03)),
-        Scenario("never", "the first request is never answered", three, 7.5, servers=server(no_reply(), found(0.02, 0.5))),
+        Scenario(
+            "appears", "the service appears after 2 s", three, 4.0, servers=server(found(0.01, 0.5), appears=2.03)
+        ),
+        Scenario(
+            "never", "the first request is never answered", three, 7.5, servers=server(no_reply(), found(0.02, 0.5))
+        ),
         Scenario("too_late", "an answer after 5.6 s", three, 7.5, servers=server(found(0.01, 5.6), found(0.02, 0.5))),
         Scenario("absent", "the service never appears", three, 2.0),
     )

@@ -27,7 +27,9 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
     swing = arm_swing(2)
     stream = published(swing)
     drawn = round(random.Random(seed).uniform(0.15, 0.45), 3)
-    refused = tuple((gain(value, 0.45 + n / 5), read(0.5 + n / 5)) for n, value in enumerate((0.0, -0.2, 1.01, math.nan)))
+    refused = tuple(
+        (gain(value, 0.45 + n / 5), read(0.5 + n / 5)) for n, value in enumerate((0.0, -0.2, 1.01, math.nan))
+    )
     types = tuple((gain(value, 0.45 + n / 5), read(0.5 + n / 5)) for n, value in enumerate((1, "0.3", True)))
     scripts = {
         "default": ("the chapter's own publisher", (stream, read(1.95)), {}),
@@ -36,7 +38,11 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         "changed": ("the gain changes twice", (stream, gain(0.1, 0.65), read(0.75), gain(0.9, 1.25), read(1.95)), {}),
         "refused": ("gains that are not allowed", (stream, *refused), {}),
         "other_types": ("gains of another type", (stream, *types), {}),
-        "after_refusal": ("a gain that is not allowed, then one that is", (stream, gain(2.0, 0.65), gain(1.0, 1.05), read(1.95)), {}),
+        "after_refusal": (
+            "a gain that is not allowed, then one that is",
+            (stream, gain(2.0, 0.65), gain(1.0, 1.05), read(1.95)),
+            {},
+        ),
         "reordered": ("the joints in another order in each message", (published(shuffled(swing, seed)),), {}),
         "missing_joint": ("a joint that goes away and comes back", (published(without(swing, ELBOW, 7, 11)),), {}),
         "new_joint": ("a joint that appears later", (published(without(swing, ELBOW, 0, 8)),), {}),

@@ -24,13 +24,22 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         "there": ("a goal where the joint is already", 1.5, (goal(0.0, 0.53),)),
         "limits": ("goals at both limits", 7.5, (goal(2.356, 0.53), goal(0.0, 6.03), at(6.83).cancel(2))),
         "out_of_reach": ("goals beyond the limits", 2.0, (goal(-0.01, 0.53), goal(2.36, 0.73), goal(0.11, 0.93))),
-        "not_a_number": ("a goal that is not a number", 2.0, (goal(math.nan, 0.53), goal(math.inf, 0.73), goal(0.11, 0.93))),
+        "not_a_number": (
+            "a goal that is not a number",
+            2.0,
+            (goal(math.nan, 0.53), goal(math.inf, 0.73), goal(0.11, 0.93)),
+        ),
         "canceled": ("a goal, canceled after 0.55 s", 2.5, (goal(0.83, 0.53), at(1.08).cancel(1))),
-        "after_cancel": ("another goal after one was canceled", 3.0, (goal(0.83, 0.53), at(1.08).cancel(1), goal(0.11, 1.53))),
+        "after_cancel": (
+            "another goal after one was canceled",
+            3.0,
+            (goal(0.83, 0.53), at(1.08).cancel(1), goal(0.11, 1.53)),
+        ),
         "replaced": ("a second goal while the first one runs", 3.0, (goal(0.83, 0.53), goal(0.11, 1.08))),
         "replaced_upwards": ("a farther goal while the first one runs", 3.5, (goal(0.43, 0.53), goal(0.83, 1.08))),
         "rejected_meanwhile": ("a goal beyond the limits while one runs", 2.5, (up, goal(3.0, 0.88))),
     }
     return tuple(
-        Scenario(name, title, script, duration, interrupt=name == "up") for name, (title, duration, script) in scripts.items()
+        Scenario(name, title, script, duration, interrupt=name == "up")
+        for name, (title, duration, script) in scripts.items()
     )

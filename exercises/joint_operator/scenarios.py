@@ -34,9 +34,27 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         "appears": ("the server appears after 3 s", 8.0, three, (good,), {"appears": 3.02}),
         "never_ends": ("the first goal never ends", 14.0, three, (never_ends(cancel_takes=0.5), good), {}),
         "slow": ("a goal that takes 9 s", 12.0, one, (moves(9.0, 0.2, 0.5),), {}),
-        "late_and_slow": ("accepted after 3 s, and 8 s on its way", 13.5, one, (moves(8.0, 0.2, answers_after=3.0),), {}),
-        "refuses_to_cancel": ("12 s on its way, and no way to cancel", 15.0, three[:2], (moves(12.0, 0.2, cancel="refuse"), good), {}),
-        "aborts_late": ("aborted after 11 s, whatever is asked", 14.0, three[:2], (aborts(after=11.0, cancel="refuse"), good), {}),
+        "late_and_slow": (
+            "accepted after 3 s, and 8 s on its way",
+            13.5,
+            one,
+            (moves(8.0, 0.2, answers_after=3.0),),
+            {},
+        ),
+        "refuses_to_cancel": (
+            "12 s on its way, and no way to cancel",
+            15.0,
+            three[:2],
+            (moves(12.0, 0.2, cancel="refuse"), good),
+            {},
+        ),
+        "aborts_late": (
+            "aborted after 11 s, whatever is asked",
+            14.0,
+            three[:2],
+            (aborts(after=11.0, cancel="refuse"), good),
+            {},
+        ),
     }
     return tuple(
         Scenario(

@@ -36,7 +36,10 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         "off_first": ("off, although the motors are off", (off(0.5), on(1.0))),
         "emergency": ("an emergency stop while the motors are on", (on(0.5), pressed(1.0), on(1.5), off(2.0), on(2.5))),
         "released": ("the emergency stop is released again", (on(0.5), pressed(1.0), released(1.5), on(2.5))),
-        "pressed_while_off": ("an emergency stop while the motors are off", (pressed(0.5), on(1.0), released(1.5), on(2.0))),
+        "pressed_while_off": (
+            "an emergency stop while the motors are off",
+            (pressed(0.5), on(1.0), released(1.5), on(2.0)),
+        ),
         "pressed_twice": (
             "pressed twice, released twice",
             (on(0.5), released(0.7), pressed(1.0, 1.2), on(1.4), released(1.6), on(1.8), released(2.0), off(2.2)),

@@ -25,7 +25,9 @@ BAD = ("", "robot", "<robot", '<robot name="leg">', "<robots/>", "<model><robot/
 
 def late(*seconds: float) -> tuple[Step, ...]:
     """Subscribers that join late, called after the time at which they do."""
-    return tuple(at(second).subscribe(TOPIC, name=f"late at {second:g} s", durability="transient_local") for second in seconds)
+    return tuple(
+        at(second).subscribe(TOPIC, name=f"late at {second:g} s", durability="transient_local") for second in seconds
+    )
 
 
 def written(text: object, *seconds: float) -> tuple[Step, ...]:
@@ -43,7 +45,11 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         "changed": ("the description changes twice", (written(ARM, 0.5), written(LEG, 1.0), late(0.8, 1.6), read), {}),
         "same": ("the description is set to what it is", (written(LEG, 0.5, 1.0, 1.5), late(2.0)), {}),
         "refused": ("texts that describe no robot", (refused, late(2.0), read), {}),
-        "after_refusal": ("a bad text, then a good one", (written("<robot", 0.5), written(ARM, 1.0), late(2.0), read), {}),
+        "after_refusal": (
+            "a bad text, then a good one",
+            (written("<robot", 0.5), written(ARM, 1.0), late(2.0), read),
+            {},
+        ),
     }
     return tuple(
         Scenario(name, title, script, duration=2.5, rate=20.0, parameters=parameters, interrupt=name == "late")
