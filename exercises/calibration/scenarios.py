@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 from grader.scenario import Scenario, Server, at, no_reply, reply
-from grader.scenario.steps import Step
+from grader.scenario.scenario import Content
 
 SERVICE, JOINTS = "/calibrate_joint", "/calibrate"
 ELBOW, ROLL, PITCH = "left_elbow", "left_shoulder_roll", "left_shoulder_pitch"
 
 
-def wanted(joint: str, *seconds: float) -> tuple[Step, ...]:
+def wanted(joint: str, *seconds: float) -> tuple[Content, ...]:
     """Somebody wants a joint to be calibrated."""
     return at(*seconds).publish(JOINTS, data=joint)
 
@@ -23,12 +23,12 @@ def server(*replies: object, **when: float) -> tuple[Server, ...]:
 
 def found(offset: float, after: float = 0.0) -> object:
     """A calibration that succeeds."""
-    return reply(after=after, success=True, offset=offset, message="calibrated")
+    return reply(after, success=True, offset=offset, message="calibrated")
 
 
 def failed(after: float = 0.0) -> object:
     """A calibration that fails."""
-    return reply(after=after, success=False, offset=0.7, message="the joint is blocked")
+    return reply(after, success=False, offset=0.7, message="the joint is blocked")
 
 
 def scenarios(seed: int) -> tuple[Scenario, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from grader.scenario import Scenario, Turtle, at
+from grader.scenario import Scenario, Turtle, World, at
 
 GOAL = "/goal"
 
@@ -14,37 +14,37 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
             "ahead",
             "a goal ahead, a little to the left",
             (at(0.5).publish(GOAL, x=8.5, y=7.0),),
-            world=Turtle(x=4.0, y=5.5, theta=0.0),
+            world=World(Turtle, period=0.016, x=4.0, y=5.5, theta=0.0),
             duration=11.5,
             interrupt=True,
         ),
-        Scenario("no_goal", "no goal is published", world=Turtle(x=5.5, y=5.5, theta=1.0), duration=2.0),
+        Scenario("no_goal", "no goal is published", world=World(Turtle, period=0.016, x=5.5, y=5.5, theta=1.0), duration=2.0),
         Scenario(
             "short_way",
             "the shorter way to turn goes past 180 degrees",
             (at(0.5).publish(GOAL, x=3.0, y=4.0),),
-            world=Turtle(x=8.0, y=5.5, theta=2.6),
+            world=World(Turtle, period=0.016, x=8.0, y=5.5, theta=2.6),
             duration=11.5,
         ),
         Scenario(
             "behind",
             "a goal behind the turtle, in a corner",
             (at(0.5).publish(GOAL, x=9.8, y=9.8),),
-            world=Turtle(x=5.0, y=5.0, theta=-2.0),
+            world=World(Turtle, period=0.016, x=5.0, y=5.0, theta=-2.0),
             duration=11.5,
         ),
         Scenario(
             "next_goal",
             "a second goal, after the first was reached",
             (at(0.5).publish(GOAL, x=6.5, y=6.5), at(6.0).publish(GOAL, x=3.0, y=6.0)),
-            world=Turtle(x=5.5, y=5.5, theta=0.0),
+            world=World(Turtle, period=0.016, x=5.5, y=5.5, theta=0.0),
             duration=17.0,
         ),
         Scenario(
             "new_goal",
             "a second goal, while the turtle is on its way to the first",
             (at(0.5).publish(GOAL, x=10.0, y=5.5), at(2.0).publish(GOAL, x=3.0, y=3.0)),
-            world=Turtle(x=5.5, y=5.5, theta=0.0),
+            world=World(Turtle, period=0.016, x=5.5, y=5.5, theta=0.0),
             duration=13.0,
         ),
     )

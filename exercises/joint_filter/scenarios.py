@@ -7,17 +7,17 @@ import random
 
 from grader.scenario import Scenario, at
 from grader.scenario.joint_states import arm_swing, published, shuffled, without
-from grader.scenario.steps import Step
+from grader.scenario.scenario import Content
 
 ELBOW, GAIN = "left_elbow", "gain"
 
 
-def gain(value: object, *seconds: float) -> tuple[Step, ...]:
+def gain(value: object, *seconds: float) -> tuple[Content, ...]:
     """Somebody sets the gain."""
     return at(*seconds).set_parameter(GAIN, value)
 
 
-def read(*seconds: float) -> tuple[Step, ...]:
+def read(*seconds: float) -> tuple[Content, ...]:
     """Somebody reads the gain."""
     return at(*seconds).get_parameter(GAIN)
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 
 from grader.scenario import Scenario, at
-from grader.scenario.steps import Step
+from grader.scenario.scenario import Content
 
 ACTION = "/move_joint"
 
 
-def goal(position: float, *seconds: float) -> tuple[Step, ...]:
+def goal(position: float, *seconds: float) -> tuple[Content, ...]:
     """A goal is sent. Positions that are no multiple of a step end with a shorter one, whatever is rounded."""
     return at(*seconds).send_goal(ACTION, position=position)
 

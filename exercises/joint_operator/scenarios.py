@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from grader.scenario import ActionServer, Scenario, aborts, at, never_ends, rejects, succeeds
-from grader.scenario.steps import Step
+from grader.scenario.scenario import Content
 
 ACTION, TARGETS = "/move_joint", "/targets"
 
 
-def target(position: float, *seconds: float) -> tuple[Step, ...]:
+def target(position: float, *seconds: float) -> tuple[Content, ...]:
     """Somebody wants the joint to be at a position."""
     return at(*seconds).publish(TARGETS, data=position)
 

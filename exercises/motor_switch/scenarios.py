@@ -3,27 +3,27 @@
 from __future__ import annotations
 
 from grader.scenario import Scenario, at
-from grader.scenario.steps import Step
+from grader.scenario.scenario import Content
 
 SWITCH, STOP = "/switch_motors", "/emergency_stop"
 
 
-def on(*seconds: float) -> tuple[Step, ...]:
+def on(*seconds: float) -> tuple[Content, ...]:
     """Requests to switch the motors on."""
     return at(*seconds).call(SWITCH, data=True)
 
 
-def off(*seconds: float) -> tuple[Step, ...]:
+def off(*seconds: float) -> tuple[Content, ...]:
     """Requests to switch the motors off."""
     return at(*seconds).call(SWITCH, data=False)
 
 
-def pressed(*seconds: float) -> tuple[Step, ...]:
+def pressed(*seconds: float) -> tuple[Content, ...]:
     """The emergency stop is pressed."""
     return at(*seconds).publish(STOP, data=True)
 
 
-def released(*seconds: float) -> tuple[Step, ...]:
+def released(*seconds: float) -> tuple[Content, ...]:
     """The emergency stop is released."""
     return at(*seconds).publish(STOP, data=False)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from grader.scenario import Scenario, at
-from grader.scenario.steps import Step
+from grader.scenario.scenario import Content
 
 TOPIC = NAME = "/robot_description"
 PARAMETER = "robot_description"
@@ -23,14 +23,14 @@ LEG = '<robot name="leg"><link name="shin"/></robot>'
 BAD = ("", "robot", "<robot", '<robot name="leg">', "<robots/>", "<model><robot/></model>")
 
 
-def late(*seconds: float) -> tuple[Step, ...]:
+def late(*seconds: float) -> tuple[Content, ...]:
     """Subscribers that join late, called after the time at which they do."""
     return tuple(
         at(second).subscribe(TOPIC, name=f"late at {second:g} s", durability="transient_local") for second in seconds
     )
 
 
-def written(text: object, *seconds: float) -> tuple[Step, ...]:
+def written(text: object, *seconds: float) -> tuple[Content, ...]:
     """Somebody sets the description."""
     return at(*seconds).set_parameter(PARAMETER, text)
 
