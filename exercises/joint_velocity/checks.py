@@ -15,20 +15,14 @@ JOINT_STATE = "sensor_msgs/msg/JointState"
 def test_publishes_velocities(chapter: Run) -> None:
     """It hears /joint_commands and publishes JointState messages on /joint_velocities."""
     if not chapter.subscriptions(COMMANDS):
-        fail(
-            "Your node does not subscribe the topic.",
-            expected=COMMANDS,
-            got=", ".join(chapter.topics("subscription")) or "none",
-        )
+        others = ", ".join(chapter.topics("subscription")) or "none"
+        fail(f"Your node does not subscribe to {COMMANDS}. It subscribes to: {others}.")
     for subscription in chapter.subscriptions(COMMANDS):
         if subscription.type != JOINT_STATE:
             fail("Your subscription has another type.", expected=JOINT_STATE, got=subscription.type)
     if not chapter.publishers(VELOCITIES):
-        fail(
-            "Your node has no publisher on the topic.",
-            expected=VELOCITIES,
-            got=", ".join(chapter.topics("publisher")) or "none",
-        )
+        others = ", ".join(chapter.topics("publisher")) or "none"
+        fail(f"Your node does not publish on {VELOCITIES}. It publishes on: {others}.")
     for publisher in chapter.publishers(VELOCITIES):
         if publisher.type != JOINT_STATE:
             fail("Your publisher has another type.", expected=JOINT_STATE, got=publisher.type)
@@ -36,16 +30,38 @@ def test_publishes_velocities(chapter: Run) -> None:
         fail(f"Nothing was published on {VELOCITIES}.", expected="99 messages", got="none")
 
 
-@check(points=4, hint="One callback, one publish().", depends=[test_publishes_velocities])
+@check(
+    points=2,
+    hint="Compute the velocity anew for each message: zeros and constants are no velocities.",
+    depends=[test_publishes_velocities],
+    misconception="publishes zeros or a constant",
+)
+def test_velocities_follow_the_joints(chapter: Run) -> None:
+    """The velocities change when the joints move faster or slower."""
+    chapter.must_vary("velocity", per="name")
+
+
+@check(points=4, hint="One callback, one publish().", depends=[test_velocities_follow_the_joints])
 def test_answers_each_message_once(chapter: Run) -> None:
     """It publishes one message for each message after the first."""
     chapter.must_answer()
 
 
 @check(
-    points=4,
+    points=3,
+    hint="Publish in the callback, not from a timer or from a thread that sleeps.",
+    depends=[test_velocities_follow_the_joints],
+    misconception="answers late",
+)
+def test_answers_at_once(chapter: Run) -> None:
+    """Each answer goes out within 2 ms, and before the next message."""
+    chapter.must_answer_at_once()
+
+
+@check(
+    points=3,
     hint="Before the first message there is nothing to compare with. Remember it and return.",
-    depends=[test_publishes_velocities],
+    depends=[test_velocities_follow_the_joints],
     misconception="publishes on the first message",
 )
 def test_says_nothing_to_the_first_message(chapter: Run) -> None:
@@ -54,9 +70,9 @@ def test_says_nothing_to_the_first_message(chapter: Run) -> None:
 
 
 @check(
-    points=10,
+    points=8,
     hint="(position now - position before) / (stamp now - stamp before), for each joint, in rad/s.",
-    depends=[test_publishes_velocities],
+    depends=[test_velocities_follow_the_joints],
 )
 def test_velocity_of_each_joint(chapter: Run) -> None:
     """Each joint's velocity is its change of position over the time between the two stamps."""
@@ -64,19 +80,31 @@ def test_velocity_of_each_joint(chapter: Run) -> None:
 
 
 @check(
-    points=4,
+    points=5,
+    hint="dt is not always 0.1 s. Take it from the stamps.",
+    depends=[test_velocity_of_each_joint],
+    misconception="fixed dt",
+    rule="Only the stamps tell the time.",
+)
+def test_uneven_times(irregular: Run) -> None:
+    """Velocities are right when the messages come at uneven times."""
+    irregular.must_match("velocity", per="name")
+
+
+@check(
+    points=3,
     hint="Copy the names from the message that arrived, in their order.",
-    depends=[test_publishes_velocities],
+    depends=[test_velocities_follow_the_joints],
 )
 def test_names_in_the_order_of_the_message(chapter: Run) -> None:
-    """The joints' names stand in the order of the message that arrived."""
+    """The joints' names are in the order of the message that arrived."""
     chapter.must_match("name", missing_ok=True)
 
 
 @check(
-    points=5,
+    points=4,
     hint="Copy the header of the message that arrived, as a whole: it holds the stamp.",
-    depends=[test_publishes_velocities],
+    depends=[test_velocities_follow_the_joints],
     misconception="forgets the stamp",
 )
 def test_stamp_is_copied(chapter: Run) -> None:
@@ -87,8 +115,11 @@ def test_stamp_is_copied(chapter: Run) -> None:
 @check(points=3, hint="super().__init__('joint_velocity')", depends=[test_publishes_velocities])
 def test_node_is_called_joint_velocity(chapter: Run) -> None:
     """There is one node, and it is called joint_velocity."""
+    names = ", ".join(chapter.nodes)
+    if len(chapter.nodes) > 1:
+        fail("Your program creates more than one node.", expected="only /joint_velocity", got=names)
     if chapter.nodes != ("/joint_velocity",):
-        fail("The node has another name.", expected="/joint_velocity", got=", ".join(chapter.nodes))
+        fail("The node has another name.", expected="/joint_velocity", got=names)
 
 
 @check(
@@ -99,6 +130,6 @@ def test_node_is_called_joint_velocity(chapter: Run) -> None:
 def test_ends_on_ctrl_c(chapter: Run) -> None:
     """On Ctrl-C it ends within 2 s, with no traceback."""
     if not chapter.ending.ended_in_time:
-        fail("After Ctrl-C the node went on.", expected="an end within 2 s", got="none")
+        fail("The node was still running 2 s after Ctrl-C.", expected="an end within 2 s", got="none")
     if chapter.ending.traceback:
         fail("After Ctrl-C the node printed a traceback.", expected="none", got=chapter.ending.traceback)

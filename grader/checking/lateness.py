@@ -1,21 +1,30 @@
-"""An answer that is missing often came after all, only later. Says when."""
+"""An answer that is missing often came after all, only later. Says when, and what the late answers have in common."""
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
+from grader.checking.comparator import equal
 from grader.scenario.scenario import SECOND
 
 if TYPE_CHECKING:
-    from grader.checking.run import Exchange, Run
+    from grader.checking.run import Exchange, Message, Run
     from grader.recording import Received
-
-#: How near two numbers have to be to count as one, absolute or relative.
-TOLERANCE = 1e-6
 
 #: Which fields say when a message was sent, and nothing of what it says.
 _STAMPS = ("header", "stamp")
+
+#: So many answers have to have something in common before anything is said about all of them.
+FEWEST = 3
+
+#: What is answered within this time (s) is answered at once: an asyncio loop may look for messages every millisecond.
+AT_ONCE = 0.002
+
+_NEXT_MESSAGE = " Your node answers each message only when the next one arrives: every answer is one message late."
+_TIMER = (
+    " Your node answers only after the clock has moved on, as a timer does. Publish in the callback that gets the "
+    "message."
+)
 
 
 def how_late(run: Run, exchange: Exchange) -> str:
@@ -26,27 +35,54 @@ def how_late(run: Run, exchange: Exchange) -> str:
     wanted = exchange.expected[0]._fields
     for received in run.recording.received:
         if received.after > exchange.number and same(received.fields, wanted) and not _is_in_time(run, received):
-            return _told(run, exchange, received)
+            return _delay(run, exchange, received.at, received.after)
     return ""
+
+
+def is_late(exchange: Exchange, answer: Message, within: float) -> bool:
+    """Whether an answer came after the next message, or more than `within` s after its own."""
+    return answer.after > exchange.number or answer.at - exchange.sent.at > within + 1e-9
+
+
+def delay(run: Run, exchange: Exchange, answer: Message) -> str:
+    """How late an answer is, such as "one message late" or "0.45 s later"."""
+    return _delay(run, exchange, answer.at_ns, answer.after)
+
+
+def in_general(run: Run) -> str:
+    """What all answers have in common that are late, as sentences that begin with a space; empty where nothing."""
+    pairs = [(exchange, answer) for exchange in run.exchanges for answer in exchange.answers if exchange.expected]
+    late = [(exchange, answer) for exchange, answer in pairs if is_late(exchange, answer, AT_ONCE)]
+    if len(late) < FEWEST or len(late) < len(pairs):
+        return ""
+    if all(answer.after == exchange.number + 1 and _with_next(run, exchange, answer) for exchange, answer in late):
+        return _NEXT_MESSAGE
+    if all(answer.after == exchange.number and _with_next(run, exchange, answer) for exchange, answer in late[:-1]):
+        return _TIMER
+    seconds = [answer.at - exchange.sent.at for exchange, answer in late]
+    if max(seconds) - min(seconds) <= 0.02 * max(seconds):
+        return f" Every answer comes {_shown(max(seconds))} after its message."
+    return (
+        f" Your node's answers come {_shown(min(seconds))} to {_shown(max(seconds))} after their messages, as from a "
+        "timer, or a thread that looks for work from time to time."
+    )
+
+
+def _with_next(run: Run, exchange: Exchange, answer: Message) -> bool:
+    """Whether an answer came at the simulated time of the next message."""
+    sent = run.recording.sent
+    return exchange.number < len(sent) and answer.at_ns == sent[exchange.number].at
 
 
 def same(got: Any, expected: Any) -> bool:
     """Whether two messages say the same, or two parts of them; stamps do not count."""
-    if isinstance(expected, dict):
-        return isinstance(got, dict) and all(
-            same(got.get(name), value) for name, value in expected.items() if name not in _STAMPS
-        )
-    if isinstance(expected, list):
-        return (
-            isinstance(got, list)
-            and len(got) == len(expected)
-            and all(same(one, other) for one, other in zip(got, expected, strict=True))
-        )
-    if isinstance(expected, float) and isinstance(got, float):
-        return math.isclose(got, expected, rel_tol=TOLERANCE, abs_tol=TOLERANCE) or (
-            got != got and expected != expected
-        )
-    return bool(got == expected)
+    return equal(_timeless(got), _timeless(expected))
+
+
+def _timeless(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _timeless(part) for name, part in value.items() if name not in _STAMPS}
+    return [_timeless(part) for part in value] if isinstance(value, list) else value
 
 
 def _is_in_time(run: Run, received: Received) -> bool:
@@ -55,12 +91,15 @@ def _is_in_time(run: Run, received: Received) -> bool:
     return bool(expected) and same(received.fields, expected[0]._fields)
 
 
-def _told(run: Run, exchange: Exchange, received: Received) -> str:
-    late = received.after - exchange.number
-    if received.at == run.recording.sent[received.after - 1].at:
+def _delay(run: Run, exchange: Exchange, at: int, after: int) -> str:
+    late = after - exchange.number
+    if late and at == run.recording.sent[after - 1].at:
         return "one message late" if late == 1 else f"{late} messages late"
-    seconds = (received.at - run.recording.sent[exchange.number - 1].at) / SECOND
-    return f"{seconds:.2f} s later" if seconds >= 0.01 else f"{seconds * 1000:.1f} ms later"
+    return f"{_shown((at - run.recording.sent[exchange.number - 1].at) / SECOND)} later"
+
+
+def _shown(seconds: float) -> str:
+    return f"{seconds:.2f} s" if seconds >= 0.01 else f"{seconds * 1000:.1f} ms"
 
 
 def is_one_late(run: Run) -> bool:
@@ -71,4 +110,4 @@ def is_one_late(run: Run) -> bool:
         if before.expected and exchange.expected and exchange.answers
     ]
     telling = [(former, got) for former, expected, got in pairs if not same(former, expected)]
-    return len(telling) >= 3 and all(same(got, former) for former, got in telling)
+    return len(telling) >= FEWEST and all(same(got, former) for former, got in telling)

@@ -96,8 +96,12 @@ class Checks:
             pytest.skip("blocked by " + ", ".join(blocking))
 
     def _blocking(self, name: str) -> tuple[str, ...]:
-        depends = self._marks[name].depends
-        return tuple(other for other in depends if self.verdicts[other].status != "passed")
+        """The checks that have to pass first, and did not: those that failed, not those that are blocked themselves."""
+        found: dict[str, None] = {}
+        for other in self._marks[name].depends:
+            if self.verdicts[other].status != "passed":
+                found.update(dict.fromkeys(self.verdicts[other].blocked_by or (other,)))
+        return tuple(found)
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Any:

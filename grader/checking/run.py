@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NoReturn
 
+from grader.checking.lateness import AT_ONCE
 from grader.checking.wrong import Finding, Wrong
 from grader.exercise import Exercise
 from grader.recording import Ending, EndPoint, Received, Recording, Sent
@@ -33,13 +34,16 @@ class Part:
 class Message(Part):
     """A message that was sent or received: its fields by name, its `stamp` (s), its topic, and when it came (s).
 
-    Of a message sent, `heard` tells whether the student's node subscribed to its topic then.
+    Of a message sent, `heard` tells whether the student's node subscribed to its topic then. Of a message received,
+    `after` is how many messages had been sent by then. `at_ns` is its moment of simulated time in nanoseconds.
     """
 
     def __init__(self, kept: Sent | Received) -> None:
         super().__init__(kept.fields)
         self.heard = not isinstance(kept, Sent) or kept.heard
         self.at = (kept.at - START) / SECOND
+        self.at_ns = kept.at
+        self.after = kept.after if isinstance(kept, Received) else 0
         self.topic = kept.topic
 
     @property
@@ -149,6 +153,24 @@ class Run:
         from grader.checking.matching import must_answer
 
         must_answer(self)
+
+    def must_answer_at_once(self, within: float = AT_ONCE) -> None:
+        """Each answer must come before the next message, and within so many seconds of simulated time.
+
+        Only what came is judged; what did not come is another check's.
+        """
+        from grader.checking.matching import must_answer_at_once
+
+        must_answer_at_once(self, within)
+
+    def must_vary(self, field: str, per: str = "") -> None:
+        """Where the solution's `field` changes from message to message, the node's must change, too.
+
+        A node that publishes zeros or a constant fails, one with wrong values does not. `per` is as in `must_match`.
+        """
+        from grader.checking.matching import must_vary
+
+        must_vary(self, field, per)
 
     def must_be_silent(self) -> None:
         """The node must leave without an answer what the solution does. The very first message does not count."""

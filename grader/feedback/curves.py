@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from grader.checking import Run
-from grader.checking.matching import close
+from grader.checking.comparator import equal
 from grader.checking.run import Message
 from grader.exercise import Exercise
 from grader.grading import Grade
@@ -55,7 +55,7 @@ def _curve(joint: str, expected: list[Point], got: list[Point]) -> Curve:
 
 def _first_difference(right: dict[float, float], came: dict[float, float]) -> Point | None:
     for at in sorted({*right, *came}):
-        if at not in right or at not in came or not close(came[at], right[at], 1e-6):
+        if at not in right or at not in came or not equal(came[at], right[at], 1e-6):
             shown = next((v for v in (came.get(at), right.get(at)) if v is not None and abs(v) < HIGHEST), 0.0)
             return at, shown
     return None

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from grader.checking import Run
-from grader.checking.matching import close
+from grader.checking.comparator import equal
 from grader.exercise import Exercise
 from grader.grading import Grade
 from grader.report.printable import printable
@@ -82,7 +82,7 @@ def _first_difference(
 ) -> tuple[float, float] | None:
     right, came = dict(expected), dict(got)
     for at in sorted({*right, *came}):
-        if at not in right or at not in came or not close(came[at], right[at], 1e-6):
+        if at not in right or at not in came or not equal(came[at], right[at], 1e-6):
             shown = came.get(at, math.nan)
             return at, shown if math.isfinite(shown) else right.get(at, 0.0)
     return None

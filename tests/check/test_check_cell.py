@@ -67,7 +67,7 @@ def test_a_mistake_is_told_with_what_was_expected_what_came_when_and_which_joint
     text, html = texts(shown_of(kernel, (SOLUTIONS / "mistakes" / "degrees.py").read_text(encoding="utf-8")))
 
     assert "Message 2 of 100 (0.10 s after the start" in text
-    assert "expected velocity 0.499167 rad/s, got 28.6002 rad/s. All values are in degrees." in text
+    assert "expected velocity 0.499167 rad/s, got 28.6002 rad/s. Every velocity is in degrees." in text
     assert "Hint: (position now - position before)" in text
     for label, value in {
         "expected": "0.499167 rad/s",
@@ -76,7 +76,7 @@ def test_a_mistake_is_told_with_what_was_expected_what_came_when_and_which_joint
         "joint": "left_shoulder_pitch",
     }.items():
         assert f'<th scope="row">{label}</th><td>{value}</td>' in html
-    assert "All values are in degrees." in html
+    assert "Every velocity is in degrees." in html
     assert "<b>Hint:</b> (position now - position before)" in html
     assert "First wrong: 0.10 s, left_shoulder_pitch." in html
 

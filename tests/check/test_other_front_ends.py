@@ -67,7 +67,7 @@ def test_vs_code_the_notebooks_own_folder_counts_and_the_saved_cell_where_none_w
     shown = elsewhere.run("%check joint_velocity")
 
     assert "has not been run since the kernel started. This checks it as it was last saved in week3.ipynb" in shown.text
-    assert "0 of 36 points" in texts(shown)[0]
+    assert "0 of 41 points" in texts(shown)[0]
 
 
 def test_a_cell_that_was_changed_since_it_was_run_is_told_and_one_that_was_not_saved_yet_is_not(

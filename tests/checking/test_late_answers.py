@@ -76,7 +76,7 @@ def test_an_answer_that_is_right_for_its_own_message_is_no_late_answer() -> None
     with pytest.raises(Wrong) as caught:
         Run(EXERCISE, lacking, same).must_answer()
     assert "Message 3 of 8" in caught.value.finding.text
-    assert "none came" in caught.value.finding.text
+    assert "got none" in caught.value.finding.text
 
 
 @pytest.mark.parametrize("factor", [0.8, 1.25])

@@ -24,9 +24,9 @@ def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     shutil.copytree(ROOT / "solutions" / "joint_velocity", tmp_path / "solutions" / "small")
     (exercise / "hidden_checks.py").write_text('"""None."""\n')
     scenarios = (exercise / "scenarios.py").read_text(encoding="utf-8")
-    (exercise / "scenarios.py").write_text(scenarios.replace("in streams.items()", "in list(streams.items())[:1]"))
+    (exercise / "scenarios.py").write_text(scenarios.replace("in streams.items()", "in list(streams.items())[:2]"))
     toml = (exercise / "exercise.toml").read_text(encoding="utf-8")
-    (exercise / "exercise.toml").write_text(toml.replace("points = 100", "points = 36"))
+    (exercise / "exercise.toml").write_text(toml.replace("points = 100", "points = 41"))
     return tmp_path
 
 
@@ -54,7 +54,7 @@ def test_a_missing_solution(course: Path, crew: Crew) -> None:
 @pytest.mark.parametrize(
     ("file", "old", "new", "told"),
     [
-        ("exercise.toml", "points = 36", "points = 35", "give 36 points together, but points = 35"),
+        ("exercise.toml", "points = 41", "points = 40", "give 41 points together, but points = 40"),
         ("checks.py", "chapter.must_answer()", "assert False, 'never right'", "solution does not pass.*never right"),
         ("checks.py", "chapter.must_answer()", "chapter.no_such_thing", r"breaks.*checks\.py:\d+: AttributeError"),
         ("checks.py", "def test_answers_each_message_once(chapter", "def test_a(no_scenario", "no_scenario"),

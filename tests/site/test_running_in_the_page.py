@@ -88,11 +88,11 @@ def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str) -> N
             page.get_by_role("button", name="Check joint_velocity.py").click()
             expect(total).to_have_text(comes_to, timeout=PATIENCE_MS)
 
-        check(solutions / "mistakes" / "degrees.py", "7 of 8 public checks, 26 of 36 points")
-        expect(page.locator(".check-failed")).to_contain_text("All values are in degrees.")
+        check(solutions / "mistakes" / "degrees.py", "9 of 11 public checks, 28 of 41 points")
+        expect(page.locator(".check-failed")).to_contain_text("Every velocity is in degrees.")
         assert shown.violations() == []
         assert not shown.scrolls_sideways()
-        check(solutions / "solution.py", "8 of 8 public checks, 36 of 36 points")
+        check(solutions / "solution.py", "11 of 11 public checks, 41 of 41 points")
         expect(page.locator(".check-result")).to_contain_text("This is a preview, not your grade")
 
         with page.expect_download() as download:

@@ -53,12 +53,12 @@ def test_a_file_is_checked_handed_in_and_read_again(folder: Path) -> None:
     done = submitted("--student", "  Ada\nLovelace ")
     assert done.exit_code == 0, done.output
     assert f"Upload this file: {UPLOAD}" in done.output
-    assert "36 of 36 points" in done.output
+    assert "41 of 41 points" in done.output
     assert "long gap" not in done.output, "no hidden check is told"
     record = upload().record
     assert record["student"] == "Ada Lovelace"
     assert record["time"] == "2023-11-14T22:13:20+00:00"
-    assert (record["self_check"]["score"], record["self_check"]["points"]) == (36, 36)
+    assert (record["self_check"]["score"], record["self_check"]["points"]) == (41, 41)
     assert {"python", "rclpy", "spinbook"} <= set(record["versions"])
     submission = read(UPLOAD, load("exercises/joint_velocity"))
     assert (submission.source, submission.warning) == (SOLUTION, "")

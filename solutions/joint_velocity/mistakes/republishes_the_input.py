@@ -1,7 +1,7 @@
 """Publishes the velocity of the message that arrived.
 
 Caught by:
-- test_velocity_of_each_joint
+- test_velocities_follow_the_joints
 """
 
 import math

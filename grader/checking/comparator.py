@@ -1,0 +1,72 @@
+"""Compares two values of a message's fields: numbers, texts, lists and nested messages, as plain data.
+
+The rules, each with a test module of its own in tests/checking/comparator:
+
+- **Floats** are equal within a tolerance, absolute or relative to the larger of the two, whichever allows more. A
+  difference of exactly the tolerance is allowed.
+- **Integers and booleans** are equal only if they are the same; a boolean never equals a number.
+- **NaN** equals NaN and nothing else. An **infinity** equals the infinity of the same sign and nothing else.
+- **-0.0** equals 0.0.
+- **Lists** are equal if they have the same length and equal elements in the same order. An empty list equals an
+  empty list.
+- **Nested messages** are equal if they have the same fields and each field is equal.
+- **Texts** and everything else are equal if they are the same.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+#: How far two floats may be apart, absolute or relative, unless a check asks for something else.
+TOLERANCE = 1e-6
+
+
+@dataclass(frozen=True)
+class Difference:
+    """The first place in which two values differ.
+
+    `path` leads to it from the value that was compared, such as `[2].position.x`; it is empty where the values
+    themselves differ. `got` and `expected` are what is there. For lists of unequal length these are the lists.
+    """
+
+    path: str
+    got: Any
+    expected: Any
+
+
+def equal(got: Any, expected: Any, tolerance: float = TOLERANCE) -> bool:
+    """Whether two values are the same by the rules above."""
+    return difference(got, expected, tolerance) is None
+
+
+def difference(got: Any, expected: Any, tolerance: float = TOLERANCE, path: str = "") -> Difference | None:
+    """The first place, in the order of the fields and elements, in which two values differ; None where they are equal.
+
+    Raises ValueError where `tolerance` is negative or not a number.
+    """
+    if not tolerance >= 0:
+        raise ValueError(f"tolerance={tolerance!r}: a tolerance is a number of 0 or more.")
+    if isinstance(expected, dict) and isinstance(got, dict) and got.keys() == expected.keys():
+        steps = [(f"{path}.{name}" if path else str(name), got[name], expected[name]) for name in expected]
+    elif isinstance(expected, (list, tuple)) and isinstance(got, (list, tuple)) and len(got) == len(expected):
+        steps = [(f"{path}[{i}]", *pair) for i, pair in enumerate(zip(got, expected, strict=True))]
+    else:
+        return None if _same(got, expected, tolerance) else Difference(path, got, expected)
+    found = (difference(mine, its, tolerance, step) for step, mine, its in steps)
+    return next((one for one in found if one), None)
+
+
+def _same(got: Any, expected: Any, tolerance: float) -> bool:
+    if isinstance(got, bool) or isinstance(expected, bool):
+        return got is expected
+    if _is_number(got) and _is_number(expected) and (isinstance(got, float) or isinstance(expected, float)):
+        if math.isnan(got) or math.isnan(expected):
+            return math.isnan(got) and math.isnan(expected)
+        return math.isclose(got, expected, rel_tol=tolerance, abs_tol=tolerance)
+    return type(got) is type(expected) and bool(got == expected)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float))

@@ -1,0 +1,57 @@
+"""Collects its answers and publishes them from a timer, 100 times per second.
+
+Caught by:
+- test_answers_at_once
+"""
+
+import math
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+
+
+class JointVelocity(Node):
+    def __init__(self):
+        super().__init__('joint_velocity')
+        self.publisher = self.create_publisher(JointState, '/joint_velocities', 10)
+        self.create_subscription(JointState, '/joint_commands', self.on_joints, 10)
+        self.stamp = None
+        self.before = {}
+        self.answers = []
+        self.create_timer(0.01, self.publish_answers)
+
+    def on_joints(self, message):
+        stamp = message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
+        now = {n: p for n, p in zip(message.name, message.position) if math.isfinite(p)}
+        if self.stamp is not None and stamp > self.stamp:
+            dt = (stamp - self.stamp) / 1e9
+            answer = JointState(header=message.header)
+            for name in now:
+                if name in self.before:
+                    answer.name.append(name)
+                    answer.velocity.append((now[name] - self.before[name]) / dt)
+            if answer.name:
+                self.answers.append(answer)
+        self.stamp, self.before = stamp, now
+
+    def publish_answers(self):
+        while self.answers:
+            self.publisher.publish(self.answers.pop(0))
+
+
+def main():
+    rclpy.init()
+    node = JointVelocity()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == '__main__':
+    main()

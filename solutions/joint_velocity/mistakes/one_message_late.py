@@ -1,0 +1,57 @@
+"""Publishes each answer when the next message arrives.
+
+Caught by:
+- test_answers_each_message_once
+- test_answers_at_once
+- test_velocity_of_each_joint
+"""
+
+import math
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+
+
+class JointVelocity(Node):
+    def __init__(self):
+        super().__init__('joint_velocity')
+        self.publisher = self.create_publisher(JointState, '/joint_velocities', 10)
+        self.create_subscription(JointState, '/joint_commands', self.on_joints, 10)
+        self.stamp = None
+        self.before = {}
+        self.answer = None
+
+    def on_joints(self, message):
+        if self.answer is not None:
+            self.publisher.publish(self.answer)
+            self.answer = None
+        stamp = message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
+        now = {n: p for n, p in zip(message.name, message.position) if math.isfinite(p)}
+        if self.stamp is not None and stamp > self.stamp:
+            dt = (stamp - self.stamp) / 1e9
+            answer = JointState(header=message.header)
+            for name in now:
+                if name in self.before:
+                    answer.name.append(name)
+                    answer.velocity.append((now[name] - self.before[name]) / dt)
+            if answer.name:
+                self.answer = answer
+        self.stamp, self.before = stamp, now
+
+
+def main():
+    rclpy.init()
+    node = JointVelocity()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == '__main__':
+    main()
