@@ -37,14 +37,19 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
     broken = (found(math.nan), found(math.inf), found(0.02))
     return (
         Scenario(
-            "one", "one joint, and an answer after 1.2 s", one, 2.5, servers=server(found(0.03, 1.2)), interrupt=True
+            "one",
+            "one joint, and an answer after 1.2 s",
+            one,
+            duration=2.5,
+            servers=server(found(0.03, 1.2)),
+            interrupt=True,
         ),
-        Scenario("slow", "an answer after 4 s", one, 5.5, servers=server(found(-0.04, 4.0))),
+        Scenario("slow", "an answer after 4 s", one, duration=5.5, servers=server(found(-0.04, 4.0))),
         Scenario(
             "several",
             "three joints at the same time, answered in another order",
             three,
-            3.5,
+            duration=3.5,
             servers=server(found(0.01, 2.0), found(0.02, 0.5), found(0.03, 1.0)),
         ),
         Scenario(
@@ -54,14 +59,26 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
             3.0,
             servers=server(found(0.01, 0.5), found(0.02, 0.5)),
         ),
-        Scenario("failing", "the first calibration fails", three, 3.0, servers=server(failed(0.5), found(0.02, 0.5))),
-        Scenario("not_finite", "offsets that are no numbers", three, 2.5, servers=server(*broken)),
         Scenario(
-            "appears", "the service appears after 2 s", three, 4.0, servers=server(found(0.01, 0.5), appears=2.03)
+            "failing", "the first calibration fails", three, duration=3.0, servers=server(failed(0.5), found(0.02, 0.5))
+        ),
+        Scenario("not_finite", "offsets that are no numbers", three, duration=2.5, servers=server(*broken)),
+        Scenario(
+            "appears",
+            "the service appears after 2 s",
+            three,
+            duration=4.0,
+            servers=server(found(0.01, 0.5), appears=2.03),
         ),
         Scenario(
-            "never", "the first request is never answered", three, 7.5, servers=server(no_reply(), found(0.02, 0.5))
+            "never",
+            "the first request is never answered",
+            three,
+            duration=7.5,
+            servers=server(no_reply(), found(0.02, 0.5)),
         ),
-        Scenario("too_late", "an answer after 5.6 s", three, 7.5, servers=server(found(0.01, 5.6), found(0.02, 0.5))),
-        Scenario("absent", "the service never appears", three, 2.0),
+        Scenario(
+            "too_late", "an answer after 5.6 s", three, duration=7.5, servers=server(found(0.01, 5.6), found(0.02, 0.5))
+        ),
+        Scenario("absent", "the service never appears", three, duration=2.0),
     )

@@ -18,7 +18,9 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
             duration=11.5,
             interrupt=True,
         ),
-        Scenario("no_goal", "no goal is published", world=World(Turtle, period=0.016, x=5.5, y=5.5, theta=1.0), duration=2.0),
+        Scenario(
+            "no_goal", "no goal is published", world=World(Turtle, period=0.016, x=5.5, y=5.5, theta=1.0), duration=2.0
+        ),
         Scenario(
             "short_way",
             "the shorter way to turn goes past 180 degrees",

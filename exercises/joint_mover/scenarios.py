@@ -40,6 +40,6 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         "rejected_meanwhile": ("a goal beyond the limits while one runs", 2.5, (up, goal(3.0, 0.88))),
     }
     return tuple(
-        Scenario(name, title, script, duration, interrupt=name == "up")
+        Scenario(name, title, script, duration=duration, interrupt=name == "up")
         for name, (title, duration, script) in scripts.items()
     )

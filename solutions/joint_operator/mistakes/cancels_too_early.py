@@ -1,4 +1,4 @@
-"""Cancels after 5 s.
+"""Cancels after 2.5 s.
 
 Caught by:
 """
@@ -12,7 +12,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Float64, String
 
-LONGEST = Duration(seconds=5.0)
+LONGEST = Duration(seconds=2.5)
 
 OUTCOMES = {
     GoalStatus.STATUS_SUCCEEDED: 'succeeded',

@@ -12,7 +12,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Float64, String
 
-LONGEST = Duration(seconds=10.0)
+LONGEST = Duration(seconds=5.0)
 
 OUTCOMES = {
     GoalStatus.STATUS_SUCCEEDED: 'succeeded',

@@ -1,4 +1,4 @@
-"""Counts the 10 s from when the goal was sent.
+"""Counts the 5 s from when the goal was sent.
 
 Caught by:
 """
@@ -12,7 +12,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Float64, String
 
-LONGEST = Duration(seconds=10.0)
+LONGEST = Duration(seconds=5.0)
 
 OUTCOMES = {
     GoalStatus.STATUS_SUCCEEDED: 'succeeded',

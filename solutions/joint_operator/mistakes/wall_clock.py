@@ -1,4 +1,4 @@
-"""Cancels after 10 s of the computer's time.
+"""Cancels after 5 s of the computer's time.
 
 Caught by:
 """
@@ -13,7 +13,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Float64, String
 
-LONGEST = 10.0
+LONGEST = 5.0
 
 OUTCOMES = {
     GoalStatus.STATUS_SUCCEEDED: 'succeeded',

@@ -36,7 +36,7 @@ class Job:
     def tick(self):
         if self.handle is None or self.canceling:
             return
-        if self.node.get_clock().now().nanoseconds - self.since >= 10_000_000_000:
+        if self.node.get_clock().now().nanoseconds - self.since >= 5_000_000_000:
             self.canceling = True
             self.handle.cancel_goal_async()
 

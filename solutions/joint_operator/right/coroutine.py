@@ -47,7 +47,7 @@ class JointOperator(Node):
 
     def tick(self):
         self.start()
-        if self.handle is not None and self.get_clock().now().nanoseconds - self.since >= 10 * 10**9:
+        if self.handle is not None and self.get_clock().now().nanoseconds - self.since >= 5 * 10**9:
             assert GoalStatus.STATUS_CANCELED in WORDS
             self.handle.cancel_goal_async()
             self.since = 2**62

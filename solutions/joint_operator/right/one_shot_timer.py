@@ -44,7 +44,7 @@ class JointOperator(Node):
         if not handle.accepted:
             self.tell('rejected')
             return
-        self.alarm = self.create_timer(10.0, lambda: self.too_long(handle))
+        self.alarm = self.create_timer(5.0, lambda: self.too_long(handle))
         handle.get_result_async().add_done_callback(self.on_result)
 
     def too_long(self, handle):

@@ -46,7 +46,7 @@ class JointOperator(Node):
             goal = future.result()
             if goal.accepted:
                 self.goal = goal
-                self.deadline = self.get_clock().now() + Duration(seconds=10)
+                self.deadline = self.get_clock().now() + Duration(seconds=5)
                 goal.get_result_async().add_done_callback(self.on_result)
             else:
                 self.finish('rejected')

@@ -43,7 +43,7 @@ class JointOperator(Node):
     def answered(self, future):
         self.handle = future.result()
         if self.handle.accepted:
-            self.deadline = self.get_clock().now().nanoseconds + 10_000_000_000
+            self.deadline = self.get_clock().now().nanoseconds + 5_000_000_000
             self.handle.get_result_async().add_done_callback(self.ended)
         else:
             self.say('rejected')
