@@ -25,7 +25,7 @@ class GradedExercise:
 class CourseRow:
     """One student in all exercises: `entries` has one per exercise, None where nothing was handed in.
 
-    `earned` and `of` are points so far. An exercise without a submission counts as 0 of its points; one that could not be
+    `earned` and `of` are points so far. One without a submission counts as 0 of its points; one that could not be
     graded counts neither way.
     """
 
