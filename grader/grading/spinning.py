@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from grader.crew import Crew
 from grader.crew.environment import FAST_DDS, PROFILE, STUDENTS
@@ -18,6 +20,7 @@ from grader.sandbox import Isolation, Middleware, choose_middleware
 from grader.scenario import Scenario
 from grader.submission import Submission
 
+#: How every program is started.
 ARGUMENTS = ("--ros-args", "-p", "use_sim_time:=true")
 
 #: What a submission may publish in all scenarios together (bytes), of which each gets an equal part, but not less than
@@ -73,7 +76,7 @@ class Spinner:
         fast_dds = self.middleware is Middleware.FASTDDS
         program = replace(
             submission.program,
-            arguments=ARGUMENTS,
+            arguments=arguments(scenario),
             environment={**STUDENTS, **(FAST_DDS if fast_dds else {}), **submission.program.environment},
             readonly=(*((PROFILE,) if fast_dds else ()), *submission.program.readonly),
             hidden=(self.exercise.folder, *([self.exercise.solution_folder] if self.exercise.solution_folder else [])),
@@ -100,3 +103,27 @@ def _likewise(first: Recording, scenario: Scenario) -> Recording:
     return Recording(
         scenario.name, (), (), first.nodes, (), "none", False, Ending(first.ending.outcome, first.ending.story)
     )
+
+
+def arguments(scenario: Scenario) -> tuple[str, ...]:
+    """What follows the program's name on its command line in a scenario."""
+    found = [*scenario.arguments, *ARGUMENTS]
+    for name, value in scenario.parameters.items():
+        found += ["-p", f"{name}:={_yaml(value)}"]
+    for name, to in scenario.remappings.items():
+        found += ["-r", f"{name}:={to}"]
+    if scenario.namespace:
+        found += ["-r", f"__ns:={scenario.namespace}"]
+    return tuple(found)
+
+
+def _yaml(value: Any) -> str:
+    """A parameter's value on a command line, such as `2.0`, `true` or `["a", "b"]`."""
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(_yaml(one) for one in value)}]"
+    if isinstance(value, float):
+        text = repr(value)
+        special = {"nan": ".nan", "inf": ".inf", "-inf": "-.inf"}
+        # A number with an exponent needs a point to be one in YAML 1.1.
+        return special.get(text, text if "." in text or "e" not in text else text.replace("e", ".0e"))
+    return json.dumps(value)

@@ -3,11 +3,35 @@
 from __future__ import annotations
 
 from grader.recording import EndPoint
-from rmw_lockstep.hub import PUBLISHER, SUBSCRIPTION, Hub
+from grader.recording.recording import EndPointKind
+from rmw_lockstep.hub import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, Hub
+from rmw_lockstep.hub import EndPoint as OnHub
 from rmw_lockstep.hub.graph import Graph
+from rmw_lockstep.hub.qos import INFINITE, KEEP_ALL
 
 #: Topics that every node has by itself.
 OWN_TO_ROS = ("/rosout", "/parameter_events")
+
+#: Services that every node of rclpy has by itself, under its own name.
+OWN_SERVICES = (
+    "describe_parameters",
+    "get_parameter_types",
+    "get_parameters",
+    "list_parameters",
+    "set_parameters",
+    "set_parameters_atomically",
+    "get_type_description",
+)
+
+#: How the service is called by which an action takes goals.
+SEND_GOAL = "/_action/send_goal"
+
+_KINDS: dict[int, EndPointKind] = {
+    PUBLISHER: "publisher",
+    SUBSCRIPTION: "subscription",
+    SERVER: "server",
+    CLIENT: "client",
+}
 
 
 def nodes(graph: Graph) -> tuple[str, ...]:
@@ -16,20 +40,42 @@ def nodes(graph: Graph) -> tuple[str, ...]:
 
 
 def end_points(graph: Graph) -> tuple[EndPoint, ...]:
-    """The student's publishers and subscriptions, sorted; those that every node has are left out."""
-    found = (
-        EndPoint(
-            node=graph.nodes[end_point.node].full_name,
-            kind="publisher" if end_point.kind == PUBLISHER else "subscription",
-            topic=end_point.name,
-            type=end_point.type,
-            reliability=end_point.qos.reliability_name,
-            durability=end_point.qos.durability_name,
-        )
-        for end_point in graph.program_end_points((PUBLISHER, SUBSCRIPTION))
-        if end_point.name not in OWN_TO_ROS
-    )
+    """The student's end points, sorted; those that every node has are left out, those of an action are one."""
+    found = [
+        recorded
+        for end_point in graph.program_end_points()
+        if (recorded := _recorded(end_point, graph.nodes[end_point.node].full_name))
+    ]
     return tuple(sorted(found, key=lambda one: (one.topic, one.kind, one.node)))
+
+
+def _recorded(end_point: OnHub, node: str) -> EndPoint | None:
+    kind, name, type_name = _KINDS[end_point.kind], end_point.name, end_point.type
+    if name.endswith(SEND_GOAL) and end_point.kind in (SERVER, CLIENT):
+        kind = "action server" if end_point.kind == SERVER else "action client"
+        name, type_name = name.removesuffix(SEND_GOAL), type_name.removesuffix("_SendGoal")
+    elif (
+        name in OWN_TO_ROS
+        or "/_action/" in name
+        or (end_point.kind == SERVER and name.removeprefix(f"{node}/") in OWN_SERVICES)
+    ):
+        return None
+    qos = end_point.qos
+    return EndPoint(
+        node=node,
+        kind=kind,
+        topic=name,
+        type=type_name,
+        reliability=qos.reliability_name,
+        durability=qos.durability_name,
+        depth=0 if qos.history == KEEP_ALL else qos.depth,
+        deadline=_limit(qos.deadline),
+        lifespan=_limit(qos.lifespan),
+    )
+
+
+def _limit(nanoseconds: int) -> int | None:
+    return nanoseconds if 0 < nanoseconds < INFINITE else None
 
 
 def deaf_to_the_clock(hub: Hub) -> list[str]:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from rclpy.serialization import serialize_message
-
 from grader.recording import Sent
-from grader.runner.message import to_message
+from grader.runner.ends import hub_qos
+from grader.runner.message import message_class, serialized
 from grader.scenario import Message, Scenario
 from rmw_lockstep.hub import HubNode, Publisher, Qos
 from rmw_lockstep.hub.qos import TRANSIENT_LOCAL
@@ -22,33 +21,53 @@ class ReferencePublishers:
     """
 
     def __init__(self, node: HubNode, scenario: Scenario) -> None:
+        self._node, self._scenario = node, scenario
         self._ready: dict[tuple[str, int], Publisher] = {}
         self._speaking: dict[str, int] = {}
         for message in scenario.messages:
-            key = (message.topic, message.publisher)
-            if key not in self._ready:
-                self._ready[key] = node.publisher(message.topic, message.type, OFFER)
-            self._speaking.setdefault(message.topic, message.publisher)
-        self._serialized = [serialize_message(to_message(m.type, m.fields)) for m in scenario.messages]
+            self._add(message)
+        # Once for each that is made: a stream may have one message several times.
+        self._serialized = {id(m): serialized(message_class(m.type), m.fields) for m in scenario.messages}
         self.sent: list[Sent] = []
         self.stages: list[int] = []
         """The number of each message among all that the hub has published."""
 
+    def _add(self, message: Message) -> None:
+        key = (message.topic, message.publisher)
+        if key not in self._ready:
+            given = self._scenario.qos.get(message.topic)
+            offer = hub_qos(given) if given else OFFER
+            self._ready[key] = self._node.publisher(message.topic, message.type, offer)
+        self._speaking.setdefault(message.topic, message.publisher)
+
+    def announce(self, topic: str, type_name: str) -> None:
+        """There is a publisher on this topic, also if the scenario has no message for it."""
+        self._add(Message(0, topic, type_name, {}))
+
     def is_heard(self, message: Message) -> bool:
         """Whether the student's program subscribes to the message's topic."""
-        return bool(self._ready[message.topic, message.publisher].matched)
+        publisher = self._ready.get((message.topic, message.publisher))
+        return publisher is not None and bool(publisher.matched)
 
     def publish(self, message: Message) -> int:
-        """Queue the next message. Returns its number among all that the hub has published."""
+        """Queue a message. Returns its number among all that the hub has published."""
+        self._add(message)
         former = self._speaking[message.topic]
         if former != message.publisher:
             self._ready.pop((message.topic, former)).close()
             self._speaking[message.topic] = message.publisher
         heard = self.is_heard(message)
         publisher = self._ready[message.topic, message.publisher]
-        self.stages.append(publisher.publish(self._serialized[len(self.sent)]))
+        content = self._serialized.get(id(message)) or serialized(message_class(message.type), message.fields)
+        self.stages.append(publisher.publish(content))
         self.sent.append(Sent(message.at, message.topic, message.type, message.fields, heard))
         return self.stages[-1]
+
+    def leave(self, topic: str) -> None:
+        """The publisher on this topic is gone; the next message brings another one."""
+        for key in [key for key in self._ready if key[0] == topic]:
+            self._ready.pop(key).close()
+        self._speaking.pop(topic, None)
 
     @property
     def heard(self) -> bool:

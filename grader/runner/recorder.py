@@ -5,15 +5,14 @@ from __future__ import annotations
 import contextlib
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from rclpy.serialization import deserialize_message
-
-from grader.exercise.interface import Topic
 from grader.recording import Received
 from grader.runner.clocks import Clocks
-from grader.runner.message import message_class, to_fields
+from grader.runner.message import fields_of, message_class
 from grader.runner.stopped import Stopped
+from grader.runner.task import Task
 from rmw_lockstep.hub import Heard, HubNode, Qos, Subscription
 from rmw_lockstep.hub.qos import BEST_EFFORT
 
@@ -24,17 +23,57 @@ MOST_MESSAGES = 5_000
 ACCEPT_ANY = Qos(depth=10_000, reliability=BEST_EFFORT)
 
 
+def recorded_topics(task: Task) -> tuple[tuple[str, str], ...]:
+    """Names and types of what the exercise's program publishes; a remapping or a namespace adds others."""
+    namespace, found = task.scenario.namespace.rstrip("/"), {}
+
+    def full(name: str) -> str:
+        return name if name.startswith("/") else f"{namespace}/{name}"
+
+    remappings = {full(name): full(to) for name, to in task.scenario.remappings.items()}
+    for topic in task.exercise.outputs:
+        for name in (topic.name, f"{namespace}{topic.name}"):
+            found[name] = topic.type
+            found[remappings.get(name, name)] = topic.type
+    return tuple(found.items())
+
+
+@dataclass(frozen=True)
+class Listening:
+    """What one subscription of the grader's hears; `subscriber` is its name, for one of the scenario's own."""
+
+    topic: str
+    type: str
+    subscriber: str = ""
+
+
 class Recorder:
-    """Subscribes to the topics that the exercise's node is to publish."""
+    """Subscribes to the topics that the exercise's program is to publish, and to those that a scenario adds."""
 
-    def __init__(self, node: HubNode, topics: Sequence[Topic]) -> None:
-        self._topics = tuple(topics)
+    def __init__(self, node: HubNode, topics: Sequence[tuple[str, str]], earliest: int = 0) -> None:
+        """`topics` are names and types. What comes before `earliest` (ns) is recorded as if it came then."""
+        self._node, self._earliest = node, earliest
+        self._listening: list[Listening] = []
         self._heard: list[tuple[int, Heard]] = []
+        self._own: dict[str, Subscription] = {}
         self._paused = False
-        for number, topic in enumerate(self._topics):
-            self._subscribe(node, number, topic)
+        for name, type_name in topics:
+            self._subscribe(Listening(name, type_name), ACCEPT_ANY)
 
-    def _subscribe(self, node: HubNode, number: int, topic: Topic) -> Subscription:
+    def join(self, name: str, topic: str, type_name: str, qos: Qos) -> None:
+        """A subscriber of the scenario's own is there from now on."""
+        self.leave(name)
+        self._own[name] = self._subscribe(Listening(topic, type_name, name), qos)
+
+    def leave(self, name: str) -> None:
+        """It is gone."""
+        if name in self._own:
+            self._own.pop(name).close()
+
+    def _subscribe(self, listening: Listening, qos: Qos) -> Subscription:
+        number = len(self._listening)
+        self._listening.append(listening)
+
         def keep(heard: Heard) -> None:
             if self._paused:
                 return
@@ -43,7 +82,7 @@ class Recorder:
                 self._heard.pop()
                 raise Stopped("over-limit", f"Your node published more than {MOST_MESSAGES:,} messages.")
 
-        return node.subscription(topic.name, topic.type, ACCEPT_ANY, keep)
+        return self._node.subscription(listening.topic, listening.type, qos, keep)
 
     @contextlib.contextmanager
     def paused(self) -> Iterator[None]:
@@ -65,10 +104,11 @@ class Recorder:
         """
         found = []
         for number, heard in in_canonical_order(self._heard):
-            topic = self._topics[number]
-            at = clocks.simulated(heard.now, heard.stage)
+            to = self._listening[number]
+            at = max(self._earliest, clocks.simulated(heard.now, heard.stage))
             after = bisect_right(stages, heard.stage)
-            found.append(Received(at, after, topic.name, topic.type, _fields(heard.cdr, message_class(topic.type))))
+            fields = fields_of(heard.cdr, message_class(to.type))
+            found.append(Received(at, after, to.topic, to.type, fields, to.subscriber, heard.node))
         return tuple(found)
 
 
@@ -89,10 +129,3 @@ def in_canonical_order(heard: Sequence[tuple[int, Heard]]) -> list[tuple[int, He
         return one.stage, one.now, own, number, one.node, one.cdr if (number, one.node) in several else b""
 
     return sorted(heard, key=key)
-
-
-def _fields(cdr: bytes, kind: Any) -> dict[str, Any]:
-    try:
-        return to_fields(deserialize_message(cdr, kind))
-    except Exception as error:  # whatever made-up bytes lead to
-        raise Stopped("over-limit", f"Your node published bytes that are no message: {error}") from None

@@ -9,19 +9,23 @@ from __future__ import annotations
 import shutil
 import tempfile
 import time
+from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from grader.recording import Ending, EndPoint, Received, Recording
 from grader.runner.budget import Allowance, Budget, Gone
 from grader.runner.clocks import Clocks, clock_message
 from grader.runner.ending import cut_short
+from grader.runner.ends import Ends, nanoseconds
 from grader.runner.graph import end_points, nodes
 from grader.runner.interrupting import interrupted
 from grader.runner.parameters import Parameters
 from grader.runner.publishers import OFFER, ReferencePublishers
-from grader.runner.recorder import Recorder
+from grader.runner.recorder import Recorder, recorded_topics
+from grader.runner.script import Script
 from grader.runner.starting import START as STARTING
 from grader.runner.starting import wait_until_up
 from grader.runner.stopped import Stopped
@@ -29,7 +33,7 @@ from grader.runner.student import Student
 from grader.runner.task import Task
 from grader.runner.violations import story_of
 from grader.scenario import Message
-from grader.scenario.scenario import SECOND, START
+from grader.scenario.scenario import SECOND, START, Content
 from rmw_lockstep.hub import Hub, Limits, Violation
 
 #: How far simulated time goes on after the last message, for what a node does by timer (ns).
@@ -77,11 +81,19 @@ class Run:
         self._task, self._student, self._hub = task, student, hub
         rig = hub.node("rig")
         self._clock = rig.publisher("/clock", "rosgraph_msgs/msg/Clock", OFFER)
-        self._recorder = Recorder(rig, task.exercise.outputs)
-        self._publishers = ReferencePublishers(hub.node(task.exercise.reference_node), task.scenario)
+        self._recorder = Recorder(rig, recorded_topics(task), 0 if task.scenario.is_filter else START)
+        reference = hub.node(task.exercise.reference_node)
+        self._publishers = ReferencePublishers(reference, task.scenario)
         self._parameters = Parameters(hub, rig)
         self._budget = Budget(student, self._pids, STARTING)
         self._clocks = Clocks(task.scenario.computer_time)
+        self._script: Script | None = None
+        if not task.scenario.is_filter:
+            ends = Ends(hub, reference, self._clocks)
+            self._script = Script(ends, task, self._publishers, self._recorder, self._publish)
+        for message in task.scenario.messages:
+            if message.at < START:
+                self._publishers.publish(message)
         self._is_up = False
         self._nodes: tuple[str, ...] = ()
         self._end_points: tuple[EndPoint, ...] = ()
@@ -119,13 +131,30 @@ class Run:
             log=self._student.output().text,
             seconds=time.monotonic() - began,
             lockstep_seconds=self._lockstep_seconds,
+            **self._of_the_script(),
         )
+
+    def _of_the_script(self) -> dict[str, Any]:
+        script = self._script
+        if script is None:
+            return {}
+        return {
+            "calls": script.calls(),
+            "goals": script.goals(),
+            "parameters": script.changes(),
+            "readings": script.readings(),
+        }
 
     def _ending(self) -> Ending:
         task, program = self._task, (self._task.file_name, self._task.source)
         try:
             self._begin()
-            self._lockstep()
+            began = time.monotonic()
+            if self._script:
+                self._carry_out(self._script)
+            else:
+                self._lockstep()
+            self._lockstep_seconds = time.monotonic() - began
             if task.scenario.interrupt:
                 return interrupted(self._hub, self._budget, self._student, *program)
             return Ending("completed")
@@ -174,16 +203,57 @@ class Run:
             self._budget.begin(self._allowance(message.at))
             self._keep_pace(began, message.at)
             self._go_to(message.at)
-            if not self._publishers.is_heard(message):
-                self._hub.wait_until_idle()  # whether anybody hears it is known only then
-            self._clocks.set(message.at, self._hub.now, self._publishers.publish(message), message=True)
+            self._publish(message)
             self._hub.wait_until_idle()
             self._see_that_it_listens(message)
         self._end_points = end_points(self._hub.graph)
         self._go_to(self._clocks.at + AFTERWARDS)
         self._hub.wait_until_idle()
         self._see_that_it_still_answers()
-        self._lockstep_seconds = time.monotonic() - began
+
+    def _publish(self, message: Message) -> None:
+        if not self._publishers.is_heard(message):
+            self._hub.wait_until_idle()  # whether anybody hears it is known only then
+        self._clocks.set(message.at, self._hub.now, self._publishers.publish(message), message=True)
+
+    def _carry_out(self, script: Script) -> None:
+        """Let time go on to the end, at the scenario's rate, and do each thing at its time."""
+        scenario, began = self._task.scenario, time.monotonic()
+        content = deque(one for one in scenario.content if one.at >= START)
+        end = (
+            START + nanoseconds(scenario.duration)
+            if scenario.duration
+            else START + nanoseconds(scenario.seconds) + AFTERWARDS
+        )
+        ticks = 0
+        self._settle(script)
+        while self._clocks.at < end or content:
+            tick = START + round((ticks + 1) * SECOND / scenario.clock_rate)
+            at = min(one for one in (tick, content[0].at if content else None, script.due, max(end, START)) if one)
+            at = max(at, self._clocks.at)
+            ticks += at >= tick
+            self._budget.begin(self._allowance(at))
+            self._keep_pace(began, at)
+            self._go_to(at)
+            while content and content[0].at <= at:
+                self._do(content.popleft(), script)
+            self._settle(script)
+        self._end_points = end_points(self._hub.graph)
+        if not scenario.servers:
+            self._see_that_it_still_answers()
+
+    def _do(self, one: Content, script: Script) -> None:
+        if isinstance(one, Message):
+            self._publish(one)
+        else:
+            self._hub.wait_until_idle()
+            script.do(one)
+
+    def _settle(self, script: Script) -> None:
+        """Until the program has nothing left to do, and nothing of ours follows from what it did."""
+        self._hub.wait_until_idle()
+        while script.act(self._clocks.at):
+            self._hub.wait_until_idle()
 
     def _allowance(self, at: int) -> Allowance:
         """What the program may take until simulated time `at`: it may compute as long as time goes by meanwhile."""

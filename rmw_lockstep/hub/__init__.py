@@ -1,6 +1,6 @@
 """The hub's end of the protocol between programs and the hub: see PROTOCOL.md."""
 
-from rmw_lockstep.hub.ends import Client, Heard, HubNode, Publisher, Server, Subscription
+from rmw_lockstep.hub.ends import Asked, Client, Heard, HubNode, Moment, Publisher, Server, Subscription
 from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, EndPoint, Node
 from rmw_lockstep.hub.hub import BEGIN, EPOCH, SOCKET, TICK_S, Hub
 from rmw_lockstep.hub.limits import Limits, Violation
@@ -15,12 +15,14 @@ __all__ = [
     "SOCKET",
     "SUBSCRIPTION",
     "TICK_S",
+    "Asked",
     "Client",
     "EndPoint",
     "Heard",
     "Hub",
     "HubNode",
     "Limits",
+    "Moment",
     "Node",
     "Publisher",
     "Qos",

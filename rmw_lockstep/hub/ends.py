@@ -26,6 +26,25 @@ class Heard(NamedTuple):
     cdr: bytes
 
 
+class Moment(NamedTuple):
+    """When a process sent a request or a response: see `Heard`."""
+
+    now: int
+    stage: int
+    handled: int
+    thread: int
+
+
+class Asked(NamedTuple):
+    """A request that came from a process; `node` is the full name of the client's node."""
+
+    client: EndPoint
+    node: str
+    number: int
+    moment: Moment
+    cdr: bytes
+
+
 class Post(Protocol):
     """What the ends need of the hub."""
 
@@ -80,10 +99,11 @@ class Subscription(End):
 
 
 class Client(End):
-    """Calls a service. The answers stand in `answers`, by the number that `call` returned."""
+    """Calls a service. The answers stand in `answers`, by the number that `call` returned, and in `moments` when."""
 
     def __init__(self, post: Post, end_point: EndPoint) -> None:
         self.answers: dict[int, bytes] = {}
+        self.moments: dict[int, Moment] = {}
         self._number = 0
         super().__init__(post, end_point)
 
@@ -92,17 +112,34 @@ class Client(End):
         self._number += 1
         return self._number if self._post.request(self, self._number, cdr) else None
 
+    def answered(self, number: int, moment: Moment, cdr: bytes) -> None:
+        """Take the response to a request."""
+        self.moments[number] = moment
+        self.answers[number] = cdr
+
 
 class Server(End):
-    """Answers requests, by `answer`, which gets the serialized request and returns the serialized response."""
+    """Answers requests, by `answer`, which gets the serialized request and returns the serialized response.
 
-    def __init__(self, post: Post, end_point: EndPoint, answer: Callable[[bytes], bytes]) -> None:
+    Without `answer` requests are kept in `asked`, in the order in which they came, for `respond`. Both happen only when
+    the whole program is idle: what it does meanwhile does not depend on how fast the hub is.
+    """
+
+    def __init__(self, post: Post, end_point: EndPoint, answer: Callable[[bytes], bytes] | None = None) -> None:
+        self.asked: list[Asked] = []
         self._answer = answer
         super().__init__(post, end_point)
 
-    def serve(self, client: int, number: int, cdr: bytes) -> None:
-        """Answer one request."""
-        self._post.respond(client, number, self._answer(cdr))
+    def serve(self, asked: Asked) -> None:
+        """Take one request."""
+        if self._answer:
+            self.respond(asked, self._answer(asked.cdr))
+        else:
+            self.asked.append(asked)
+
+    def respond(self, asked: Asked, cdr: bytes) -> None:
+        """Queue the response to a request."""
+        self._post.respond(asked.client.id, asked.number, cdr)
 
 
 class HubNode:
@@ -122,7 +159,7 @@ class HubNode:
         """A new subscription."""
         return Subscription(self._post, self._post.new_end_point(1, self.node, topic, type_name, qos), take)
 
-    def server(self, service: str, type_name: str, answer: Callable[[bytes], bytes]) -> Server:
+    def server(self, service: str, type_name: str, answer: Callable[[bytes], bytes] | None = None) -> Server:
         """A new server of a service such as `std_srvs/srv/Trigger`."""
         return Server(self._post, self._post.new_end_point(2, self.node, service, type_name, Qos()), answer)
 

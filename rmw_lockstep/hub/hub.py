@@ -15,7 +15,7 @@ from pathlib import Path
 from types import TracebackType
 
 from rmw_lockstep.hub import frames
-from rmw_lockstep.hub.ends import HubNode
+from rmw_lockstep.hub.ends import Asked, HubNode
 from rmw_lockstep.hub.graph import Graph
 from rmw_lockstep.hub.limits import Limits, Use, Violation
 from rmw_lockstep.hub.link import Link
@@ -50,7 +50,8 @@ class Hub:
     """Use it as a context manager, from one thread.
 
     `main` is the number of the program's first process, as this process sees it, once it is known: the program is not
-    idle while that one is not connected. `before_end` is called before what a process had is taken out of the graph.
+    idle while that one is not connected. `mains` has those of further programs. `before_end` is called before what a
+    process had is taken out of the graph.
     """
 
     def __init__(
@@ -71,6 +72,7 @@ class Hub:
         if len(str(self.path).encode()) > LONGEST_PATH:
             raise ValueError(f"{self.path} is too long for a socket: at most {LONGEST_PATH} bytes")
         self.main: int | None = None
+        self.mains: set[int] = set()
         self.before_end: Callable[[], None] = _do_nothing
         self.patience = patience
         self._use = Use(limits or Limits())
@@ -115,6 +117,11 @@ class Hub:
     def now(self) -> int:
         """The time that was granted last (ns)."""
         return self._until
+
+    @property
+    def unserved(self) -> list[Asked]:
+        """Requests of the program that no server was there for, in the order in which they came."""
+        return self._router.unserved
 
     @property
     def published(self) -> int:
@@ -264,6 +271,8 @@ class Hub:
         if not all(link.began for link in links):
             return False
         if self.main is not None and all(link.pid != self.main for link in links):
+            return False
+        if self.mains and self.mains - {link.pid for link in links}:
             return False
         self._awaited = bool(self._missing_children())
         return not self._awaited and self._is_confirmed()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import count
 
 from rmw_lockstep.hub import frames
-from rmw_lockstep.hub.ends import Client, End, Heard, Publisher, Server, Subscription
+from rmw_lockstep.hub.ends import Asked, Client, End, Heard, Moment, Publisher, Server, Subscription
 from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, EndPoint, Node
 from rmw_lockstep.hub.graph import HUB, Graph
 from rmw_lockstep.hub.limits import Use, Violation
@@ -43,6 +43,8 @@ class Router:
         self._ends: dict[int, End] = {}
         self._routes: dict[int, Route] = {}
         self._held: list[tuple[int, Link, bytes]] = []
+        self._asked: list[tuple[int, Server, Asked]] = []
+        self.unserved: list[Asked] = []
         self._handlers: dict[int, Callable[[Link, bytes], None]] = {
             ord("I"): self._idle,
             ord("D"): self._data,
@@ -177,7 +179,10 @@ class Router:
         for _, to, frame in held:
             if to in self.links:
                 to.queue(frame)
-        return bool(held)
+        asked, self._asked = sorted(self._asked, key=lambda one: one[0]), []
+        for _, server, request in asked:
+            server.serve(request)
+        return bool(held or asked)
 
     def forget(self, link: Link) -> None:
         """A process has ended, and with it all that it had."""
@@ -224,11 +229,15 @@ class Router:
         call = frames.call(payload)
         self._use.data(len(call.cdr))
         client = self._own(link, call.client, CLIENT)
-        link.moment(call.handled, call.now)
-        for server in self.graph.servers(client):
+        moment = self._moment(link, call)
+        servers = self.graph.servers(client)
+        asked = Asked(client, self.graph.nodes[client.node].full_name, call.number, moment, call.cdr)
+        if not servers:
+            self.unserved.append(asked)
+        for server in servers:
             own = self._ends.get(server.id)
             if isinstance(own, Server):
-                own.serve(client.id, call.number, call.cdr)
+                self._asked.append((link.pid_inside, own, asked))
             elif server.process != link.number:
                 self._ask(link, server, client.id, call.number, call.source_time, call.cdr)
 
@@ -246,17 +255,21 @@ class Router:
     def _response(self, link: Link, payload: bytes) -> None:
         call = frames.call(payload)
         self._use.data(len(call.cdr))
-        link.moment(call.handled, call.now)
+        moment = self._moment(link, call)
         if (call.client, call.number) not in link.requests:
             raise Violation("protocol", "a response to what was not requested")
         link.requests.discard((call.client, call.number))
         own = self._ends.get(call.client)
         if isinstance(own, Client):
-            own.answers[call.number] = call.cdr
+            own.answered(call.number, moment, call.cdr)
             return
         other = self._link(call.client >> 32)
         if other is not None and call.client in other.end_points:
             self._pass_on(link, other, frames.to_response(call.client, call.number, call.source_time, call.cdr))
+
+    def _moment(self, link: Link, call: frames.Call) -> Moment:
+        handled, now = link.moment(call.handled, call.now)
+        return Moment(now, link.stage(handled), handled, call.thread)
 
     def _alive(self, link: Link, payload: bytes) -> None:
         publisher = self._own(link, frames.identity(payload), PUBLISHER)

@@ -1,0 +1,243 @@
+"""Scripted action servers, for the student's action client."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
+from action_msgs.srv import CancelGoal as CancelService
+from rclpy.serialization import serialize_message
+
+from grader.recording import Cancel, Feedback, Goal, GoalState
+from grader.recording.events import STATES
+from grader.runner.ends import Ends, Schedule, nanoseconds
+from grader.runner.goals import CANCEL, STATUS
+from grader.runner.message import deserialized, filled, message_class, to_fields
+from grader.scenario.scenario import SECOND
+from grader.scenario.servers import ActionServer as Declared
+from grader.scenario.servers import GoalScript
+from rmw_lockstep.hub import Asked, Publisher, Qos, Server
+from rmw_lockstep.hub.qos import TRANSIENT_LOCAL
+
+#: What rcl gives the status topic (rcl_action_qos_profile_status_default).
+STATUS_QOS = Qos(depth=1, durability=TRANSIENT_LOCAL)
+
+
+@dataclass
+class Running:
+    """One goal that came."""
+
+    number: int
+    id: bytes
+    at: int
+    script: GoalScript
+    asked: Asked
+    fields: dict[str, Any]
+    accepted: bool | None = None
+    answered: int | None = None
+    states: list[GoalState] = field(default_factory=list)
+    feedback: list[Feedback] = field(default_factory=list)
+    cancels: list[Cancel] = field(default_factory=list)
+    waiting: list[Asked] = field(default_factory=list)
+    asked_result: int | None = None
+    finished: int | None = None
+    result_sent: int | None = None
+
+    @property
+    def state(self) -> str:
+        """Its state now."""
+        return self.states[-1].state if self.states else "unknown"
+
+
+class ScriptedActionServer:
+    """One action server of the grader's, which does with each goal what the scenario says."""
+
+    def __init__(self, ends: Ends, schedule: Schedule, declared: Declared) -> None:
+        self.name = declared.action
+        self._ends, self._schedule, self._declared = ends, schedule, declared
+        self._kind = message_class(declared.type)
+        self._goals: list[Running] = []
+        self._servers: tuple[Server, Server, Server] | None = None
+        self._publishers: tuple[Publisher, Publisher] | None = None
+
+    def open(self) -> None:
+        """It is there from now on."""
+        if self._servers is not None:
+            return
+        node, base, kind = self._ends.node, f"{self.name}/_action", self._declared.type
+        self._servers = (
+            node.server(f"{base}/send_goal", f"{kind}_SendGoal"),
+            node.server(f"{base}/cancel_goal", CANCEL),
+            node.server(f"{base}/get_result", f"{kind}_GetResult"),
+        )
+        feedback = node.publisher(f"{base}/feedback", f"{kind}_FeedbackMessage", Qos())
+        self._publishers = feedback, node.publisher(f"{base}/status", STATUS, STATUS_QOS)
+
+    def close(self) -> None:
+        """It is gone; its goals go no further."""
+        for end in (*(self._servers or ()), *(self._publishers or ())):
+            end.close()
+        self._servers = self._publishers = None
+
+    def react(self, now: int) -> bool:
+        """Take the requests that came, and plan what follows. Whether there was any."""
+        if self._servers is None:
+            return False
+        found = False
+        for server, take in zip(self._servers, (self._goal, self._cancel, self._result), strict=True):
+            requests, server.asked[:] = tuple(server.asked), []
+            for one in requests:
+                take(one, now)
+                found = True
+        return found
+
+    # --- requests
+
+    def _goal(self, asked: Asked, now: int) -> None:
+        request = deserialized(asked.cdr, self._kind.Impl.SendGoalService.Request)
+        number = len(self._goals) + 1
+        script = self._declared.goals[min(number, len(self._declared.goals)) - 1]
+        goal_id = bytes(request.goal_id.uuid)
+        goal = Running(number, goal_id, self._ends.at(asked.moment), script, asked, to_fields(request.goal))
+        self._goals.append(goal)
+        self._later(goal.at + nanoseconds(script.answers_after), now, lambda moment: self._answer(goal, moment))
+
+    def _answer(self, goal: Running, now: int) -> None:
+        goal.accepted, goal.answered = goal.script.accept, now
+        response = self._kind.Impl.SendGoalService.Response(accepted=goal.accepted)
+        response.stamp.sec, response.stamp.nanosec = divmod(now, SECOND)
+        assert self._servers
+        self._servers[0].respond(goal.asked, serialize_message(response))
+        if not goal.accepted:
+            return
+        self._enter(goal, "accepted", now)
+        self._enter(goal, "executing", now)
+        for after, fields in goal.script.feedback:
+            self._plan(goal, now + nanoseconds(after), lambda moment, f=fields: self._feed(goal, f, moment))
+        end = goal.script.end
+        if end != "never":
+            self._plan(goal, now + nanoseconds(goal.script.after), lambda moment: self._end(goal, end, moment))
+
+    def _cancel(self, asked: Asked, now: int) -> None:
+        request = deserialized(asked.cdr, CancelService.Request)
+        goal_id = bytes(request.goal_info.goal_id.uuid)
+        at = self._ends.at(asked.moment)
+        wanted = [one for one in self._goals if one.accepted and goal_id in (one.id, bytes(16))]
+        running = [one for one in wanted if one.state in ("accepted", "executing")]
+        taken = [one for one in running if one.script.cancel != "refuse"]
+        response = CancelService.Response()
+        if not taken:
+            ended = CancelService.Response.ERROR_GOAL_TERMINATED
+            refused, unknown = CancelService.Response.ERROR_REJECTED, CancelService.Response.ERROR_UNKNOWN_GOAL_ID
+            response.return_code = refused if running else ended if wanted else unknown
+        response.goals_canceling = [_info(one) for one in taken]
+        for one in wanted:
+            one.cancels.append(Cancel(at, now, one in taken, int(response.return_code)))
+        assert self._servers
+        self._servers[1].respond(asked, serialize_message(response))
+        for one in taken:
+            self._enter(one, "canceling", now)
+            if one.script.cancel == "accept":
+                due = now + nanoseconds(one.script.cancel_takes)
+                self._plan(one, due, lambda moment, goal=one: self._end(goal, "canceled", moment))
+
+    def _result(self, asked: Asked, now: int) -> None:
+        request = deserialized(asked.cdr, self._kind.Impl.GetResultService.Request)
+        goal = next((one for one in self._goals if one.id == bytes(request.goal_id.uuid)), None)
+        if goal is None or not goal.accepted:
+            self._send_result(asked, 0, {})
+            return
+        if goal.asked_result is None:
+            goal.asked_result = self._ends.at(asked.moment)
+        goal.waiting.append(asked)
+        self._give_result(goal, now)
+
+    # --- what happens to a goal
+
+    def _plan(self, goal: Running, at: int, act: Any) -> None:
+        """Do so unless the goal has ended by then, or the server is gone."""
+
+        def when_due(now: int) -> None:
+            if self._servers is not None and goal.finished is None:
+                act(now)
+
+        self._schedule.plan(at, when_due)
+
+    def _later(self, at: int, now: int, act: Any) -> None:
+        servers = self._servers
+
+        def when_due(moment: int) -> None:
+            if servers is self._servers:
+                act(moment)
+
+        self._schedule.plan(max(at, now), when_due)
+
+    def _enter(self, goal: Running, state: str, now: int) -> None:
+        goal.states.append(GoalState(now, state))
+        message = GoalStatusArray()
+        for one in self._goals:
+            if one.states:
+                message.status_list.append(GoalStatus(goal_info=_info(one), status=STATES.index(one.state)))
+        assert self._publishers
+        self._publishers[1].publish(serialize_message(message))
+
+    def _feed(self, goal: Running, fields: dict[str, Any], now: int) -> None:
+        message = self._kind.Impl.FeedbackMessage()
+        message.goal_id.uuid = list(goal.id)
+        filled(message.feedback, fields)
+        goal.feedback.append(Feedback(now, to_fields(message.feedback)))
+        assert self._publishers
+        self._publishers[0].publish(serialize_message(message))
+
+    def _end(self, goal: Running, state: str, now: int) -> None:
+        goal.finished = now
+        self._enter(goal, state, now)
+        self._give_result(goal, now)
+
+    def _give_result(self, goal: Running, now: int) -> None:
+        if goal.finished is None:
+            return
+        for asked in goal.waiting:
+            self._send_result(asked, STATES.index(goal.state), goal.script.result)
+            goal.result_sent = now if goal.result_sent is None else goal.result_sent
+        goal.waiting.clear()
+
+    def _send_result(self, asked: Asked, status: int, fields: dict[str, Any]) -> None:
+        response = self._kind.Impl.GetResultService.Response(status=status)
+        filled(response.result, fields)
+        assert self._servers
+        self._servers[2].respond(asked, serialize_message(response))
+
+    def goals(self) -> tuple[Goal, ...]:
+        """Every goal that came, and what became of it."""
+        return tuple(self._recorded(one) for one in self._goals)
+
+    def _recorded(self, goal: Running) -> Goal:
+        given = goal.result_sent is not None
+        result = filled(self._kind.Result(), goal.script.result) if given else None
+        return Goal(
+            number=goal.number,
+            at=goal.at,
+            action=self.name,
+            type=self._declared.type,
+            goal=goal.fields,
+            by="node",
+            accepted=goal.accepted,
+            answered=goal.answered,
+            states=tuple(goal.states),
+            feedback=tuple(goal.feedback),
+            cancels=tuple(goal.cancels),
+            status=goal.state if given else "",
+            result=to_fields(result) if given else None,
+            finished=goal.finished,
+            asked_result=goal.asked_result,
+            node=goal.asked.node,
+        )
+
+
+def _info(goal: Running) -> GoalInfo:
+    info = GoalInfo()
+    info.goal_id.uuid = list(goal.id)
+    info.stamp.sec, info.stamp.nanosec = divmod(goal.answered or goal.at, SECOND)
+    return info

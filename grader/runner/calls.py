@@ -1,0 +1,141 @@
+"""Calls of the student's services, and of the services by which parameters are set and read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import GetParameters, SetParameters
+from rclpy.serialization import serialize_message
+
+from grader.recording import Call, ParameterChange, ParameterReading
+from grader.runner.ends import Ends
+from grader.runner.message import deserialized, fields_of, message_class, serialized
+from grader.scenario.scenario import GetParameter, Request, Scenario, SetParameter
+from rmw_lockstep.hub import Client
+
+SET, GET = "rcl_interfaces/srv/SetParameters", "rcl_interfaces/srv/GetParameters"
+
+
+@dataclass(frozen=True)
+class Made:
+    """A call that was made; `number` is None when there was no server."""
+
+    step: Request | SetParameter | GetParameter
+    client: Client
+    number: int | None
+
+    @property
+    def cdr(self) -> bytes | None:
+        """The response, if any."""
+        return None if self.number is None else self.client.answers.get(self.number)
+
+
+class Calls:
+    """Makes calls, and knows what came of them. All clients are there from the beginning."""
+
+    def __init__(self, ends: Ends, scenario: Scenario) -> None:
+        self._ends = ends
+        self._clients: dict[str, Client] = {}
+        self._made: list[Made] = []
+        for step in scenario.steps:
+            if isinstance(step, (Request, SetParameter, GetParameter)):
+                self._client(step)
+
+    def _client(self, step: Request | SetParameter | GetParameter) -> Client:
+        service, type_name = _service_of(step)
+        if service not in self._clients:
+            self._clients[service] = self._ends.node.client(service, type_name)
+        return self._clients[service]
+
+    def make(self, step: Request | SetParameter | GetParameter) -> None:
+        """Send one request."""
+        client = self._client(step)
+        self._made.append(Made(step, client, client.call(_request_of(step))))
+
+    def _answered(self, made: Made) -> int | None:
+        if made.number is None or made.number not in made.client.moments:
+            return None
+        return max(made.step.at, self._ends.at(made.client.moments[made.number]))
+
+    def calls(self) -> tuple[Call, ...]:
+        """All calls of the student's services, in the order in which they were made."""
+        return tuple(self._call(made, made.step) for made in self._made if isinstance(made.step, Request))
+
+    def _call(self, made: Made, step: Request) -> Call:
+        kind = message_class(step.type).Response
+        response = None if made.cdr is None else fields_of(made.cdr, kind)
+        served = made.number is not None
+        return Call(step.at, step.service, step.type, step.fields, "grader", self._answered(made), response, "", served)
+
+    def changes(self) -> tuple[ParameterChange, ...]:
+        """What was set, and what the node said to it."""
+        return tuple(self._change(made, made.step) for made in self._made if isinstance(made.step, SetParameter))
+
+    def _change(self, made: Made, step: SetParameter) -> ParameterChange:
+        results = [] if made.cdr is None else list(deserialized(made.cdr, SetParameters.Response).results)
+        taken, reason = (bool(results[0].successful), str(results[0].reason)) if results else (None, "")
+        return ParameterChange(step.at, step.node, step.name, step.value, taken, reason, self._answered(made))
+
+    def readings(self) -> tuple[ParameterReading, ...]:
+        """What was asked for, and what the node said."""
+        return tuple(self._reading(made, made.step) for made in self._made if isinstance(made.step, GetParameter))
+
+    def _reading(self, made: Made, step: GetParameter) -> ParameterReading:
+        values = [] if made.cdr is None else list(deserialized(made.cdr, GetParameters.Response).values)
+        value = from_parameter_value(values[0]) if values else None
+        return ParameterReading(step.at, step.node, step.name, value, self._answered(made))
+
+
+def _service_of(step: Request | SetParameter | GetParameter) -> tuple[str, str]:
+    if isinstance(step, Request):
+        return step.service, step.type
+    if isinstance(step, SetParameter):
+        return f"{step.node}/set_parameters", SET
+    return f"{step.node}/get_parameters", GET
+
+
+def _request_of(step: Request | SetParameter | GetParameter) -> bytes:
+    if isinstance(step, Request):
+        return serialized(message_class(step.type).Request, step.fields)
+    if isinstance(step, SetParameter):
+        parameter = Parameter(name=step.name, value=to_parameter_value(step.value))
+        content: bytes = serialize_message(SetParameters.Request(parameters=[parameter]))
+        return content
+    asked: bytes = serialize_message(GetParameters.Request(names=[step.name]))
+    return asked
+
+
+#: The field of rcl_interfaces/msg/ParameterValue that has the value, by the type's name.
+_FIELDS = {
+    "bool": "bool_value",
+    "integer": "integer_value",
+    "double": "double_value",
+    "string": "string_value",
+    "byte_array": "byte_array_value",
+    "bool_array": "bool_array_value",
+    "integer_array": "integer_array_value",
+    "double_array": "double_array_value",
+    "string_array": "string_array_value",
+}
+_OF_PYTHON = {bool: "bool", int: "integer", float: "double", str: "string"}
+
+
+def to_parameter_value(value: Any) -> ParameterValue:
+    """A Python value as a parameter's. An empty list becomes an array of strings."""
+    if isinstance(value, (list, tuple)):
+        name = f"{_OF_PYTHON[type(value[0])]}_array" if value else "string_array"
+    else:
+        name = _OF_PYTHON[type(value)]
+    number = getattr(ParameterType, f"PARAMETER_{name.upper()}")
+    return ParameterValue(type=number, **{_FIELDS[name]: list(value) if isinstance(value, tuple) else value})
+
+
+def from_parameter_value(value: ParameterValue) -> Any:
+    """A parameter's value as Python's; None when it is not set."""
+    for name, field in _FIELDS.items():
+        if value.type == getattr(ParameterType, f"PARAMETER_{name.upper()}"):
+            found = getattr(value, field)
+            return list(found) if name.endswith("array") else found
+    return None

@@ -1,0 +1,69 @@
+"""A world in a run: it hears the student's commands, and is stepped in simulated time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from grader.runner.ends import Ends, Schedule, nanoseconds
+from grader.runner.message import deserialized, message_class
+from grader.runner.publishers import ReferencePublishers
+from grader.runner.recorder import ACCEPT_ANY, in_canonical_order
+from grader.runner.serving import AuthorFault
+from grader.scenario.scenario import START, Message
+from grader.scenario.values import Invalid, check_fields
+from grader.scenario.world import World
+from rmw_lockstep.hub import Heard
+
+
+class RunningWorld:
+    """One world. `publish` publishes a message of the grader's."""
+
+    def __init__(
+        self, ends: Ends, schedule: Schedule, world: World, publishers: ReferencePublishers,
+        publish: Callable[[Message], None],
+    ) -> None:  # fmt: skip
+        self._model, self._world = world.begin(), world
+        self._schedule, self._publish = schedule, publish
+        self._period = nanoseconds(world.period)
+        self._topics = tuple(self._model.reads.items())
+        self._heard: list[tuple[int, Heard]] = []
+        for number, (topic, type_name) in enumerate(self._topics):
+            ends.node.subscription(topic, type_name, ACCEPT_ANY, partial(self._keep, number))
+        for topic, type_name in self._model.publishes.items():
+            publishers.announce(topic, type_name)
+        schedule.plan(START + self._period, self._step)
+
+    def _keep(self, number: int, heard: Heard) -> None:
+        self._heard.append((number, heard))
+
+    def _step(self, now: int) -> None:
+        """Hear what came since the last step, go on, and publish the state."""
+        heard, self._heard = in_canonical_order(self._heard), []
+        for number, one in heard:
+            topic, type_name = self._topics[number]
+            message = deserialized(one.cdr, message_class(type_name))
+            self._ask(partial(self._model.hear, topic, message))
+        self._ask(partial(self._model.step, self._world.period))
+        for topic, fields in self._state().items():
+            self._publish(Message(now, topic, self._model.publishes[topic], fields))
+        self._schedule.plan(now + self._period, self._step)
+
+    def _state(self) -> dict[str, dict[str, object]]:
+        state: dict[str, dict[str, object]] = {}
+        self._ask(lambda: state.update(self._model.state()))
+        for topic, fields in state.items():
+            type_name = self._model.publishes.get(topic, "")
+            if not type_name:
+                raise AuthorFault(f"the world {self._world.code.name} does not list {topic} in its publishes")
+            try:
+                check_fields(message_class(type_name), fields, type_name)
+            except Invalid as error:
+                raise AuthorFault(f"{self._world.code.name}.state(), {topic}: {error.found}. {error.mend}") from None
+        return state
+
+    def _ask(self, act: Callable[[], object]) -> None:
+        try:
+            act()
+        except Exception as error:
+            raise AuthorFault(f"the world {self._world.code.name}: {type(error).__name__}: {error}") from None

@@ -1,0 +1,134 @@
+"""Carries out what a scenario says besides messages: the grader's side of services, actions, parameters and worlds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from grader.exercise import ExerciseError
+from grader.recording import Call, Goal, ParameterChange, ParameterReading
+from grader.runner.acting import ScriptedActionServer
+from grader.runner.calls import Calls
+from grader.runner.ends import Ends, Schedule, hub_qos, nanoseconds
+from grader.runner.goals import Goals
+from grader.runner.playing import RunningWorld
+from grader.runner.publishers import ReferencePublishers
+from grader.runner.recorder import Recorder
+from grader.runner.serving import AuthorFault, ServiceServer, unserved
+from grader.runner.task import Task
+from grader.scenario.scenario import (
+    START,
+    CancelAll,
+    CancelGoal,
+    ComeBack,
+    GetParameter,
+    Leave,
+    Message,
+    Request,
+    SendGoal,
+    SetParameter,
+    Step,
+    Subscribe,
+)
+from grader.scenario.servers import ActionServer
+from grader.scenario.servers import Server as DeclaredServer
+
+Peer = ServiceServer | ScriptedActionServer
+
+
+class Script:
+    """The grader's side of one scenario; `publish` publishes a message of a world's."""
+
+    def __init__(
+        self,
+        ends: Ends,
+        task: Task,
+        publishers: ReferencePublishers,
+        recorder: Recorder,
+        publish: Callable[[Message], None],
+    ) -> None:
+        scenario = task.scenario
+        self._ends, self._task = ends, task
+        self._publishers, self._recorder = publishers, recorder
+        self._schedule = Schedule()
+        self._calls = Calls(ends, scenario)
+        self._goals = Goals(ends, scenario)
+        self._world: RunningWorld | None = None
+        self._servers: dict[str, Peer] = {}
+        for declared in scenario.servers:
+            self._add(declared)
+        if scenario.world:
+            self._world = RunningWorld(ends, self._schedule, scenario.world, publishers, publish)
+
+    def _add(self, declared: DeclaredServer | ActionServer) -> None:
+        peer: Peer
+        if isinstance(declared, ActionServer):
+            peer = ScriptedActionServer(self._ends, self._schedule, declared)
+        else:
+            peer = ServiceServer(self._ends, self._schedule, declared)
+        self._servers[peer.name] = peer
+        for seconds, act in ((declared.appears, peer.open), (declared.gone, peer.close), (declared.back, peer.open)):
+            if seconds is not None:
+                self._schedule.plan(START + nanoseconds(seconds), lambda now, act=act: act())  # type: ignore[misc]
+        if declared.appears is None:
+            peer.open()
+
+    @property
+    def due(self) -> int | None:
+        """When something is to be done next that no step says (ns of simulated time)."""
+        return self._schedule.due
+
+    def do(self, step: Step) -> None:
+        """Carry out one step."""
+        if isinstance(step, (Request, SetParameter, GetParameter)):
+            self._calls.make(step)
+        elif isinstance(step, SendGoal):
+            self._goals.send(step)
+        elif isinstance(step, (CancelGoal, CancelAll)):
+            self._goals.cancel(step)
+        elif isinstance(step, Subscribe):
+            self._recorder.join(step.name, step.topic, step.type, hub_qos(step.qos))
+        elif isinstance(step, Leave):
+            self._leave(step.name)
+        elif isinstance(step, ComeBack) and step.name in self._servers:
+            self._servers[step.name].open()
+
+    def _leave(self, name: str) -> None:
+        if name in self._servers:
+            self._servers[name].close()
+        self._publishers.leave(name)
+        self._recorder.leave(name)
+
+    def act(self, now: int) -> bool:
+        """Do what is due, and what follows from what the program did. Whether there was anything."""
+        try:
+            took = [peer.react(now) for peer in self._servers.values()]
+            return any([*took, self._goals.react(now), self._schedule.act(now)])
+        except AuthorFault as error:
+            scenario = self._task.scenario
+            found = f"in the scenario {scenario.name}, {error}"
+            mend = "Mend it; it runs inside the grader."
+            raise ExerciseError(self._task.exercise.scenarios_file, found, mend, scenario.line or None) from None
+
+    # --- what came of it
+
+    def calls(self) -> tuple[Call, ...]:
+        """All calls, by whoever made them, in the order in which they were made."""
+        found = [*self._calls.calls(), *unserved(self._ends, self._task.exercise)]
+        for peer in self._servers.values():
+            found += peer.calls() if isinstance(peer, ServiceServer) else ()
+        return tuple(sorted(found, key=lambda call: call.at))
+
+    def goals(self) -> tuple[Goal, ...]:
+        """All goals, by whoever sent them."""
+        found = list(self._goals.goals())
+        for peer in self._servers.values():
+            found += peer.goals() if isinstance(peer, ScriptedActionServer) else ()
+        return tuple(found)
+
+    def changes(self) -> tuple[ParameterChange, ...]:
+        """Parameters that were set."""
+        return self._calls.changes()
+
+    def readings(self) -> tuple[ParameterReading, ...]:
+        """Parameters that were asked for."""
+        return self._calls.readings()

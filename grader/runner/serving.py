@@ -1,0 +1,127 @@
+"""Reference servers of services: they answer the student's requests as the scenario says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from grader.exercise import Exercise
+from grader.recording import Call
+from grader.runner.ends import Ends, Schedule, nanoseconds
+from grader.runner.message import deserialized, fields_of, message_class, serialized, to_fields
+from grader.scenario.code import Code
+from grader.scenario.servers import Reply
+from grader.scenario.servers import Server as Declared
+from grader.scenario.values import Invalid, check_fields
+from rmw_lockstep.hub import Asked, Server
+
+
+class AuthorFault(Exception):
+    """Raised when the author's code, which runs inside the grader, breaks; the text names it."""
+
+
+@dataclass
+class Exchange:
+    """A request that came, and the answer as soon as there is one."""
+
+    asked: Asked
+    at: int
+    request: dict[str, Any]
+    answered: int | None = None
+    response: dict[str, Any] | None = None
+
+
+class ServiceServer:
+    """One reference server."""
+
+    def __init__(self, ends: Ends, schedule: Schedule, declared: Declared) -> None:
+        self.name = declared.service
+        self._ends, self._schedule, self._declared = ends, schedule, declared
+        self._kind = message_class(declared.type)
+        self._answer = declared.replies.load() if isinstance(declared.replies, Code) else None
+        self._server: Server | None = None
+        self._exchanges: list[Exchange] = []
+
+    def open(self) -> None:
+        """It is there from now on."""
+        if self._server is None:
+            self._server = self._ends.node.server(self.name, self._declared.type)
+
+    def close(self) -> None:
+        """It is gone, and with it every answer that it still owed."""
+        if self._server is not None:
+            self._server.close()
+            self._server = None
+
+    def react(self, now: int) -> bool:
+        """Take the requests that came, and plan the answers. Whether there was any."""
+        asked = self._server.asked if self._server else []
+        requests, asked[:] = tuple(asked), []
+        for one in requests:
+            self._take(one, now)
+        return bool(requests)
+
+    def _take(self, asked: Asked, now: int) -> None:
+        request = deserialized(asked.cdr, self._kind.Request)
+        at = self._ends.at(asked.moment)
+        exchange = Exchange(asked, at, to_fields(request))
+        self._exchanges.append(exchange)
+        reply = self._reply(request, len(self._exchanges))
+        if reply.fields is not None:
+            server = self._server
+            due = max(now, at + nanoseconds(reply.after))
+            self._schedule.plan(due, lambda moment: self._respond(server, exchange, reply, moment))
+
+    def _respond(self, server: Server | None, exchange: Exchange, reply: Reply, now: int) -> None:
+        if server is None or server is not self._server:
+            return
+        fields = reply.fields or {}
+        message = serialized(self._kind.Response, fields)
+        server.respond(exchange.asked, message)
+        exchange.answered, exchange.response = now, fields_of(message, self._kind.Response)
+
+    def _reply(self, request: Any, number: int) -> Reply:
+        if self._answer is not None:
+            return self._from_code(self._answer, request)
+        replies = self._declared.replies
+        assert isinstance(replies, tuple)
+        return replies[min(number, len(replies)) - 1] if replies else Reply(0.0, {})
+
+    def _from_code(self, answer: Any, request: Any) -> Reply:
+        try:
+            found = answer(request)
+            reply = found if isinstance(found, Reply) else Reply(0.0, found)
+            if reply.fields is not None:
+                check_fields(self._kind.Response, reply.fields, f"{self._declared.type}_Response")
+        except Invalid as error:
+            raise AuthorFault(f"{answer.__name__}() for {self.name}: {error.found}. {error.mend}") from None
+        except Exception as error:
+            raise AuthorFault(f"{answer.__name__}() for {self.name}: {type(error).__name__}: {error}") from None
+        return reply
+
+    def calls(self) -> tuple[Call, ...]:
+        """Every request that came, and what was answered."""
+        return tuple(
+            Call(
+                one.at, self.name, self._declared.type, one.request, "node", one.answered, one.response, one.asked.node
+            )
+            for one in self._exchanges
+        )
+
+
+def unserved(ends: Ends, exercise: Exercise) -> tuple[Call, ...]:
+    """Requests of the student's for which there was no server, of the services that the exercise declares."""
+    types = {one.name: one.type for one in exercise.clients}
+    found = [asked for asked in ends.hub.unserved if types.get(asked.client.name) == asked.client.type]
+    return tuple(
+        Call(
+            ends.at(asked.moment),
+            asked.client.name,
+            asked.client.type,
+            fields_of(asked.cdr, message_class(asked.client.type).Request),
+            "node",
+            node=asked.node,
+            served=False,
+        )
+        for asked in found
+    )
