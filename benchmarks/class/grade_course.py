@@ -2,8 +2,8 @@
 
     python benchmarks/class/grade_course.py --count 12 --seed 7 --out build/class
 
-Ends with 1 if a single grade is not what it must be. Submissions are in OUT/submissions/EXERCISE, the page of the course
-is OUT/results/index.html, and each exercise has a page of its own next to it.
+Ends with 1 if a single grade is not what it must be. Submissions are in OUT/submissions/EXERCISE, the page of the
+course is OUT/results/index.html, and each exercise has a page of its own next to it.
 """
 
 from __future__ import annotations
