@@ -77,7 +77,7 @@ def _submissions(exercise: Exercise) -> dict[str, Submission]:
     assert solution != hostile
     files = [
         SOLUTIONS / "solution.py",
-        *(SOLUTIONS / "mistakes" / f"{name}.py" for name in ("fixed_dt", "position_for_velocity")),
+        *(SOLUTIONS / "mistakes" / f"{name}.py" for name in ("fixed_dt", "joints_by_index", "position_for_velocity")),
         *(HOSTILE / f"{name}.py" for name in ("crashes_at_message_37", "syntax_error", "never_spins")),
     ]
     return {

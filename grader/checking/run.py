@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NoReturn
 
+from grader.checking.actions import ActionChecks
+from grader.checking.graph import GraphChecks
 from grader.checking.lateness import AT_ONCE
+from grader.checking.parameters import ParameterChecks
+from grader.checking.series import SeriesChecks
+from grader.checking.services import ServiceChecks
+from grader.checking.trajectory import TrajectoryChecks
 from grader.checking.wrong import Finding, Wrong
-from grader.exercise import Exercise
-from grader.recording import Ending, EndPoint, Received, Recording, Sent
+from grader.recording import EndPoint, Received, Recording, Sent
 from grader.scenario.scenario import SECOND, START
 
 
@@ -82,15 +87,8 @@ class Exchange:
     expected: tuple[Message, ...]
 
 
-class Run:
+class Run(SeriesChecks, ServiceChecks, ActionChecks, ParameterChecks, TrajectoryChecks, GraphChecks):
     """What happened in one scenario. Iterate over it to get each `Exchange`."""
-
-    def __init__(self, exercise: Exercise, recording: Recording, reference: Recording, title: str = "") -> None:
-        self.exercise = exercise
-        self.scenario = recording.scenario
-        self.title = title
-        self.recording = recording
-        self._reference = reference
 
     @cached_property
     def sent(self) -> list[Message]:
@@ -100,7 +98,7 @@ class Run:
     @cached_property
     def received(self) -> list[Message]:
         """Every message that the node published on the exercise's topics."""
-        return [Message(received) for received in self.recording.received]
+        return [Message(received) for received in self.recording.received if not received.subscriber]
 
     @cached_property
     def exchanges(self) -> list[Exchange]:
@@ -115,15 +113,13 @@ class Run:
     def __iter__(self) -> Iterator[Exchange]:
         return iter(self.exchanges)
 
-    @property
-    def nodes(self) -> tuple[str, ...]:
-        """Full names of the student's nodes."""
-        return self.recording.nodes
-
-    @property
-    def ending(self) -> Ending:
-        """How the run ended."""
-        return self.recording.ending
+    def on(self, topic: str) -> Run:
+        """The same run with what was published on `topic` alone, for a node that publishes on several topics."""
+        mine, its = (
+            replace(recording, received=tuple(one for one in recording.received if one.topic == topic))
+            for recording in (self.recording, self._reference)
+        )
+        return Run(self.exercise, mine, its, self.title)
 
     def publishers(self, topic: str) -> list[EndPoint]:
         """The student's publishers on `topic`."""
@@ -205,6 +201,8 @@ def _answers(recording: Recording) -> dict[int, list[Message]]:
         index.setdefault(Message(sent).stamp_ns if "header" in sent.fields else -1, []).append(i)
     answers: dict[int, list[Message]] = {}
     for received in recording.received:
+        if received.subscriber:
+            continue
         message = Message(received)
         by_stamp = index.get(message.stamp_ns, []) if "header" in received.fields else []
         answers.setdefault(by_stamp[0] if len(by_stamp) == 1 else max(received.after - 1, 0), []).append(message)

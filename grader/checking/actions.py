@@ -1,0 +1,218 @@
+"""Helpers for actions: what the student's server does with goals, and which goals the student's client sends.
+
+Everything is judged by the raw status and feedback topics and the responses, never by an ActionClient's callbacks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from grader.checking.comparator import TOLERANCE
+from grader.checking.recorded import Recorded, seconds
+from grader.checking.shown import shown
+from grader.recording.events import By, Goal
+from grader.scenario.scenario import SECOND
+
+_FORGOT = "The result is filled in, but the goal was aborted: a server has to call goal_handle.succeed()."
+_ABORTED = "Does execute raise, or return without goal_handle.succeed()?"
+_DISREGARDED = "Your node accepted the request to cancel, and then called succeed() all the same."
+_REFUSED = "Your node rejected the request to cancel: without a cancel callback a server rejects each of them."
+_TOO_LATE = "The request to cancel was answered only when the goal was over: execute keeps the executor from doing it."
+_NEVER = "The goal never ended."
+
+
+class ActionChecks(Recorded):
+    """Goals, by their numbers from 1 in the order in which they were sent."""
+
+    def goals(self, action: str = "", by: By = "grader") -> tuple[Goal, ...]:
+        """The scenario's goals for the student's server, in order; `by="node"` for those of the student's client."""
+        name = action or self.only("action" if by == "grader" else "action_client")
+        return tuple(goal for goal in self.recording.goals if goal.action == name and goal.by == by)
+
+    def goal(self, number: int) -> Goal:
+        """The scenario's goal of this number. Raises ValueError where it sends none with it."""
+        for goal in self.recording.goals:
+            if goal.number == number and goal.by == "grader":
+                return goal
+        raise ValueError(f"there is no goal {number}: the scenario {self.scenario} sends fewer.")
+
+    def must_accept(self, goal: int = 1) -> None:
+        """The node must accept this goal."""
+        self._must_answer(self.goal(goal), accepted=True)
+
+    def must_reject(self, goal: int = 1) -> None:
+        """The node must reject this goal."""
+        self._must_answer(self.goal(goal), accepted=False)
+
+    def must_go_through(self, *states: str, goal: int = 1) -> None:
+        """The goal must go through these states, such as "accepted", "executing", "succeeded", and through no other.
+
+        Without states they are those of the solution's goal.
+        """
+        one = self.goal(goal)
+        wanted = states or tuple(state.state for state in self._solutions(goal).states)
+        got = tuple(state.state for state in one.states)
+        self._must_answer(one, accepted=True) if wanted else None
+        if got != wanted:
+            at = next((s.at for s, w in zip(one.states, wanted, strict=False) if s.state != w), one.at)
+            told = f"expected the states {' → '.join(wanted)}, got {' → '.join(got) or 'none'}."
+            self.wrong_at(at, told, _part(one), " → ".join(wanted), " → ".join(got), self._why(one, wanted[-1]))
+
+    def must_end(self, status: str, goal: int = 1, within: float | None = None) -> None:
+        """The goal must end as "succeeded", "canceled" or "aborted", within so many seconds after it was sent."""
+        one = self.goal(goal)
+        self._must_answer(one, accepted=True)
+        if (got := _ended_as(one)) != status:
+            told = f"it was expected to end as {status}, got {got}."
+            self.wrong_at(_ended_at(one) or one.at, told, _part(one), status, got, self._why(one, status))
+        late = ((_ended_at(one) or one.at) - one.at) / SECOND
+        if within is not None and late > within + 1e-9:
+            told = f"it was expected to end within {within:g} s, got {late:.2f} s."
+            self.wrong_at(_ended_at(one), told, _part(one), f"{within:g} s", f"{late:.2f} s")
+
+    def must_cancel(self, goal: int = 1, within: float = 1.0) -> None:
+        """The node must accept the scenario's first request to cancel this goal, and end it as "canceled".
+
+        Both within so many seconds of simulated time; and it must send no feedback after that.
+        """
+        one = self.goal(goal)
+        self._must_answer(one, accepted=True)
+        if not one.cancels:
+            raise ValueError(f"the scenario {self.scenario} never asks to cancel goal {goal}.")
+        cancel = one.cancels[0]
+        if (got := _ended_as(one)) != "canceled":
+            told = f"after the request to cancel it was expected to end as canceled, got {got}."
+            self.wrong_at(cancel.at, told, _part(one), "canceled", got, self._why(one, "canceled"))
+        ended = _ended_at(one) or cancel.at
+        late = (ended - cancel.at) / SECOND
+        if late > within + 1e-9:
+            told = f"it was expected to end within {within:g} s of the request to cancel, got {late:.2f} s."
+            self.wrong_at(cancel.at, told, _part(one), f"{within:g} s", f"{late:.2f} s")
+        if after := [feedback for feedback in one.feedback if feedback.at > ended]:
+            told = "no feedback was expected after the goal was canceled, but your node goes on with it."
+            self.wrong_at(after[0].at, told, _part(one), "no feedback", f"{len(after)} messages")
+
+    def must_match_results(self, field: str = "", action: str = "", tolerance: float = TOLERANCE) -> None:
+        """Each goal's result must have the same `field` as with the solution; without one, every field counts."""
+
+        def result(goal: Goal) -> dict[str, Any] | None:
+            return goal.result
+
+        for one, reference in self._match(action, "grader", field, tolerance, result, "result"):
+            if reference.finished is not None and one.finished is None:
+                self.wrong_at(one.at, "a result was expected, got none.", _part(one), "a result", "none", _NEVER)
+
+    def must_match_feedback(
+        self, field: str = "", goal: int = 1, tolerance: float = TOLERANCE, time: float | None = None
+    ) -> None:
+        """The goal's feedback must be the solution's, message by message; with `time`, within so many seconds of it."""
+        one, reference = self.goal(goal), self._solutions(goal)
+        self._must_answer(one, accepted=True)
+        pairs = list(zip(reference.feedback, one.feedback, strict=False))
+        messages = [(expected.fields, got.fields) for expected, got in pairs]
+        for number, (expected, got) in enumerate(pairs, start=1):
+            part = f"{_part(one)}, feedback {number}"
+            self.compare_at(got.at, part, field, got.fields, expected.fields, tolerance, one.action, messages)
+            if time is not None and abs(got.at - expected.at) > time * SECOND + 1:
+                wanted, came = f"{seconds(expected.at):.2f} s", f"{seconds(got.at):.2f} s"
+                self.wrong_at(got.at, f"it was expected at {wanted}, got it at {came}.", part, wanted, came)
+        wanted_, came_ = len(reference.feedback), len(one.feedback)
+        if wanted_ != came_:
+            told = f"expected {wanted_} feedback messages, got {came_}."
+            never = "" if came_ else "Your node never publishes feedback."
+            self.wrong_at(one.at, told, _part(one), f"{wanted_} messages", came_, never)
+
+    def must_match_goals(self, field: str = "", action: str = "", tolerance: float = TOLERANCE) -> None:
+        """The node, a client, must send as many goals as the solution, with the same `field`."""
+        name = action or self.only("action_client")
+        got, wanted = len(self.goals(name, by="node")), len(self._reference_goals(name, "node"))
+        if got != wanted:
+            clients = sorted({end.topic for end in self.recording.end_points if end.kind == "action client"})
+            never = "" if got or name in clients else f"Your node has no action client of {name}."
+            self.wrong_at(None, f"expected {wanted} goals for {name}, got {got}.", "", f"{wanted} goals", got, never)
+
+        def sent(goal: Goal) -> dict[str, Any] | None:
+            return goal.goal
+
+        list(self._match(name, "node", field, tolerance, sent, "goal"))
+
+    def must_ask_only_for_accepted(self, action: str = "") -> None:
+        """The node, a client, must not ask for the result of a goal that was rejected."""
+        for one in self.goals(action, by="node"):
+            if one.accepted is False and one.asked_result is not None:
+                told = "it was rejected, and your node asked for its result all the same. Look at goal_handle.accepted."
+                self.wrong_at(one.asked_result, told, _part(one), "no request for the result", "one")
+
+    def _match(
+        self,
+        action: str,
+        by: By,
+        field: str,
+        tolerance: float,
+        part_of: Callable[[Goal], dict[str, Any] | None],
+        what: str,
+    ) -> list[tuple[Goal, Goal]]:
+        name = action or self.only("action" if by == "grader" else "action_client")
+        both = list(zip(self.goals(name, by), self._reference_goals(name, by), strict=False))
+        pairs = [(e, g) for one, reference in both if (g := part_of(one)) and (e := part_of(reference))]
+        for one, reference in both:
+            expected, got = part_of(reference), part_of(one)
+            if expected is not None and got is not None:
+                at = one.at if what == "goal" else one.finished
+                self.compare_at(at, f"{_part(one)}, its {what}", field, got, expected, tolerance, name, pairs)
+        return both
+
+    def _must_answer(self, goal: Goal, accepted: bool) -> None:
+        wanted = "accepted" if accepted else "rejected"
+        if goal.accepted is None:
+            servers = sorted({end.topic for end in self.recording.end_points if end.kind == "action server"})
+            if goal.action not in servers:
+                names = ", ".join(servers) or "none"
+                told = f"your node has no action {goal.action}. Its actions are: {names}."
+                self.wrong_at(goal.at, told, "", goal.action, names)
+            told = "your node never said whether it accepts the goal. Does a callback block it?"
+            self.wrong_at(goal.at, told, _part(goal), wanted, "no answer")
+        if goal.accepted != accepted:
+            got = "accepted" if goal.accepted else "rejected"
+            self.wrong_at(goal.at, f"it must be {wanted}, but your node {got} it.", _part(goal), wanted, got)
+
+    def _why(self, goal: Goal, wanted: str) -> str:
+        """The usual mistake behind an end that is another than the wanted one; empty where none is known."""
+        got, cancel = _ended_as(goal), goal.cancels[0] if goal.cancels else None
+        if wanted == "canceled" and cancel:
+            if cancel.answered is not None and goal.finished is not None and cancel.answered >= goal.finished:
+                return _TOO_LATE
+            if cancel.accepted is False:
+                return _REFUSED
+            return _DISREGARDED if cancel.accepted and got == "succeeded" else ""
+        if wanted == "succeeded" and got == "aborted":
+            return _FORGOT if goal.result and _is_filled(goal.result) else _ABORTED
+        return _NEVER if _ended_at(goal) is None else ""
+
+    def _solutions(self, number: int) -> Goal:
+        return next(goal for goal in self._reference.goals if goal.number == number and goal.by == "grader")
+
+    def _reference_goals(self, action: str, by: By) -> tuple[Goal, ...]:
+        return tuple(goal for goal in self._reference.goals if goal.action == action and goal.by == by)
+
+
+def _part(goal: Goal) -> str:
+    return f"goal {goal.number} for {goal.action} ({shown(goal.goal) if goal.goal else 'empty'})"
+
+
+def _ended_as(goal: Goal) -> str:
+    last = goal.states[-1].state if goal.states else ""
+    return last if last in ("succeeded", "canceled", "aborted") else goal.status or f"no end{last and f', but {last}'}"
+
+
+def _ended_at(goal: Goal) -> int | None:
+    ends = [state.at for state in goal.states if state.state in ("succeeded", "canceled", "aborted")]
+    return ends[0] if ends else goal.finished
+
+
+def _is_filled(result: Any) -> bool:
+    """Whether anything in a result is not what an empty one has."""
+    if isinstance(result, dict):
+        return any(_is_filled(part) for part in result.values())
+    return bool(result)

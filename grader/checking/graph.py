@@ -1,0 +1,106 @@
+"""Helpers for what a program is in the ROS graph: its nodes, its end points and their QoS, and how it ends."""
+
+from __future__ import annotations
+
+from typing import Literal, NoReturn
+
+from grader.checking.recorded import Recorded
+from grader.recording import EndPoint
+
+Kind = Literal["publisher", "subscription", "server", "client", "action server", "action client"]
+
+#: Kind of end point -> what a node does with it, and with which others of the kind it is compared.
+_WORDS = {
+    "publisher": ("publish on", "It publishes on"),
+    "subscription": ("subscribe to", "It subscribes to"),
+    "server": ("have a service", "Its services are"),
+    "client": ("have a client of", "It has clients of"),
+    "action server": ("have an action", "Its actions are"),
+    "action client": ("have an action client of", "It has action clients of"),
+}
+
+_KINDS: dict[str, Kind] = {
+    "publish": "publisher",
+    "subscribe": "subscription",
+    "service": "server",
+    "client": "client",
+    "action": "action server",
+    "action_client": "action client",
+}
+
+
+class GraphChecks(Recorded):
+    """Nodes and end points."""
+
+    def end_points(self, kind: Kind, name: str = "") -> list[EndPoint]:
+        """The student's end points of a kind, such as "publisher" or "action server"; with `name`, of that topic."""
+        return [end for end in self.recording.end_points if end.kind == kind and name in ("", end.topic)]
+
+    def must_have_interface(self) -> None:
+        """The node must have every topic, service and action of exercise.toml, each with its type."""
+        declared = [(_KINDS[topic.direction], topic.name, topic.type) for topic in self.exercise.topics]
+        declared += [(_KINDS[one.role], one.name, one.type) for one in self.exercise.endpoints]
+        for kind, name, type_ in declared:
+            mine = self.end_points(kind, name)
+            if not mine:
+                self._lacks(kind, name)
+            for end in mine:
+                if end.type != type_:
+                    told = f"your {kind} on {name} has another type. Expected {type_}, got {end.type}."
+                    self.wrong_at(None, told, "", type_, end.type)
+
+    def must_have_qos(self, topic: str = "") -> None:
+        """The node's end points must have the reliability and durability of exercise.toml: of `topic`, or of all."""
+        for declared in self.exercise.topics:
+            if topic not in ("", declared.name):
+                continue
+            wanted = f"{declared.reliability} and {declared.durability}"
+            for end in self.end_points(_KINDS[declared.direction], declared.name):
+                got = f"{end.reliability} and {end.durability}"
+                if got != wanted:
+                    told = f"your {end.kind} on {end.topic} is {got}. Expected {wanted}."
+                    self.wrong_at(None, told, "", wanted, got, _of_qos(end, declared.durability))
+
+    def must_have_nodes(self) -> None:
+        """The program must create the node of exercise.toml (of each of its programs) and no other."""
+        names = [program.node for program in self.exercise.programs] or [self.exercise.node_name]
+        wanted = tuple(sorted(f"/{name.lstrip('/')}" for name in names))
+        got, told = ", ".join(self.nodes) or "none", ""
+        if lacking := [name for name in wanted if name not in self.nodes]:
+            told = f"there is no node {lacking[0]}. Expected {', '.join(wanted)}, got {got}."
+        elif len(self.nodes) > len(wanted):
+            told = f"your program creates more nodes than it should. Expected {', '.join(wanted)}, got {got}."
+        if told:
+            self.wrong_at(None, told, "", ", ".join(wanted), got)
+
+    def must_end_on_ctrl_c(self) -> None:
+        """On Ctrl-C the program must end within 2 s, with no traceback. The scenario needs `interrupt=True`."""
+        if not self.ending.interrupted:
+            raise ValueError(f"the scenario {self.scenario} has no interrupt=True: Ctrl-C never comes.")
+        if not self.ending.ended_in_time:
+            told = "your program was still running 2 s after Ctrl-C. Expected an end within 2 s."
+            self.wrong_at(None, told, "", "an end within 2 s", "none")
+        if self.ending.traceback:
+            told = f"after Ctrl-C your program printed a traceback: {self.ending.traceback}"
+            self.wrong_at(None, told, "", "no traceback", self.ending.traceback)
+
+    def must_survive(self, program: str = "") -> None:
+        """No program of a submission of several may end by itself; with `program` (its file), not that one."""
+        for exit_ in self.recording.exits:
+            if exit_.by == "itself" and program in ("", exit_.program):
+                how = f"with code {exit_.code}" if exit_.signal is None else f"by signal {exit_.signal}"
+                told = f"{exit_.program} ended by itself, {how}, but must go on."
+                self.wrong_at(exit_.at, told, "", "to go on", f"an end {how}")
+
+    def _lacks(self, kind: Kind, name: str) -> NoReturn:
+        does, others = _WORDS[kind]
+        names = ", ".join(sorted({end.topic for end in self.end_points(kind)})) or "none"
+        self.wrong_at(None, f"your node does not {does} {name}. {others}: {names}.", "", name, names)
+
+
+def _of_qos(end: EndPoint, durability: str) -> str:
+    if durability == "transient_local" and end.kind == "publisher":
+        return "Who subscribes later gets nothing that a volatile publisher published before."
+    if durability == "volatile" and end.durability == "transient_local" and end.kind == "subscription":
+        return "A transient local subscription gets nothing from a volatile publisher."
+    return ""

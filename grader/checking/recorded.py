@@ -1,0 +1,131 @@
+"""What every check has of one scenario: the two recordings, and the words for what is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NoReturn
+
+from grader.checking.comparator import difference
+from grader.checking.pattern import common
+from grader.checking.shown import shown
+from grader.checking.wrong import Finding, Wrong
+from grader.exercise import Exercise
+from grader.exercise.interface import Endpoint, Role, Topic
+from grader.recording import Ending, Received, Recording
+from grader.scenario.scenario import SECOND, START
+
+
+class Recorded:
+    """One scenario: the student's recording and the solution's. `Run` adds the helpers for each kind of check."""
+
+    def __init__(self, exercise: Exercise, recording: Recording, reference: Recording, title: str = "") -> None:
+        self.exercise = exercise
+        self.scenario = recording.scenario
+        self.title = title
+        self.recording = recording
+        self._reference = reference
+
+    @property
+    def nodes(self) -> tuple[str, ...]:
+        """Full names of the student's nodes."""
+        return self.recording.nodes
+
+    @property
+    def ending(self) -> Ending:
+        """How the run ended."""
+        return self.recording.ending
+
+    def wrong_at(
+        self, at: int | None, text: str, part: str = "", expected: object = "", got: object = "", at_all: str = ""
+    ) -> NoReturn:
+        """End the check: `text` says what is wrong at `at`, in ns of simulated time, or in the whole scenario.
+
+        `part` is what is wrong, such as a service or a goal; `at_all` says what is wrong systematically.
+        """
+        seconds = None if at is None else (at - START) / SECOND
+        where = "" if seconds is None else "Before the start" if seconds < 0 else f"At {seconds:.2f} s"
+        if self.title:
+            where += f" ({self.title})" if where else f"In “{self.title}”"
+        told = ", ".join(filter(None, (where, part)))
+        text = f"{text} {at_all}".strip()
+        finding = f"{told}: {text}" if told else text
+        raise Wrong(Finding(finding, self.scenario, None, seconds, part, str(expected), str(got)))
+
+    def compare_at(
+        self,
+        at: int | None,
+        part: str,
+        field: str,
+        got: dict[str, Any],
+        expected: dict[str, Any],
+        tolerance: float,
+        name: str,
+        pairs: Iterable[tuple[dict[str, Any], dict[str, Any]]],
+    ) -> None:
+        """End the check unless `field` is the same in both messages; every field is where `field` is empty.
+
+        `name` is the topic, service or action. `pairs` are all (expected, got) messages of this kind, for what they
+        have in common.
+        """
+        found = difference(field_of(got, field), field_of(expected, field), tolerance, field)
+        if not found:
+            return
+        unit = self.unit_of(found.path.split(".")[0].split("[")[0], name)
+        wanted, came = shown(found.expected, unit), shown(found.got, unit)
+        numbers = [(_number(e, found.path), _number(g, found.path)) for e, g in pairs]
+        known = [(e, g) for e, g in numbers if e is not None and g is not None]
+        general = common(known, found.path, unit, clock=self.recording.hold == "lockstep")
+        self.wrong_at(at, f"expected {found.path} {wanted}, got {came}.", part, wanted, came, general)
+
+    def unit_of(self, field: str, name: str = "") -> str:
+        """The unit of a field by exercise.toml: of the topic, service or action `name`, or of any."""
+        declared: list[Topic | Endpoint] = [
+            *self.exercise.outputs,
+            *self.exercise.endpoints,
+            *self.exercise.inputs,
+        ]
+        return next((one.units[field] for one in declared if name in ("", one.name) and field in one.units), "")
+
+    def messages_on(self, topic: str = "", reference: bool = False) -> tuple[Received, ...]:
+        """What the student's node, or the solution, published on `topic`; without one, on the only output."""
+        recording, name = self._reference if reference else self.recording, topic or self.output.name
+        return tuple(one for one in recording.received if one.topic == name and not one.subscriber)
+
+    @property
+    def output(self) -> Topic:
+        """The only topic that the exercise's node publishes. Raises ValueError where there are several."""
+        if len(self.exercise.outputs) != 1:
+            names = ", ".join(topic.name for topic in self.exercise.outputs) or "none"
+            raise ValueError(f"name the topic: the topics that exercise.toml has under [[publish]] are: {names}.")
+        return self.exercise.outputs[0]
+
+    def only(self, role: Role) -> str:
+        """The only service or action of a kind. Raises ValueError where there are several."""
+        names = [one.name for one in self.exercise.endpoints if one.role == role]
+        if len(names) != 1:
+            raise ValueError(f"name the {role}: exercise.toml has {', '.join(names) or 'none'} under [[{role}]].")
+        return names[0]
+
+
+def seconds(at: int) -> float:
+    """A moment of simulated time (ns) as seconds after the start."""
+    return (at - START) / SECOND
+
+
+def field_of(fields: dict[str, Any], name: str) -> Any:
+    """A field by its full name, such as `header.frame_id`, `twist.linear.x` or `points[0].x`; all where it is empty."""
+    value: Any = fields
+    for step in name.replace("[", ".[").split(".") if name else ():
+        try:
+            value = value[int(step[1:-1])] if step.startswith("[") else value[step]
+        except KeyError:
+            raise ValueError(f"there is no field {name!r}: the fields are {', '.join(fields)}.") from None
+    return value
+
+
+def _number(fields: dict[str, Any], path: str) -> float | None:
+    try:
+        value = field_of(fields, path)
+    except (ValueError, IndexError, TypeError):
+        return None
+    return value if isinstance(value, (int, float)) and not isinstance(value, bool) else None

@@ -1,0 +1,181 @@
+"""Helpers for nodes that publish on their own: how often, when, with which stamps, and to whom."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+
+from grader.checking.comparator import TOLERANCE, equal
+from grader.checking.pattern import COMPUTER_CLOCK
+from grader.checking.recorded import Recorded, field_of, seconds
+from grader.checking.shown import shown
+from grader.recording import Received
+from grader.scenario.scenario import SECOND, START
+
+#: A stamp that is larger than this (s) can't be simulated time, which begins at 100 s.
+COMPUTER_STAMP = 1_000_000
+
+
+class SeriesChecks(Recorded):
+    """What a node publishes, as a series of messages on one topic. Without a `topic` it is the only output."""
+
+    def must_publish(self, topic: str = "", count: int | None = None) -> None:
+        """The node must publish on `topic`: `count` messages, or any number of them but none."""
+        name = topic or self.output.name
+        got = len(self.messages_on(name))
+        wanted = f"{count} messages" if count is not None else "at least one message"
+        if not got and count != 0:
+            self._never(name, wanted)
+        if count is not None and got != count:
+            self.wrong_at(None, f"expected {wanted} on {name}, got {got}.", "", wanted, got)
+
+    def must_match_series(
+        self,
+        field: str = "",
+        topic: str = "",
+        tolerance: float = TOLERANCE,
+        time: float | None = None,
+        subscriber: str = "",
+    ) -> None:
+        """The node's first message must have the same `field` as the solution's first, and so on to the last.
+
+        Without a `field`, whole messages are compared. With `time`, each must come within so many seconds of the
+        solution's. With `subscriber`, only what that subscriber of the scenario got is compared.
+        """
+        name = topic or self.output.name
+        got = self._heard(name, subscriber, reference=False)
+        expected = self._heard(name, subscriber, reference=True)
+        if expected and not got:
+            self._never(name, f"{len(expected)} messages", subscriber)
+        pairs = list(zip(expected, got, strict=False))
+        for number, (wanted, came) in enumerate(pairs, start=1):
+            part = f"message {number} on {name}"
+            messages = [(e.fields, g.fields) for e, g in pairs]
+            if not self._is_shifted(expected, got, field, tolerance):
+                self.compare_at(came.at, part, field, came.fields, wanted.fields, tolerance, name, messages)
+            if time is not None and abs(came.at - wanted.at) > time * SECOND + 1:
+                self._wrong_time(part, wanted, came, pairs)
+        if len(got) != len(expected):
+            told = f"expected {len(expected)} messages on {name}, got {len(got)}."
+            self.wrong_at(None, told, "", f"{len(expected)} messages", len(got), self._shift(expected, got, field))
+        if shift := self._shift(expected, got, field, tolerance):
+            self.wrong_at(got[0].at, "the messages are not in step.", name, "each in its turn", "one late", shift)
+
+    def must_keep_rate(self, hz: float, topic: str = "", tolerance: float = 0.02) -> None:
+        """The node must publish `hz` times per second of simulated time on average, within `tolerance` (0.02: 2 %).
+
+        It must go on for as long as the solution does.
+        """
+        name = topic or self.output.name
+        got, expected = self.messages_on(name), self.messages_on(name, reference=True)
+        if len(got) < 2:
+            self._never(name, f"{hz:g} messages per second") if not got else None
+            self.wrong_at(got[0].at, f"only one message was published on {name}.", "", f"{hz:g} Hz", "one message")
+        rate = (len(got) - 1) * SECOND / max(got[-1].at - got[0].at, 1)
+        if abs(rate / hz - 1) > tolerance:
+            told = f"expected {hz:g} messages per second on {name}, got {rate:.4g}."
+            self.wrong_at(None, told, "", f"{hz:g} Hz", f"{rate:.4g} Hz", _of_rate(rate / hz, hz, rate))
+        if expected and expected[-1].at - got[-1].at > 2 * SECOND / hz:
+            last = seconds(got[-1].at)
+            told = f"your node published nothing on {name} after that, but must go on."
+            self.wrong_at(got[-1].at, told, "", f"{hz:g} Hz to the end", f"the last message at {last:.2f} s")
+
+    def must_have_no_gap(self, longest: float, topic: str = "", start: float = 0.0, end: float | None = None) -> None:
+        """No two messages may be more than `longest` s of simulated time apart, between `start` and `end` (s).
+
+        Also from `start` to the first message, and from the last to `end` where it is given.
+        """
+        name = topic or self.output.name
+        times = [seconds(one.at) for one in self.messages_on(name)]
+        inside = [at for at in times if at >= start and (end is None or at <= end)]
+        moments = [start, *inside, *([end] if end is not None else [])]
+        for before, after in itertools.pairwise(moments):
+            if after - before > longest + 1e-9:
+                told = f"nothing was published on {name} for {after - before:.2f} s, from {before:.2f} s on."
+                told += " Does a callback wait or sleep meanwhile?"
+                at = round(before * SECOND) + START
+                self.wrong_at(at, told, "", f"a gap of at most {longest:g} s", f"{after - before:.2f} s")
+        if not inside:
+            self._never(name, f"a message every {longest:g} s")
+
+    def must_stamp(self, topic: str = "", field: str = "header.stamp", within: float = 0.001) -> None:
+        """Each message's stamp must be the node's time when it is published, within so many seconds."""
+        name = topic or self.output.name
+        messages = self.messages_on(name)
+        stamps = [_nanoseconds(field_of(one.fields, field)) for one in messages]
+        for number, (one, stamp) in enumerate(zip(messages, stamps, strict=True), start=1):
+            if abs(stamp - one.at) > within * SECOND:
+                wanted, came = shown(_stamp(one.at)), shown(_stamp(stamp))
+                told = f"expected {field} {wanted}, the time when it was published, got {came}."
+                self.wrong_at(one.at, told, f"message {number} on {name}", wanted, came, _of_stamps(stamps))
+
+    def _heard(self, topic: str, subscriber: str, reference: bool) -> tuple[Received, ...]:
+        recording = self._reference if reference else self.recording
+        return tuple(one for one in recording.received if one.topic == topic and one.subscriber == subscriber)
+
+    def _never(self, topic: str, expected: str, subscriber: str = "") -> None:
+        ends = [end for end in self.recording.end_points if end.kind == "publisher"]
+        mine = [end for end in ends if end.topic == topic]
+        if not mine:
+            names = ", ".join(sorted({end.topic for end in ends})) or "none"
+            told = f"your node does not publish on {topic}. It publishes on: {names}."
+        elif subscriber and self.messages_on(topic):
+            told = f"the subscriber “{subscriber}” got nothing on {topic}."
+            if any(end.durability == "volatile" for end in mine):
+                told += " Your publisher is volatile: who joins late gets nothing that was published before."
+        else:
+            told = f"your node has a publisher on {topic}, but never published anything."
+        self.wrong_at(None, told, "", expected, "none")
+
+    def _is_shifted(self, expected: Sequence[Received], got: Sequence[Received], field: str, tolerance: float) -> bool:
+        return bool(self._shift(expected, got, field, tolerance))
+
+    def _shift(
+        self, expected: Sequence[Received], got: Sequence[Received], field: str, tolerance: float = TOLERANCE
+    ) -> str:
+        """Whether each message is the one that was expected before, or the one after."""
+        wanted = [field_of(one.fields, field) for one in expected]
+        came = [field_of(one.fields, field) for one in got]
+        if len(wanted) < 4 or len(came) < 4 or equal(came[: len(wanted)], wanted[: len(came)], tolerance):
+            return ""
+        for mine, its, told in ((came[1:], wanted, "one message late"), (came, wanted[1:], "one message early")):
+            count = min(len(mine), len(its))
+            if count >= 3 and equal(mine[:count], its[:count], tolerance) and len({repr(one) for one in mine}) > 1:
+                return f"Every message is {told}."
+        return ""
+
+    def _wrong_time(
+        self, part: str, wanted: Received, came: Received, pairs: Sequence[tuple[Received, Received]]
+    ) -> None:
+        late = [(got.at - expected.at) / SECOND for expected, got in pairs]
+        at, general = seconds(wanted.at), ""
+        if len(late) >= 3 and max(late) - min(late) < 0.02 * abs(late[0]):
+            general = f"Every message comes {abs(late[0]):.2f} s too {'late' if late[0] > 0 else 'early'}."
+        told = f"it was expected at {at:.2f} s, got it at {seconds(came.at):.2f} s."
+        self.wrong_at(came.at, told, part, f"{at:.2f} s", f"{seconds(came.at):.2f} s", general)
+
+
+def _of_rate(ratio: float, hz: float, rate: float) -> str:
+    if abs(ratio * COMPUTER_CLOCK - 1) < 0.02:
+        return "Your node waits by the computer's clock (time.sleep or a wall timer), which goes at another speed here."
+    if abs(rate * hz - 1) < 0.02 * hz * rate and hz != 1:
+        return f"It publishes every {hz:g} s: a timer takes the period in seconds, not the rate."
+    return ""
+
+
+def _of_stamps(stamps: Sequence[int]) -> str:
+    if not any(stamps):
+        return "Every stamp is 0: nobody filled it in."
+    if all(stamp > COMPUTER_STAMP * SECOND for stamp in stamps):
+        return "Every stamp is the computer's time. Take the time from the node's clock: self.get_clock().now()."
+    if len(stamps) > 2 and len(set(stamps)) == 1:
+        return "Every stamp is the same."
+    return ""
+
+
+def _nanoseconds(stamp: dict[str, int]) -> int:
+    return int(stamp["sec"]) * SECOND + int(stamp["nanosec"])
+
+
+def _stamp(nanoseconds: int) -> dict[str, int]:
+    return dict(zip(("sec", "nanosec"), divmod(nanoseconds, SECOND), strict=True))

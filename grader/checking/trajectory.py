@@ -1,0 +1,120 @@
+"""Helpers for closed loops: whether what is controlled reaches a place in time, without overshoot, and stays."""
+
+from __future__ import annotations
+
+import math
+
+from grader.checking.recorded import Recorded, field_of, seconds
+from grader.recording import Received, Sent
+from grader.scenario.scenario import SECOND, START
+
+Place = dict[str, float]
+
+
+class TrajectoryChecks(Recorded):
+    """The way of something that publishes where it is: the scenario's world, or the node itself."""
+
+    def trajectory(self, topic: str, *fields: str) -> list[tuple[float, tuple[float, ...]]]:
+        """(seconds after the start, values of `fields`) of each message on `topic`, whoever published it."""
+        messages: list[Sent | Received] = [*self.recording.sent]
+        messages += [one for one in self.recording.received if not one.subscriber]
+        on_it = sorted((one for one in messages if one.topic == topic), key=lambda one: one.at)
+        if not on_it:
+            raise ValueError(f"there is no message on {topic} in the scenario {self.scenario}.")
+        return [(seconds(one.at), tuple(float(field_of(one.fields, name)) for name in fields)) for one in on_it]
+
+    def must_reach(
+        self,
+        topic: str,
+        place: Place,
+        tolerance: float,
+        within: float,
+        overshoot: float | None = None,
+        stay: bool = True,
+        start: float = 0.0,
+    ) -> None:
+        """What publishes its place on `topic` must be within `tolerance` of `place` by `within` s after `start`.
+
+        `place` has a value for each field that counts: `{"x": 9.0, "y": 2.0}`. With `overshoot` it must not go further
+        beyond it than that, as seen from where it was at `start`. Unless `stay` is False it must not leave it again.
+        """
+        way = [(at, point) for at, point in self.trajectory(topic, *place) if at >= start - 1e-9]
+        goal, unit = tuple(place.values()), self.unit_of(next(iter(place)), topic)
+        reached = next((at for at, point in way if math.dist(point, goal) <= tolerance), None)
+        words = _words(place)
+        if reached is None or reached - start > within + 1e-9:
+            self._never_there(way, goal, words, tolerance, within, unit, reached, start)
+        assert reached is not None
+        if overshoot is not None:
+            self._beyond(way, goal, words, overshoot, unit)
+        left = next((at for at, p in way if at > max(reached, start + within) and math.dist(p, goal) > tolerance), None)
+        if stay and left is not None:
+            told = f"it reached {words} at {reached:.2f} s, but did not stay there."
+            self.wrong_at(_ns(left), told, "", f"to stay within {_measure(tolerance, unit)}", f"left at {left:.2f} s")
+
+    def _never_there(
+        self,
+        way: list[tuple[float, tuple[float, ...]]],
+        goal: tuple[float, ...],
+        words: str,
+        tolerance: float,
+        within: float,
+        unit: str,
+        reached: float | None,
+        start: float,
+    ) -> None:
+        wanted = f"within {_measure(tolerance, unit)} of {words} after {within:g} s"
+        if reached is not None:
+            told = f"it was expected {wanted}, but got there only after {reached - start:.2f} s."
+            self.wrong_at(_ns(reached), told, "", wanted, f"after {reached - start:.2f} s")
+        at, closest = min(way, key=lambda one: math.dist(one[1], goal))
+        distance = math.dist(closest, goal)
+        told = f"it was expected {wanted}; it came no closer than {_measure(distance, unit)}."
+        self.wrong_at(_ns(at), told, "", wanted, _measure(distance, unit), _of_way(way, goal))
+
+    def _beyond(
+        self,
+        way: list[tuple[float, tuple[float, ...]]],
+        goal: tuple[float, ...],
+        words: str,
+        overshoot: float,
+        unit: str,
+    ) -> None:
+        begin = way[0][1]
+        length = math.dist(begin, goal)
+        if not length:
+            return
+        ahead = [(g - b) / length for b, g in zip(begin, goal, strict=True)]
+        for at, point in way:
+            beyond = sum(a * (p - g) for a, p, g in zip(ahead, point, goal, strict=True))
+            if beyond > overshoot + 1e-9:
+                furthest = max(sum(a * (p - g) for a, p, g in zip(ahead, q, goal, strict=True)) for _, q in way)
+                wanted, came = f"at most {_measure(overshoot, unit)}", _measure(furthest, unit)
+                self.wrong_at(_ns(at), f"it goes {came} beyond {words}; {wanted} is allowed.", "", wanted, came)
+
+
+def _of_way(way: list[tuple[float, tuple[float, ...]]], goal: tuple[float, ...]) -> str:
+    """What is systematically wrong with a way that leads nowhere."""
+    begin, end = way[0][1], way[-1][1]
+    length = math.dist(begin, goal)
+    if all(math.dist(point, begin) < 1e-6 for _, point in way):
+        return "It never moved."
+    if math.dist(end, goal) > length and min(math.dist(point, goal) for _, point in way) > 0.99 * length:
+        return "It moves away from there: is a sign wrong?"
+    last = [point for at, point in way if at >= way[-1][0] - 1.0]
+    if len(last) > 1 and all(math.dist(point, end) < 1e-6 for point in last):
+        return f"It stopped {math.dist(end, goal):.3g} away."
+    return ""
+
+
+def _words(place: Place) -> str:
+    return ", ".join(f"{name} = {value:g}" for name, value in place.items())
+
+
+def _measure(value: float, unit: str) -> str:
+    return f"{value:.3g}{f' {unit}' if unit else ''}"
+
+
+def _ns(at: float) -> int:
+
+    return START + round(at * SECOND)
