@@ -23,7 +23,7 @@ def test_drives(ahead: Run) -> None:
 
 
 @check(
-    points=18,
+    points=16,
     hint="The angle to the goal is atan2(goal.y - pose.y, goal.x - pose.x). Turn by its difference to pose.theta.",
     depends=[test_drives],
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 from grader.checking import Run, check, fail
@@ -27,7 +28,7 @@ def test_stands_still_without_a_goal(no_goal: Run) -> None:
 
 
 @check(
-    points=12,
+    points=10,
     hint="Bring the difference of the two angles back to between -pi and pi: atan2(sin(d), cos(d)) does.",
     depends=REACHES,
     misconception="angle not wrapped",
@@ -36,7 +37,7 @@ def test_stands_still_without_a_goal(no_goal: Run) -> None:
 def test_turns_the_shorter_way(short_way: Run) -> None:
     """It turns the shorter way, also where that goes past 180 degrees."""
     headings = [theta for _, (theta,) in short_way.trajectory(POSE, "theta")]
-    turned = sum(abs(math.remainder(b - a, math.tau)) for a, b in zip(headings, headings[1:], strict=False))
+    turned = sum(abs(math.remainder(b - a, math.tau)) for a, b in itertools.pairwise(headings))
     if turned > math.pi:
         told = f"the goal is 0.83 rad to the left, but the turtle turned by {turned:.2f} rad."
         short_way.wrong_at(None, told, "", "at most half a turn", f"{turned:.2f} rad")
@@ -65,7 +66,7 @@ def test_does_not_go_past_the_goal(ahead: Run) -> None:
 
 
 @check(
-    points=8,
+    points=6,
     hint="Wait for the next goal when one is reached.",
     depends=REACHES,
     rule="From then on the turtle stands still, until there is another goal.",
@@ -76,7 +77,7 @@ def test_reaches_the_next_goal(next_goal: Run) -> None:
 
 
 @check(
-    points=10,
+    points=8,
     hint="on_goal replaces the goal, whatever the turtle does.",
     depends=REACHES,
     misconception="sticks to the first goal",
