@@ -66,7 +66,7 @@ def test_emergency_switches_off(emergency: Run) -> None:
 @check(
     points=7,
     hint="Releasing the emergency stop allows to switch on. It does not switch on.",
-    depends=["test_emergency_switches_off"],
+    depends=["test_success", "test_emergency_switches_off"],
     rule="the motors stay as they are, which is off, until somebody asks for them.",
 )
 def test_released(released: Run) -> None:
