@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -37,6 +38,10 @@ class SpinJob:
     pace: float | None = None
     data_bytes: int = 8_000_000
     """What the program may publish in all messages together, over lockstep."""
+    programs: tuple[Program, ...] = ()
+    """The programs of a submission of several, in place of `program`."""
+    companions: tuple[Program, ...] = ()
+    """The author's own."""
 
     def run(self, nursery: Nursery, ready: Callable[[], None]) -> Recording:
         """The recording of the spin."""
@@ -51,11 +56,17 @@ class SpinJob:
         from grader.runner.run import run
         from rmw_lockstep.hub import Limits as HubLimits
 
-        def start(hub: Path) -> Student:
-            return nursery.start(replace(self.program, hub=hub), self.isolation, self.limits, self.core)
+        def start(program: Program, hub: Path) -> Student:
+            return nursery.start(replace(program, hub=hub), self.isolation, self.limits, self.core)
 
         ready()
-        return run(self._task, start, HubLimits(data_bytes=self.data_bytes))
+        return run(
+            self._task,
+            partial(start, self.program),
+            HubLimits(data_bytes=self.data_bytes),
+            {program.main: partial(start, program) for program in self.programs},
+            [partial(start, program) for program in self.companions],
+        )
 
     def _over_fast_dds(self, nursery: Nursery, ready: Callable[[], None]) -> Recording:
         from grader.crew.domain import domain_for

@@ -17,8 +17,8 @@ class Exercise:
 
     `task` is the text for the student, in Markdown. `points` is what all checks give together.
     `solution_folder` holds the author's solution, and is None in a student's copy of the course. With `public_only` the
-    hidden checks are left out, as in a student's copy. `programs` are the files of a submission of several programs;
-    `file_name`, `class_name` and `node_name` are then those of the first.
+    hidden checks are left out, as in a student's copy. `programs` are the several programs in one submission, if it
+    has any; `class_name` and `node_name` are then those of the first.
     """
 
     name: str

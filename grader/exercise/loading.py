@@ -61,18 +61,18 @@ def load(folder: Path | str) -> Exercise:
 
 
 def _main_program(top: Table, parts: tuple[ProgramFile, ...]) -> tuple[str, str, str]:
-    """File, class and node of the only program, or of the first of several."""
-    if parts:
-        for key in ("file", "class", "node"):
-            if key in top.entries:
-                top.fault(
-                    key, f"{key} stands next to [[program]]", "With several programs, write it in each [[program]]."
-                )
-        return parts[0].file, parts[0].class_name, parts[0].node
+    """The file that is handed in; class and node of the only program, or of the first of several."""
     file_name = _text(top, "file")
     if not re.fullmatch(r"[a-z_][a-z0-9_]*\.py", file_name):
         top.fault("file", f"file = {file_name!r}", "Give a Python file name, such as 'my_node.py'.")
-    return file_name, top.text("class"), _text(top, "node")
+    if not parts:
+        return file_name, top.text("class"), _text(top, "node")
+    for key in ("class", "node"):
+        if key in top.entries:
+            top.fault(
+                key, f"{key} stands next to [[program]]", f"With several programs, write {key} in each [[program]]."
+            )
+    return file_name, parts[0].class_name, parts[0].node
 
 
 def _read(file: Path) -> dict[str, Any]:

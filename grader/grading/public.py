@@ -7,7 +7,7 @@ the recordings in `public.json`, which is made from the author's folders by `pub
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from grader.checking.listing import Listed
@@ -22,9 +22,12 @@ from grader.recording.store import from_plain, plain
 from grader.sandbox import Isolation
 from grader.scenario import Message, Scenario
 from grader.scenario.declared import declared
+from grader.scenario.store import NotForStudents
+from grader.scenario.store import from_plain as from_plain_scenario
+from grader.scenario.store import plain as plain_scenario
 
-#: Changes when older versions can't read the file any more.
-FORMAT = 1
+#: Changes when older versions can't read the file any more. Format 1 had messages only.
+FORMAT = 2
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,7 @@ def to_json(exercise: Exercise, public: PublicPart) -> str:
         "format": FORMAT,
         "exercise": exercise.name,
         "hidden": {"checks": public.hidden_checks, "points": public.hidden_points},
-        "scenarios": [asdict(scenario) for scenario in public.scenarios],
+        "scenarios": [_for_students(exercise, scenario) for scenario in public.scenarios],
         "expected": plain(expected),
     }
     return json.dumps(entries, ensure_ascii=False, separators=(",", ":")) + "\n"
@@ -78,7 +81,7 @@ def _read(exercise: Exercise) -> PublicPart:
     mend = "Take it from the course's handout again."
     try:
         entries: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
-        if entries["format"] != FORMAT:
+        if entries["format"] not in (1, FORMAT):
             mend = "Install the spinbook that came with the handout: pip install -r requirements.txt"
             raise ExerciseError(file, f"it has the format {entries['format']}, not {FORMAT}", mend)
         public = PublicPart(
@@ -96,6 +99,20 @@ def _read(exercise: Exercise) -> PublicPart:
     return public
 
 
+def _for_students(exercise: Exercise, scenario: Scenario) -> Any:
+    try:
+        return plain_scenario(scenario)
+    except NotForStudents as error:
+        found = f"the scenario {scenario.name}, which a public check uses, runs {error} of this file"
+        mend = "Students don't get this file. Use a world or replies without code of your own, or hide the check."
+        raise ExerciseError(exercise.scenarios_file, found, mend, scenario.line or None) from None
+
+
 def _scenario(entries: dict[str, Any]) -> Scenario:
+    if "is" in entries:
+        scenario = from_plain_scenario(entries)
+        if not isinstance(scenario, Scenario):
+            raise TypeError("a scenario is something else")
+        return scenario
     messages = tuple(Message(**message) for message in entries["messages"])
     return Scenario(entries["name"], entries["title"], messages, entries["interrupt"])

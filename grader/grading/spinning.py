@@ -16,8 +16,8 @@ from grader.grading.helping import Helping
 from grader.grading.options import Options
 from grader.grading.spins import Spins
 from grader.recording import Ending, Recording
-from grader.sandbox import Isolation, Middleware, choose_middleware
-from grader.scenario import Scenario
+from grader.sandbox import Isolation, Middleware, MiddlewareUnavailable, Program, choose_middleware
+from grader.scenario import Companion, Scenario
 from grader.submission import Submission
 
 #: How every program is started.
@@ -43,7 +43,14 @@ class Spinner:
     @property
     def middleware(self) -> Middleware:
         """Over which programs talk. Raises `MiddlewareUnavailable` where the one that is asked for can't be had."""
-        return choose_middleware(self.options.middleware).middleware
+        middleware = choose_middleware(self.options.middleware).middleware
+        beyond = next((one for one in self.scenarios if not one.is_filter), None)
+        if middleware is Middleware.FASTDDS and beyond:
+            told = (
+                f"The scenario {beyond.name} does more than publish messages, which the middleware 'fastdds' can't do."
+            )
+            raise MiddlewareUnavailable(f"{told} Grade this exercise with --middleware lockstep.")
+        return middleware
 
     def spin(self, submission: Submission) -> dict[str, Recording]:
         """The recording of each scenario. Raises `HostFault` when one can't be had.
@@ -81,6 +88,11 @@ class Spinner:
             readonly=(*((PROFILE,) if fast_dds else ()), *submission.program.readonly),
             hidden=(self.exercise.folder, *([self.exercise.solution_folder] if self.exercise.solution_folder else [])),
         )
+        own = {one.file: one.arguments for one in scenario.programs}
+        programs = tuple(
+            replace(program, main=one.file, arguments=(*own.get(one.file, ()), *program.arguments))
+            for one in self.exercise.programs
+        )
         cores = sorted(os.sched_getaffinity(0))
         return SpinJob(
             exercise=self.exercise,
@@ -94,6 +106,8 @@ class Spinner:
             core=cores[number % len(cores)] if self.options.core is None else self.options.core,
             pace=self.options.pace,
             data_bytes=max(LEAST_BYTES, MOST_BYTES // len(self.scenarios)),
+            programs=programs,
+            companions=tuple(_companion(one) for one in scenario.companions),
         )
 
 
@@ -103,6 +117,10 @@ def _likewise(first: Recording, scenario: Scenario) -> Recording:
     return Recording(
         scenario.name, (), (), first.nodes, (), "none", False, Ending(first.ending.outcome, first.ending.story)
     )
+
+
+def _companion(one: Companion) -> Program:
+    return Program(one.file, {one.file: one.text.encode()}, (*one.arguments, *ARGUMENTS), STUDENTS)
 
 
 def arguments(scenario: Scenario) -> tuple[str, ...]:

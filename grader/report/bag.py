@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import dataclasses
+import json
 import shutil
 from pathlib import Path
 from typing import Any
 
 from grader.grading import Grade
-from grader.recording import Recording
+from grader.recording import Event, Recording
 from grader.recording.recording import Fields
+from interface_compiler import prefixes
 
 #: The solution's answers are in the bag, too, under this name in front of the topic's.
 REFERENCE = "/reference"
+
+#: Calls, goals, parameters and ends of programs are on this topic, as JSON in a text each.
+EVENTS, TEXT = "/spinbook/events", "std_msgs/msg/String"
 
 
 class NoBagWriter(Exception):
@@ -38,6 +44,7 @@ def write_bags(grade: Grade, folder: Path) -> list[Path]:
         with Writer(bag, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
             connections: dict[str, Any] = {}
             for at, topic, kind, fields in _in_order(recording, grade.references[name]):
+                _learn(types, kind)
                 if topic not in connections:
                     connections[topic] = writer.add_connection(topic, kind, typestore=types)
                 writer.write(connections[topic], at, types.serialize_cdr(_message(types, kind, fields), kind))
@@ -49,7 +56,31 @@ def _in_order(recording: Recording, reference: Recording) -> list[tuple[int, str
     messages = [(sent.at, sent.topic, sent.type, sent.fields) for sent in recording.sent]
     messages += [(got.at, got.topic, got.type, got.fields) for got in recording.received]
     messages += [(got.at, REFERENCE + got.topic, got.type, got.fields) for got in reference.received]
+    for prefix, one in (("", recording), (REFERENCE, reference)):
+        others = [event for event in one.timeline if not isinstance(event.item, (Sent, Received))]
+        messages += [(event.at, prefix + EVENTS, TEXT, {"data": _told(event)}) for event in others]
     return sorted(messages, key=lambda message: (message[0], message[1]))
+
+
+def _told(event: Event) -> str:
+    return json.dumps({"what": event.what, **dataclasses.asdict(event.item)}, ensure_ascii=False)
+
+
+def _learn(types: Any, kind: str) -> None:
+    """Types that rosbags does not know are described by the packages that have them."""
+    from rosbags.typesys import get_types_from_msg
+
+    if kind in types.fielddefs:
+        return
+    package, _, name = kind.partition("/")
+    prefix = prefixes.prefix_of(package, prefixes.installed())
+    assert prefix
+    found: dict[str, Any] = get_types_from_msg(prefixes.definitions_of(package, prefix)[f"{name}.msg"], kind)
+    types.register(found)
+    for _, (node, detail) in found[kind][1]:
+        inner, what = detail[0] if node.name not in ("BASE", "NAME") else (node, detail)
+        if inner.name == "NAME":
+            _learn(types, what)
 
 
 def _message(types: Any, kind: str, fields: Fields) -> Any:

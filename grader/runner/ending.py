@@ -10,8 +10,8 @@ from grader.runner.student import Student
 MAY_TAKE_S = 2.0
 
 
-def cut_short(student: Student, file_name: str, source: str, met: bool, sent: int) -> Ending:
-    """The ending of a program that ended by itself, after `sent` messages; `met` is whether it had got so far."""
+def cut_short(student: Student, file_name: str, source: str, met: bool, when: str) -> Ending:
+    """The ending of a program that ended by itself, `when`; `met` is whether it had got so far as to be ready."""
     exit_ = student.poll() or student.kill()
     log = student.output().text
     why, line = of_exit(exit_, log, file_name, source)
@@ -21,4 +21,4 @@ def cut_short(student: Student, file_name: str, source: str, met: bool, sent: in
         if exit_.code == 0 and not line:
             why = "it came to its end and created no node that spins. Is main() called, and does it call rclpy.spin()?"
         return Ending("did-not-start", f"Your program did not start: {why}", line)
-    return Ending("crashed", f"Your program ended at message {sent}: {why}", line)
+    return Ending("crashed", f"Your program ended {when}: {why}", line)

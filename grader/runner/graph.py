@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from grader.recording import EndPoint
 from grader.recording.recording import EndPointKind
 from rmw_lockstep.hub import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, Hub
@@ -34,17 +36,21 @@ _KINDS: dict[int, EndPointKind] = {
 }
 
 
-def nodes(graph: Graph) -> tuple[str, ...]:
-    """Full names of the student's nodes, such as `/joint_velocity`, sorted."""
-    return tuple(node.full_name for node in graph.program_nodes())
+def _nobody(process: int) -> bool:
+    return False
 
 
-def end_points(graph: Graph) -> tuple[EndPoint, ...]:
+def nodes(graph: Graph, ours: Callable[[int], bool] = _nobody) -> tuple[str, ...]:
+    """Full names of the student's nodes, such as `/joint_velocity`, sorted; not those of processes that are `ours`."""
+    return tuple(node.full_name for node in graph.program_nodes() if not ours(node.id >> 32))
+
+
+def end_points(graph: Graph, ours: Callable[[int], bool] = _nobody) -> tuple[EndPoint, ...]:
     """The student's end points, sorted; those that every node has are left out, those of an action are one."""
     found = [
         recorded
         for end_point in graph.program_end_points()
-        if (recorded := _recorded(end_point, graph.nodes[end_point.node].full_name))
+        if not ours(end_point.process) and (recorded := _recorded(end_point, graph.nodes[end_point.node].full_name))
     ]
     return tuple(sorted(found, key=lambda one: (one.topic, one.kind, one.node)))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -50,9 +50,18 @@ class Listening:
 class Recorder:
     """Subscribes to the topics that the exercise's program is to publish, and to those that a scenario adds."""
 
-    def __init__(self, node: HubNode, topics: Sequence[tuple[str, str]], earliest: int = 0) -> None:
-        """`topics` are names and types. What comes before `earliest` (ns) is recorded as if it came then."""
-        self._node, self._earliest = node, earliest
+    def __init__(
+        self,
+        node: HubNode,
+        topics: Sequence[tuple[str, str]],
+        earliest: int = 0,
+        ours: Callable[[int], bool] = lambda process: False,
+    ) -> None:
+        """`topics` are names and types. What comes before `earliest` (ns) is recorded as if it came then.
+
+        What comes from a process that is `ours` is not recorded.
+        """
+        self._node, self._earliest, self._ours = node, earliest, ours
         self._listening: list[Listening] = []
         self._heard: list[tuple[int, Heard]] = []
         self._own: dict[str, Subscription] = {}
@@ -75,7 +84,7 @@ class Recorder:
         self._listening.append(listening)
 
         def keep(heard: Heard) -> None:
-            if self._paused:
+            if self._paused or self._ours(heard.publisher.process):
                 return
             self._heard.append((number, heard))
             if len(self._heard) > MOST_MESSAGES:

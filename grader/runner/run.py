@@ -10,7 +10,7 @@ import shutil
 import tempfile
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -31,6 +31,7 @@ from grader.runner.starting import wait_until_up
 from grader.runner.stopped import Stopped
 from grader.runner.student import Student
 from grader.runner.task import Task
+from grader.runner.team import Start, Team
 from grader.runner.violations import story_of
 from grader.scenario import Message
 from grader.scenario.scenario import SECOND, START, Content
@@ -54,18 +55,32 @@ DEAF = (
 STEP = Allowance(ENDLESS.format(3.0), OUTSIDE.format(3.0))
 
 
-def run(task: Task, start: Callable[[Path], Student], limits: Limits | None = None) -> Recording:
+def run(
+    task: Task,
+    start: Start,
+    limits: Limits | None = None,
+    programs: Mapping[str, Start] | None = None,
+    companions: Sequence[Start] = (),
+) -> Recording:
     """Start the student's program and run it through the scenario; every fault of the student's is in the recording.
 
     `start` gets the socket of the hub, which each of the program's processes has to be connected to before it does
-    anything of the student's. Anything raised is a fault of the machine's or of ours.
+    anything of the student's. A submission of several programs has `programs` in its place, by their files;
+    `companions` are the author's own.
+
+    Raises `ExerciseError` where the author has something to mend; anything else raised is a fault of the machine's or
+    of ours.
     """
     began = time.monotonic()
     # The path of a socket has to be short, so the folder is not one of the caller's.
     folder = Path(tempfile.mkdtemp(prefix="spinbook-hub-"))
     try:
         with Hub(folder, limits) as hub:
-            student = start(hub.path)
+            student: Student
+            if programs or companions:
+                student = Team(hub, folder, task.scenario, programs or {task.file_name: start}, companions)
+            else:
+                student = start(hub.path)
             try:
                 return Run(task, student, hub).run(began)
             finally:
@@ -81,7 +96,9 @@ class Run:
         self._task, self._student, self._hub = task, student, hub
         rig = hub.node("rig")
         self._clock = rig.publisher("/clock", "rosgraph_msgs/msg/Clock", OFFER)
-        self._recorder = Recorder(rig, recorded_topics(task), 0 if task.scenario.is_filter else START)
+        self._team = student if isinstance(student, Team) else None
+        earliest = 0 if task.scenario.is_filter else START
+        self._recorder = Recorder(rig, recorded_topics(task), earliest, self._is_ours)
         reference = hub.node(task.exercise.reference_node)
         self._publishers = ReferencePublishers(reference, task.scenario)
         self._parameters = Parameters(hub, rig)
@@ -90,7 +107,7 @@ class Run:
         self._script: Script | None = None
         if not task.scenario.is_filter:
             ends = Ends(hub, reference, self._clocks)
-            self._script = Script(ends, task, self._publishers, self._recorder, self._publish)
+            self._script = Script(ends, task, self._publishers, self._recorder, self._publish, self._team)
         for message in task.scenario.messages:
             if message.at < START:
                 self._publishers.publish(message)
@@ -100,23 +117,27 @@ class Run:
         self._sim_time = False
         self._asks_in_vain = False
         self._lockstep_seconds = 0.0
-        hub.main = student.pid
+        hub.main = None if self._team else student.pid
         hub.patience = self._budget.look
         hub.before_end = self._remember_end_points
 
     def _pids(self) -> set[int]:
         return {link.pid for link in self._hub.links}.union(self._student.pids())
 
+    def _is_ours(self, process: int) -> bool:
+        """Whether a process is one of the author's companions."""
+        return self._team is not None and self._team.is_companions(process)
+
     def _remember_end_points(self) -> None:
         """What a program had before it crashed; not what was left when it had taken most of it down itself."""
-        found = end_points(self._hub.graph)
+        found = end_points(self._hub.graph, self._is_ours)
         if len(found) >= len(self._end_points):
             self._end_points = found
 
     def run(self, began: float) -> Recording:
         """The whole run, from the first sign of the program to its end."""
         ending = self._ending()
-        self._end_points = self._end_points or end_points(self._hub.graph)
+        self._end_points = self._end_points or end_points(self._hub.graph, self._is_ours)
         self._student.kill()  # before the last look at what has come: it may never stop publishing
         ending, received = self._take_everything(ending)
         return Recording(
@@ -143,6 +164,7 @@ class Run:
             "goals": script.goals(),
             "parameters": script.changes(),
             "readings": script.readings(),
+            "exits": tuple(self._team.exits) if self._team else (),
         }
 
     def _ending(self) -> Ending:
@@ -164,7 +186,15 @@ class Run:
             return Ending("over-limit", story_of(violation))
         except Gone:
             self._see_that_it_was_the_program()
-            return cut_short(self._student, *program, self._is_up, len(self._publishers.sent))
+            if self._team and self._team.ended:
+                program = (self._team.ended, task.source)
+            return cut_short(self._student, *program, self._is_up, self._when())
+
+    def _when(self) -> str:
+        """The present moment, in words."""
+        if self._script is None:
+            return f"at message {len(self._publishers.sent)}"
+        return f"{(self._clocks.at - START) / SECOND:.2f} s after the start"
 
     def _see_that_it_was_the_program(self) -> None:
         """Raise what says otherwise."""
@@ -188,10 +218,10 @@ class Run:
 
     def _begin(self) -> None:
         hub = self._hub
-        wait_until_up(hub, lambda: self._publishers.heard)
+        wait_until_up(hub, lambda: self._publishers.heard, lambda: bool(nodes(hub.graph, self._is_ours)))
         self._budget.begin(STEP)
         self._sim_time = self._parameters.use_sim_time(hub.now + SOON)
-        self._nodes = nodes(hub.graph)
+        self._nodes = nodes(hub.graph, self._is_ours)
         self._set_clock(START)
         hub.wait_until_idle()
         self._is_up = True
@@ -206,7 +236,7 @@ class Run:
             self._publish(message)
             self._hub.wait_until_idle()
             self._see_that_it_listens(message)
-        self._end_points = end_points(self._hub.graph)
+        self._end_points = end_points(self._hub.graph, self._is_ours)
         self._go_to(self._clocks.at + AFTERWARDS)
         self._hub.wait_until_idle()
         self._see_that_it_still_answers()
@@ -238,9 +268,18 @@ class Run:
             while content and content[0].at <= at:
                 self._do(content.popleft(), script)
             self._settle(script)
-        self._end_points = end_points(self._hub.graph)
+        self._end_points = self._all_end_points()
+        self._nodes = tuple(sorted({*self._nodes, *nodes(self._hub.graph, self._is_ours)}))
         if not scenario.servers:
             self._see_that_it_still_answers()
+
+    def _all_end_points(self) -> tuple[EndPoint, ...]:
+        """Those that there are, and of several programs also those of one that was killed."""
+        found = end_points(self._hub.graph, self._is_ours)
+        if not self._team:
+            return found
+        gone = tuple(one for one in self._end_points if one not in found)
+        return tuple(sorted((*found, *gone), key=lambda one: (one.topic, one.kind, one.node)))
 
     def _do(self, one: Content, script: Script) -> None:
         if isinstance(one, Message):

@@ -15,17 +15,21 @@ from grader.runner.publishers import ReferencePublishers
 from grader.runner.recorder import Recorder
 from grader.runner.serving import AuthorFault, ServiceServer, unserved
 from grader.runner.task import Task
+from grader.runner.team import Team
 from grader.scenario.scenario import (
     START,
     CancelAll,
     CancelGoal,
     ComeBack,
     GetParameter,
+    Kill,
     Leave,
     Message,
+    Program,
     Request,
     SendGoal,
     SetParameter,
+    StartProgram,
     Step,
     Subscribe,
 )
@@ -45,19 +49,30 @@ class Script:
         publishers: ReferencePublishers,
         recorder: Recorder,
         publish: Callable[[Message], None],
+        team: Team | None = None,
     ) -> None:
         scenario = task.scenario
         self._ends, self._task = ends, task
-        self._publishers, self._recorder = publishers, recorder
+        self._publishers, self._recorder, self._team = publishers, recorder, team
         self._schedule = Schedule()
         self._calls = Calls(ends, scenario)
         self._goals = Goals(ends, scenario)
         self._world: RunningWorld | None = None
         self._servers: dict[str, Peer] = {}
+        for one in scenario.programs:
+            self._plan_program(one)
         for declared in scenario.servers:
             self._add(declared)
         if scenario.world:
             self._world = RunningWorld(ends, self._schedule, scenario.world, publishers, publish)
+
+    def _plan_program(self, one: Program) -> None:
+        team = self._team
+        assert team
+        if one.starts > 0:
+            self._schedule.plan(START + nanoseconds(one.starts), lambda now: team.start(one.file))
+        if one.killed is not None:
+            self._schedule.plan(START + nanoseconds(one.killed), lambda now: team.stop(one.file, now))
 
     def _add(self, declared: DeclaredServer | ActionServer) -> None:
         peer: Peer
@@ -89,6 +104,10 @@ class Script:
             self._recorder.join(step.name, step.topic, step.type, hub_qos(step.qos))
         elif isinstance(step, Leave):
             self._leave(step.name)
+        elif isinstance(step, Kill) and self._team:
+            self._team.stop(step.program, step.at)
+        elif isinstance(step, StartProgram) and self._team:
+            self._team.start(step.program)
         elif isinstance(step, ComeBack) and step.name in self._servers:
             self._servers[step.name].open()
 

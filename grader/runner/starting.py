@@ -27,27 +27,23 @@ NO_NODE_BLOCKED = (
 START = Allowance(NO_NODE_BUSY, NO_NODE_BLOCKED, START_CPU_S, BLOCKED_S)
 
 
-def wait_until_up(hub: Hub, connected: Callable[[], bool]) -> None:
+def wait_until_up(hub: Hub, connected: Callable[[], bool], has_nodes: Callable[[], bool]) -> None:
     """Let the computer's time go on until the program has a node that is ready.
 
-    A node is ready when it has its subscriptions (`connected`), or spins and has had time to make them.
+    A node is ready when it has its subscriptions (`connected`), or spins and has had time to make them. `has_nodes` is
+    whether the program has made any.
 
     Raises:
         Stopped: when there will be no node.
     """
     began = hub.now
     hub.wait_until_idle()
-    while not (has_nodes(hub) and connected()):
+    while not (has_nodes() and connected()):
         wakes = hub.next
-        longest = LONGEST_FOR_SUBSCRIPTIONS if has_nodes(hub) and hub.in_ros else LONGEST
+        longest = LONGEST_FOR_SUBSCRIPTIONS if has_nodes() and hub.in_ros else LONGEST
         if wakes is None or wakes > began + longest:
             break
         hub.advance(wakes)
         hub.wait_until_idle()
-    if not has_nodes(hub):
+    if not has_nodes():
         raise Stopped("did-not-start" if hub.next is None else "timed-out", NO_NODE_BLOCKED)
-
-
-def has_nodes(hub: Hub) -> bool:
-    """Whether the student's program has any."""
-    return bool(hub.graph.program_nodes())

@@ -232,8 +232,10 @@ class Scenario:
     @property
     def is_filter(self) -> bool:
         """Whether messages go in and come out, and nothing else happens: the clock is then set for each message."""
-        only = not (self.steps or self.servers or self.world or self.programs or self.companions)
-        return only and not self.duration and self.rate is None and bool(self.messages)
+        more = self.steps or self.servers or self.world or self.programs or self.companions or self.qos
+        if more or self.duration or self.rate is not None:
+            return False
+        return bool(self.messages) and min(message.at for message in self.messages) >= START
 
     @property
     def clock_rate(self) -> float:

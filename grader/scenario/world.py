@@ -56,10 +56,11 @@ class World:
 
     def __reduce__(self) -> tuple[Callable[..., World], tuple[Any, ...]]:
         """Keep all parts when it crosses from one process to another."""
-        return _world, (self.code, self.period, self.arguments, self.line)
+        return restored, (self.code, self.period, self.arguments, self.line)
 
 
-def _world(code: Code, period: float, arguments: dict[str, Any], line: int) -> World:
+def restored(code: Code, period: float, arguments: dict[str, Any], line: int) -> World:
+    """A world from its parts."""
     world = World(code, period, **arguments)
     object.__setattr__(world, "line", line)
     return world

@@ -36,14 +36,15 @@ def cells_of(content: bytes, exercise: Exercise) -> list[str]:
     for found in (
         [code for name, code in codes if name == exercise.name],
         [code for _, code in codes if magic.search(code)],
-        [code for _, code in codes if definition.search(code)],
+        [code for _, code in codes if exercise.class_name and definition.search(code)],
         [code for _, code in codes if node.search(code)],
     ):
         if found:
             return [_without_magic(code) for code in found]
+    what = f"class {exercise.class_name}" if exercise.class_name else f"node {exercise.node_name}"
     raise NoCell(
-        f"None of the notebook's {len(codes)} code cells is the exercise's. Write the class {exercise.class_name} in "
-        f"the cell that the chapter gives for it; it begins with %%node {stem}."
+        f"None of the notebook's {len(codes)} code cells is the exercise's. Write the {what} in the cell that the "
+        f"chapter gives for it; it begins with %%node {stem}."
     )
 
 

@@ -15,6 +15,7 @@ from grader.exercise import Exercise
 from grader.sandbox import Program
 from grader.submission.executable import find
 from grader.submission.notebook import NoCell, cell_of
+from grader.submission.parts import joined, parts
 from grader.submission.submission import Submission
 from grader.submission.upload import NoUpload, Upload, unpack
 
@@ -35,6 +36,8 @@ def read(given: str, exercise: Exercise) -> Submission:
     A file is a .py, a notebook, or the .zip that `spinbook submit` writes. Raises `NoSubmission` where there is none.
     """
     path = Path(given)
+    if exercise.programs and path.is_dir():
+        return of_source(given, joined(_folder(path)).encode(), exercise)
     if path.suffix not in MOST_BYTES and not os.path.lexists(path):
         if given.count("/") == 1:
             return _executable(given, exercise)
@@ -62,9 +65,15 @@ def read(given: str, exercise: Exercise) -> Submission:
 def of_source(name: str, code: bytes, exercise: Exercise, digest: str = "") -> Submission:
     """A submission of this Python source. It runs under the exercise's file name, whatever it was called."""
     source = code.decode("utf-8", errors="replace")
-    program = Program(exercise.file_name, {exercise.file_name: code})
     problem = "" if code.strip() else "Your file is empty."
-    return Submission(name, digest or _digest(code), exercise.file_name, source, None if problem else program, problem)
+    files = {exercise.file_name: code}
+    if exercise.programs:
+        files = {file: text.encode() for file, text in parts(source).items()}
+        missing = [one.file for one in exercise.programs if one.file not in files]
+        if missing and not problem:
+            problem = f"There is no {missing[0]} in it. Begin its part of the file with a line: # file: {missing[0]}"
+    program = None if problem else Program(next(iter(files)), files)
+    return Submission(name, digest or _digest(code), exercise.file_name, source, program, problem)
 
 
 def of_upload(name: str, content: bytes, exercise: Exercise) -> Submission:
@@ -89,6 +98,8 @@ def _codes(upload: Upload, exercise: Exercise) -> Iterator[bytes]:
     """What in an upload may be the exercise's code, the likeliest first."""
     if exercise.file_name in upload.files:
         yield upload.files[exercise.file_name]
+    if exercise.programs and all(one.file in upload.files for one in exercise.programs):
+        yield joined({name: code for name, code in upload.files.items() if name.endswith(".py")}).encode()
     for name in sorted(upload.files):
         if name.endswith(".ipynb"):
             with contextlib.suppress(NoCell):
@@ -96,6 +107,15 @@ def _codes(upload: Upload, exercise: Exercise) -> Iterator[bytes]:
     programs = [name for name in upload.files if name.endswith(".py")]
     if len(programs) == 1:
         yield upload.files[programs[0]]
+
+
+def _folder(path: Path) -> dict[str, bytes]:
+    """The Python files in a folder."""
+    found = {}
+    for file in sorted(path.glob("*.py")):
+        with contextlib.suppress(_Unusable):
+            found[file.name] = _content(file)
+    return found
 
 
 def _content(path: Path) -> bytes:

@@ -85,19 +85,24 @@ class Hub:
         self._ticks = 0
         self._router = Router(self._use, lambda: self._epoch + self._until, epoch)
         self._poll = select.poll()
-        self._listener = self._listen(folder)
+        self._doors = [self._listen(folder)]
 
     def _listen(self, folder: Path) -> socket.socket:
-        listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        listener, path = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM), folder / SOCKET
         listener.setblocking(False)
-        listener.bind(str(self.path))
-        self.path.chmod(0o666)
+        listener.bind(str(path))
+        path.chmod(0o666)
         folder.chmod(0o711)
         listener.listen(self._use.limits.connections)
         self._poll.register(listener, select.POLLIN)
         return listener
 
     # --- what the owner of the hub does
+
+    def add_door(self, folder: Path) -> Path:
+        """Listen in another folder, too, for another program; `Link.door` counts them from 1. Where it listens."""
+        self._doors.append(self._listen(folder))
+        return folder / SOCKET
 
     def node(self, name: str, namespace: str = "/") -> HubNode:
         """A new node of the hub's own."""
@@ -196,9 +201,11 @@ class Hub:
         for link in self.links:
             link.close()
         self.links.clear()
-        self._listener.close()
-        with contextlib.suppress(FileNotFoundError):
-            self.path.unlink()
+        for listener in self._doors:
+            path = Path(listener.getsockname())
+            listener.close()
+            with contextlib.suppress(FileNotFoundError):
+                path.unlink()
 
     def __enter__(self) -> Hub:
         return self
@@ -247,7 +254,7 @@ class Hub:
         if not behind:
             return False
         resting = [link for link in behind if link.next is None or link.next > self._instant]
-        for link in resting or [min(behind, key=lambda link: link.pid_inside)]:
+        for link in resting or [min(behind, key=lambda link: link.order)]:
             self._see_progress(link)
             self._grant(link, self._instant)
         return True
@@ -297,15 +304,23 @@ class Hub:
         naming = [link for link in self.links if link.idle and link.idle.children]
         if not naming:
             return []
-        here = {link.hello.pid for link in self.links if link.hello}
-        return [link for link in naming if link.idle and not here.issuperset(link.idle.children)]
+        here = {(link.door, link.hello.pid) for link in self.links if link.hello}
+        return [
+            link
+            for link in naming
+            if link.idle and not here.issuperset((link.door, child) for child in link.idle.children)
+        ]
 
     def _accept(self) -> bool:
-        """Let in who waits at the door. Whether there was anybody."""
+        """Let in who waits at any door. Whether there was anybody."""
+        let_in = [self._let_in(door, listener) for door, listener in enumerate(self._doors)]
+        return any(let_in)
+
+    def _let_in(self, door: int, listener: socket.socket) -> bool:
         found = False
         while True:
             try:
-                connection, _ = self._listener.accept()
+                connection, _ = listener.accept()
             except BlockingIOError:
                 return found
             found = True
@@ -314,7 +329,7 @@ class Hub:
             except Violation:
                 connection.close()
                 raise
-            link = Link(connection, self._use.connections, self._use)
+            link = Link(connection, self._use.connections, self._use, door)
             link.wait_at_most(TICK_S)
             self.links.append(link)
             self._poll.register(connection, select.POLLIN)
@@ -328,7 +343,7 @@ class Hub:
 
         A new process waits until the others are idle: then its parent's time is known.
         """
-        waiting = sorted((one for one in self.links if one.hello and not one.began), key=lambda one: one.pid_inside)
+        waiting = sorted((one for one in self.links if one.hello and not one.began), key=lambda one: one.order)
         now = max((link.now for link in self.links if link.began), default=self._until)
         for link in waiting:
             self._router.welcome(link, now)
@@ -376,5 +391,7 @@ class Hub:
         link.close()
         self._router.forget(link)
         for other in self.links:
+            if link.door != other.door:
+                continue
             if link.hello and other.last_idle and link.hello.pid in other.last_idle.children:
                 other.queue(frames.ASK)

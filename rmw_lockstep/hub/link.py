@@ -22,10 +22,13 @@ _WAIT = struct.Struct("ll")
 
 
 class Link:
-    """One process. `number` is what its identities begin with; `pid` is its number as the hub sees it."""
+    """One process. `number` is what its identities begin with; `pid` is its number as the hub sees it.
 
-    def __init__(self, sock: socket.socket, number: int, use: Use) -> None:
-        self.socket, self.number = sock, number
+    `door` is the number of the door that it came in by: that of its program.
+    """
+
+    def __init__(self, sock: socket.socket, number: int, use: Use, door: int = 0) -> None:
+        self.socket, self.number, self.door = sock, number, door
         self.pid, self.uid = self._peer()
         self.hello: Hello | None = None
         self.began = self.joined = False
@@ -61,6 +64,11 @@ class Link:
     def pid_inside(self) -> int:
         """The number of the process as it sees it itself: in the order in which the program's processes were made."""
         return self.hello.pid if self.hello else 0
+
+    @property
+    def order(self) -> tuple[int, int]:
+        """Where it stands among all processes, the same in each run: by program, then as they were made."""
+        return self.door, self.pid_inside
 
     def wait_at_most(self, seconds: float) -> None:
         """How long `read` waits. A blocking read with a time-out is one system call, where `settimeout` takes two."""

@@ -42,8 +42,8 @@ class Router:
         self._numbers = count(1)
         self._ends: dict[int, End] = {}
         self._routes: dict[int, Route] = {}
-        self._held: list[tuple[int, Link, bytes]] = []
-        self._asked: list[tuple[int, Server, Asked]] = []
+        self._held: list[tuple[tuple[int, int], Link, bytes]] = []
+        self._asked: list[tuple[tuple[int, int], Server, Asked]] = []
         self.unserved: list[Asked] = []
         self._handlers: dict[int, Callable[[Link, bytes], None]] = {
             ord("I"): self._idle,
@@ -168,7 +168,7 @@ class Router:
         if origin is None:
             to.queue(frame)
         else:
-            self._held.append((origin.pid_inside, to, frame))
+            self._held.append((origin.order, to, frame))
 
     def deliver(self) -> bool:
         """Pass on what processes sent to one another, one sender after the other. Whether there was anything.
@@ -237,7 +237,7 @@ class Router:
         for server in servers:
             own = self._ends.get(server.id)
             if isinstance(own, Server):
-                self._asked.append((link.pid_inside, own, asked))
+                self._asked.append((link.order, own, asked))
             elif server.process != link.number:
                 self._ask(link, server, client.id, call.number, call.source_time, call.cdr)
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from pathlib import Path
 
 from grader.crew import Crew
 from grader.exercise import Exercise, starter
-from grader.exercise.interface import Topic
+from grader.exercise.writing import to_toml
 from grader.grading import Options
 from grader.grading.public import public_part, to_json
 from grader.sandbox import Isolation, SandboxUnavailable, choose
@@ -25,7 +24,7 @@ def exercise_files(exercise: Exercise, crew: Crew) -> dict[str, bytes]:
     public = public_part(exercise, Options(), _isolation(), crew)
     return {
         "task.md": without_comments(exercise.task).encode(),
-        "exercise.toml": _toml(exercise).encode(),
+        "exercise.toml": to_toml(exercise).encode(),
         "checks.py": (exercise.folder / "checks.py").read_bytes(),
         exercise.public_file.name: to_json(exercise, public).encode(),
         exercise.file_name: starter(solution.read_text(encoding="utf-8")).encode(),
@@ -47,33 +46,3 @@ def _pictures(exercise: Exercise) -> Iterator[Path]:
         name = file.relative_to(exercise.folder)
         if file.suffix in (".png", ".svg", ".jpg", ".jpeg", ".gif") and f"]({name.as_posix()}" in exercise.task:
             yield name
-
-
-def _toml(exercise: Exercise) -> str:
-    """exercise.toml again, from what was read of it: without comments, or keys that are not for students."""
-    lines = [
-        f"title = {_text(exercise.title)}",
-        f"points = {exercise.points:g}",
-        f"file = {_text(exercise.file_name)}",
-        f"class = {_text(exercise.class_name)}",
-        f"node = {_text(exercise.node_name)}",
-    ]
-    for topic in exercise.topics:
-        lines += ["", *_topic(topic)]
-    return "\n".join(lines) + "\n"
-
-
-def _topic(topic: Topic) -> list[str]:
-    units = ", ".join(f"{_text(field)} = {_text(unit)}" for field, unit in topic.units.items())
-    return [
-        f"[[{topic.direction}]]",
-        f"topic = {_text(topic.name)}",
-        f"type = {_text(topic.type)}",
-        f"depth = {topic.depth}",
-        *([f"units = {{ {units} }}"] if units else []),
-    ]
-
-
-def _text(value: str) -> str:
-    """A TOML basic string: JSON's escapes are among TOML's."""
-    return json.dumps(value, ensure_ascii=False)

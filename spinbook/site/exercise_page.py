@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from grader.exercise import Exercise
-from grader.exercise.interface import Topic
+from grader.exercise.interface import Endpoint, Parameter, Topic
 from spinbook.site.public_checks import PublicCheck
 
 
@@ -22,22 +22,58 @@ def exercise_markdown(exercise: Exercise, task: str, starter: str, checks: Seque
 
 
 def _interface(exercise: Exercise) -> str:
-    rows = "\n".join(_row(topic) for topic in exercise.topics)
-    return f"""\
-## Interface
+    parts = [f"## Interface\n\n{_programs(exercise)}"]
+    if exercise.topics:
+        rows = [_topic_row(topic) for topic in exercise.topics]
+        parts.append(_table("| The node | Topic | Type | QoS | Units |", rows))
+    if exercise.endpoints:
+        rows = [_endpoint_row(endpoint) for endpoint in exercise.endpoints]
+        parts.append(_table("| The node | Name | Type | Units |", rows))
+    if exercise.parameters:
+        rows = [_parameter_row(parameter) for parameter in exercise.parameters]
+        parts.append(_table("| Parameter | Type | Default | Range |", rows))
+    return "\n\n".join(parts)
 
-The node `{exercise.node_name}` is the class `{exercise.class_name}` in the file `{exercise.file_name}`.
 
-| The node | Topic | Type | QoS | Units |
-| --- | --- | --- | --- | --- |
-{rows}"""
+def _table(head: str, rows: Sequence[str]) -> str:
+    return "\n".join([head, "| --- " * (head.count("|") - 1) + "|", *rows])
 
 
-def _row(topic: Topic) -> str:
+def _programs(exercise: Exercise) -> str:
+    if exercise.programs:
+        programs = [f"`{one.node}` in `{one.file}`" for one in exercise.programs]
+        return f"There are {len(programs)} programs, each with its node: {', '.join(programs)}."
+    name = f" is the class `{exercise.class_name}`" if exercise.class_name else " is"
+    return f"The node `{exercise.node_name}`{name} in the file `{exercise.file_name}`."
+
+
+def _topic_row(topic: Topic) -> str:
     verb = "subscribes to" if topic.direction == "subscribe" else "publishes on"
-    units = ", ".join(f"`{field}` in {unit}" for field, unit in topic.units.items()) or "none"
-    quality = f"keep last {topic.depth}, reliable, volatile"
-    return f"| {verb} | `{topic.name}` | `{topic.type}` | {quality} | {units} |"
+    quality = f"keep last {topic.depth}, {topic.reliability}, {topic.durability}".replace("_", " ")
+    return f"| {verb} | `{topic.name}` | `{topic.type}` | {quality} | {_units(topic.units)} |"
+
+
+_VERBS = {
+    "service": "serves the service",
+    "client": "calls the service",
+    "action": "serves the action",
+    "action_client": "sends goals to the action",
+}
+
+
+def _endpoint_row(endpoint: Endpoint) -> str:
+    return f"| {_VERBS[endpoint.role]} | `{endpoint.name}` | `{endpoint.type}` | {_units(endpoint.units)} |"
+
+
+def _parameter_row(parameter: Parameter) -> str:
+    unit = f" {parameter.unit}" if parameter.unit else ""
+    default = "none" if parameter.default is None else f"`{parameter.default}`{unit}"
+    limits = f"from {parameter.range[0]:g} to {parameter.range[1]:g}{unit}" if parameter.range else "any"
+    return f"| `{parameter.name}` | {parameter.type.replace('_', ' ')} | {default} | {limits} |"
+
+
+def _units(units: dict[str, str]) -> str:
+    return ", ".join(f"`{field}` in {unit}" for field, unit in units.items()) or "none"
 
 
 def _starter(exercise: Exercise, starter: str, download: str) -> str:

@@ -71,7 +71,7 @@ class Run:
         except Stopped as stopped:
             ending = Ending(stopped.outcome, stopped.story)
         except Gone:
-            ending = cut_short(self._student, *program, self._met, len(self._publishers.sent))
+            ending = cut_short(self._student, *program, self._met, f"at message {len(self._publishers.sent)}")
         end_points = self._end_points or self._graph.end_points()
         self._student.kill()  # before the last look at what has come: it may never stop publishing
         self._watch.receivers.wait()

@@ -1,0 +1,139 @@
+"""Several programs in one run: those of a submission, and the author's own next to them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from grader.recording import Exit as Recorded
+from grader.runner.student import Exit, Output, Student
+from grader.scenario import Scenario
+from rmw_lockstep.hub import Hub
+
+#: Starts a program, which is to connect to the hub at this socket.
+Start = Callable[[Path], Student]
+
+
+@dataclass(frozen=True)
+class Together:
+    """What several programs printed, one after another."""
+
+    text: str
+    dropped: int
+
+
+class Team:
+    """All programs of a run. To its owner it is one program, which ends when one of the student's ends by itself."""
+
+    def __init__(self, hub: Hub, folder: Path, scenario: Scenario, programs: Mapping[str, Start],
+                 companions: Sequence[Start]) -> None:  # fmt: skip
+        """Start the companions, and those programs that are there from the beginning."""
+        self._hub, self._programs = hub, programs
+        # The first one comes in by the hub's own door.
+        self._paths = {name: _door(hub, folder, number) for number, name in enumerate(programs)}
+        self._doors = {name: number for number, name in enumerate(programs)}
+        self._running: dict[str, Student] = {}
+        self._stopped: list[Student] = []
+        self._interrupted = False
+        self.ended = ""
+        """The program that ended by itself."""
+        self.exits: list[Recorded] = []
+        later = {one.file for one in scenario.programs if one.starts > 0}
+        self._companions = [
+            start(_door(hub, folder, len(programs) + number)) for number, start in enumerate(companions)
+        ]
+        for name in programs:
+            if name not in later:
+                self.start(name)
+        self._see()
+
+    def start(self, name: str) -> None:
+        """Start a program of the submission, unless it runs."""
+        if name not in self._running:
+            self._running[name] = self._programs[name](self._paths[name])
+            self._see()
+
+    def stop(self, name: str, now: int) -> None:
+        """Kill a program of the submission, at the simulated time `now`, and see that the hub knows."""
+        student = self._running.pop(name, None)
+        if student is None:
+            return
+        self._see()
+        exit_ = student.kill()
+        self._stopped.append(student)
+        self.exits.append(Recorded(now, name, exit_.code, exit_.signal, "grader"))
+        while any(link.door == self._doors[name] for link in self._hub.links):
+            self._hub.pause()
+
+    def _see(self) -> None:
+        """The hub waits for each of them."""
+        self._hub.mains = {one.pid for one in (*self._running.values(), *self._companions)}
+
+    def is_companions(self, process: int) -> bool:
+        """Whether a process, by its number on the hub, is the author's own."""
+        first = len(self._programs)
+        return any(link.number == process and link.door >= first for link in self._hub.links)
+
+    # --- as one program: see `Student`
+
+    @property
+    def pid(self) -> int:
+        """The first one's number, or 0 when none runs."""
+        return next((one.pid for one in self._running.values()), 0)
+
+    def pids(self) -> Collection[int]:
+        """The numbers of all processes of the student's."""
+        return [pid for one in self._running.values() for pid in one.pids()]
+
+    def output(self) -> Output:
+        """What all printed."""
+        outputs = [one.output() for one in (*self._stopped, *self._running.values())]
+        return Together("".join(one.text for one in outputs), sum(one.dropped for one in outputs))
+
+    def poll(self) -> Exit | None:
+        """How a program of the student's ended by itself; once they were asked to end, how the last one did."""
+        found: Exit | None = None
+        for name, student in self._running.items():
+            exit_ = student.poll()
+            if exit_ is None and self._interrupted:
+                return None
+            if exit_ is not None and not found:
+                found, self.ended = exit_, name
+        return found
+
+    def wait(self, timeout_s: float) -> Exit | None:
+        """Wait for the end of the first one."""
+        first = next(iter(self._running.values()), None)
+        return first.wait(timeout_s) if first else None
+
+    def interrupt(self) -> None:
+        """Ask all to end."""
+        self._interrupted = True
+        for one in self._running.values():
+            one.interrupt()
+
+    def cpu_seconds(self) -> float:
+        """What all of the student's have used."""
+        return sum(one.cpu_seconds() for one in (*self._stopped, *self._running.values()))
+
+    def at_limit(self) -> bool:
+        """Whether one is being ended for a limit."""
+        return any(one.at_limit() for one in self._running.values())
+
+    def kill(self) -> Exit:
+        """Kill all; the exit of the one that had ended by itself, or of the first."""
+        exits = {name: one.kill() for name, one in self._running.items()}
+        for one in self._companions:
+            one.kill()
+        if self.ended in exits:
+            return exits[self.ended]
+        return next(iter(exits.values()), None) or self._stopped[0].kill()
+
+
+def _door(hub: Hub, folder: Path, number: int) -> Path:
+    if not number:
+        return hub.path
+    own = folder / str(number)
+    own.mkdir(exist_ok=True)
+    return hub.add_door(own)

@@ -1,0 +1,75 @@
+"""Scenarios as plain data, for a student's copy of an exercise, and back."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+from grader.exercise.interface import Qos
+from grader.scenario import scenario as steps
+from grader.scenario.code import Code
+from grader.scenario.scenario import Companion, Message, Program, Scenario
+from grader.scenario.servers import ActionServer, GoalScript, Reply, Server
+from grader.scenario.world import World, restored
+
+_STEPS = (
+    steps.Request,
+    steps.SendGoal,
+    steps.CancelGoal,
+    steps.CancelAll,
+    steps.SetParameter,
+    steps.GetParameter,
+    steps.Subscribe,
+    steps.Leave,
+    steps.ComeBack,
+    steps.Kill,
+    steps.StartProgram,
+)
+_CLASSES: dict[str, Any] = {
+    one.__name__: one
+    for one in (*_STEPS, Companion, Message, Program, Scenario, ActionServer, GoalScript, Reply, Server, Qos, Code)
+}
+
+
+class NotForStudents(ValueError):
+    """Raised for a scenario with code of scenarios.py in it, which a student's copy can't have."""
+
+
+def plain(value: Any) -> Any:
+    """Dictionaries, lists, texts and numbers of a scenario, or of a part of one. Raises `NotForStudents`."""
+    if isinstance(value, Code) and not value.is_the_graders:
+        raise NotForStudents(value.name)
+    if isinstance(value, (list, tuple)):
+        return [plain(one) for one in value]
+    if isinstance(value, dict):
+        return {key: plain(one) for key, one in value.items()}
+    if not hasattr(value, "__dataclass_fields__"):
+        return value
+    found = {one.name: plain(getattr(value, one.name)) for one in fields(value) if one.name != "line"}
+    return {"is": type(value).__name__, **found}
+
+
+def from_plain(value: Any) -> Any:
+    """What `plain` made such. Raises KeyError or TypeError where it did not."""
+    if isinstance(value, list):
+        return tuple(from_plain(one) for one in value)
+    if not isinstance(value, dict) or "is" not in value:
+        return value
+    entries = {key: _entry(key, one) for key, one in value.items() if key != "is"}
+    if value["is"] == World.__name__:
+        return restored(entries["code"], entries["period"], entries["arguments"], 0)
+    return _CLASSES[value["is"]](**entries)
+
+
+#: Entries that hold the fields of messages, and so lists as lists.
+_FIELDS = ("fields", "result", "parameters", "arguments", "value", "remappings")
+
+
+def _entry(key: str, value: Any) -> Any:
+    if key == "feedback":
+        return tuple((after, fields_) for after, fields_ in value)
+    if key == "arguments" and isinstance(value, list):
+        return tuple(value)
+    if key == "qos" and "is" not in value:
+        return {name: from_plain(one) for name, one in value.items()}
+    return value if key in _FIELDS else from_plain(value)
