@@ -265,10 +265,7 @@ def test_leaves_other_topics_alone(chapter: Run) -> None:
 )
 def test_quality_of_service(chapter: Run) -> None:
     """Both ends are reliable and volatile, as a queue depth alone makes them."""
-    for end in (*chapter.subscriptions(COMMANDS), *chapter.publishers(VELOCITIES)):
-        if (end.reliability, end.durability) != ("reliable", "volatile"):
-            got = f"{end.reliability} and {end.durability}"
-            fail(f"The {end.kind} on {end.topic} has another QoS.", expected="reliable and volatile", got=got)
+    chapter.must_have_qos()
 
 
 def _silent_and_right(run: Run) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Literal, NoReturn
 
 from grader.checking.recorded import Recorded
+from grader.checking.wrong import Finding, Wrong
 from grader.recording import EndPoint
 
 Kind = Literal["publisher", "subscription", "server", "client", "action server", "action client"]
@@ -47,7 +48,7 @@ class GraphChecks(Recorded):
             for end in mine:
                 if end.type != type_:
                     told = f"your {kind} on {name} has another type. Expected {type_}, got {end.type}."
-                    self.wrong_at(None, told, "", type_, end.type)
+                    _wrong(told, type_, end.type)
 
     def must_have_qos(self, topic: str = "") -> None:
         """The node's end points must have the reliability and durability of exercise.toml: of `topic`, or of all."""
@@ -59,7 +60,7 @@ class GraphChecks(Recorded):
                 got = f"{end.reliability} and {end.durability}"
                 if got != wanted:
                     told = f"your {end.kind} on {end.topic} is {got}. Expected {wanted}."
-                    self.wrong_at(None, told, "", wanted, got, _of_qos(end, declared.durability))
+                    _wrong(told, wanted, got, _of_qos(end, declared.durability))
 
     def must_have_nodes(self) -> None:
         """The program must create the node of exercise.toml (of each of its programs) and no other."""
@@ -69,9 +70,9 @@ class GraphChecks(Recorded):
         if lacking := [name for name in wanted if name not in self.nodes]:
             told = f"there is no node {lacking[0]}. Expected {', '.join(wanted)}, got {got}."
         elif len(self.nodes) > len(wanted):
-            told = f"your program creates more nodes than it should. Expected {', '.join(wanted)}, got {got}."
+            told = f"your program creates other nodes, too. Expected {', '.join(wanted)}, got {got}."
         if told:
-            self.wrong_at(None, told, "", ", ".join(wanted), got)
+            _wrong(told, ", ".join(wanted), got)
 
     def must_end_on_ctrl_c(self) -> None:
         """On Ctrl-C the program must end within 2 s, with no traceback. The scenario needs `interrupt=True`."""
@@ -79,10 +80,10 @@ class GraphChecks(Recorded):
             raise ValueError(f"the scenario {self.scenario} has no interrupt=True: Ctrl-C never comes.")
         if not self.ending.ended_in_time:
             told = "your program was still running 2 s after Ctrl-C. Expected an end within 2 s."
-            self.wrong_at(None, told, "", "an end within 2 s", "none")
+            _wrong(told, "an end within 2 s", "none")
         if self.ending.traceback:
             told = f"after Ctrl-C your program printed a traceback: {self.ending.traceback}"
-            self.wrong_at(None, told, "", "no traceback", self.ending.traceback)
+            _wrong(told, "no traceback", self.ending.traceback)
 
     def must_survive(self, program: str = "") -> None:
         """No program of a submission of several may end by itself; with `program` (its file), not that one."""
@@ -95,7 +96,13 @@ class GraphChecks(Recorded):
     def _lacks(self, kind: Kind, name: str) -> NoReturn:
         does, others = _WORDS[kind]
         names = ", ".join(sorted({end.topic for end in self.end_points(kind)})) or "none"
-        self.wrong_at(None, f"your node does not {does} {name}. {others}: {names}.", "", name, names)
+        _wrong(f"your node does not {does} {name}. {others}: {names}.", name, names)
+
+
+def _wrong(text: str, expected: str, got: str, at_all: str = "") -> NoReturn:
+    """End the check: `text` says what is wrong with the program in any scenario."""
+    told = f"{text[0].upper()}{text[1:]} {at_all}".strip()
+    raise Wrong(Finding(told, expected=expected, got=got))
 
 
 def _of_qos(end: EndPoint, durability: str) -> str:

@@ -7,7 +7,7 @@ import io
 import os
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pytest
@@ -40,13 +40,14 @@ def load_pytest() -> None:
         _session("--capture=no", "--rootdir", empty, empty)
 
 
-def run_pytest(exercise: Exercise, runs: dict[str, Run], checks: Checks) -> None:
+def run_pytest(exercise: Exercise, runs: Mapping[str, Run | None], checks: Checks) -> None:
     """Run the exercise's checks on `runs` with pytest in this process; `checks` keeps what comes of them.
 
     Raises `ExerciseError` where the files of checks are unusable.
     """
     if not exercise.check_files:
         raise ExerciseError(exercise.folder / "checks.py", "there is no such file", "Write at least one check.")
+    checks.scenarios = tuple(runs)
     code = _session(
         *("--import-mode=importlib", "--rootdir", str(exercise.folder), "-o", "python_files=*.py", "--capture=fd"),
         *(str(file) for file in exercise.check_files),

@@ -19,13 +19,14 @@ class Listed:
     fixtures: tuple[str, ...]
 
 
-def listed(exercise: Exercise) -> tuple[Listed, ...]:
+def listed(exercise: Exercise, scenarios: tuple[str, ...] = ()) -> tuple[Listed, ...]:
     """Every check of the exercise, in the order in which they stand.
 
-    Raises `ExerciseError` where the files of checks are unusable. Imports them: call it in a process of its own.
+    With names of `scenarios`, a check that asks for another one is a fault. Raises `ExerciseError` where the files of
+    checks are unusable. Imports them: call it in a process of its own.
     """
     checks = Checks(run=False)
-    run_pytest(exercise, {}, checks)
+    run_pytest(exercise, dict.fromkeys(scenarios), checks)
     return tuple(
         Listed(verdict.name, verdict.points, verdict.hidden, checks.fixtures[verdict.name])
         for verdict in checks.verdicts.values()

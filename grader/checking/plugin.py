@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import traceback
+from collections.abc import Mapping
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -17,7 +18,7 @@ from grader.checking.wrong import Finding, Wrong
 from grader.exercise import ExerciseError
 
 
-def fixtures_of(runs: dict[str, Run]) -> ModuleType:
+def fixtures_of(runs: Mapping[str, Run | None]) -> ModuleType:
     """A module with one fixture for each scenario, by its name."""
     module = ModuleType("scenarios")
     for name, run in runs.items():
@@ -25,8 +26,9 @@ def fixtures_of(runs: dict[str, Run]) -> ModuleType:
     return module
 
 
-def _giving(run: Run) -> Any:
+def _giving(run: Run | None) -> Any:
     def scenario() -> Run:
+        assert run, "checks that are only listed are not run"
         if run.ending.outcome != "completed":
             raise Wrong(Finding(f"{run.ending.story} ({run.title})", run.scenario))
         return run
@@ -43,6 +45,8 @@ class Checks:
     def __init__(self, run: bool = True) -> None:
         self._run = run
         self.fixtures: dict[str, tuple[str, ...]] = {}
+        self.scenarios: tuple[str, ...] = ()
+        """The scenarios that there are; empty where that does not matter."""
         self._marks: dict[str, Mark] = {}
         self.verdicts: dict[str, Verdict] = {}
         self.problem: ExerciseError | None = None
@@ -69,14 +73,23 @@ class Checks:
             found, mend = f"there are two checks called {item.name}", "Give each a name of its own."
         elif not inspect.getdoc(function):
             found, mend = f"{item.name} has no docstring", "Its docstring is the title that the student reads."
-        elif mark.points < 0:
-            found, mend = f"{item.name} gives {mark.points:g} points", "Give points of 0 or more."
+        elif isinstance(mark.points, bool) or not isinstance(mark.points, (int, float)) or not mark.points >= 0:
+            found, mend = f"{item.name} gives {mark.points!r} points", "Give points of 0 or more, such as points=5."
+        elif missing := self._unknown_scenario(item):
+            found = f"{item.name} asks for the scenario {missing}, which scenarios.py does not have"
+            mend = f"Its scenarios are: {', '.join(self.scenarios)}."
         elif unknown := [name for name in mark.depends if name not in self._marks]:
             found = f"{item.name} depends on {unknown[0]}, which no check above it is called"
             mend = "A check may depend on those that stand before it; public checks come before hidden ones."
         else:
             return mark
         raise ExerciseError(item.path, found, mend, line)
+
+    def _unknown_scenario(self, item: Any) -> str:
+        """The first argument of a check that is neither a scenario nor another fixture; empty if there is none."""
+        info = item._fixtureinfo
+        known = {*info.name2fixturedefs, "request", *self.scenarios}
+        return next((name for name in info.names_closure if name not in known), "") if self.scenarios else ""
 
     def pytest_exception_interact(self, node: Any, call: pytest.CallInfo[Any], report: object) -> None:
         """A file of checks that can't be imported is its author's to mend."""

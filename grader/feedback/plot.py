@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from grader.exercise import Exercise
+from grader.exercise.interface import Elements
 from grader.feedback.curves import Curve, Point, curves
 from grader.grading import Grade
 from grader.pages.rendering import template
@@ -36,9 +37,13 @@ def feedback_plot(grade: Grade, exercise: Exercise) -> str | None:
     scenario = _scenario(grade)
     if grade.outcome != "graded" or scenario is None:
         return None
-    field, unit = _field(exercise)
+    topic = next((topic for topic in exercise.outputs if topic.units), None)
+    if topic is None:
+        return None
+    field, unit = next(iter(topic.units.items()))
+    elements = topic.elements or Elements("value", "name")
     try:
-        drawn = curves(grade, exercise, scenario, field)
+        drawn = curves(grade, exercise, scenario, field, elements.named_by)
     except (KeyError, TypeError):  # messages of this exercise have no names to part them by
         return None
     if not any(curve.got for curve in drawn):
@@ -49,7 +54,7 @@ def feedback_plot(grade: Grade, exercise: Exercise) -> str | None:
     return template("feedback/plot.svg.j2").render(
         title=field,
         unit=unit,
-        said=_said(drawn, field, end),
+        said=_said(drawn, field, elements.called, end),
         panels=panels,
         width=WIDTH,
         left=LEFT,
@@ -65,11 +70,6 @@ def _scenario(grade: Grade) -> str | None:
     public = [v for v in grade.verdicts if not v.hidden and v.status == "failed" and v.finding]
     failed = [v.finding.scenario for v in public if v.finding and v.finding.scenario in grade.recordings]
     return next(iter([*failed, *grade.recordings]), None)
-
-
-def _field(exercise: Exercise) -> tuple[str, str]:
-    units = [pair for topic in exercise.outputs for pair in topic.units.items()]
-    return units[0] if units else ("velocity", "")
 
 
 def _panel(number: int, curve: Curve, start: float, end: float) -> Panel:
@@ -111,11 +111,11 @@ def _marks(start: float, end: float) -> list[float]:
     return [round((first + i) * step, 6) for i in range(int((end - first * step) / step + 1e-9) + 1)]
 
 
-def _said(drawn: tuple[Curve, ...], field: str, end: float) -> str:
+def _said(drawn: tuple[Curve, ...], field: str, called: str, end: float) -> str:
     """The plot in words."""
     wrong = [curve for curve in drawn if curve.first_wrong]
     alone = drawn[0].joint == field
-    names = "joint" if len(drawn) == 1 else "joints"
+    names = called if len(drawn) == 1 else f"{called}s"
     of = "" if alone else f" of {len(drawn)} {names}"
     begin = f"The {field}{of} over {end:.3g} s, yours drawn over the solution's. "
     if not wrong:

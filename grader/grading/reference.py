@@ -6,9 +6,11 @@ import contextlib
 import hashlib
 import json
 import os
+import re
 import tempfile
 from pathlib import Path
 
+from grader.checking.proofreading import line_with, points_that_do_not_add_up, same_name_twice
 from grader.checking.verdict import Verdict
 from grader.crew.jobs import JudgeJob
 from grader.exercise import Exercise, ExerciseError
@@ -101,15 +103,17 @@ def _prove(spinner: Spinner, recordings: dict[str, Recording]) -> None:
     exercise = spinner.exercise
     titles = {scenario.name: scenario.title for scenario in spinner.scenarios}
     verdicts: tuple[Verdict, ...] = spinner.crew.do(JudgeJob(exercise, recordings, recordings, titles))
-    checks = exercise.check_files[0]
     for verdict in verdicts:
+        file = exercise.folder / ("hidden_checks.py" if verdict.hidden else "checks.py")
+        line = line_with(file, rf"def {re.escape(verdict.name)}\b")
         if verdict.status == "error":
-            raise ExerciseError(checks, f"the check {verdict.name} breaks: {verdict.error}", "Mend the check.")
+            raise ExerciseError(file, f"the check {verdict.name} breaks: {verdict.error}", "Fix the check.", line)
         if verdict.status == "failed":
             told = verdict.finding.text if verdict.finding else ""
             found = f"the solution does not pass the check {verdict.name}: {told}"
-            raise ExerciseError(checks, found, "Mend the check or the solution.")
-    total = sum(verdict.points for verdict in verdicts)
-    if not exercise.public_only and abs(total - exercise.points) > 1e-9:
-        found = f"the checks give {total:g} points together, but points = {exercise.points:g}"
-        raise ExerciseError(exercise.folder / "exercise.toml", found, "Make the two agree.")
+            raise ExerciseError(file, found, "Fix the check or the solution.", line)
+    for file in exercise.check_files:
+        for fault in same_name_twice(file):
+            raise fault
+    for fault in points_that_do_not_add_up(exercise, [(verdict.hidden, verdict.points) for verdict in verdicts]):
+        raise fault

@@ -54,10 +54,12 @@ def test_a_missing_solution(course: Path, crew: Crew) -> None:
 @pytest.mark.parametrize(
     ("file", "old", "new", "told"),
     [
-        ("exercise.toml", "points = 41", "points = 40", "give 41 points together, but points = 40"),
+        ("exercise.toml", "points = 41", "points = 40", r"give 41 points together \(checks.py 41, hidden_checks.py 0\), but points = 40"),
         ("checks.py", "chapter.must_answer()", "assert False, 'never right'", "solution does not pass.*never right"),
         ("checks.py", "chapter.must_answer()", "chapter.no_such_thing", r"breaks.*checks\.py:\d+: AttributeError"),
-        ("checks.py", "def test_answers_each_message_once(chapter", "def test_a(no_scenario", "no_scenario"),
+        ("checks.py", "def test_answers_each_message_once(chapter", "def test_a(no_scenario", "asks for the scenario no_scenario"),
+        ("checks.py", "def test_answers_at_once", "def test_answers_each_message_once",
+         "two checks called test_answers_each_message_once",
         ("checks.py", '    """It publishes one message for each message after the first."""\n', "", "no docstring"),
         ("checks.py", "from grader.checking import Run, check, fail", "import no_such_module", "no_such_module"),
         ("checks.py", "depends=[test_publishes_velocities]", "depends=['test_later']", "test_later"),

@@ -1,0 +1,132 @@
+"""Reads an exercise as its author would have it read: everything that is wrong in its files, before anything is run.
+
+`faults_of` does so in a process of its own, as scenarios.py and the files of checks are imported for it.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from grader.checking.listing import Listed, listed
+from grader.exercise import Exercise, ExerciseError, load
+from grader.exercise.starter import MarkError, starter
+from grader.scenario.declared import declared
+
+#: Seconds after which files that are only imported must have been read.
+PATIENCE_S = 60
+
+
+def faults_of(folder: Path) -> tuple[ExerciseError, ...]:
+    """Everything that is wrong in the files of the exercise in `folder`, as far as it shows without running a node."""
+    command = [sys.executable, "-m", "grader.checking.proofreading", str(folder)]
+    try:
+        run = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+        entries = json.loads(run.stdout.splitlines()[-1])
+    except subprocess.TimeoutExpired:
+        fault = ExerciseError(
+            folder, f"reading its Python files takes more than {PATIENCE_S} s", "They must only define."
+        )
+        return (fault,)
+    except (ValueError, IndexError):
+        last = (run.stderr.strip().splitlines() or ["no message"])[-1]
+        return (ExerciseError(folder, f"its Python files can't be read: {last}", "They must only define."),)
+    return tuple(ExerciseError(Path(file), found, mend, line) for file, found, mend, line in entries)
+
+
+def faults(folder: Path) -> Iterator[ExerciseError]:
+    """The same, in this process."""
+    try:
+        exercise = load(folder)
+    except ExerciseError as error:
+        yield error
+        return
+    yield from _of_solution(exercise)
+    try:
+        scenarios = tuple(scenario.name for scenario in declared(exercise, seed=0))
+    except ExerciseError as error:
+        yield error
+        scenarios = ()
+    for file in exercise.check_files:
+        yield from same_name_twice(file)
+    try:
+        checks = listed(exercise, scenarios)
+    except ExerciseError as error:
+        yield error
+        return
+    yield from points_that_do_not_add_up(exercise, [(check.hidden, check.points) for check in checks])
+    yield from _of_mistakes(exercise, checks)
+
+
+def same_name_twice(file: Path) -> Iterator[ExerciseError]:
+    """Two checks of one name in a file: Python keeps the last and forgets the others without a word."""
+    try:
+        tree = ast.parse(file.read_text(encoding="utf-8"))
+    except (SyntaxError, ValueError, OSError):
+        return
+    first: dict[str, int] = {}
+    for node in tree.body:
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.name.startswith("test"):
+            if node.name in first:
+                found = f"there are two checks called {node.name}; the other is in line {first[node.name]}"
+                yield ExerciseError(file, found, "Give each a name of its own: Python forgets the first.", node.lineno)
+            first.setdefault(node.name, node.lineno)
+
+
+def points_that_do_not_add_up(exercise: Exercise, points: list[tuple[bool, float]]) -> Iterator[ExerciseError]:
+    """`points` is for each check whether it is hidden, and what it gives."""
+    public, hidden = (sum(given for is_hidden, given in points if is_hidden is which) for which in (False, True))
+    if exercise.public_only or abs(public + hidden - exercise.points) <= 1e-9:
+        return
+    parts = f"checks.py {public:g}, hidden_checks.py {hidden:g}"
+    found = f"the checks give {public + hidden:g} points together ({parts}), but points = {exercise.points:g}"
+    file = exercise.folder / "exercise.toml"
+    line = line_with(file, r"\s*points\s*=")
+    yield ExerciseError(file, found, "Make the two agree.", line)
+
+
+def line_with(file: Path, pattern: str) -> int | None:
+    """The first line of a file that matches, counted from 1; None where none does or the file can't be read."""
+    try:
+        lines = file.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError):
+        return None
+    return next((number for number, line in enumerate(lines, start=1) if re.match(pattern, line)), None)
+
+
+def _of_solution(exercise: Exercise) -> Iterator[ExerciseError]:
+    file = exercise.solution_file
+    if file is None or exercise.programs:
+        return
+    if not file.exists():
+        yield ExerciseError(file, "there is no such file", "The checks compare with the solution; write it here.")
+        return
+    try:
+        starter(file.read_text(encoding="utf-8"))
+    except MarkError as error:
+        yield ExerciseError(file, str(error), "Fix the markers; the starter is made from them.", error.line)
+
+
+def _of_mistakes(exercise: Exercise, checks: tuple[Listed, ...]) -> Iterator[ExerciseError]:
+    known = {check.name for check in checks}
+    folder = exercise.solution_folder
+    for file in sorted((folder / "mistakes").glob("*.py")) if folder else ():
+        text = file.read_text(encoding="utf-8", errors="replace")
+        named = re.findall(r"^- (\w+)\s*$", text.partition("Caught by:")[2].partition('"""')[0], re.MULTILINE)
+        for name in named:
+            if name not in known:
+                found = f"it is to be caught by {name}, and there is no such check"
+                line = line_with(file, rf"- {name}\s*$")
+                yield ExerciseError(file, found, "Name a check of this exercise, or take the line out.", line)
+        if not named:
+            found, mend = "it names no check that is to catch it", "Write “Caught by:” and “- test_…” in its docstring."
+            yield ExerciseError(file, found, mend, 1)
+
+
+if __name__ == "__main__":
+    print(json.dumps([(str(e.file), e.found, e.mend, e.line) for e in faults(Path(sys.argv[1]))]))
