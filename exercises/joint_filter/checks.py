@@ -38,6 +38,12 @@ def test_header(default: Run) -> None:
     default.must_match("header", missing_ok=True)
 
 
+@check(points=3, hint="super().__init__('joint_filter')", depends=[test_answers_each_message])
+def test_node_is_called_joint_filter(default: Run) -> None:
+    """There is one node, and it is called joint_filter."""
+    default.must_have_nodes()
+
+
 @check(
     points=10,
     hint="declare_parameter('gain', 0.5, …), and get_parameter('gain').value where you need it.",
@@ -52,19 +58,13 @@ def test_gain_of_the_start(started: Run) -> None:
 @check(
     points=10,
     hint="Read the parameter for each message, or keep it up to date in a post-set callback.",
-    depends=[test_gain_of_the_start],
+    depends=[test_gain_of_the_start, test_node_is_called_joint_filter],
     misconception="reads the gain once",
 )
 def test_gain_that_changes(changed: Run) -> None:
     """A new gain counts from the next message on."""
     changed.must_take("gain")
     changed.must_match("position", per="name")
-
-
-@check(points=3, hint="super().__init__('joint_filter')", depends=[test_answers_each_message])
-def test_node_is_called_joint_filter(default: Run) -> None:
-    """There is one node, and it is called joint_filter."""
-    default.must_have_nodes()
 
 
 @check(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from grader.checking import Run, check
 
-FILTERS, GAIN = ["test_filters_with_the_default"], ["test_gain_of_the_start"]
+NAMED = "test_node_is_called_joint_filter"
+FILTERS, GAIN = ["test_filters_with_the_default"], ["test_gain_of_the_start", NAMED]
 
 
 @check(
@@ -21,7 +22,7 @@ def test_gain_of_one(after_refusal: Run) -> None:
 @check(
     points=3,
     hint="declare_parameter() is given the default.",
-    depends=["test_answers_each_message"],
+    depends=[NAMED],
     rule="Declared, as a double, with its default 0.5.",
 )
 def test_gain_can_be_read(default: Run) -> None:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from grader.checking import Run, check
 
-ONCE, START = ["test_publishes_once"], ["test_description_of_the_start"]
+NAMED = "test_node_is_called_robot_description"
+ONCE, START = ["test_publishes_once"], ["test_description_of_the_start", NAMED]
 
 
 @check(

@@ -54,21 +54,25 @@ def test_a_missing_solution(course: Path, crew: Crew) -> None:
 @pytest.mark.parametrize(
     ("file", "old", "new", "told"),
     [
-        ("exercise.toml", "points = 41", "points = 40", r"give 41 points together \(checks.py 41, hidden_checks.py 0\), but points = 40"),
+        ("exercise.toml", "points = 41", "points = 40",
+         r"give 41 points together \(checks.py 41, hidden_checks.py 0\), but points = 40"),
         ("checks.py", "chapter.must_answer()", "assert False, 'never right'", "solution does not pass.*never right"),
         ("checks.py", "chapter.must_answer()", "chapter.no_such_thing", r"breaks.*checks\.py:\d+: AttributeError"),
-        ("checks.py", "def test_answers_each_message_once(chapter", "def test_a(no_scenario", "asks for the scenario no_scenario"),
+        ("checks.py", "def test_answers_each_message_once(chapter", "def test_a(no_scenario",
+         "asks for the scenario no_scenario"),
         ("checks.py", "def test_answers_at_once", "def test_answers_each_message_once",
-         "two checks called test_answers_each_message_once",
+         "two checks called test_answers_each_message_once"),
+        ("checks.py", "points=4, hint=\"One", "points='4', hint=\"One", "gives '4' points"),
         ("checks.py", '    """It publishes one message for each message after the first."""\n', "", "no docstring"),
-        ("checks.py", "from grader.checking import Run, check, fail", "import no_such_module", "no_such_module"),
+        ("checks.py", "from grader.checking import Run, check", "import no_such_module", "no_such_module"),
         ("checks.py", "depends=[test_publishes_velocities]", "depends=['test_later']", "test_later"),
-        ("checks.py", "COMMANDS, VELOCITIES =", "def test_bare(chapter: Run) -> None: ...\n\n\nCOMMANDS, VELOCITIES =",
+        ("checks.py", "@check(points=3,", "def test_bare(chapter: Run) -> None: ...\n\n\n@check(points=3,",
          "test_bare is no check"),
         ("scenarios.py", "arm_swing(10)", "arm_wing(10)", "arm_wing"),
         ("exercise.toml", 'topic = "/joint_commands"', 'topic = "joint_commands"', "joint_commands"),
     ],
-    ids=["points", "fails", "breaks", "fixture", "title", "import", "depends", "mark", "scenario", "topic"],
+    ids=["points", "fails", "breaks", "fixture", "twice", "text", "title", "import", "depends", "mark", "scenario",
+         "topic"],
 )  # fmt: skip
 def test_what_is_wrong_is_told_with_its_file(
     course: Path, crew: Crew, file: str, old: str, new: str, told: str
