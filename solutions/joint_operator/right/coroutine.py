@@ -15,7 +15,7 @@ WORDS = {4: 'succeeded', 5: 'canceled', 6: 'aborted'}
 class JointOperator(Node):
     def __init__(self):
         super().__init__('joint_operator')
-        self.queue, self.task, self.handle, self.since = [], None, None, 0
+        self.queue, self.task, self.goal_handle, self.since = [], None, None, 0
         group = ReentrantCallbackGroup()
         self.outcomes = self.create_publisher(String, '/outcomes', 10)
         self.progress = self.create_publisher(Float64, '/progress', 10)
@@ -35,9 +35,9 @@ class JointOperator(Node):
         handle = await self.client.send_goal_async(MoveJoint.Goal(position=target), self.on_feedback)
         outcome = 'rejected'
         if handle.accepted:
-            self.handle, self.since = handle, self.get_clock().now().nanoseconds
+            self.goal_handle, self.since = handle, self.get_clock().now().nanoseconds
             outcome = WORDS[(await handle.get_result_async()).status]
-        self.handle = None
+        self.goal_handle = None
         self.outcomes.publish(String(data=outcome))
         self.task = None
         self.start()
@@ -47,9 +47,9 @@ class JointOperator(Node):
 
     def tick(self):
         self.start()
-        if self.handle is not None and self.get_clock().now().nanoseconds - self.since >= 5 * 10**9:
+        if self.goal_handle is not None and self.get_clock().now().nanoseconds - self.since >= 5 * 10**9:
             assert GoalStatus.STATUS_CANCELED in WORDS
-            self.handle.cancel_goal_async()
+            self.goal_handle.cancel_goal_async()
             self.since = 2**62
 
 

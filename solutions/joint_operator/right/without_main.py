@@ -15,7 +15,7 @@ class JointOperator(Node):
         self.prog = self.create_publisher(Float64, 'progress', 10)
         self.client = ActionClient(self, MoveJoint, 'move_joint')
         self.todo = []
-        self.handle = None
+        self.goal_handle = None
         self.started = None
         self.sub = self.create_subscription(Float64, 'targets', self.target, 10)
         self.timer = self.create_timer(0.05, self.look)
@@ -27,8 +27,8 @@ class JointOperator(Node):
     def look(self):
         if self.started is None:
             self.send()
-        elif self.handle and self.deadline and self.get_clock().now().nanoseconds >= self.deadline:
-            self.handle.cancel_goal_async()
+        elif self.goal_handle and self.deadline and self.get_clock().now().nanoseconds >= self.deadline:
+            self.goal_handle.cancel_goal_async()
             self.deadline = None
 
     def send(self):
@@ -41,10 +41,10 @@ class JointOperator(Node):
         self.prog.publish(Float64(data=msg.feedback.position))
 
     def answered(self, future):
-        self.handle = future.result()
-        if self.handle.accepted:
+        self.goal_handle = future.result()
+        if self.goal_handle.accepted:
             self.deadline = self.get_clock().now().nanoseconds + 5_000_000_000
-            self.handle.get_result_async().add_done_callback(self.ended)
+            self.goal_handle.get_result_async().add_done_callback(self.ended)
         else:
             self.say('rejected')
 
@@ -54,7 +54,7 @@ class JointOperator(Node):
 
     def say(self, word):
         self.out.publish(String(data=word))
-        self.handle = self.started = None
+        self.goal_handle = self.started = None
         self.send()
 
 

@@ -28,7 +28,7 @@ class RobotDescription(Node):
         self.publisher.publish(String(data=self.text))
         self.add_on_set_parameters_callback(self.check)
         self.handler = ParameterEventHandler(self)
-        self.handle = self.handler.add_parameter_callback(NAME, self.get_fully_qualified_name(), self.changed)
+        self.watched = self.handler.add_parameter_callback(NAME, self.get_fully_qualified_name(), self.changed)
 
     def check(self, parameters):
         result = SetParametersResult(successful=True)
