@@ -41,7 +41,7 @@ def test_never_silent(absent: Run, never: Run) -> None:
 )
 def test_asks_at_once(several: Run) -> None:
     """It asks for each joint at once, also while others are being calibrated."""
-    joints = {"left_elbow": 0.53, "left_shoulder_roll": 0.63, "left_shoulder_pitch": 0.73}
+    joints = {"left_elbow": 0.55, "left_shoulder_roll": 0.65, "left_shoulder_pitch": 0.75}
     must_ask_in_time(several, 0.15, joints)
 
 
@@ -101,7 +101,7 @@ def test_offset_that_is_no_number(not_finite: Run) -> None:
 )
 def test_service_appears_late(appears: Run) -> None:
     """When the service appears late, it asks for all joints that were waiting."""
-    must_ask_in_time(appears, 0.2, dict.fromkeys(("left_elbow", "left_shoulder_roll", "left_shoulder_pitch"), 2.03))
+    must_ask_in_time(appears, 0.2, dict.fromkeys(("left_elbow", "left_shoulder_roll", "left_shoulder_pitch"), 2.02))
 
 
 @check(

@@ -33,7 +33,7 @@ def failed(after: float = 0.0) -> object:
 
 def scenarios(seed: int) -> tuple[Scenario, ...]:
     """Every scenario. The first one must be passed by any node that works at all."""
-    one, three = wanted(ELBOW, 0.53), (wanted(ELBOW, 0.53), wanted(ROLL, 0.63), wanted(PITCH, 0.73))
+    one, three = wanted(ELBOW, 0.55), (wanted(ELBOW, 0.55), wanted(ROLL, 0.65), wanted(PITCH, 0.75))
     broken = (found(math.nan), found(math.inf), found(0.02))
     return (
         Scenario(
@@ -41,44 +41,58 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
             "one joint, and an answer after 1.2 s",
             one,
             duration=2.5,
+            rate=20.0,
             servers=server(found(0.03, 1.2)),
             interrupt=True,
         ),
-        Scenario("slow", "an answer after 4 s", one, duration=5.5, servers=server(found(-0.04, 4.0))),
+        Scenario("slow", "an answer after 4 s", one, duration=5.5, rate=20.0, servers=server(found(-0.04, 4.0))),
         Scenario(
             "several",
             "three joints at the same time, answered in another order",
             three,
             duration=3.5,
+            rate=20.0,
             servers=server(found(0.01, 2.0), found(0.02, 0.5), found(0.03, 1.0)),
         ),
         Scenario(
             "again",
             "the same joint twice",
-            wanted(ELBOW, 0.53, 1.53),
+            wanted(ELBOW, 0.55, 1.55),
             3.0,
             servers=server(found(0.01, 0.5), found(0.02, 0.5)),
         ),
         Scenario(
-            "failing", "the first calibration fails", three, duration=3.0, servers=server(failed(0.5), found(0.02, 0.5))
+            "failing",
+            "the first calibration fails",
+            three,
+            duration=3.0,
+            rate=20.0,
+            servers=server(failed(0.5), found(0.02, 0.5)),
         ),
-        Scenario("not_finite", "offsets that are no numbers", three, duration=2.5, servers=server(*broken)),
+        Scenario("not_finite", "offsets that are no numbers", three, duration=2.5, rate=20.0, servers=server(*broken)),
         Scenario(
             "appears",
             "the service appears after 2 s",
             three,
             duration=4.0,
-            servers=server(found(0.01, 0.5), appears=2.03),
+            rate=20.0,
+            servers=server(found(0.01, 0.5), appears=2.02),
         ),
         Scenario(
             "never",
             "the first request is never answered",
             three,
             duration=7.5,
+            rate=20.0,
             servers=server(no_reply(), found(0.02, 0.5)),
         ),
         Scenario(
-            "too_late", "an answer after 5.6 s", three, duration=7.5, servers=server(found(0.01, 5.6), found(0.02, 0.5))
+            "too_late",
+            "an answer after 5.6 s",
+            three,
+            duration=7.5,
+            rate=20.0,
+            servers=server(found(0.01, 5.6), found(0.02, 0.5)),
         ),
-        Scenario("absent", "the service never appears", three, duration=2.0),
+        Scenario("absent", "the service never appears", three, duration=2.0, rate=20.0),
     )

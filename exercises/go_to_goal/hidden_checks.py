@@ -73,7 +73,7 @@ def test_does_not_go_past_the_goal(ahead: Run) -> None:
 )
 def test_reaches_the_next_goal(next_goal: Run) -> None:
     """After one goal it reaches the next."""
-    next_goal.must_reach(POSE, {"x": 3.0, "y": 6.0}, tolerance=0.1, within=10.0, start=6.0, stay=False)
+    next_goal.must_reach(POSE, {"x": 3.0, "y": 6.0}, tolerance=0.1, within=10.0, start=4.0, stay=False)
 
 
 @check(

@@ -110,7 +110,7 @@ def test_goal_after_a_cancel(after_cancel: Run) -> None:
 def test_second_goal_aborts_the_first(replaced: Run) -> None:
     """A second goal aborts the one that runs, within 0.1 s."""
     replaced.must_accept(2)
-    replaced.must_end("aborted", goal=1, within=0.66)
+    replaced.must_end("aborted", goal=1, within=0.7)
 
 
 @check(

@@ -69,7 +69,7 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
             title,
             script,
             duration=duration,
-            rate=20.0,
+            rate=10.0,
             servers=(ActionServer(ACTION, goals=goals, **when),),
             interrupt=name == "succeeds",
         )

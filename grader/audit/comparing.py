@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from grader.recording import Received, Recording
@@ -29,6 +30,7 @@ def differences(recording: Recording, reference: Recording) -> tuple[Difference,
     if recording.hold != reference.hold or recording.uses_sim_time != reference.uses_sim_time:
         found.append("its services or its clock differ")
     found += _messages(recording.received, reference.received)
+    found += _events(recording, reference)
     return tuple(Difference(recording.scenario, what) for what in found)
 
 
@@ -55,6 +57,24 @@ def _messages(mine: tuple[Received, ...], its: tuple[Received, ...]) -> list[str
             fields["when they came"] += 1
         fields.update(name for name in other.fields if _text(message.fields.get(name)) != _text(other.fields[name]))
     return [f"{count} of {len(its)} messages differ in {name}" for name, count in sorted(fields.items())]
+
+
+def _events(recording: Recording, reference: Recording) -> list[str]:
+    """What differs in calls, goals, parameters and ends of programs."""
+    found = []
+    events: tuple[tuple[str, Sequence[Any], Sequence[Any]], ...] = (
+        ("calls of services", recording.calls, reference.calls),
+        ("goals", recording.goals, reference.goals),
+        ("settings of parameters", recording.parameters, reference.parameters),
+        ("readings of parameters", recording.readings, reference.readings),
+        ("ends of programs", recording.exits, reference.exits),
+    )
+    for name, mine, its in events:
+        if len(mine) != len(its):
+            found.append(f"{len(mine)} {name}, the solution's {len(its)}")
+        elif differ := sum(_text(asdict(one)) != _text(asdict(other)) for one, other in zip(mine, its, strict=True)):
+            found.append(f"{differ} of {len(its)} {name} differ")
+    return found
 
 
 def _text(value: Any) -> str:

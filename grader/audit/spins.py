@@ -52,7 +52,9 @@ class Spins:
         """
         spinner = self._grading.spinner
         made_by = (str(spinner.isolation), engine(spinner.middleware))
-        key = (submission.digest, scenario.digest, spinner.exercise.outputs, *made_by)
+        exercise = spinner.exercise
+        interface = (exercise.topics, exercise.endpoints, exercise.parameters, exercise.programs, exercise.node_name)
+        key = (submission.digest, scenario.digest, interface, exercise.reference_node, *made_by)
         file = self._folder / f"{hashlib.sha256(repr(key).encode()).hexdigest()[:32]}.spin.gz"
         try:
             kept = from_json(gzip.decompress(file.read_bytes()).decode())[scenario.name]

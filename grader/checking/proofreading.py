@@ -29,10 +29,8 @@ def faults_of(folder: Path) -> tuple[ExerciseError, ...]:
         run = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
         entries = json.loads(run.stdout.splitlines()[-1])
     except subprocess.TimeoutExpired:
-        fault = ExerciseError(
-            folder, f"reading its Python files takes more than {PATIENCE_S} s", "They must only define."
-        )
-        return (fault,)
+        found = f"reading its Python files takes more than {PATIENCE_S} s"
+        return (ExerciseError(folder, found, "They must only define."),)
     except (ValueError, IndexError):
         last = (run.stderr.strip().splitlines() or ["no message"])[-1]
         return (ExerciseError(folder, f"its Python files can't be read: {last}", "They must only define."),)

@@ -47,7 +47,7 @@ class Recorded:
         if self.title:
             where += f" ({self.title})" if where else f"In “{self.title}”"
         told = ", ".join(filter(None, (where, part)))
-        text = f"{text} {at_all}".strip()
+        text = f"{text} {at_all.strip()}".strip()
         finding = f"{told}: {text}" if told else text
         raise Wrong(Finding(finding, self.scenario, None, seconds, part, str(expected), str(got)))
 

@@ -222,6 +222,7 @@ class Run:
         self._budget.begin(STEP)
         self._sim_time = self._parameters.use_sim_time(hub.now + SOON)
         self._nodes = nodes(hub.graph, self._is_ours)
+        self._is_up = self._script is not None  # whose timers fire as soon as there is a clock
         self._set_clock(START)
         hub.wait_until_idle()
         self._is_up = True

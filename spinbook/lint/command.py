@@ -1,4 +1,4 @@
-"""`spinbook lint`: tells an author what will not run and why."""
+"""`spinbook lint`: says what is wrong in chapters and exercises, and what will not run and why."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 
 import click
 
+from grader.checking.proofreading import faults_of
 from spinbook.build.reading import read_all
 from spinbook.chapter.chapter import CellKind
 from spinbook.chapter.read import Reading
@@ -28,16 +29,20 @@ _FEW = 12
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, for editors and CI.")
 def lint(start: Path, strict: bool, show_static: bool, as_json: bool) -> None:
-    """Read every chapter, run nothing, and tell what is wrong and what will not run.
+    """Read every chapter and exercise, run no node, and say what is wrong and what will not run.
 
-    Each message names file and line, what stands there, and what to do. Exit code: 0 nothing to mend, 1 an error
+    Each message names file and line, what is there, and what to do. Exit code: 0 nothing to fix, 1 an error
     (or, with --strict, a warning).
     """
     course = find_course(start)
     readings = list(read_all(course))
-    problems = [*_interfaces(course), *(problem for reading in readings for problem in reading.problems)]
+    of_course = [*_interfaces(course), *_exercises(course)]
+    problems = [*of_course, *(problem for reading in readings for problem in reading.problems)]
     if as_json:
-        click.echo(json.dumps([_as_json(reading) for reading in readings], indent=1))
+        others = {"chapter": None, "problems": [_plain(problem) for problem in of_course], "cells": [], "static": []}
+        click.echo(
+            json.dumps([*(_as_json(reading) for reading in readings), *([others] if of_course else [])], indent=1)
+        )
     else:
         for problem in problems:
             click.echo(str(problem))
@@ -62,6 +67,18 @@ def _interfaces(course: Course) -> tuple[Problem, ...]:
     return ()
 
 
+def _exercises(course: Course) -> tuple[Problem, ...]:
+    """What is wrong in the course's exercises and their solutions."""
+    folders = sorted(file.parent for file in (course.root / "exercises").glob("*/exercise.toml"))
+    faults = [fault for folder in folders for fault in faults_of(folder)]
+    return tuple(Problem(_near(fault.file), fault.line, fault.found, fault.mend) for fault in faults)
+
+
+def _near(file: Path) -> Path:
+    """The path as seen from where the author is, if the file is below."""
+    return file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file
+
+
 def _summary(reading: Reading, show_static: bool) -> None:
     chapter = reading.chapter
     if chapter is None:
@@ -78,17 +95,7 @@ def _as_json(reading: Reading) -> dict[str, object]:
     chapter = reading.chapter
     return {
         "chapter": chapter.file.as_posix() if chapter else None,
-        "problems": [
-            {
-                "file": p.file.as_posix(),
-                "line": p.line,
-                "severity": p.severity.value,
-                "found": p.found,
-                "mend": p.mend,
-                "group": p.group,
-            }
-            for p in reading.problems
-        ],
+        "problems": [_plain(problem) for problem in reading.problems],
         "cells": [{"id": cell.id, "kind": cell.kind.value, "line": cell.line} for cell in chapter.cells]
         if chapter
         else [],
@@ -97,4 +104,15 @@ def _as_json(reading: Reading) -> dict[str, object]:
         ]
         if chapter
         else [],
+    }
+
+
+def _plain(problem: Problem) -> dict[str, object]:
+    return {
+        "file": problem.file.as_posix(),
+        "line": problem.line,
+        "severity": problem.severity.value,
+        "found": problem.found,
+        "mend": problem.mend,
+        "group": problem.group,
     }

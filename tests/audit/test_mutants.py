@@ -37,10 +37,59 @@ class Ticker(Node):
 """
 
 
+PEERS = """import rclpy
+from rclpy.action import ActionServer, CancelResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import String
+from std_srvs.srv import SetBool
+from test_msgs.action import Fibonacci
+
+
+class Counter(Node):
+    def __init__(self):
+        super().__init__('counter')
+        self.declare_parameter('gain', 2.0)
+        self.client = self.create_client(SetBool, '/light', callback_group=ReentrantCallbackGroup())
+        self.create_publisher(String, '/map', QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+        self.create_service(SetBool, '/power', self.on_power)
+        self.create_timer(0.1, self.tick)
+        ActionServer(self, Fibonacci, '/count', self.execute, cancel_callback=lambda _: CancelResponse.ACCEPT)
+
+    def tick(self):
+        if self.client.service_is_ready():
+            self.client.call_async(SetBool.Request())
+
+    def on_power(self, request, response):
+        response.success = request.data
+        return response
+
+    def execute(self, goal_handle):
+        stop = goal_handle.is_cancel_requested
+        if stop:
+            goal_handle.canceled()
+            return Fibonacci.Result()
+        goal_handle.publish_feedback(Fibonacci.Feedback())
+        goal_handle.succeed()
+        return Fibonacci.Result()
+
+
+executor = MultiThreadedExecutor()
+"""
+
+
 @pytest.fixture(scope="module")
 def mutants() -> tuple[Mutant, ...]:
     """All mutants of joint_velocity's solution."""
     return mutants_of(SOURCE, load(ROOT / "exercises" / "joint_velocity"))
+
+
+@pytest.fixture(scope="module")
+def peers() -> tuple[Mutant, ...]:
+    """All mutants of a node with a service, a client, an action, a parameter and a timer."""
+    return mutants_of(PEERS, load(ROOT / "exercises" / "joint_velocity"))
 
 
 def added(mutants: tuple[Mutant, ...], operator: str) -> str:
@@ -92,6 +141,36 @@ def test_a_timer_has_another_period() -> None:
     assert "self.create_timer((0.1) * 2, self.tick)" in added(made, "timer period")
     assert "self.create_timer((0.1) / 2, self.tick)" in added(made, "timer period")
     assert "Float64(data=1.0)" in added(made, "without call")
+
+
+@pytest.mark.parametrize(
+    ("operator", "line"),
+    [
+        ("outcome", "goal_handle.abort()"),
+        ("outcome", "            goal_handle.succeed()"),
+        ("choice", "CancelResponse.REJECT"),
+        ("choice", "DurabilityPolicy.VOLATILE"),
+        ("not asked", "stop = False"),
+        ("blocking", "self.client.call(SetBool.Request())"),
+        ("blocking", "rclpy.callback_groups.MutuallyExclusiveCallbackGroup()"),
+        ("blocking", "executor = rclpy.executors.SingleThreadedExecutor()"),
+        ("slow callback", "time.sleep(1.0)"),
+        ("slow callback", "raise RuntimeError('broken')"),
+        ("empty result", "return type(response)()"),
+        ("result", "return None"),
+        ("declared type", "self.declare_parameter('gain', 2)"),
+        ("timer clock", "clock=rclpy.clock.Clock("),
+        ("topic name", "'/powers'"),
+        ("message type", "std_srvs.srv.Empty, '/power'"),
+        ("message type", "test_msgs.action.NestedMessage, '/count'"),
+        ("callback left out", "'/power', lambda *_: None"),
+        ("argument", "create_client(SetBool, '/light', )"),
+    ],
+)
+def test_services_actions_and_parameters_have_operators_of_their_own(
+    peers: tuple[Mutant, ...], operator: str, line: str
+) -> None:
+    assert line in added(peers, operator)
 
 
 def test_there_are_more_than_enough_of_them_and_no_two_are_the_same(mutants: tuple[Mutant, ...]) -> None:

@@ -1,4 +1,4 @@
-"""Operators for a node's ends in the graph: its name, topics, types, quality of service, callbacks, timers."""
+"""Operators for a node's ends in the graph: its name, topics, services, actions, types, QoS, callbacks, timers."""
 
 from __future__ import annotations
 
@@ -18,10 +18,23 @@ ENDS = {
         "qos": (3, "qos_profile"),
     },
     "create_timer": {"period": (0, "timer_period_sec"), "callback": (1, "callback")},
+    "create_service": {"type": (0, "srv_type"), "topic": (1, "srv_name"), "callback": (2, "callback")},
+    "create_client": {"type": (0, "srv_type"), "topic": (1, "srv_name")},
+    "ActionServer": {"type": (1, "action_type"), "topic": (2, "action_name"), "callback": (3, "execute_callback")},
+    "ActionClient": {"type": (1, "action_type"), "topic": (2, "action_name")},
+}
+
+#: What an end that is no topic's has for its type, and the module that it is in.
+OTHER_TYPES = {
+    "create_service": ("std_srvs.srv.Empty", "std_srvs.srv"),
+    "create_client": ("std_srvs.srv.Empty", "std_srvs.srv"),
+    "ActionServer": ("test_msgs.action.NestedMessage", "test_msgs.action"),
+    "ActionClient": ("test_msgs.action.NestedMessage", "test_msgs.action"),
 }
 
 QOS = "rclpy.qos.QoSProfile(depth=10, {}=rclpy.qos.{}.{})"
 PROFILES = (
+    ("10", "has the usual QoS", ()),
     ("1", "has a queue of 1", ()),
     ("100", "has a queue of 100", ()),
     (QOS.format("reliability", "ReliabilityPolicy", "BEST_EFFORT"), "is not reliable", ("rclpy.qos",)),
@@ -35,17 +48,21 @@ def topic_name(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     if place is None or not isinstance(place.value, cst.SimpleString):
         return
     name = str(place.value.evaluated_value)
-    others = [topic.name for topic in program.exercise.topics if topic.name != name]
+    exercise = program.exercise
+    known = [*(topic.name for topic in exercise.topics), *(one.name for one in exercise.endpoints)]
+    others = [other for other in known if other != name]
+    word = "topic" if "qos" in ENDS[called(node)] else "name"
     for other in (f"{name}s", f"/robot{name}", f"~{name}", *others):
-        yield Change(node, place.value, expression(repr(other)), f"has the topic {other} for {name}")
+        yield Change(node, place.value, expression(repr(other)), f"has the {word} {other} for {name}")
 
 
 def message_type(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     """An end has another type."""
     place = _argument(node, "type")
     if place is not None:
-        what = f"has the type String for {program.text(place.value)}"
-        yield Change(node, place.value, expression("std_msgs.msg.String"), what, ("std_msgs.msg",))
+        other, module = OTHER_TYPES.get(called(node), ("std_msgs.msg.String", "std_msgs.msg"))
+        what = f"has the type {other.rpartition('.')[2]} for {program.text(place.value)}"
+        yield Change(node, place.value, expression(other), what, (module,))
 
 
 def quality_of_service(node: cst.CSTNode, program: Program) -> Iterator[Change]:

@@ -11,7 +11,7 @@ from types import ModuleType
 
 import libcst as cst
 
-from grader.audit.mutants import conditions, ends, history, loops, messages, numbers, statements
+from grader.audit.mutants import conditions, ends, history, loops, messages, numbers, peers, statements
 from grader.audit.mutants.mutant import Mutant
 from grader.audit.mutants.program import Change, Program
 from grader.exercise import Exercise
@@ -19,7 +19,7 @@ from grader.exercise import Exercise
 Operator = Callable[[cst.CSTNode, Program], Iterator[Change]]
 
 #: Each of these modules names its operators in OPERATORS.
-FAMILIES: tuple[ModuleType, ...] = (conditions, numbers, statements, loops, ends, messages, history)
+FAMILIES: tuple[ModuleType, ...] = (conditions, numbers, statements, loops, ends, messages, history, peers)
 
 
 def mutants_of(source: str, exercise: Exercise) -> tuple[Mutant, ...]:

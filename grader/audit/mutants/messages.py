@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import libcst as cst
 
 from grader.audit.mutants.program import Change, Program, called, expression, only_assignment, only_call, with_body
+from grader.exercise.interface import Endpoint, Topic
 
 NODE_CLOCK = "self.get_clock().now().to_msg()"
 WALL_CLOCK = "rclpy.clock.Clock().now().to_msg()"
@@ -45,7 +46,8 @@ def header(node: cst.CSTNode, program: Program) -> Iterator[Change]:
 
 def unit(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     """A field that has a unit is given in degrees, or in thousandths."""
-    fields = {field for topic in program.exercise.outputs for field in topic.units}
+    declared: tuple[Topic | Endpoint, ...] = (*program.exercise.outputs, *program.exercise.endpoints)
+    fields = {field for one in declared for field in one.units}
     value: cst.BaseExpression | None = None
     field = ""
     if isinstance(node, cst.Call) and called(node) == "append" and len(node.args) == 1:

@@ -1,6 +1,8 @@
 """The default of the gain is 0.1.
 
 Caught by:
+- test_filters_with_the_default
+- test_gain_can_be_read
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Takes every gain, and uses the nearest one that is allowed.
 
 Caught by:
+- test_refuses_what_is_not_allowed
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """The gain is always 0.5.
 
 Caught by:
+- test_gain_of_the_start
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Forgets a joint that is missing from a message.
 
 Caught by:
+- test_missing_joint
 """
 
 import rclpy

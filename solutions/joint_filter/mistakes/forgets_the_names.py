@@ -1,6 +1,8 @@
 """Leaves the names out.
 
 Caught by:
+- test_filters_with_the_default
+- test_names
 """
 
 import rclpy

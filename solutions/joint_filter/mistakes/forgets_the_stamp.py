@@ -1,6 +1,7 @@
 """Leaves the header empty.
 
 Caught by:
+- test_header
 """
 
 import rclpy

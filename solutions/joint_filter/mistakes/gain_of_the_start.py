@@ -1,6 +1,7 @@
 """Reads the gain once, at the start.
 
 Caught by:
+- test_gain_that_changes
 """
 
 import rclpy

@@ -1,6 +1,9 @@
 """Goes by place and not by name.
 
 Caught by:
+- test_joints_in_another_order
+- test_missing_joint
+- test_new_joint
 """
 
 import rclpy

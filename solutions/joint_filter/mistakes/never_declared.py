@@ -1,6 +1,7 @@
 """Forgets to declare the parameter.
 
 Caught by:
+- test_answers_each_message
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Has neither a range nor a check.
 
 Caught by:
+- test_refuses_what_is_not_allowed
 """
 
 import rclpy

@@ -1,6 +1,8 @@
 """The on-set callback returns None, so that every change is refused.
 
 Caught by:
+- test_gain_that_changes
+- test_gain_of_one
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """One smooth position for all joints.
 
 Caught by:
+- test_filters_with_the_default
 """
 
 import rclpy

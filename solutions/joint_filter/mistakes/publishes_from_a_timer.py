@@ -1,6 +1,7 @@
 """Publishes the newest positions at 10 Hz, and not for each message.
 
 Caught by:
+- test_answers_each_message
 """
 
 import rclpy

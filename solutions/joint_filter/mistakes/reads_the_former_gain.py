@@ -1,6 +1,7 @@
 """Reads the gain in the on-set callback, where it is still the former one.
 
 Caught by:
+- test_gain_that_changes
 """
 
 import rclpy

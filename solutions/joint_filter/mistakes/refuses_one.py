@@ -1,6 +1,7 @@
 """Refuses a gain of exactly 1.0.
 
 Caught by:
+- test_gain_of_one
 """
 
 import rclpy

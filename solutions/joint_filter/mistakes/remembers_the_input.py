@@ -1,6 +1,7 @@
 """Compares with the last position and not with the smooth one.
 
 Caught by:
+- test_filters_with_the_default
 """
 
 import rclpy

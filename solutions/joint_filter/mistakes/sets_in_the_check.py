@@ -1,6 +1,7 @@
 """Uses a gain that it has just refused.
 
 Caught by:
+- test_goes_on_after_a_refusal
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Forgets the smooth positions when the gain changes.
 
 Caught by:
+- test_gain_that_changes
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Each joint starts from 0.0.
 
 Caught by:
+- test_filters_with_the_default
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Takes an int or a string for the gain, too.
 
 Caught by:
+- test_refuses_other_types
 """
 
 import rclpy

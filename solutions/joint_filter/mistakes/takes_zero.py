@@ -1,6 +1,7 @@
 """Takes a gain of exactly 0.0.
 
 Caught by:
+- test_refuses_what_is_not_allowed
 """
 
 import rclpy

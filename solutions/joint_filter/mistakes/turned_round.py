@@ -1,6 +1,7 @@
 """Takes the gain for the part of the smooth position.
 
 Caught by:
+- test_gain_of_the_start
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Ends a canceled goal with abort().
 
 Caught by:
+- test_cancel
 """
 
 import rclpy

@@ -1,6 +1,8 @@
 """Accepts goals that the joint cannot reach.
 
 Caught by:
+- test_out_of_reach_is_rejected
+- test_not_a_number_is_rejected
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Accepts a goal that is not a number, and never arrives.
 
 Caught by:
+- test_not_a_number_is_rejected
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """The result says nothing of the position.
 
 Caught by:
+- test_result_is_the_position
 """
 
 import rclpy

@@ -1,6 +1,8 @@
 """The feedback is the position before the step.
 
 Caught by:
+- test_feedback_after_each_step
+- test_reaches_the_limit
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Forgets succeed(): the goal counts as aborted.
 
 Caught by:
+- test_succeeds
 """
 
 import rclpy

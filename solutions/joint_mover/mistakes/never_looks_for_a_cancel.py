@@ -1,6 +1,7 @@
 """Accepts to cancel, and goes on to the end.
 
 Caught by:
+- test_cancel
 """
 
 import rclpy

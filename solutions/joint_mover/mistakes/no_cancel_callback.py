@@ -1,6 +1,7 @@
 """Has no cancel callback, so that every cancel is rejected.
 
 Caught by:
+- test_cancel
 """
 
 import rclpy

@@ -1,6 +1,8 @@
 """Publishes no feedback.
 
 Caught by:
+- test_feedback_after_each_step
+- test_reaches_the_limit
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """A second goal waits until the first has ended.
 
 Caught by:
+- test_second_goal_aborts_the_first
 """
 
 import threading

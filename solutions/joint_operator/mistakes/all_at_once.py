@@ -1,6 +1,10 @@
 """Sends every target at once, also while a goal is under way.
 
 Caught by:
+- test_one_goal_at_a_time
+- test_rejected
+- test_aborted
+- test_asks_to_cancel
 """
 
 import rclpy

@@ -1,6 +1,8 @@
 """Says canceled when it asks for it, and not when the goal has ended.
 
 Caught by:
+- test_canceled
+- test_cancel_that_does_not_work
 """
 
 import rclpy

@@ -1,6 +1,8 @@
 """Cancels after 2.5 s.
 
 Caught by:
+- test_asks_to_cancel
+- test_has_patience
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Drops targets that come while a goal is under way.
 
 Caught by:
+- test_every_target_in_order
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Drops targets when the server is not there.
 
 Caught by:
+- test_server_appears_late
 """
 
 import rclpy

@@ -1,6 +1,10 @@
 """Switches off in an emergency, and does not remember it.
 
 Caught by:
+- test_refuses_in_an_emergency
+- test_emergency_switches_off
+- test_pressed_while_off
+- test_pressed_twice
 """
 
 import rclpy

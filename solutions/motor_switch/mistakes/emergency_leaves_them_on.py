@@ -1,6 +1,8 @@
 """The emergency stop leaves running motors on.
 
 Caught by:
+- test_emergency_switches_off
+- test_pressed_twice
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Leaves the message empty.
 
 Caught by:
+- test_message
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Publishes only when the motors go on.
 
 Caught by:
+- test_publishes_each_change
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """The message says how it was before.
 
 Caught by:
+- test_message
 """
 
 import rclpy

@@ -1,6 +1,9 @@
 """Takes every message for an emergency stop, also False.
 
 Caught by:
+- test_released
+- test_pressed_while_off
+- test_pressed_twice
 """
 
 import rclpy

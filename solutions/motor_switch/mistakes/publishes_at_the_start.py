@@ -1,6 +1,7 @@
 """Publishes the state once when it starts.
 
 Caught by:
+- test_publishes_each_change
 """
 
 import rclpy

@@ -1,6 +1,11 @@
 """Publishes for each request, also when nothing changes.
 
 Caught by:
+- test_nothing_to_do
+- test_emergency_switches_off
+- test_pressed_while_off
+- test_pressed_twice
+- test_off_at_the_start
 """
 
 import rclpy

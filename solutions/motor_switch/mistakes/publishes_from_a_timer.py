@@ -1,6 +1,7 @@
 """Publishes the state every 0.5 s.
 
 Caught by:
+- test_publishes_each_change
 """
 
 import rclpy

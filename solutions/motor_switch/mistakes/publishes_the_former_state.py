@@ -1,6 +1,7 @@
 """Publishes the state before the change.
 
 Caught by:
+- test_publishes_each_change
 """
 
 import rclpy

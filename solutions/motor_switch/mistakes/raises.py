@@ -1,6 +1,11 @@
 """Raises an exception when it must refuse.
 
 Caught by:
+- test_refuses_in_an_emergency
+- test_off_is_always_allowed
+- test_emergency_switches_off
+- test_pressed_while_off
+- test_pressed_twice
 """
 
 import rclpy

@@ -1,6 +1,8 @@
 """Refuses to switch off during an emergency stop.
 
 Caught by:
+- test_says_why_it_refuses
+- test_off_is_always_allowed
 """
 
 import rclpy

@@ -1,6 +1,9 @@
 """Says no when the motors are already as they should be.
 
 Caught by:
+- test_nothing_to_do
+- test_off_is_always_allowed
+- test_off_at_the_start
 """
 
 import rclpy

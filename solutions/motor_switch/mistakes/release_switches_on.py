@@ -1,6 +1,7 @@
 """The motors go on again when the emergency stop is released.
 
 Caught by:
+- test_released
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """The callback of the service returns None.
 
 Caught by:
+- test_responds
 """
 
 import rclpy

@@ -1,6 +1,9 @@
 """Refuses during an emergency stop, and switches on all the same.
 
 Caught by:
+- test_emergency_switches_off
+- test_pressed_while_off
+- test_pressed_twice
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Waits for 2 s in the callback, as if the motors took that long.
 
 Caught by:
+- test_responds
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """The motors are on from the beginning.
 
 Caught by:
+- test_publishes_each_change
 """
 
 import rclpy

@@ -1,6 +1,9 @@
 """Says success when it has refused.
 
 Caught by:
+- test_refuses_in_an_emergency
+- test_pressed_while_off
+- test_pressed_twice
 """
 
 import rclpy

@@ -1,6 +1,10 @@
 """Turns the state round, whatever was asked.
 
 Caught by:
+- test_nothing_to_do
+- test_says_why_it_refuses
+- test_emergency_switches_off
+- test_off_at_the_start
 """
 
 import rclpy

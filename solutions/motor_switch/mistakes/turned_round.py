@@ -1,6 +1,8 @@
 """On is off and off is on.
 
 Caught by:
+- test_message
+- test_publishes_each_change
 """
 
 import rclpy

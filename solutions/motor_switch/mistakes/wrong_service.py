@@ -1,6 +1,7 @@
 """The service has another name.
 
 Caught by:
+- test_responds
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """The service has another type.
 
 Caught by:
+- test_responds
 """
 
 import rclpy

@@ -1,0 +1,130 @@
+"""What the helpers for parameters, nodes, end points, QoS and ends say."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from made_up import EMPTY, ENDS, EXERCISE, ns, run, says
+
+from grader.exercise.interface import ProgramFile, Topic
+from grader.recording import Ending, Recording
+from grader.recording.events import Exit, ParameterChange, ParameterReading
+
+
+def set_to(*changes: tuple[Any, bool | None]) -> Recording:
+    made = tuple(ParameterChange(ns(1), "/worker", "gain", value, taken, "too small") for value, taken in changes)
+    return replace(EMPTY, parameters=made)
+
+
+def read(value: Any, answered: bool = True) -> Recording:
+    reading = ParameterReading(ns(2), "/worker", "gain", value, ns(2) if answered else None)
+    return replace(EMPTY, readings=(reading,))
+
+
+def test_right_parameters_pass() -> None:
+    mine = run(set_to((3.0, True), (-1.0, False), (3, False)))
+    mine.must_take("gain", 3.0)
+    mine.must_refuse("gain", -1.0)
+    mine.must_refuse("gain", 3)
+    mine.must_take_and_refuse_as_the_solution()
+    run(read(2.0)).must_have_parameter("gain", 2.0)
+    run(read(2.0)).must_have_parameter("gain")
+
+
+def test_parameters_that_are_taken_or_refused_wrongly() -> None:
+    takes, refuses = set_to((3.0, True), (-1.0, True)), set_to((3.0, False), (-1.0, False))
+    right, mute = set_to((3.0, True), (-1.0, False)), set_to((3.0, None))
+    assert says(lambda: run(takes, right).must_refuse("gain", -1.0)) == (
+        "At 1.00 s (as usual), parameter gain: the value -1 must be refused, but your node took it. "
+        "Your node takes every value. Did you add an on-set callback?"
+    )
+    told = says(lambda: run(refuses, right).must_take_and_refuse_as_the_solution())
+    assert "the value 3 must be taken, but your node refused it. It said: too small Your node refuses every" in told
+    assert "your node gave no answer about it." in says(lambda: run(mute, right).must_take("gain"))
+
+
+@pytest.mark.parametrize(
+    ("mine", "told"),
+    [
+        (read(3.0), "parameter gain: expected 2 1/s, got 3 1/s."),
+        (read(2), "expected 2, a float, got 2, a int."),
+        (read(None), "your node does not have it. Declare it in __init__, with declare_parameter."),
+        (read(None, answered=False), "your node gave no answer about it."),
+    ],
+)
+def test_readings(mine: Recording, told: str) -> None:
+    assert told in says(lambda: run(mine, read(2.0)).must_have_parameter("gain"))
+
+
+def test_an_author_who_asks_for_a_parameter_that_the_scenario_does_not_is_told_so() -> None:
+    with pytest.raises(ValueError, match=r"sets gain to 3, never to 4\.0"):
+        run(set_to((3.0, True))).must_take("gain", 4.0)
+    with pytest.raises(ValueError, match="never asks for the parameter gain"):
+        run(EMPTY).must_have_parameter("gain")
+
+
+def test_a_right_program_passes() -> None:
+    mine = run(replace(EMPTY, ending=Ending("completed", interrupted=True)))
+    mine.must_have_interface()
+    mine.must_have_nodes()
+    mine.must_have_qos()
+    mine.must_end_on_ctrl_c()
+    mine.must_survive()
+
+
+@pytest.mark.parametrize(
+    ("number", "fields", "told"),
+    [
+        (0, {"topic": "/inn"}, "Your node does not subscribe to /in. It subscribes to: /inn."),
+        (1, {"topic": "/outt"}, "Your node does not publish on /out. It publishes on: /outt."),
+        (
+            1,
+            {"type": "std_msgs/msg/Float32"},
+            "Your publisher on /out has another type. Expected std_msgs/msg/Float64",
+        ),
+        (2, {"topic": "/ad"}, "Your node does not have a service /add. Its services are: /ad."),
+        (3, {"kind": "publisher"}, "Your node does not have an action /count. Its actions are: none."),
+    ],
+)
+def test_an_end_point_that_is_missing(number: int, fields: dict[str, Any], told: str) -> None:
+    ends = tuple(replace(end, **fields) if i == number else end for i, end in enumerate(ENDS))
+    assert says(run(replace(EMPTY, end_points=ends)).must_have_interface).startswith(told)
+
+
+def test_qos() -> None:
+    latched = Topic("/out", "std_msgs/msg/Float64", "publish", durability="transient_local")
+    exercise = replace(EXERCISE, topics=(latched,))
+    assert says(run(EMPTY, exercise=exercise).must_have_qos) == (
+        "Your publisher on /out is reliable and volatile. Expected reliable and transient_local. "
+        "Who subscribes later gets nothing that a volatile publisher published before."
+    )
+    eager = replace(EMPTY, end_points=(replace(ENDS[0], durability="transient_local"),))
+    assert says(run(eager).must_have_qos).endswith(
+        "A transient local subscription gets nothing from a volatile publisher."
+    )
+
+
+def test_nodes() -> None:
+    two = replace(EMPTY, nodes=("/helper", "/worker"))
+    assert says(run(two).must_have_nodes) == (
+        "Your program creates other nodes, too. Expected /worker, got /helper, /worker."
+    )
+    assert says(run(replace(EMPTY, nodes=("/work",))).must_have_nodes) == (
+        "There is no node /worker. Expected /worker, got /work."
+    )
+    several = replace(EXERCISE, programs=(ProgramFile("a.py", "worker"), ProgramFile("b.py", "helper")))
+    run(two, exercise=several).must_have_nodes()
+
+
+def test_ends() -> None:
+    slow = replace(EMPTY, ending=Ending("completed", interrupted=True, ended_in_time=False))
+    assert "still running 2 s after Ctrl-C" in says(run(slow).must_end_on_ctrl_c)
+    loud = replace(EMPTY, ending=Ending("completed", interrupted=True, traceback="RCLError: no"))
+    assert says(run(loud).must_end_on_ctrl_c) == "After Ctrl-C your program printed a traceback: RCLError: no"
+    with pytest.raises(ValueError, match="has no interrupt=True"):
+        run(EMPTY).must_end_on_ctrl_c()
+    ended = replace(EMPTY, exits=(Exit(ns(2), "a.py", signal=9, by="grader"), Exit(ns(3), "b.py", code=1)))
+    run(ended).must_survive("a.py")
+    assert says(run(ended).must_survive) == "At 3.00 s (as usual): b.py ended by itself, with code 1, but must go on."

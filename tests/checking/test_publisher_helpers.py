@@ -1,0 +1,139 @@
+"""What the helpers for publishers say: rate, gaps, stamps, series, late subscribers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+from made_up import EMPTY, ENDS, STAMPED, finding, ns, published, run, says
+
+from grader.recording import Received, Recording
+from grader.scenario.scenario import SECOND
+
+TIMES = [i / 10 for i in range(1, 51)]
+VALUES = [float(i * i) for i in range(1, 51)]
+RIGHT = published(TIMES, VALUES)
+SILENT = published([], [])
+
+
+def stamped(*stamps: float) -> Recording:
+    """A message each 0.1 s, with these stamps (s of simulated time)."""
+    fields = [{"header": {"stamp": {"sec": int(s), "nanosec": round(s % 1 * SECOND)}}} for s in stamps]
+    return replace(EMPTY, received=tuple(Received(ns(i / 10), 0, "/out", STAMPED, f) for i, f in enumerate(fields)))
+
+
+def test_a_right_publisher_passes_everything() -> None:
+    mine = run(RIGHT)
+    mine.must_publish()
+    mine.must_publish(count=50)
+    mine.must_keep_rate(10.0)
+    mine.must_have_no_gap(0.1, end=5.0)
+    mine.must_match_series("data", time=0.0)
+    mine.must_match_series()
+    run(stamped(100.0, 100.1, 100.2)).must_stamp()
+
+
+def test_a_node_that_never_publishes() -> None:
+    told = "In “as usual”: your node has a publisher on /out, but never published anything."
+    for check in (
+        lambda: run(SILENT, RIGHT).must_publish(),
+        lambda: run(SILENT, RIGHT).must_match_series("data"),
+        lambda: run(SILENT, RIGHT).must_keep_rate(10.0),
+    ):
+        assert says(check) == told
+    other = replace(SILENT, end_points=(replace(ENDS[1], topic="/outt"),))
+    assert says(lambda: run(other, RIGHT).must_publish()).endswith(
+        "your node does not publish on /out. It publishes on: /outt."
+    )
+
+
+@pytest.mark.parametrize(
+    ("period", "told"),
+    [
+        (0.2, "expected 10 messages per second on /out, got 5."),
+        (0.08, "got 12.5. Your node waits by the computer's clock (time.sleep or a wall timer), which goes at another"),
+        (10.0, "got 0.1. It publishes every 10 s: a timer takes the period in seconds, not the rate."),
+    ],
+)
+def test_another_rate(period: float, told: str) -> None:
+    times = [period * i for i in range(20)]
+    assert told in says(lambda: run(published(times, times), RIGHT).must_keep_rate(10.0))
+
+
+def test_a_publisher_that_stops() -> None:
+    mine = run(published(TIMES[:20], VALUES[:20]), RIGHT)
+    assert says(lambda: mine.must_keep_rate(10.0)) == (
+        "At 2.00 s (as usual): your node published nothing on /out after that, but must go on."
+    )
+
+
+def test_a_gap_is_told_with_its_beginning() -> None:
+    mine = run(published([*TIMES[:10], *TIMES[14:]], [*VALUES[:10], *VALUES[14:]]), RIGHT)
+    assert says(lambda: mine.must_have_no_gap(0.15)) == (
+        "At 1.00 s (as usual): nothing was published on /out for 0.50 s, from 1.00 s on. "
+        "Does a callback wait or sleep meanwhile?"
+    )
+    mine.must_have_no_gap(0.15, start=1.5, end=5.0)
+    assert "for 0.60 s" in says(lambda: mine.must_have_no_gap(0.15, start=4.5, end=5.6))
+
+
+@pytest.mark.parametrize(
+    ("stamps", "told"),
+    [
+        ((100.0, 100.1, 100.15), "message 3 on /out: expected header.stamp 100.200000000, the time when it was publ"),
+        ((0.0, 0.0, 0.0), "got 0.000000000. Every stamp is 0: nobody filled it in."),
+        ((1.7e9, 1.7e9 + 1, 1.7e9 + 2), "Every stamp is the computer's time. Take the time from the node's clock"),
+        ((99.0, 99.0, 99.0), "Every stamp is the same."),
+    ],
+)
+def test_stamps(stamps: tuple[float, ...], told: str) -> None:
+    assert told in says(lambda: run(stamped(*stamps)).must_stamp())
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (lambda v: v + (5.0 if v == 9.0 else 0.0), "message 3 on /out: expected data 9 m, got 14 m."),
+        (lambda v: -v, "expected data 1 m, got -1 m. Every value has the wrong sign."),
+        (lambda v: 1000 * v, "Every data is in millimetres."),
+        (lambda v: 3 * v, "Every data is 3 times what it should be."),
+        (lambda v: v + 7, "Every data is 7 too large."),
+        (lambda v: 4.0, "Every data is 4."),
+    ],
+)
+def test_a_series_with_other_values(change: Callable[[float], float], told: str) -> None:
+    mine = published(TIMES, [change(value) for value in VALUES])
+    assert told in says(lambda: run(mine, RIGHT).must_match_series("data"))
+
+
+def test_a_series_that_is_one_message_late_or_early() -> None:
+    late, early = published(TIMES, [0.0, *VALUES[:-1]]), published(TIMES, [*VALUES[1:], 0.0])
+    assert says(lambda: run(late, RIGHT).must_match_series("data")).endswith("Every message is one message late.")
+    assert says(lambda: run(early, RIGHT).must_match_series("data")).endswith("Every message is one message early.")
+
+
+def test_a_series_that_comes_too_late_or_ends_too_early() -> None:
+    late = published([at + 0.45 for at in TIMES], VALUES)
+    run(late, RIGHT).must_match_series("data")
+    found = finding(lambda: run(late, RIGHT).must_match_series("data", time=0.05))
+    assert found.text == (
+        "At 0.55 s (as usual), message 1 on /out: it was expected at 0.10 s, got it at 0.55 s. "
+        "Every message comes 0.45 s too late."
+    )
+    assert (found.at, found.expected, found.got) == (0.55, "0.10 s", "0.55 s")
+    short = published(TIMES[:40], VALUES[:40])
+    assert "expected 50 messages on /out, got 40." in says(lambda: run(short, RIGHT).must_match_series("data"))
+
+
+def test_a_late_subscriber_of_a_volatile_publisher_gets_nothing() -> None:
+    wanted = replace(RIGHT, received=(*RIGHT.received, *published([2.0], [1.0], subscriber="late").received))
+    run(wanted).must_match_series("data", subscriber="late")
+    assert "the subscriber “late” got nothing on /out. Your publisher is volatile" in says(
+        lambda: run(RIGHT, wanted).must_match_series("data", subscriber="late")
+    )
+
+
+def test_an_author_who_names_a_field_that_is_not_there_is_told_which_there_are() -> None:
+    with pytest.raises(ValueError, match="there is no field 'date': the fields are data"):
+        run(RIGHT).must_match_series("date")

@@ -1,0 +1,82 @@
+"""What the helpers for services say: responses of the student's server, requests of the student's client."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from made_up import ADD, EMPTY, ENDS, EXERCISE, finding, ns, run, says
+
+from grader.exercise.interface import Endpoint
+from grader.recording import Recording
+from grader.recording.events import Call
+
+
+def calls(*sums: int | None, late: float = 0.0, by: str = "grader", served: bool = True) -> Recording:
+    """A request each second, n + 1 for number n, and these responses."""
+    made = tuple(
+        Call(
+            *(ns(n), "/add", ADD, {"a": n, "b": 1}, by),  # type: ignore[arg-type]
+            answered=None if total is None else ns(n + late),
+            response=None if total is None else {"sum": total},
+            served=served,
+        )
+        for n, total in enumerate(sums, start=1)
+    )
+    return replace(EMPTY, calls=made)
+
+
+RIGHT = calls(2, 3, 4, 5)
+CLIENT = replace(EXERCISE, endpoints=(Endpoint("/add", ADD, "client"),))
+
+
+def test_a_right_server_passes() -> None:
+    run(RIGHT).must_respond(within=0.0)
+    run(RIGHT).must_match_responses("sum")
+    run(RIGHT).must_match_responses()
+
+
+@pytest.mark.parametrize(
+    ("mine", "told"),
+    [
+        (calls(2, 9, 4, 5), "At 2.00 s (as usual), request 2 to /add (a 2, b 1): expected sum 3 m, got 9 m."),
+        (calls(-2, -3, -4, -5), "expected sum 2 m, got -2 m. Every value has the wrong sign."),
+        (calls(4, 6, 8, 10), "Every sum is 2 times what it should be."),
+        (calls(2, None, 4, 5), "request 2 to /add (a 2, b 1): a response was expected, got none."),
+        (calls(None, None, None, None), "got none. Your node never responds. Does the callback return the response"),
+    ],
+)
+def test_wrong_responses(mine: Recording, told: str) -> None:
+    assert told in says(lambda: run(mine, RIGHT).must_match_responses("sum"))
+
+
+def test_responses_that_come_late() -> None:
+    found = finding(lambda: run(calls(2, 3, 4, 5, late=0.45), RIGHT).must_respond(within=0.1))
+    assert found.text == (
+        "At 1.00 s (as usual), request 1 to /add (a 1, b 1): a response was expected within 0.1 s, got it 0.45 s "
+        "after the request. Every response comes 0.45 s after its request."
+    )
+    assert (found.at, found.part, found.expected, found.got) == (1.0, "request 1 to /add (a 1, b 1)", "0.1 s", "0.45 s")
+
+
+def test_a_server_under_another_name() -> None:
+    mine = replace(calls(None, None, served=False), end_points=(replace(ENDS[2], topic="/sum"),))
+    assert "your node has no service /add. Its services are: /sum." in says(lambda: run(mine, RIGHT).must_respond())
+
+
+def test_requests_of_a_client() -> None:
+    right = calls(2, 3, by="node")
+    run(right, exercise=CLIENT).must_call(count=2)
+    run(right, exercise=CLIENT).must_match_requests("a")
+    once, none = calls(2, by="node"), calls(by="node")
+    assert "expected 2 requests to /add, got 1." in says(lambda: run(once, right, CLIENT).must_call())
+    assert "got 0. Your node has no client of /add. Its clients are for: none." in says(
+        lambda: run(none, right, CLIENT).must_call()
+    )
+    other = replace(right, calls=tuple(replace(call, request={"a": 7, "b": 1}) for call in right.calls))
+    assert "request 1 to /add: expected a 1, got 7." in says(lambda: run(other, right, CLIENT).must_match_requests())
+
+
+def test_an_author_who_has_to_name_the_service_is_told_so() -> None:
+    with pytest.raises(ValueError, match=r"name the client: exercise.toml has none under \[\[client\]\]"):
+        run(RIGHT).must_call()

@@ -1,0 +1,41 @@
+"""What the helpers for closed loops say: too late, too far, past it, away from it, never moved."""
+
+from __future__ import annotations
+
+import pytest
+from made_up import moved, run, says
+
+from grader.recording import Recording
+
+PLACE = {"x": 4.0, "y": 3.0}
+START = (0.0, 0.0, 0.0)
+RIGHT = moved(START, (1.0, 2.0, 1.5), (2.0, 4.0, 3.0), (3.0, 4.05, 3.0), (4.0, 4.0, 3.0))
+
+
+def test_a_right_way_passes() -> None:
+    run(RIGHT).must_reach("/pose", PLACE, tolerance=0.1, within=2.0, overshoot=0.05)
+    assert run(RIGHT).trajectory("/pose", "x")[1] == (1.0, (2.0,))
+
+
+@pytest.mark.parametrize(
+    ("mine", "told"),
+    [
+        (moved(START, (1.0, 0.0, 0.0)), "it came no closer than 5. It never moved."),
+        (moved(START, (1.0, -4.0, -3.0)), "it came no closer than 5. It moves away from there: is a sign wrong?"),
+        (moved(START, (1.0, 2.0, 1.5), (2.5, 2.0, 1.5), (3.0, 2.0, 1.5)), "no closer than 2.5. It stopped 2.5 away."),
+        (moved(START, (3.0, 4.0, 3.0)), "but got there only after 3.00 s."),
+        (moved(START, (1.0, 4.0, 3.0), (1.5, 8.0, 6.0), (2.0, 4.0, 3.0)), "it goes 5 beyond x = 4, y = 3; at most 0.5"),
+        (moved(START, (2.0, 4.0, 3.0), (3.0, 3.0, 3.0)), "it reached x = 4, y = 3 at 2.00 s, but did not stay there."),
+    ],
+)
+def test_a_way_that_is_wrong(mine: Recording, told: str) -> None:
+    assert told in says(lambda: run(mine).must_reach("/pose", PLACE, tolerance=0.1, within=2.0, overshoot=0.5))
+
+
+def test_what_need_not_stay() -> None:
+    run(moved(START, (2.0, 4.0, 3.0), (3.0, 3.0, 3.0))).must_reach("/pose", PLACE, 0.1, 2.0, stay=False)
+
+
+def test_a_topic_without_messages_is_the_authors_fault() -> None:
+    with pytest.raises(ValueError, match="there is no message on /poses in the scenario plain"):
+        run(RIGHT).must_reach("/poses", PLACE, 0.1, 2.0)

@@ -1,0 +1,251 @@
+"""What is wrong in scenarios.py is told with its line; nothing of it is blamed on the machine."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from grader.exercise import ExerciseError, load
+from grader.exercise.writing import to_toml
+from grader.scenario.declared import declared
+from grader.scenario.scenario import Scenario
+from grader.scenario.store import NotForStudents, from_plain, plain
+
+TOML = """\
+title = "Any kind"
+points = 10
+file = "any_kind.py"
+node = "any_kind"
+reference_node = "world"
+
+[[subscribe]]
+topic = "/in"
+type = "std_msgs/msg/Float64"
+
+[[publish]]
+topic = "/joints"
+type = "sensor_msgs/msg/JointState"
+depth = 5
+reliability = "best_effort"
+durability = "transient_local"
+units = { position = "rad" }
+elements = { called = "joint", named_by = "name" }
+
+[[service]]
+name = "/switch"
+type = "std_srvs/srv/SetBool"
+
+[[client]]
+name = "/lamp"
+type = "std_srvs/srv/SetBool"
+units = { success = "1" }
+
+[[action]]
+name = "/count"
+type = "test_msgs/action/Fibonacci"
+
+[[action_client]]
+name = "/climb"
+type = "test_msgs/action/Fibonacci"
+
+[[parameter]]
+name = "gain"
+type = "double"
+default = 1.5
+unit = "1/s"
+range = [0.0, 10.0]
+"""
+
+SCENARIOS = """\
+from grader.scenario import *
+
+
+class Tank:
+    def __init__(self, level):
+        self.reads, self.publishes, self.level = {}, {"/in": "std_msgs/msg/Float64"}, level
+
+    def hear(self, topic, message): ...
+
+    def step(self, seconds):
+        self.level -= seconds
+
+    def state(self):
+        return {"/in": {"data": self.level}}
+
+
+def answer(request):
+    return {"success": True}
+
+
+def scenarios(seed):
+    return (
+        Scenario(
+            "first",
+            "everything",
+            (
+                STEP,
+                at(1.0).send_goal("/count", order=3),
+                at(2.0).cancel(1),
+            ),
+            duration=3.0,
+            MORE
+        ),
+    )
+"""
+
+STEP_LINE = 27
+
+
+def exercise_in(folder: Path, step: str = "", more: str = "", toml: str = TOML) -> Path:
+    """An exercise whose only scenario has this step and these arguments."""
+    exercise = folder / "exercises" / "any_kind"
+    exercise.mkdir(parents=True)
+    (exercise / "exercise.toml").write_text(toml)
+    (exercise / "task.md").write_text("# Any kind\n")
+    text = SCENARIOS.replace("STEP", step or "()").replace("MORE", more)
+    (exercise / "scenarios.py").write_text(text)
+    return exercise
+
+
+def scenario_of(folder: Path, step: str = "", more: str = "") -> Scenario:
+    return declared(load(exercise_in(folder, step, more)), 1)[0]
+
+
+@pytest.mark.parametrize(
+    ("step", "told"),
+    [
+        ('at(0.5).publish("/in", data=1)', r"/in: 1 \(int\) is given for data, which is double.*1\.0"),
+        ('at(0.5).publish("/in", value=1.0)', "has no field 'value'.*Its fields: data"),
+        ('at(0.5).publish("/in", data="1.0")', "which is double"),
+        ('at(0.5).publish("/nowhere", data=1.0)', r"type of /nowhere is not known.*\[\[subscribe\]\]"),
+        ('at(0.5).publish("/in", "std_msgs/msg/Float65", data=1.0)', "there is no type std_msgs/msg/Float65"),
+        ('at(0.5).publish("/in", "std_srvs/srv/SetBool", data=True)', "is the type of a service, but /in needs"),
+        ('at(0.5).publish("/in", "Float64", data=1.0)', "'Float64' is not the name of a message type"),
+        ('at(0.5).publish("/joints", name=["a", 2])', r"name\[1\]"),
+        ('at(0.5).publish("/joints", header={"stamp": {"sec": 0.5}})', r"header\.stamp\.sec, which is int32"),
+        ('at(0.5).publish("/joints", header={"stamp": {"sec": 2**31}})', "from -2147483648 to 2147483647"),
+        ('at(0.5).call("/switch", data=1)', "which is boolean"),
+        ('at(0.5).call("/lamp", data=True)', r"type of /lamp is not known.*\[\[service\]\]"),
+        ('at(0.5).send_goal("/count", order=1.5)', "order, which is int32"),
+        ("at(0.5).cancel(1)", "goal 1 is cancelled, but 0 goals have been sent"),
+        ('at(0.5).cancel_all("/climb")', "there is no action /climb"),
+        ('at(0.5).kill("talker.py")', "there is no program 'talker.py'"),
+        ('at(0.5).leave("/moon")', "nothing here is called '/moon'"),
+        ("Message(0, '/in', 'std_msgs/msg/Float64', {'data': None})", "which is double"),
+    ],
+)
+def test_a_step_that_can_not_be_is_told_with_its_line(tmp_path: Path, step: str, told: str) -> None:
+    with pytest.raises(ExerciseError) as caught:
+        scenario_of(tmp_path, step)
+    assert (caught.value.file.name, caught.value.line) == ("scenarios.py", STEP_LINE)
+    assert re.search(told, f"{caught.value.found} {caught.value.mend}"), str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ('servers=Server("/lamp", replies=reply(success=1))', "success, which is boolean"),
+        ('servers=Server("/lamp", replies=lambda request: {})', "lambda.*not a function"),
+        ('servers=ActionServer("/climb", goals=succeeds(result={"sequence": [1.5]}))', r"sequence\[0\]"),
+        ('servers=ActionServer("/climb", goals=aborts(feedback={0.5: {"sum": 1}}))', "has no field 'sum'"),
+        ('servers=ActionServer("/climb")', "no script for a goal"),
+        ('world=World(Tank, level="full")', "the world Tank fails: TypeError"),
+        ("world=World(Tank, level=1)", ""),
+        ("world=World(Tank)", "the world Tank fails"),
+        ('companions=Companion("nobody.py")', "there is no file nobody.py"),
+        ("rate=-1", "rate=-1"),
+        ("parameters={'gain': None}", "the parameter gain is NoneType"),
+    ],
+)
+def test_so_is_what_is_wrong_with_a_peer(tmp_path: Path, more: str, told: str) -> None:
+    if not told:
+        assert scenario_of(tmp_path, more=more)
+        return
+    with pytest.raises(ExerciseError) as caught:
+        scenario_of(tmp_path, more=more)
+    assert caught.value.line
+    assert re.search(told, f"{caught.value.found} {caught.value.mend}"), str(caught.value)
+
+
+def test_one_name_for_two_scenarios_is_told_with_the_line_of_the_second(tmp_path: Path) -> None:
+    folder = exercise_in(tmp_path)
+    with (folder / "scenarios.py").open("a") as file:
+        file.write("\n\nfirst = scenarios\n\n\ndef scenarios(seed):\n    return (*first(seed), *first(seed))\n")
+    with pytest.raises(ExerciseError, match="'first': twice"):
+        declared(load(folder), 1)
+
+
+EVERYTHING = """parameters={"gain": 2.0, "names": ["a", "b"]}, qos={"/in": Qos(reliability="best_effort")},
+            servers=(Server("/lamp", replies=(reply(success=True), reply(0.5, success=False), no_reply()), appears=1.0),
+                     ActionServer("/climb", goals=succeeds(1.0, {"sequence": [1]}, {0.5: {"sequence": []}}))),
+            world=World(Turtle, x=1.0, pose="geometry_msgs/msg/Pose2D"),
+            remappings={"/in": "/other"}, arguments=("a",)"""
+
+STEPS = """(at(0.5).publish("/joints", name=["a"], position=[1.0]), at(0.1).set_parameter("gain", [1.0]),
+                 at(0.2).subscribe("/joints", name="late"), at(0.3).call("/switch", data=True))"""
+
+
+def test_a_students_copy_has_the_same_scenarios(tmp_path: Path) -> None:
+    scenario = scenario_of(tmp_path, STEPS, EVERYTHING)
+    again = from_plain(plain(scenario))
+    assert again == scenario
+    assert again.digest == scenario.digest
+
+
+def test_code_of_the_authors_is_not_in_a_students_copy(tmp_path: Path) -> None:
+    with pytest.raises(NotForStudents, match="Tank"):
+        plain(scenario_of(tmp_path, more="world=World(Tank, level=1.0)"))
+
+
+def test_scenarios_differ_if_anything_in_them_does(tmp_path: Path) -> None:
+    digests = {
+        scenario_of(tmp_path / str(number), step, more).digest
+        for number, (step, more) in enumerate(
+            [
+                ("", ""),
+                ("", "rate=50.0"),
+                ("", "parameters={'gain': 1.0}"),
+                ("", "servers=Server('/lamp')"),
+                ("", "servers=Server('/lamp', replies=no_reply())"),
+                ("", "world=World(Tank, level=1.0)"),
+                ("", "world=World(Tank, level=2.0)"),
+                ("at(0.5).call('/switch', data=True)", ""),
+                ("at(0.6).call('/switch', data=True)", ""),
+            ]
+        )
+    }
+    assert len(digests) == 9
+
+
+def test_an_interface_is_written_as_it_was_read(tmp_path: Path) -> None:
+    exercise = load(exercise_in(tmp_path))
+    assert to_toml(exercise) == TOML.replace('std_msgs/msg/Float64"\n', 'std_msgs/msg/Float64"\ndepth = 10\n')
+    assert (exercise.services[0].name, exercise.clients[0].name) == ("/switch", "/lamp")
+    assert (exercise.actions[0].name, exercise.action_clients[0].name) == ("/count", "/climb")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "told"),
+    [
+        ("points = 10", "points = 10\nclas = 'A'", 3, "'clas' is not known"),
+        ("depth = 5", "deph = 5", 14, r"'deph' is not known in \[\[publish\]\].*depth"),
+        ("depth = 5", "depth = '5'", 14, "depth = '5'"),
+        ('"best_effort"', '"best-effort"', 15, "reliable, best_effort"),
+        ('type = "std_srvs/srv/SetBool"\n\n', 'type = "std_srvs/msg/SetBool"\n\n', 22, "Write a type as"),
+        ('name = "/lamp"', 'name = "lamp"', 25, "full name of the service"),
+        ("default = 1.5", "default = 1", 40, "default = 1, but the parameter gain is of type double"),
+        ('type = "double"', 'type = "float"', 39, "double"),
+        ('name = "/count"\n', "", 29, r"no name in \[\[action\]\]"),
+        ("elements = { called", "elements = { calld", 18, "elements ="),
+    ],
+)
+def test_what_is_wrong_in_exercise_toml_is_told_with_its_line(
+    tmp_path: Path, old: str, new: str, line: int, told: str
+) -> None:
+    assert old in TOML
+    with pytest.raises(ExerciseError) as caught:
+        load(exercise_in(tmp_path, toml=TOML.replace(old, new, 1)))
+    assert (caught.value.file.name, caught.value.line) == ("exercise.toml", line), str(caught.value)
+    assert re.search(told, f"{caught.value.found} {caught.value.mend}"), str(caught.value)
