@@ -57,14 +57,8 @@ def _in_order(recording: Recording, reference: Recording) -> list[tuple[int, str
     messages += [(got.at, got.topic, got.type, got.fields) for got in recording.received]
     messages += [(got.at, REFERENCE + got.topic, got.type, got.fields) for got in reference.received]
     for prefix, one in (("", recording), (REFERENCE, reference)):
-<<<<<<< HEAD
-        messages += [
-            (event.at, prefix + EVENTS, TEXT, {"data": _told(event)}) for event in one.timeline if _is_other(event)
-        ]
-=======
         others = [event for event in one.timeline if not isinstance(event.item, (Sent, Received))]
         messages += [(event.at, prefix + EVENTS, TEXT, {"data": _told(event)}) for event in others]
->>>>>>> checks
     return sorted(messages, key=lambda message: (message[0], message[1]))
 
 
