@@ -16,7 +16,6 @@ from typing import NoReturn
 from . import middleware, view
 from .program import Place, Program
 
-
 #: How many cores a program is told of. It runs on one, but rclpy's MultiThreadedExecutor takes this for its number of
 #: threads, and with one thread a program would be stuck here that works on every other machine.
 CORES_SHOWN = 4

@@ -17,6 +17,7 @@ from grader.crew import Crew
 from grader.exercise import load, starter
 from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
+from grader.misconception.known import signatures
 from grader.submission import read
 from grader.submission.reading import of_source
 from spinbook.course.course import find_course
@@ -47,6 +48,13 @@ def test_the_solution_gets_full_marks_and_the_starter_nothing(graded: Grading) -
     source = starter(exercise.solution_file.read_text(encoding="utf-8"))
     nothing = graded.grade(of_source("starter", source.encode(), exercise))
     assert (nothing.outcome, nothing.score) == ("graded", 0)
+
+
+@pytest.mark.parametrize("graded", ["heartbeat"], indirect=True)
+def test_for_the_overview_only_mistakes_are_graded_that_may_explain_a_failure(graded: Grading) -> None:
+    assert signatures(graded, []) == ()
+    found = signatures(graded, [{"test_ends_on_ctrl_c", "test_one_publisher"}])
+    assert [one.names for one in found] == [("traceback_on_ctrl_c",)]
 
 
 @pytest.mark.parametrize("name", NAMES)

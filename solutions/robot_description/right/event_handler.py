@@ -37,6 +37,7 @@ class RobotDescription(Node):
                 try:
                     root = minidom.parseString(parameter.value.encode()).documentElement
                     result.successful = root.tagName == 'robot'
+                    result.reason = '' if result.successful else f'<{root.tagName}> is not <robot>'
                 except ExpatError as error:
                     result.successful = False
                     result.reason = str(error)
