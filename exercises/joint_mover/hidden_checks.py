@@ -45,7 +45,7 @@ def test_limits_are_accepted(limits: Run) -> None:
 @check(
     points=4,
     hint="The last step is only as long as what is left.",
-    depends=["test_limits_are_accepted", *SUCCEEDS],
+    depends=["test_limits_are_accepted", *SUCCEEDS, *STEPS],
     rule="the last one is shorter, and ends exactly at the goal.",
 )
 def test_reaches_the_limit(limits: Run) -> None:
@@ -101,7 +101,7 @@ def test_goal_after_a_cancel(after_cancel: Run) -> None:
 
 
 @check(
-    points=6,
+    points=4,
     hint="A new goal makes the old one end: abort(), as nobody asked to cancel it.",
     depends=SUCCEEDS,
     misconception="two goals at once",
@@ -111,6 +111,18 @@ def test_second_goal_aborts_the_first(replaced: Run) -> None:
     """A second goal aborts the one that runs, within 0.1 s."""
     replaced.must_accept(2)
     replaced.must_end("aborted", goal=1, within=0.7)
+
+
+@check(
+    points=2,
+    hint="abort(), and then return a result as always.",
+    depends=["test_second_goal_aborts_the_first", "test_result_is_the_position"],
+    misconception="canceled() without a request",
+    rule="its result holds the position where it stopped.",
+)
+def test_result_of_a_replaced_goal(replaced: Run) -> None:
+    """The result of a goal that was replaced holds the position where it stopped."""
+    replaced.must_match_results("position")
 
 
 @check(
