@@ -1,6 +1,7 @@
 """Asks also when the service is not there: the request is lost.
 
 Caught by:
+- test_service_appears_late
 """
 
 import math

@@ -1,6 +1,10 @@
 """Awaits the answer in a callback of the default group, which is blocked meanwhile.
 
 Caught by:
+- test_publishes_the_offset
+- test_ten_times_a_second
+- test_asks_at_once
+- test_service_appears_late
 """
 
 import math

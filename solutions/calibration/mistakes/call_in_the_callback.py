@@ -1,6 +1,10 @@
 """Waits for the answer with call(): nobody spins, and the node is stuck for ever.
 
 Caught by:
+- test_publishes_the_offset
+- test_ten_times_a_second
+- test_asks_at_once
+- test_service_appears_late
 """
 
 import math

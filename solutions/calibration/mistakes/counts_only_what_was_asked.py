@@ -1,6 +1,7 @@
 """Does not count joints that wait for the service.
 
 Caught by:
+- test_pending_without_a_service
 """
 
 import math

@@ -1,6 +1,8 @@
 """Drops the joint when the service is not there.
 
 Caught by:
+- test_service_appears_late
+- test_pending_without_a_service
 """
 
 import math

@@ -1,6 +1,7 @@
 """Publishes an offset without the name of its joint.
 
 Caught by:
+- test_publishes_the_name
 """
 
 import math

@@ -1,6 +1,8 @@
 """Gives up after 1 s.
 
 Caught by:
+- test_publishes_the_offset
+- test_number_of_pending
 """
 
 import math

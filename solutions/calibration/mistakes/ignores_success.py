@@ -1,6 +1,7 @@
 """Publishes an offset also when the calibration failed.
 
 Caught by:
+- test_failed_calibration
 """
 
 import math

@@ -1,6 +1,9 @@
 """Publishes each answer under the name of the joint that was asked for last.
 
 Caught by:
+- test_answers_in_another_order
+- test_failed_calibration
+- test_answer_that_is_too_late
 """
 
 import math

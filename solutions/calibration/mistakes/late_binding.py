@@ -1,6 +1,9 @@
 """The lambda takes its joint when it is called, not when it was made.
 
 Caught by:
+- test_answers_in_another_order
+- test_failed_calibration
+- test_answer_that_is_too_late
 """
 
 import math

@@ -1,6 +1,7 @@
 """Waits for an answer for ever.
 
 Caught by:
+- test_gives_up
 """
 
 import math

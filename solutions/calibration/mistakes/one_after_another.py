@@ -1,6 +1,10 @@
 """Asks for the next joint only when the one before has an answer.
 
 Caught by:
+- test_asks_at_once
+- test_failed_is_not_pending
+- test_service_appears_late
+- test_gives_up
 """
 
 import math

@@ -1,6 +1,7 @@
 """Publishes offsets that are not finite.
 
 Caught by:
+- test_offset_that_is_no_number
 """
 
 import math

@@ -1,6 +1,10 @@
 """Calls spin_until_future_complete in a callback: the timer is silent meanwhile.
 
 Caught by:
+- test_publishes_the_offset
+- test_ten_times_a_second
+- test_asks_at_once
+- test_service_appears_late
 """
 
 import math

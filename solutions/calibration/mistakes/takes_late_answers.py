@@ -1,6 +1,7 @@
 """Publishes an answer that came after it gave up.
 
 Caught by:
+- test_answer_that_is_too_late
 """
 
 import math

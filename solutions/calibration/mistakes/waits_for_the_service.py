@@ -1,6 +1,8 @@
 """Waits in the callback until the service is there.
 
 Caught by:
+- test_never_silent
+- test_pending_without_a_service
 """
 
 import math

@@ -1,6 +1,9 @@
 """Waits in the constructor until the service is there.
 
 Caught by:
+- test_never_silent
+- test_service_appears_late
+- test_pending_without_a_service
 """
 
 import math

@@ -1,6 +1,7 @@
 """Gives up after 5 s of the computer's time.
 
 Caught by:
+- test_gives_up
 """
 
 import math

@@ -1,6 +1,7 @@
 """Calls a service of another name.
 
 Caught by:
+- test_asks
 """
 
 import math

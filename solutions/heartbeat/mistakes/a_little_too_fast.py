@@ -1,6 +1,7 @@
 """Beats every 0.24 s.
 
 Caught by:
+- test_four_beats_a_second
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """The stamp is counted from zero, 0.25 s for each beat.
 
 Caught by:
+- test_stamp_is_the_time_of_the_beat
 """
 
 import rclpy

@@ -1,6 +1,8 @@
 """The parameter is called alpha.
 
 Caught by:
+- test_gain_of_the_start
+- test_gain_can_be_read
 """
 
 import rclpy

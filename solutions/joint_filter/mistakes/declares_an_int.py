@@ -1,6 +1,8 @@
 """Declares the gain with an int as its default.
 
 Caught by:
+- test_filters_with_the_default
+- test_gain_can_be_read
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Calls canceled() on a goal that nobody asked to cancel.
 
 Caught by:
+- test_result_of_a_replaced_goal
 """
 
 import rclpy

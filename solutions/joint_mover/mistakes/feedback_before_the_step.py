@@ -2,7 +2,6 @@
 
 Caught by:
 - test_feedback_after_each_step
-- test_reaches_the_limit
 """
 
 import rclpy

@@ -3,7 +3,6 @@
 Caught by:
 - test_feedback_after_each_step
 - test_cancel
-- test_reaches_the_limit
 - test_second_goal_aborts_the_first
 """
 

@@ -1,6 +1,7 @@
 """Rejects a goal while another one runs.
 
 Caught by:
+- test_second_goal_aborts_the_first
 """
 
 import rclpy

@@ -1,6 +1,8 @@
 """Rejects goals that are just at a limit.
 
 Caught by:
+- test_already_there
+- test_limits_are_accepted
 """
 
 import rclpy

@@ -1,6 +1,8 @@
 """The result is always the position of the goal.
 
 Caught by:
+- test_result_of_a_canceled_goal
+- test_result_of_a_replaced_goal
 """
 
 import rclpy

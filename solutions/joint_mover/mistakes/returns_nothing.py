@@ -1,6 +1,7 @@
 """execute returns None.
 
 Caught by:
+- test_accepts_a_goal
 """
 
 import rclpy

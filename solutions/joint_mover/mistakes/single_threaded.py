@@ -1,6 +1,10 @@
 """Spins in one thread: nothing else is handled while execute sleeps, and it never wakes up.
 
 Caught by:
+- test_succeeds
+- test_feedback_after_each_step
+- test_ends_on_ctrl_c
+- test_limits_are_accepted
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Looks for a cancel once a second.
 
 Caught by:
+- test_cancel
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Asks for the result of a goal that was rejected.
 
 Caught by:
+- test_rejected
 """
 
 import rclpy

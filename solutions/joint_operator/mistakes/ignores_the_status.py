@@ -1,6 +1,9 @@
 """Every goal with a result has succeeded.
 
 Caught by:
+- test_aborted
+- test_canceled
+- test_cancel_that_does_not_work
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Waits for a result for ever.
 
 Caught by:
+- test_asks_to_cancel
 """
 
 import rclpy

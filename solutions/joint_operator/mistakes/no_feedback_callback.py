@@ -1,6 +1,7 @@
 """Forgets the feedback callback.
 
 Caught by:
+- test_publishes_progress
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Says aborted when the goal was rejected.
 
 Caught by:
+- test_rejected
 """
 
 import rclpy

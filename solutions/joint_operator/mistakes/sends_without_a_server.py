@@ -1,6 +1,7 @@
 """Sends goals also when the server is not there: they are lost.
 
 Caught by:
+- test_server_appears_late
 """
 
 import rclpy

@@ -1,6 +1,8 @@
 """Calls spin_until_future_complete in a callback.
 
 Caught by:
+- test_publishes_the_outcome
+- test_publishes_progress
 """
 
 import rclpy

@@ -1,6 +1,9 @@
 """Takes aborted for canceled, and canceled for aborted.
 
 Caught by:
+- test_aborted
+- test_canceled
+- test_cancel_that_does_not_work
 """
 
 import rclpy

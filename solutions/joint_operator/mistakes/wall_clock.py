@@ -1,6 +1,8 @@
 """Cancels after 5 s of the computer's time.
 
 Caught by:
+- test_asks_to_cancel
+- test_has_patience
 """
 
 import time

@@ -1,6 +1,7 @@
 """Has another action's name.
 
 Caught by:
+- test_sends_a_goal
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Leaves success as it is, which is false.
 
 Caught by:
+- test_success
 """
 
 import rclpy

@@ -1,6 +1,10 @@
 """Publishes once a second, in the place of a latched topic.
 
 Caught by:
+- test_late_subscriber
+- test_quality_of_service
+- test_publishes_once
+- test_description_of_the_start
 """
 
 from xml.etree import ElementTree

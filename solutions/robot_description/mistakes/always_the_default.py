@@ -1,6 +1,7 @@
 """Publishes the default, whatever the parameter says.
 
 Caught by:
+- test_description_of_the_start
 """
 
 from xml.etree import ElementTree

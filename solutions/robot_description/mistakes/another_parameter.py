@@ -1,6 +1,7 @@
 """The parameter has another name.
 
 Caught by:
+- test_description_of_the_start
 """
 
 from xml.etree import ElementTree

@@ -1,6 +1,8 @@
 """Publishes best effort.
 
 Caught by:
+- test_late_subscriber
+- test_quality_of_service
 """
 
 from xml.etree import ElementTree

@@ -1,6 +1,9 @@
 """Dies of a text that is not XML.
 
 Caught by:
+- test_refuses_what_is_no_robot
+- test_publishes_nothing_refused
+- test_goes_on_after_a_bad_text
 """
 
 from xml.etree import ElementTree

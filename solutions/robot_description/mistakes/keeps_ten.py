@@ -1,6 +1,7 @@
 """Keeps ten messages: who joins late gets all the former descriptions.
 
 Caught by:
+- test_late_subscriber_gets_the_newest
 """
 
 from xml.etree import ElementTree

@@ -1,6 +1,9 @@
 """Is latched, and publishes once a second all the same.
 
 Caught by:
+- test_late_subscriber
+- test_publishes_once
+- test_description_of_the_start
 """
 
 from xml.etree import ElementTree

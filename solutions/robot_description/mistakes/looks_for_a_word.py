@@ -1,6 +1,8 @@
 """Looks only whether the text has <robot in it.
 
 Caught by:
+- test_refuses_what_is_no_robot
+- test_publishes_nothing_refused
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Publishes at the start only.
 
 Caught by:
+- test_description_that_changes
 """
 
 from xml.etree import ElementTree

@@ -1,6 +1,7 @@
 """Forgets to declare the parameter.
 
 Caught by:
+- test_publishes_the_description
 """
 
 from xml.etree import ElementTree

@@ -1,6 +1,7 @@
 """Refuses without a reason.
 
 Caught by:
+- test_refuses_with_a_reason
 """
 
 from xml.etree import ElementTree

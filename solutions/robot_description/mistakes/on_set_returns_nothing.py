@@ -1,6 +1,7 @@
 """The on-set callback returns None, so that every change is refused.
 
 Caught by:
+- test_description_that_changes
 """
 
 from xml.etree import ElementTree

@@ -1,6 +1,7 @@
 """Publishes in the on-set callback before it has looked at the text.
 
 Caught by:
+- test_publishes_nothing_refused
 """
 
 from xml.etree import ElementTree

@@ -1,6 +1,7 @@
 """Publishes in the on-set callback, where the parameter still has its former value.
 
 Caught by:
+- test_description_that_changes
 """
 
 from xml.etree import ElementTree

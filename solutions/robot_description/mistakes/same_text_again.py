@@ -1,6 +1,7 @@
 """Publishes also when the text is the one it was.
 
 Caught by:
+- test_same_text_again
 """
 
 from xml.etree import ElementTree

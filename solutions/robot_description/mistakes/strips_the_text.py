@@ -1,6 +1,7 @@
 """Changes the text: spaces and line breaks are gone.
 
 Caught by:
+- test_description_of_the_start
 """
 
 from xml.etree import ElementTree

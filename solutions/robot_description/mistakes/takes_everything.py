@@ -1,6 +1,8 @@
 """Takes any text.
 
 Caught by:
+- test_refuses_what_is_no_robot
+- test_publishes_nothing_refused
 """
 
 from xml.etree import ElementTree

@@ -1,6 +1,8 @@
 """Publishes volatile: who joins late gets nothing.
 
 Caught by:
+- test_late_subscriber
+- test_quality_of_service
 """
 
 from xml.etree import ElementTree

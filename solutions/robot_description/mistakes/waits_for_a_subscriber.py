@@ -1,6 +1,8 @@
 """Waits in a timer until somebody subscribes, and publishes then.
 
 Caught by:
+- test_late_subscriber
+- test_quality_of_service
 """
 
 from xml.etree import ElementTree
