@@ -1,6 +1,7 @@
 """The node has another name.
 
 Caught by:
+- test_node_is_called_go_to_goal
 """
 
 import math

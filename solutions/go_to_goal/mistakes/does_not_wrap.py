@@ -1,6 +1,8 @@
 """The difference of the angles is not brought back between -pi and pi: it turns the long way round.
 
 Caught by:
+- test_turns_the_shorter_way
+- test_reaches_the_next_goal
 """
 
 import math

@@ -1,6 +1,7 @@
 """Drives at full speed while it turns, and circles round the goal.
 
 Caught by:
+- test_reaches_the_goal
 """
 
 import math

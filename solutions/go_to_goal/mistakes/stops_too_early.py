@@ -1,6 +1,7 @@
 """Stops 0.3 m before the goal.
 
 Caught by:
+- test_reaches_the_goal
 """
 
 import math

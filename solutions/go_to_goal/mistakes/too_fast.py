@@ -1,6 +1,7 @@
 """Drives at up to 5 m/s.
 
 Caught by:
+- test_not_too_fast
 """
 
 import math

@@ -1,6 +1,7 @@
 """Drives at a quarter of the distance per second, and is late.
 
 Caught by:
+- test_reaches_the_goal
 """
 
 import math

@@ -1,6 +1,7 @@
 """The frame stays empty.
 
 Caught by:
+- test_frame_is_torso
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """The stamp stays zero.
 
 Caught by:
+- test_stamp_is_the_time_of_the_beat
 """
 
 import rclpy

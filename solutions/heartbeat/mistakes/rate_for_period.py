@@ -1,6 +1,7 @@
 """Beats once a second.
 
 Caught by:
+- test_four_beats_a_second
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Publishes best effort.
 
 Caught by:
+- test_quality_of_service
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """A timer at 100 Hz beats when 0.25 s have passed since the last beat, and is a little late each time.
 
 Caught by:
+- test_four_beats_a_second
 """
 
 import rclpy

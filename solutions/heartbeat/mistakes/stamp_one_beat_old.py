@@ -1,6 +1,7 @@
 """The stamp is that of the beat before.
 
 Caught by:
+- test_stamp_is_the_time_of_the_beat
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """The heart stops after forty beats.
 
 Caught by:
+- test_goes_on_for_a_minute
 """
 
 import rclpy

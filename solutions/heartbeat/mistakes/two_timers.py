@@ -1,6 +1,7 @@
 """There are two timers, and each beat comes twice.
 
 Caught by:
+- test_four_beats_a_second
 """
 
 import rclpy

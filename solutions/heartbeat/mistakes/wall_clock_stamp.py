@@ -1,6 +1,7 @@
 """The stamp is the time of the computer, by time.time().
 
 Caught by:
+- test_stamp_is_the_time_of_the_beat
 """
 
 import time

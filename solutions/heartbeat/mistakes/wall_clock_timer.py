@@ -1,6 +1,8 @@
 """The timer runs on the clock of the computer.
 
 Caught by:
+- test_four_beats_a_second
+- test_stamp_is_the_time_of_the_beat
 """
 
 import rclpy

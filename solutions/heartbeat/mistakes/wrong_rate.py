@@ -1,6 +1,7 @@
 """Beats four times as slowly: 4 is the rate, not the period.
 
 Caught by:
+- test_four_beats_a_second
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Publishes another type.
 
 Caught by:
+- test_publishes_beats
 """
 
 import rclpy

@@ -1,6 +1,8 @@
 """Takes the first step at once, without waiting for 0.1 s.
 
 Caught by:
+- test_feedback_after_each_step
+- test_result_of_a_canceled_goal
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """A goal that was replaced counts as succeeded.
 
 Caught by:
+- test_second_goal_aborts_the_first
 """
 
 import rclpy

@@ -1,6 +1,9 @@
 """Sleeps by the clock of the computer.
 
 Caught by:
+- test_feedback_after_each_step
+- test_result_of_a_canceled_goal
+- test_result_of_a_replaced_goal
 """
 
 import time

@@ -1,6 +1,8 @@
 """Takes a step every 0.2 s.
 
 Caught by:
+- test_succeeds
+- test_feedback_after_each_step
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Shuts down a second time after Ctrl-C.
 
 Caught by:
+- test_ends_on_ctrl_c
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """Two goals move the joint at the same time.
 
 Caught by:
+- test_second_goal_aborts_the_first
 """
 
 import rclpy

@@ -1,6 +1,7 @@
 """The action has another type.
 
 Caught by:
+- test_accepts_a_goal
 """
 
 import rclpy
