@@ -22,15 +22,15 @@ setup:   ## Make the virtual environment with every pinned dependency, or bring 
 	@PYTHON="$(PYTHON)" VENV="$(VENV)" sh setup.sh
 	@VENV="$(VENV)" sh fetch-pyodide.sh
 
-course: setup   ## Build, run and package the real course, make its site, and grade a class of twelve.
+course: setup   ## Build, run and package the real course, make its site, and grade a class of twelve in every exercise.
 	$(BIN)/spinbook build --execute --strict
 	$(BIN)/spinbook site --strict
 	$(BIN)/spinbook package
-	$(BIN)/python benchmarks/class/grade_all.py --count 12 --seed 7 --out build/class
+	$(BIN)/python benchmarks/class/grade_course.py --count 12 --seed 7 --out build/class
 	@echo
 	@echo "The course lies in build/notebooks, as it ran here in build/executed, its package in humanoid_ws."
 	@echo "Its site is build/site/index.html: open it in any browser."
-	@echo "How the class did is build/class/results/index.html; each student's page is a click away."
+	@echo "How the class did is build/class/results/index.html; each exercise's and each student's page is a click away."
 	@echo "Open a notebook in any editor, with $(BIN)/python as its Python."
 
 class: setup   ## Make a class of 200, grade it, and check every grade; the pages lie in build/class/results.

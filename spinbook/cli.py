@@ -20,6 +20,7 @@ VERBS = {
     "ros2": "spinbook.ros2.command:ros2",
     "turtle": "spinbook.turtlesim.command:turtle",
     "grade": "grader.command:grade",
+    "gradebook": "spinbook.gradebook.command:gradebook",
     "gradescope": "grader.gradescope.command:gradescope",
     "audit": "grader.audit.command:audit",
     "handout": "spinbook.handout.command:command",
@@ -62,6 +63,7 @@ def spinbook() -> None:
       spinbook grade EXERCISE F   what is right and wrong in a student's node
       spinbook new COURSE         a small course of your own that works at once, to go on from
       spinbook import BOOK        a course from a book that exists (MkDocs, Docusaurus, Jupyter Book …)
+      spinbook gradebook RESULTS  one page for all exercises of a class
       spinbook gradescope E       an autograder to upload to Gradescope
       spinbook handout            what students get: no solutions, no hidden checks
       spinbook audit              whether the exercises' checks catch what is wrong

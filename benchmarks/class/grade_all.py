@@ -41,9 +41,11 @@ def main() -> int:
     return tell(made, results, seconds, memory, wanted.jobs)
 
 
-def grade(submissions: Path, results: Path, jobs: int | None, quiet: bool = False) -> tuple[float, Memory]:
+def grade(
+    submissions: Path, results: Path, jobs: int | None, quiet: bool = False, exercise: str = EXERCISE
+) -> tuple[float, Memory]:
     """Grade with the real command; how long it took in seconds, and its memory. Ends this program where it fails."""
-    command = [sys.executable, "-m", "grader", EXERCISE, str(submissions), "--out", str(results)]
+    command = [sys.executable, "-m", "grader", exercise, str(submissions), "--out", str(results)]
     began = time.monotonic()
     process = subprocess.Popen(
         [*command, *(["--jobs", str(jobs)] if jobs else [])], cwd=ROOT, stdout=subprocess.DEVNULL if quiet else None

@@ -9,8 +9,8 @@ import ast
 import random
 import re
 import sys
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import cycle, islice
 from pathlib import Path
 from typing import Any
@@ -71,19 +71,36 @@ class Handed:
     write: Callable[[Path], object]
 
 
-def the_class(count: int, seed: int, hostile: bool = True) -> list[Handed]:
-    """`count` students in alphabetical order, who hand in as a real class does; or only what is meant well."""
+def the_class(count: int, seed: int, hostile: bool = True, exercise: str = EXERCISE) -> list[Handed]:
+    """`count` students in alphabetical order, who hand in as a real class does; or only what is meant well.
+
+    Hostile programs and odd files are those of joint_velocity: other exercises get right ones and mistakes only.
+    """
     chance = random.Random(seed)
+    hostile = hostile and exercise == EXERCISE
     attacking, odd = (round(ATTACKING * count), round(ODD * count)) if hostile else (0, 0)
+    solutions = SOLUTIONS.parent / exercise
     mistaken = round(MISTAKEN * count)
     origins = [
         *islice(cycle(_attacks(chance)), attacking),
         *islice(cycle(_odd(chance)), odd),
-        *islice(cycle(_shuffled(sorted((SOLUTIONS / "mistakes").glob("*.py")), chance)), mistaken),
-        *islice(cycle([SOLUTIONS / "solution.py", *sorted((SOLUTIONS / "right").glob("*.py"))]), count),
+        *islice(cycle(_shuffled(sorted((solutions / "mistakes").glob("*.py")), chance)), mistaken),
+        *islice(cycle([solutions / "solution.py", *sorted((solutions / "right").glob("*.py"))]), count),
     ][:count]
     chance.shuffle(origins)
-    return [_handed(name, origin, chance) for name, origin in zip(_names(count, chance), origins, strict=True)]
+    pairs = zip(_names(count, chance), origins, strict=True)
+    return [_handed(name, origin, chance, exercise) for name, origin in pairs]
+
+
+def course_class(exercises: Sequence[str], count: int, seed: int) -> dict[str, list[Handed]]:
+    """The same `count` students for each exercise; after the first exercise, each is left out by one of twelve."""
+    names = _names(count, random.Random(seed))
+    made: dict[str, list[Handed]] = {}
+    for number, exercise in enumerate(exercises):
+        handed = the_class(count, seed + number, exercise=exercise)
+        renamed = [replace(one, student=name) for one, name in zip(handed, names, strict=True)]
+        made[exercise] = [one for i, one in enumerate(renamed) if not number or (i + number) % 12]
+    return made
 
 
 def write(made: list[Handed], folder: Path) -> None:
@@ -112,7 +129,7 @@ def _odd(chance: random.Random) -> list[OddFile]:
     return _shuffled([odd for odd in ODD_FILES if odd.name not in LEFT_OUT], chance)
 
 
-def _handed(student: str, origin: Path | OddFile, chance: random.Random) -> Handed:
+def _handed(student: str, origin: Path | OddFile, chance: random.Random, exercise: str) -> Handed:
     if isinstance(origin, OddFile):
         return Handed(student, "odd file", origin.name, Expected(origin.outcome, origin.score), origin.make)
     if origin.parent.parent == HOSTILE:
@@ -122,20 +139,20 @@ def _handed(student: str, origin: Path | OddFile, chance: random.Random) -> Hand
     source = origin.read_text(encoding="utf-8")
     fails = frozenset(_caught_by(source)) if origin.parent.name == "mistakes" else frozenset()
     kind, score = ("mistake", "less") if fails else ("right", "full")
-    name, text = _packed(reworded(source, student, chance), chance)
+    name, text = _packed(reworded(source, student, chance), chance, exercise)
     return Handed(
         student, kind, origin.stem, Expected(("graded",), score, fails), lambda f: (f / name).write_bytes(text)
     )
 
 
-def _packed(source: str, chance: random.Random) -> tuple[str, bytes]:
+def _packed(source: str, chance: random.Random, exercise: str) -> tuple[str, bytes]:
     """As a file, or now and then as a notebook, or as the upload that `spinbook submit` writes."""
     kind = chance.choices(("py", "ipynb", "zip"), (7, 2, 1))[0]
     if kind == "ipynb":
-        return "week3.ipynb", as_notebook(source, EXERCISE).encode()
+        return "notebook.ipynb", as_notebook(source, exercise).encode()
     if kind == "zip":
-        return f"{EXERCISE}.zip", as_upload(source, FILE, EXERCISE)
-    return FILE, source.encode()
+        return f"{exercise}.zip", as_upload(source, f"{exercise}.py", exercise)
+    return f"{exercise}.py", source.encode()
 
 
 def _caught_by(source: str) -> Iterator[str]:

@@ -30,7 +30,7 @@ from grader.marking.results import Results
 from grader.marking.summary import tell_end, tell_intake
 from grader.misconception.grouping import grouped
 from grader.misconception.known import signatures
-from grader.misconception.signature import Signature
+from grader.misconception.signature import Signature, failures_of
 from grader.overview.page import overview_page
 from grader.submission import Submission, read
 
@@ -105,7 +105,7 @@ def _signatures(grading: Grading, entries: Sequence[Entry], console: Console) ->
     if all(entry.grade.full_marks or entry.grade.outcome != "graded" for entry in entries):
         return ()
     with console.status("finding out how the usual mistakes fail"):
-        return signatures(grading)
+        return signatures(grading, [failures_of(entry.grade).keys() for entry in entries])
 
 
 @contextlib.contextmanager

@@ -7,6 +7,8 @@ import contextlib
 import dataclasses
 import hashlib
 import json
+import re
+from collections.abc import Sequence, Set
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -19,15 +21,23 @@ from grader.submission.reading import of_source
 #: Gradings at once. Each has several spins at once already.
 AT_ONCE = 2
 
+#: A check that a mistake's docstring names, under "Caught by:".
+NAMED = re.compile(r"^- (test_\w+)\s*$", re.MULTILINE)
 
-def signatures(grading: Grading) -> tuple[Signature, ...]:
+
+def signatures(grading: Grading, failing: Sequence[Set[str]] | None = None) -> tuple[Signature, ...]:
     """The signatures of the exercise's `solutions/NAME/mistakes/*.py`, in the order of their names.
+
+    `failing` has the checks that each student fails: mistakes that explain none of these, by the checks that they name,
+    are left out without being graded. Without it, all are looked at.
 
     A mistake is graded when anything that its grade depends on has changed since it was last. Mistakes that fail the
     same checks with the same words are one signature; one that fails no check, or does not come through, is none.
     """
     folder = grading.spinner.exercise.solution_folder
     files = sorted((folder / "mistakes").glob("*.py")) if folder else []
+    if failing is not None:
+        files = [file for file in files if _may_explain(file, failing)]
     with ThreadPoolExecutor(AT_ONCE) as pool:
         failures = list(pool.map(lambda file: _failures(file, grading), files))
     found: list[Signature] = []
@@ -42,6 +52,12 @@ def signatures(grading: Grading) -> tuple[Signature, ...]:
             else:
                 found.append(alone)
     return tuple(found)
+
+
+def _may_explain(file: Path, failing: Sequence[Set[str]]) -> bool:
+    """Whether a student fails half of the checks that the file names, without which no signature fits."""
+    named = set(NAMED.findall(_header(file)))
+    return not named or any(2 * len(named & failed) >= len(named) for failed in failing)
 
 
 def _failures(file: Path, grading: Grading) -> dict[str, Failure]:
@@ -64,7 +80,10 @@ def _failures(file: Path, grading: Grading) -> dict[str, Failure]:
 
 def _sentence(file: Path) -> str:
     """The first line of the file's docstring, else its name in words."""
+    return next(iter(_header(file).splitlines()), file.stem.replace("_", " "))
+
+
+def _header(file: Path) -> str:
     with contextlib.suppress(SyntaxError, ValueError):
-        if told := ast.get_docstring(ast.parse(file.read_text(encoding="utf-8", errors="replace"))):
-            return told.splitlines()[0]
-    return file.stem.replace("_", " ")
+        return ast.get_docstring(ast.parse(file.read_text(encoding="utf-8", errors="replace"))) or ""
+    return ""

@@ -192,7 +192,7 @@ class Run:
 
     def _when(self) -> str:
         """The present moment, in words."""
-        if self._script is None:
+        if self._script is None or not self._is_up:
             return f"at message {len(self._publishers.sent)}"
         return f"{(self._clocks.at - START) / SECOND:.2f} s after the start"
 

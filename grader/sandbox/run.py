@@ -16,6 +16,10 @@ from typing import NoReturn
 from . import middleware, view
 from .program import Place, Program
 
+#: How many cores a program is told of. It runs on one, but rclpy's MultiThreadedExecutor takes this for its number of
+#: threads, and with one thread a program would be stuck here that works on every other machine.
+CORES_SHOWN = 4
+
 
 def run(program: Program, place: Place) -> None:
     """Runs a program as `__main__` in this process; returns or raises SystemExit as the program does.
@@ -35,6 +39,7 @@ def run(program: Program, place: Place) -> None:
     if place.hub:
         middleware.connect(place.hub)
     module = _prepare(path, program.arguments)
+    os.sched_getaffinity = lambda pid: set(range(CORES_SHOWN))
     try:
         exec(compile(Path(path).read_bytes(), path, "exec", dont_inherit=True), module.__dict__)
     except SystemExit:

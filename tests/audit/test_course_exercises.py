@@ -14,12 +14,23 @@ from grader.audit.result import Audit
 from grader.crew import Crew
 from grader.exercise import load
 from grader.grading import Options
+from spinbook.course.course import find_course
+from spinbook.interfaces.compiled import compile_course
 
 ROOT = Path(__file__).parents[2]
 
 #: Every exercise of the course, and the one that a new course begins with.
 COURSES = (ROOT, ROOT / "spinbook" / "new" / "template")
 EXERCISES = [file.parent for course in COURSES for file in sorted(course.glob("exercises/*/exercise.toml"))]
+
+#: What every `make test` audits. The other exercises' solutions are graded by tests/grader/test_course_solutions.py.
+ALWAYS = {"joint_velocity", "speed_limit"}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def interfaces() -> None:
+    """The course's own interfaces, compiled."""
+    compile_course(find_course(ROOT))
 
 
 def to_mend(result: Audit) -> str:
@@ -28,7 +39,10 @@ def to_mend(result: Audit) -> str:
 
 
 @pytest.mark.timeout(900)
-@pytest.mark.parametrize("folder", EXERCISES, ids=lambda folder: folder.name)
+@pytest.mark.parametrize(
+    "folder",
+    [pytest.param(f, id=f.name, marks=() if f.name in ALWAYS else pytest.mark.soak) for f in EXERCISES],
+)
 def test_every_mistake_is_caught_by_the_checks_that_it_names(folder: Path, crew: Crew, cache: Path) -> None:
     result = audit(load(folder), Options(), crew, Silence(), quick=True, most=0)
     assert not result.problems, to_mend(result)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import io
+import re
 import shutil
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,6 +20,12 @@ NOTE = "INSTRUCTOR-NOTE-4711"
 
 #: The real course's chapter with the exercise in it.
 CHAPTER = "03-nodes-and-topics.md"
+
+#: The exercises of that chapter.
+WEEK_3 = ("joint_velocity", "heartbeat", "go_to_goal")
+
+#: The chapters of a course, in its course.toml.
+CHAPTERS = re.compile(r"^chapters = \[.*?\]$", re.MULTILINE | re.DOTALL)
 
 SMALL_CHAPTER = f"""# A small chapter
 
@@ -84,17 +91,26 @@ def _within(name: str, content: bytes) -> Iterator[tuple[str, bytes]]:
 
 
 def copy_course(root: Path) -> CourseFolder:
-    """A copy of the real course, with notes of its author's in every place for them."""
+    """A copy of the real course's Week 3, with notes of its author's in every place for them."""
     root.mkdir(parents=True)
-    shutil.copy(ROOT / "course.toml", root)
-    for folder in ("chapters", "exercises", "solutions"):
-        shutil.copytree(ROOT / folder, root / folder, ignore=shutil.ignore_patterns("__pycache__"))
+    course = (ROOT / "course.toml").read_text(encoding="utf-8")
+    (root / "course.toml").write_text(CHAPTERS.sub(f'chapters = ["chapters/{CHAPTER}"]', course), encoding="utf-8")
+    shutil.copytree(ROOT / "chapters", root / "chapters", ignore=shutil.ignore_patterns("__pycache__"))
+    copy_exercises(root, WEEK_3)
     append(root / "chapters" / CHAPTER, f"\n<!-- {NOTE}\nover two lines -->\n")
     exercise = root / "exercises" / "joint_velocity"
     append(exercise / "task.md", f"\n<!-- {NOTE} -->\n")
     append(exercise / "exercise.toml", f"# {NOTE}\n")
     (exercise / "notes.md").write_text(f"{NOTE}\n")
     return CourseFolder(root)
+
+
+def copy_exercises(root: Path, names: Sequence[str]) -> None:
+    """Copy these exercises of the real course, with their solutions."""
+    for folder in ("exercises", "solutions"):
+        for name in names:
+            ignored = shutil.ignore_patterns("__pycache__")
+            shutil.copytree(ROOT / folder / name, root / folder / name, ignore=ignored)
 
 
 def append(file: Path, text: str) -> None:
@@ -132,8 +148,7 @@ def again(real: HandedOut, tmp_path_factory: pytest.TempPathFactory) -> HandedOu
 def small_course(tmp_path_factory: pytest.TempPathFactory) -> CourseFolder:
     """A course of one small chapter, with the real exercise."""
     course = CourseFolder(tmp_path_factory.mktemp("small") / "course")
-    for folder in ("exercises", "solutions"):
-        shutil.copytree(ROOT / folder, course.root / folder, ignore=shutil.ignore_patterns("__pycache__"))
+    copy_exercises(course.root, ["joint_velocity"])
     return course.write(**{"01-small": SMALL_CHAPTER})
 
 

@@ -1,0 +1,79 @@
+"""What every student may read: the checks of `go_to_goal`.
+
+Each fixture is a scenario of scenarios.py; hidden_checks.py goes through the harder ones.
+"""
+
+from __future__ import annotations
+
+import math
+
+from grader.checking import Run, check
+
+POSE, COMMANDS = "/turtle1/pose", "/turtle1/cmd_vel"
+
+
+@check(points=10, hint="Create the publisher and the subscriptions in __init__, and publish a Twist for each pose.")
+def test_drives(ahead: Run) -> None:
+    """It reads /goal and /turtle1/pose, and drives the turtle with Twist messages on /turtle1/cmd_vel."""
+    ahead.must_have_interface()
+    ahead.must_publish(COMMANDS)
+    places = [point for _, point in ahead.trajectory(POSE, "x", "y")]
+    if max(math.dist(point, places[0]) for point in places) < 0.2:
+        ahead.wrong_at(None, "the turtle never got anywhere.", "", "a turtle that moves", "one that does not")
+
+
+@check(
+    points=16,
+    hint="The angle to the goal is atan2(goal.y - pose.y, goal.x - pose.x). Turn by its difference to pose.theta.",
+    depends=[test_drives],
+)
+def test_reaches_the_goal(ahead: Run) -> None:
+    """10 s after the goal was published, the turtle is within 0.1 m of it."""
+    ahead.must_reach(POSE, {"x": 8.5, "y": 7.0}, tolerance=0.1, within=10.0, start=0.5, stay=False)
+
+
+@check(
+    points=8,
+    hint="A command holds for 1 s. Close to the goal, publish a Twist of zeros.",
+    depends=[test_reaches_the_goal],
+    misconception="never stops",
+)
+def test_stops_at_the_goal(ahead: Run) -> None:
+    """At the goal, the turtle stands still."""
+    ahead.must_reach(POSE, {"x": 8.5, "y": 7.0}, tolerance=0.1, within=10.0, start=0.5)
+    last = [point for at, point in ahead.trajectory(POSE, "x", "y", "theta") if at >= 10.5]
+    if max(math.dist(point, last[0]) for point in last) > 0.01:
+        ahead.wrong_at(None, "the turtle still moves at the goal.", "", "a turtle that stands still", "one that moves")
+
+
+@check(
+    points=8,
+    hint="max(-2.0, min(value, 2.0)) keeps a value within limits.",
+    depends=[test_drives],
+    misconception="too fast",
+)
+def test_not_too_fast(ahead: Run, behind: Run) -> None:
+    """linear.x is between -2.0 and 2.0 m/s, angular.z between -2.0 and 2.0 rad/s."""
+    for run in (ahead, behind):
+        for command in run.messages_on(COMMANDS):
+            for part, axis, unit in (("linear", "x", "m/s"), ("angular", "z", "rad/s")):
+                value = command.fields[part][axis]
+                if not abs(value) <= 2.0 + 1e-6:
+                    told = f"expected {part}.{axis} between -2 and 2 {unit}, got {value:.3g} {unit}."
+                    run.wrong_at(command.at, told, "", f"at most 2 {unit}", f"{value:.3g} {unit}")
+
+
+@check(points=3, hint="super().__init__('go_to_goal')", depends=[test_drives])
+def test_node_is_called_go_to_goal(ahead: Run) -> None:
+    """There is one node, and it is called go_to_goal."""
+    ahead.must_have_nodes()
+
+
+@check(
+    points=3,
+    hint="Catch KeyboardInterrupt and ExternalShutdownException around rclpy.spin, then call rclpy.try_shutdown().",
+    depends=[test_drives],
+)
+def test_ends_on_ctrl_c(ahead: Run) -> None:
+    """On Ctrl-C it ends within 2 s, with no traceback."""
+    ahead.must_end_on_ctrl_c()

@@ -1,0 +1,112 @@
+"""The harder scenarios of `joint_filter`. Every rule that they rely on is in task.md."""
+
+from __future__ import annotations
+
+from grader.checking import Run, check
+
+NAMED = "test_node_is_called_joint_filter"
+FILTERS, GAIN = ["test_filters_with_the_default"], ["test_gain_of_the_start", NAMED]
+
+
+@check(
+    points=4,
+    hint="A gain of 1.0 is allowed.",
+    depends=GAIN,
+    rule="Refused: a gain of 0.0 or less, above 1.0, not a number, or of another type",
+)
+def test_gain_of_one(after_refusal: Run) -> None:
+    """A gain of exactly 1.0 is taken."""
+    after_refusal.must_take("gain", 1.0)
+
+
+@check(
+    points=3,
+    hint="declare_parameter() is given the default.",
+    depends=[NAMED],
+    rule="Declared, as a double, with its default 0.5.",
+)
+def test_gain_can_be_read(default: Run) -> None:
+    """The parameter gain can be read, and is 0.5."""
+    default.must_have_parameter("gain")
+
+
+@check(
+    points=10,
+    hint="A range in the descriptor, and a callback before a set that refuses 0.0.",
+    depends=GAIN,
+    misconception="takes every gain",
+    rule="Refused: a gain of 0.0 or less, above 1.0, not a number, or of another type",
+)
+def test_refuses_what_is_not_allowed(refused: Run) -> None:
+    """It refuses gains that are not more than 0.0 and at most 1.0."""
+    refused.must_refuse("gain")
+
+
+@check(
+    points=5,
+    hint="Refuse before anything changes.",
+    depends=["test_refuses_what_is_not_allowed"],
+    rule="The gain stays as it was.",
+)
+def test_goes_on_after_a_refusal(refused: Run) -> None:
+    """After a refusal, the gain is what it was."""
+    refused.must_have_parameter("gain")
+    refused.must_match("position", per="name")
+
+
+@check(
+    points=5,
+    hint="A parameter keeps the type of its default, unless the descriptor says otherwise.",
+    depends=GAIN,
+    rule="Refused: a gain of 0.0 or less, above 1.0, not a number, or of another type (the integer 1).",
+)
+def test_refuses_other_types(other_types: Run) -> None:
+    """It refuses an integer, a string and a bool."""
+    other_types.must_refuse("gain")
+
+
+@check(
+    points=3,
+    hint="SetParametersResult has a field for the reason.",
+    depends=["test_refuses_what_is_not_allowed"],
+    rule="A refusal has a reason.",
+)
+def test_refuses_with_a_reason(refused: Run) -> None:
+    """Each refusal has a reason."""
+    for change in refused.recording.parameters:
+        if change.taken is False and not change.reason:
+            refused.wrong_at(change.at, f"{change.value} was refused without a reason.", "", "a reason", "none")
+
+
+@check(
+    points=6,
+    hint="Remember positions by name, not by place in the list.",
+    depends=FILTERS,
+    misconception="joints by index",
+    rule="Go by name, never by place: the order of the joints may change.",
+)
+def test_joints_in_another_order(reordered: Run) -> None:
+    """It filters each joint by its name, in whatever order they come."""
+    reordered.must_match("position", per="name")
+
+
+@check(
+    points=5,
+    hint="Keep the smooth position of each joint, also when it is missing.",
+    depends=FILTERS,
+    rule="A joint that was missing from some messages goes on from its last smooth position.",
+)
+def test_missing_joint(missing_joint: Run) -> None:
+    """A joint that was missing goes on from its last smooth position."""
+    missing_joint.must_match("position", per="name")
+
+
+@check(
+    points=5,
+    hint="A joint that you don't know yet starts at its position.",
+    depends=FILTERS,
+    rule="A joint that is new starts at its position: smooth is what arrived.",
+)
+def test_new_joint(new_joint: Run) -> None:
+    """A joint that appears later starts at its position."""
+    new_joint.must_match("position", per="name")

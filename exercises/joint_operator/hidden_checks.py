@@ -1,0 +1,129 @@
+"""The servers of `joint_operator` that do not do as they should. Every rule that they rely on is in task.md."""
+
+from __future__ import annotations
+
+from grader.checking import Run, check
+
+OUTCOMES = "/outcomes"
+OUTCOME, ORDER = ["test_publishes_the_outcome"], ["test_every_target_in_order"]
+
+
+def outcomes(run: Run) -> None:
+    """The outcomes must be the solution's, and about when it publishes them."""
+    run.must_match_series("data", OUTCOMES, time=0.3)
+
+
+def must_not_cancel(run: Run) -> None:
+    """No goal of the student's may be canceled."""
+    for goal in run.goals(by="node"):
+        for cancel in goal.cancels:
+            told = "the goal had time left, but your node asked to cancel it."
+            run.wrong_at(cancel.at, told, f"goal {goal.number}", "no request to cancel", "one")
+
+
+@check(
+    points=8,
+    hint="Look at goal_handle.accepted before you ask for a result. Then go on with the next target.",
+    depends=ORDER,
+    misconception="ignores accepted",
+    rule="or rejected if the server did not accept it.",
+)
+def test_rejected(rejects: Run) -> None:
+    """When the server rejects a goal, it publishes rejected, and goes on with the next."""
+    outcomes(rejects)
+
+
+@check(
+    points=7,
+    hint="future.result().status says how the goal ended.",
+    depends=ORDER,
+    misconception="ignores the status",
+    rule="What counts is the status that comes with the result, not what you asked for.",
+)
+def test_aborted(aborts: Run) -> None:
+    """When the server aborts a goal, it publishes aborted, and goes on with the next."""
+    outcomes(aborts)
+
+
+@check(
+    points=4,
+    hint="Nothing has to happen until the server answers.",
+    depends=OUTCOME,
+    rule="is published on /outcomes when its goal has ended",
+)
+def test_server_that_answers_late(answers_late: Run) -> None:
+    """When the server takes long to accept, it waits for the result all the same."""
+    outcomes(answers_late)
+
+
+@check(
+    points=7,
+    hint="server_is_ready() says whether the server is there. Look again in the timer.",
+    depends=ORDER,
+    misconception="sends without a server",
+    rule="Keep the targets, and send the first one within 0.25 s after the server appears.",
+)
+def test_server_appears_late(appears: Run) -> None:
+    """When the server appears late, it sends all targets that were waiting."""
+    appears.must_match_goals("position")
+    first = appears.goals(by="node")[0]
+    late = (first.at - 102_020_000_000) / 1_000_000_000
+    if late > 0.25:
+        told = f"the first goal was expected within 0.25 s after the server appeared, got it after {late:.2f} s."
+        appears.wrong_at(first.at, told, "", "within 0.25 s", f"{late:.2f} s")
+
+
+@check(
+    points=7,
+    hint="Remember when the goal was accepted, and look at it in the timer.",
+    depends=OUTCOME,
+    misconception="waits for ever",
+    rule="If a goal has not ended 5 s after it was accepted, ask the server to cancel it, once, within 0.25 s.",
+)
+def test_asks_to_cancel(never_ends: Run) -> None:
+    """It asks to cancel a goal that takes longer than 5 s, once."""
+    first = never_ends.goals(by="node")[0]
+    if len(first.cancels) != 1:
+        told = f"expected one request to cancel the goal that never ends, got {len(first.cancels)}."
+        never_ends.wrong_at(first.at, told, "", "one request", len(first.cancels))
+    after = (first.cancels[0].at - (first.answered or first.at)) / 1_000_000_000
+    if not 5.0 <= after <= 5.25:
+        told = f"expected a request to cancel 5 s after the goal was accepted, got it after {after:.2f} s."
+        never_ends.wrong_at(first.cancels[0].at, told, "", "5 s to 5.25 s", f"{after:.2f} s")
+
+
+@check(
+    points=5,
+    hint="The result of a canceled goal comes, too, with the status for it.",
+    depends=["test_asks_to_cancel", *ORDER],
+    rule="Then go on waiting for its result",
+)
+def test_canceled(never_ends: Run) -> None:
+    """When the goal was canceled, it publishes canceled, and goes on with the next."""
+    outcomes(never_ends)
+
+
+@check(
+    points=5,
+    hint="The 5 s begin when the goal is accepted, and go by the node's clock.",
+    depends=OUTCOME,
+    misconception="cancels too early",
+    rule="If a goal has not ended 5 s after it was accepted, ask the server to cancel it",
+)
+def test_has_patience(slow: Run, late_and_slow: Run) -> None:
+    """It does not cancel a goal that ends within 5 s after it was accepted."""
+    for run in (slow, late_and_slow):
+        must_not_cancel(run)
+
+
+@check(
+    points=5,
+    hint="Publish an outcome only when the result is there, and by its status.",
+    depends=["test_asks_to_cancel", *ORDER],
+    misconception="believes that a cancel works",
+    rule="the server may refuse to cancel it, and it may even succeed.",
+)
+def test_cancel_that_does_not_work(refuses_to_cancel: Run, ignores_the_cancel: Run, aborts_late: Run) -> None:
+    """What counts is how the goal ends, also when the server does not cancel it."""
+    for run in (refuses_to_cancel, ignores_the_cancel, aborts_late):
+        outcomes(run)

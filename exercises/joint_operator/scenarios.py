@@ -1,0 +1,77 @@
+"""How the server behaves. Each scenario is a fixture in checks.py and hidden_checks.py."""
+
+from __future__ import annotations
+
+from grader.scenario import ActionServer, Scenario, aborts, at, never_ends, rejects, succeeds
+from grader.scenario.scenario import Content
+
+ACTION, TARGETS = "/move_joint", "/targets"
+
+
+def target(position: float, *seconds: float) -> tuple[Content, ...]:
+    """Somebody wants the joint to be at a position."""
+    return at(*seconds).publish(TARGETS, data=position)
+
+
+def moves(after: float, *positions: float, **more: object) -> object:
+    """A goal that succeeds, with feedback at equal times on the way."""
+    gap = after / (len(positions) + 1)
+    feedback = {gap * (n + 1): {"position": position} for n, position in enumerate(positions)}
+    return succeeds(after=after, result={"position": 0.0}, feedback=feedback, **more)
+
+
+def scenarios(seed: int) -> tuple[Scenario, ...]:
+    """Every scenario. The first one must be passed by any node that works at all."""
+    one = target(0.8, 0.53)
+    three = (one, target(0.3, 0.83), target(1.2, 1.13))
+    good = moves(1.0, 0.2, 0.5)
+    scripts = {
+        "succeeds": ("one target, and a server that moves for 1.2 s", 2.5, one, (moves(1.2, 0.2, 0.4, 0.6),), {}),
+        "several": ("three targets, one soon after the other", 6.0, three, (good, moves(1.5, 0.7, 0.4), good), {}),
+        "rejects": ("the first goal is rejected", 4.5, three, (rejects(), good), {}),
+        "aborts": ("the first goal is aborted", 5.0, three, (aborts(after=0.7), good), {}),
+        "answers_late": ("the server takes 1.5 s to accept", 4.0, one, (moves(1.0, 0.5, answers_after=1.5),), {}),
+        "appears": ("the server appears after 2 s", 7.0, three, (good,), {"appears": 2.02}),
+        "never_ends": ("the first goal never ends", 9.0, three, (never_ends(cancel_takes=0.5), good), {}),
+        "slow": ("a goal that takes 4.5 s", 6.0, one, (moves(4.5, 0.2, 0.5),), {}),
+        "late_and_slow": (
+            "accepted after 2 s, and 4 s on its way",
+            7.5,
+            one,
+            (moves(4.0, 0.2, answers_after=2.0),),
+            {},
+        ),
+        "refuses_to_cancel": (
+            "7 s on its way, and no way to cancel",
+            10.0,
+            three[:2],
+            (moves(7.0, 0.2, cancel="refuse"), good),
+            {},
+        ),
+        "ignores_the_cancel": (
+            "accepts to cancel, and succeeds all the same",
+            9.0,
+            three[:2],
+            (moves(6.0, 0.2, cancel="ignore"), good),
+            {},
+        ),
+        "aborts_late": (
+            "aborted after 6 s, whatever is asked",
+            9.0,
+            three[:2],
+            (aborts(after=6.0, cancel="refuse"), good),
+            {},
+        ),
+    }
+    return tuple(
+        Scenario(
+            name,
+            title,
+            script,
+            duration=duration,
+            rate=10.0,
+            servers=(ActionServer(ACTION, goals=goals, **when),),
+            interrupt=name == "succeeds",
+        )
+        for name, (title, duration, script, goals, when) in scripts.items()
+    )

@@ -1,0 +1,43 @@
+"""The stamp is that of the beat before.
+
+Caught by:
+- test_stamp_is_the_time_of_the_beat
+"""
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from std_msgs.msg import Header
+
+
+class Heartbeat(Node):
+
+    def __init__(self):
+        super().__init__('heartbeat')
+        self.publisher = self.create_publisher(Header, '/heartbeat', 10)
+        self.last = self.get_clock().now()
+        self.timer = self.create_timer(0.25, self.beat)
+        self.get_logger().info('The heart is ready')
+
+    def beat(self):
+        message = Header()
+        message.stamp = self.last.to_msg()
+        self.last = self.get_clock().now()
+        message.frame_id = 'torso'
+        self.publisher.publish(message)
+
+
+def main():
+    rclpy.init()
+    node = Heartbeat()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == '__main__':
+    main()

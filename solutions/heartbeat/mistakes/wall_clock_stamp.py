@@ -1,0 +1,45 @@
+"""The stamp is the time of the computer, by time.time().
+
+Caught by:
+- test_stamp_is_the_time_of_the_beat
+"""
+
+import time
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from std_msgs.msg import Header
+
+
+class Heartbeat(Node):
+
+    def __init__(self):
+        super().__init__('heartbeat')
+        self.publisher = self.create_publisher(Header, '/heartbeat', 10)
+        self.timer = self.create_timer(0.25, self.beat)
+        self.get_logger().info('The heart is ready')
+
+    def beat(self):
+        message = Header()
+        now = time.time()
+        message.stamp.sec = int(now)
+        message.stamp.nanosec = int(now % 1 * 1e9)
+        message.frame_id = 'torso'
+        self.publisher.publish(message)
+
+
+def main():
+    rclpy.init()
+    node = Heartbeat()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,70 @@
+"""`spinbook gradebook`: one page and one table for all exercises of a course."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from grader.classroom.writing import write
+from grader.exercise import ExerciseError, load
+from grader.gradebook.course import course_csv, course_rows, graded_exercises
+from grader.gradebook.files import BYTE_ORDER_MARK
+from grader.overview.course_page import course_page
+from spinbook.build.reading import read_all
+from spinbook.chapter.chapter import CellKind
+from spinbook.course.course import Course, find_course
+
+NOTHING_GRADED = 1
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("results", type=click.Path(path_type=Path, exists=True, file_okay=False))
+@click.option("--course", "start", type=click.Path(path_type=Path), default=".", help="The course's folder.")
+def gradebook(results: Path, start: Path) -> None:
+    """Write one page and one table for all exercises that a class was graded for.
+
+    RESULTS has a folder for each exercise, which `spinbook grade` has written:
+
+    \b
+      spinbook grade joint_velocity submissions/joint_velocity --out results/joint_velocity
+      spinbook grade heartbeat      submissions/heartbeat      --out results/heartbeat
+      spinbook gradebook results/
+
+    It writes RESULTS/index.html (points so far, what the class struggles with, a row for each student and a column for
+    each exercise) and RESULTS/gradebook.csv. Exercises come in the order of the chapters.
+
+    Exit codes: 0 written, 1 there are no grades in RESULTS, 2 wrong usage.
+    """
+    course = find_course(start)
+    order = exercises_in_order(course)
+    exercises = graded_exercises(results, order, _titles(course))
+    if not exercises:
+        message = f"{results}: no grades. Grade an exercise first: spinbook grade EXERCISE SUBMISSIONS --out"
+        click.echo(f"{message} {results / 'EXERCISE'}", err=True)
+        sys.exit(NOTHING_GRADED)
+    rows = course_rows(exercises)
+    write(results / "index.html", course_page(course.title, exercises, rows))
+    write(results / "gradebook.csv", BYTE_ORDER_MARK + course_csv(exercises, rows))
+    students = "1 student" if len(rows) == 1 else f"{len(rows)} students"
+    click.echo(f"{students}, exercises: {', '.join(exercise.name for exercise in exercises)}.")
+    click.echo(f"Open {results / 'index.html'}.")
+
+
+def exercises_in_order(course: Course) -> tuple[str, ...]:
+    """The course's exercises in the order in which its chapters have them, then those that no chapter has."""
+    chapters = [reading.chapter for reading in read_all(course) if reading.chapter]
+    cells = [cell for chapter in chapters for cell in chapter.cells]
+    named = [cell.name for cell in cells if cell.kind is CellKind.EXERCISE and cell.name]
+    return tuple(dict.fromkeys([*named, *sorted(course.exercises)]))
+
+
+def _titles(course: Course) -> dict[str, str]:
+    titles = {}
+    for name in course.exercises:
+        try:
+            titles[name] = load(course.root / "exercises" / name).title
+        except ExerciseError:
+            continue  # its page is called by its name
+    return titles

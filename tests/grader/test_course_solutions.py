@@ -1,0 +1,68 @@
+"""Every exercise of the course: the solution gets full marks, the starter gets nothing.
+
+That each right solution gets full marks and each mistake loses exactly the checks that it names is `make soak`'s, with
+tests/audit/test_course_exercises.py; `spinbook audit --quick` shows it in one command.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from grader.crew import Crew
+from grader.exercise import load, starter
+from grader.grading import Options, grading_of
+from grader.grading.grading import Grading
+from grader.misconception.known import signatures
+from grader.submission import read
+from grader.submission.reading import of_source
+from spinbook.course.course import find_course
+from spinbook.interfaces.compiled import compile_course
+
+ROOT = Path(__file__).parents[2]
+
+#: joint_velocity has tests of its own, in test_solutions.py.
+NAMES = sorted(
+    file.parent.name for file in ROOT.glob("exercises/*/exercise.toml") if file.parent.name != "joint_velocity"
+)
+
+
+@pytest.fixture(scope="module", params=NAMES)
+def graded(request: pytest.FixtureRequest, crew: Crew, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Grading]:
+    """Ready to grade one exercise; its solution has been run anew."""
+    compile_course(find_course(ROOT))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SPINBOOK_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield grading_of(load(ROOT / "exercises" / request.param), Options(), crew)
+
+
+def test_the_solution_gets_full_marks_and_the_starter_nothing(graded: Grading) -> None:
+    exercise = graded.spinner.exercise
+    assert exercise.solution_file
+    solution = graded.grade(read(str(exercise.solution_file), exercise))
+    assert solution.full_marks, [verdict for verdict in solution.verdicts if verdict.status != "passed"]
+    source = starter(exercise.solution_file.read_text(encoding="utf-8"))
+    nothing = graded.grade(of_source("starter", source.encode(), exercise))
+    assert (nothing.outcome, nothing.score) == ("graded", 0)
+
+
+@pytest.mark.parametrize("graded", ["heartbeat"], indirect=True)
+def test_for_the_overview_only_mistakes_are_graded_that_may_explain_a_failure(graded: Grading) -> None:
+    assert signatures(graded, []) == ()
+    found = signatures(graded, [{"test_ends_on_ctrl_c", "test_one_publisher"}])
+    assert [one.names for one in found] == [("traceback_on_ctrl_c",)]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_there_are_five_right_solutions_and_mistakes_that_name_their_checks(name: str) -> None:
+    folder = ROOT / "solutions" / name
+    assert len(list((folder / "right").glob("*.py"))) >= 5
+    mistakes = sorted((folder / "mistakes").glob("*.py"))
+    assert len(mistakes) >= 15
+    for file in mistakes:
+        header = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
+        assert re.search(r"^Caught by:\n- test_\w+", header, re.MULTILINE), file
