@@ -70,16 +70,18 @@ class SmallClass:
 
     def wait_for_grades(self, count: int, process: subprocess.Popen[str], out: str = "results") -> None:
         """Wait until `count` students have a grade, or the command has ended."""
-        wait_until(lambda: len(list((self.folder / out).glob("*/grade.json"))) >= count or process.poll() is not None)
+        students = self.folder / out / "students"
+        wait_until(lambda: len(list(students.glob("*/grade.json"))) >= count or process.poll() is not None)
 
     def entry(self, student: str, out: str = "results") -> dict[str, Any]:
         """What is in a student's grade.json."""
-        entry: dict[str, Any] = json.loads((self.folder / out / student / "grade.json").read_text(encoding="utf-8"))
+        file = self.folder / out / "students" / student / "grade.json"
+        entry: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
         return entry
 
     def finals(self, out: str = "results") -> dict[str, float]:
         """The points that count, by student."""
-        students = sorted(file.parent.name for file in (self.folder / out).glob("*/grade.json"))
+        students = sorted(file.parent.name for file in (self.folder / out).glob("students/*/grade.json"))
         return {student: self.entry(student, out)["final"] for student in students}
 
 

@@ -95,7 +95,7 @@ def test_a_fault_of_ours_is_no_zero_anywhere(tmp_path: Path) -> None:
     assert rows(tmp_path, "nbgrader.csv", entries)[0]["score"] == ""
     assert rows(tmp_path, "canvas.csv", entries)[1][plain.exercise().title] == ""
     assert rows(tmp_path, "moodle.csv", entries)[0]["Grade"] == ""
-    assert '"score"' not in (tmp_path / "ada" / "results.json").read_text()
+    assert '"score"' not in (tmp_path / "students" / "ada" / "results.json").read_text()
 
 
 def test_no_name_becomes_a_formula_and_no_line_a_row(tmp_path: Path) -> None:
