@@ -23,6 +23,7 @@ VERBS = {
     "gradescope": "grader.gradescope.command:gradescope",
     "audit": "grader.audit.command:audit",
     "handout": "spinbook.handout.command:command",
+    "check": "spinbook.submit.check_command:check",
     "submit": "spinbook.submit.command:submit",
     "update": "spinbook.update.command:update",
     "new": "spinbook.new.command:new",
@@ -69,7 +70,9 @@ def spinbook() -> None:
     In a student's folder of a course:
 
     \b
+      spinbook check EXERCISE     what the public checks say of your node
       spinbook submit EXERCISE    one file to upload, with what the public checks say
+      spinbook package            your notebooks' nodes as a ROS 2 package
       spinbook update NEW.zip     a newer handout, with your work kept
     """
 

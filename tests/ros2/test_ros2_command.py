@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 
 import click
@@ -111,6 +112,22 @@ def test_an_installed_ros2_answers_instead(terminal: Terminal) -> None:
     assert terminal.ros2("topic", "list", "-t", "--any").out == "real topic list -t --any\nguard=\n"
     assert terminal.ros2("bag", "record", "-a").out.startswith("real bag record -a\n")
     assert terminal.ros2("--help").out.startswith("real --help\n")
+
+
+def in_a_shell(line: str) -> str:
+    """What a shell prints for a line, in which the environment's own programs come first."""
+    path = f"{sysconfig.get_path('scripts')}{os.pathsep}{os.environ['PATH']}"
+    return subprocess.run(["sh", "-c", line], env={**os.environ, "PATH": path}, stdout=-1, text=True).stdout
+
+
+def test_ros2_is_a_command_of_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SPINBOOK_ROS2")
+    assert in_a_shell("ros2 daemon status").startswith("The daemon is not running")
+
+
+@pytest.mark.usefixtures("installed")
+def test_the_environments_ros2_hands_over_to_a_real_one() -> None:
+    assert in_a_shell("ros2 topic list") == "real topic list\nguard=\n"
 
 
 @pytest.mark.usefixtures("installed")

@@ -159,3 +159,11 @@ def test_the_turtle_runs_and_is_shown(arm: Kernel) -> None:
 
     assert min(size_of(picture)) >= 300
     assert kernel.run("%stop turtlesim_node").text == "turtlesim_node stopped.\n"
+
+
+def test_ros2_is_a_command_of_the_shell_too_though_the_environment_is_not_activated(
+    new_kernel: Callable[..., Kernel],
+) -> None:
+    kernel = new_kernel(PATH="/usr/bin:/bin", SPINBOOK_ROS2="own")
+    assert "The daemon is not running" in kernel.run("!ros2 daemon status").text
+    assert "The daemon is not running" in kernel.run("%%bash\nros2 daemon status").text
