@@ -25,8 +25,7 @@ def run(session: Session, shell: Any, name: str, course: str, seconds: float) ->
     notebook = notebook_file(shell.user_ns, os.environ)
     exercise = exercise_of(name, course, notebook)
     code = code_of(exercise, session, notebook)
-    if code.note:
-        print(code.note)
+    print(code.note("Checked", f"%check {exercise.name}"))
     display(checked(exercise.folder, code.text, seconds), raw=True)
 
 
