@@ -11,7 +11,7 @@ COMMANDS, VELOCITIES = "/joint_commands", "/joint_velocities"
 JOINT_STATE = "sensor_msgs/msg/JointState"
 
 
-@check(points=3, hint="Create the publisher in __init__ and call publish() in the callback.")
+@check(points=3, hint="Create the subscription and the publisher in __init__, and call publish() in the callback.")
 def test_publishes_velocities(chapter: Run) -> None:
     """It hears /joint_commands and publishes JointState messages on /joint_velocities."""
     if not chapter.subscriptions(COMMANDS):
