@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import json
+import re
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -158,7 +159,13 @@ def test_a_chapter_or_a_task_that_gives_something_away_is_refused(tmp_path: Path
 
     assert done.returncode == 1
     assert f"{chapter.stem}.ipynb: error: a part of the solution of joint_velocity would be in it" in done.stderr
-    assert "task.md: error: the hidden check test_lost_messages of joint_velocity would be in it" in done.stderr
+    assert re.search(
+        r"task\.md:\d+: error: the hidden check test_lost_messages of joint_velocity would be", done.stderr
+    )
+    assert re.search(
+        r"\(chapters/03-nodes-and-topics\.md:\d+, the same as solutions/joint_velocity/solution\.py", done.stderr
+    )
+    assert "the same as exercises/joint_velocity/hidden_checks.py:" in done.stderr
     assert "Take it out of the chapter" in done.stderr
     assert "Traceback" not in done.stderr
     assert not (course.root / "build" / "handout").exists()
