@@ -21,6 +21,7 @@ VERBS = {
     "turtle": "spinbook.turtlesim.command:turtle",
     "grade": "grader.command:grade",
     "gradescope": "grader.gradescope.command:gradescope",
+    "classroom50": "grader.classroom50.command:classroom50",
     "audit": "grader.audit.command:audit",
     "handout": "spinbook.handout.command:command",
     "check": "spinbook.submit.check_command:check",
@@ -64,6 +65,7 @@ def spinbook() -> None:
       spinbook new COURSE         a small course of your own that works at once, to go on from
       spinbook import BOOK        a course from a book that exists (MkDocs, Docusaurus, Jupyter Book …)
       spinbook gradescope E       an autograder to upload to Gradescope
+      spinbook classroom50 E      an autograder for Classroom 50 and GitHub Actions
       spinbook handout            what students get: no solutions, no hidden checks
       spinbook audit              whether the exercises' checks catch what is wrong
 
