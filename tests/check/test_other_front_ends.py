@@ -49,7 +49,8 @@ def test_colab_a_notebook_alone_is_told_what_it_lacks_and_works_once_it_has_it(e
     elsewhere.run(node_cell(solution()))
     shown = elsewhere.run("%check joint_velocity")
     assert "There is no exercise 'joint_velocity' here" in shown.error
-    assert "Keep the notebook in the folder of the handout" in shown.error
+    assert "from the course's website: run its first code cells" in shown.error
+    assert "keep the notebook in the folder of the handout" in shown.error
     assert "%check joint_velocity --course FOLDER" in shown.error
     assert "Traceback" not in shown.error
 

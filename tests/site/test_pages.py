@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 import json
 import re
+import subprocess
+import sys
 from pathlib import Path
 from urllib.parse import unquote, urldefrag
 
@@ -106,6 +108,27 @@ def test_notebooks_to_download_begin_by_installing_what_is_missing(built: SmallC
         first = next(cell for cell in notebook.cells if cell.cell_type == "code")
         assert "spinbook[ros,colcon] @ git+https://github.com/example/course@main" in first.source
         assert "pip" in first.source
+
+
+def test_an_exercise_s_notebook_holds_all_that_it_takes_to_do_it_and_check_it(
+    built: SmallCourse, tmp_path: Path
+) -> None:
+    notebook = nbformat.read(built.site / "downloads" / "exercise-joint_velocity.ipynb", as_version=4)
+    kinds = [cell.metadata.get("spinbook", {}).get("kind", cell.cell_type) for cell in notebook.cells]
+    assert kinds == ["markdown", "install", "exercises", "setup", "exercise", "check"]
+    assert "/joint_velocities" in notebook.cells[0].source
+    assert notebook.cells[-1].source == "%check joint_velocity"
+    for name in ("01-talk", "exercise-joint_velocity"):
+        alone = nbformat.read(built.root / "build" / "launch" / f"{name}.ipynb", as_version=4)
+        brings = next(cell.source for cell in alone.cells if cell.id == "spinbook-exercises")
+        (tmp_path / name).mkdir()
+        # As in Colab: nothing but the notebook. Then the check that its last cell makes.
+        subprocess.run([sys.executable, "-c", brings], cwd=tmp_path / name, check=True, timeout=60)
+    (tmp_path / "node.py").write_text((ROOT / "solutions/joint_velocity/solution.py").read_text())
+    check = [sys.executable, "-m", "spinbook", "check", "joint_velocity", "../node.py"]
+    done = subprocess.run(check, cwd=tmp_path / "01-talk", capture_output=True, text=True, timeout=280)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "36 of 36 points" in done.stdout
 
 
 def test_the_branch_of_notebooks_has_a_container_for_each(built: SmallCourse) -> None:
