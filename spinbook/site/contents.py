@@ -22,6 +22,7 @@ from spinbook.handout.comments import without_comments
 from spinbook.problem import Problem, Severity, SpinbookError
 from spinbook.site import names
 from spinbook.site.about_page import about_markdown
+from spinbook.site.addresses import address_files
 from spinbook.site.chapter_page import ExerciseCard, Ran, as_text, chapter_notebook, stills
 from spinbook.site.drawing import drawing_files, drawing_html
 from spinbook.site.exercise_page import exercise_markdown
@@ -105,6 +106,7 @@ def read_contents(course: Course) -> Contents:
     contents.files |= links.pictures
     if can_run():
         contents.files |= run_files(contents.copies)
+    contents.files |= address_files(course.site, course.title, contents.pages)
     return contents
 
 
@@ -192,8 +194,27 @@ def _chapter(
     text = as_text(notebook)
     runs = can_run()
     return Page(
-        name, chapter.title, "chapter", ".ipynb", text, source, chapter.name, summary=chapter.summary, runs=runs
+        name,
+        chapter.title,
+        "chapter",
+        ".ipynb",
+        text,
+        source,
+        chapter.name,
+        summary=chapter.summary,
+        about={"minutes": _minutes(chapter)},
+        runs=runs,
     )
+
+
+#: Words that most people read in a minute, of a text that they want to understand.
+WORDS_PER_MINUTE = 200
+
+
+def _minutes(chapter: Chapter) -> int:
+    """How long the prose takes to read, in minutes; the code is for trying, at a pace of one's own."""
+    words = sum(len(cell.source.split()) for cell in chapter.cells if cell.kind is CellKind.PROSE)
+    return max(1, round(words / WORDS_PER_MINUTE))
 
 
 def _downloads(chapter: Chapter, contents: Contents) -> dict[str, str]:

@@ -7,12 +7,16 @@ import json
 import re
 import subprocess
 import sys
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from urllib.parse import unquote, urldefrag
 
 import nbformat
 import pytest
+from latex2mathml.converter import convert
 from small_course import ROOT, SmallCourse
+
+from spinbook.site.extension.maths import spaced
 
 TALK = "chapters/01-talk.html"
 EXERCISE = "exercises/joint_velocity.html"
@@ -24,7 +28,7 @@ def text_of(html: str) -> str:
 
 def test_every_page_is_there(built: SmallCourse) -> None:
     assert built.pages == [
-        "about.html", TALK, "chapters/02-more.html", EXERCISE, "glossary.html", "index.html", "search.html",
+        "404.html", "about.html", TALK, "chapters/02-more.html", EXERCISE, "glossary.html", "index.html", "search.html",
     ]  # fmt: skip
 
 
@@ -208,3 +212,31 @@ def assert_holds_none(file: Path, secrets: set[str]) -> None:
     for version in (text, re.sub(r"</?span[^>]*>", "", text), text.replace('\\"', '"')):
         found = [line for line in secrets if line in version]
         assert not found, f"{file}: {found[:3]}"
+
+
+def test_names_of_functions_stand_apart_in_formulas() -> None:
+    thin = '<mspace width="0.167em" />'
+    assert f"<mn>0.5</mn>{thin}<mi>sin</mi>{thin}<mi>t</mi>" in spaced(convert(r"0.5 \sin t"))
+    assert f"</msup>{thin}<mi>t</mi>" in spaced(convert(r"\sin^2 t"))
+    assert f"<mn>3</mn>{thin}<mi>cos</mi><mo" in spaced(convert(r"3\cos(t)"))
+
+
+def test_other_programs_learn_where_the_pages_are_and_what_they_are_about(built: SmallCourse) -> None:
+    site = "https://example.github.io/course/"
+    page = built.page(TALK)
+    assert f'<link rel="canonical" href="{site}chapters/01-talk.html">' in page
+    assert '<meta property="og:title" content="Talk">' in page
+    assert '<meta property="og:description" content="One node that talks.">' in page
+    assert f'<link rel="canonical" href="{site}">' in built.page("index.html")
+    locations = re.findall(r"<loc>(.*?)</loc>", (built.site / "sitemap.xml").read_text())
+    assert {f"{site}chapters/01-talk.html", f"{site}chapters/02-more.html", site} <= set(locations)
+    feed = ElementTree.parse(built.site / "feed.xml").getroot()
+    assert next(item.findtext("title") for item in feed.iter("item")) == "Talk"
+    assert f'href="{site}_static/site.css"' in (built.site / "404.html").read_text()
+
+
+def test_a_page_can_be_edited_and_a_cell_names_its_source(built: SmallCourse) -> None:
+    page = built.page(TALK)
+    assert 'href="https://github.com/example/course/edit/main/chapters/01-talk.md">Edit this page</a>' in page
+    assert re.search(r'aria-label="Source of talker\.py, line \d+">source</a>', page)
+    assert "About 1 minute to read" in page
