@@ -135,7 +135,7 @@ class Run:
     def topics(self, kind: str) -> list[str]:
         """Names of all topics that the student's nodes publish (kind "publisher") or subscribe to ("subscription").
 
-        A subscription to `/clock` is left out unless the exercise is about it: rclpy has it because the grader asks it to.
+        A subscription to `/clock` is left out unless the exercise is about it: the grader makes rclpy have it.
         """
         ours = {CLOCK} - {topic.name for topic in self.exercise.topics} if kind == "subscription" else set()
         return sorted({e.topic for e in self.recording.end_points if e.kind == kind} - ours)

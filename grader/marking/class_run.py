@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import contextlib
 import signal
+import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import FrameType
 
 from rich.console import Console
+from rich.prompt import Confirm
 
 from grader.classroom import Entry, Skipped
 from grader.classroom.writing import write
@@ -28,6 +31,8 @@ from grader.marking.marking import Marking, Plan, not_written
 from grader.marking.marks import Markers
 from grader.marking.order import Order
 from grader.marking.progress import Progressing
+from grader.marking.publishing import publish
+from grader.marking.rejudging import rejudge
 from grader.marking.results import Results
 from grader.marking.summary import tell_end, tell_intake
 from grader.misconception.grouping import grouped
@@ -55,13 +60,17 @@ def grade_class(exercise: Exercise, order: Order, console: Console) -> int:
         with Results(order.out) as results, Crew(order.options.middleware) as crew:
             grading = grading_of(exercise, order.options, crew)
             with _markers(grading, order) as markers:
-                marking = Marking(exercise, markers, results, adjusting)
+                marking = Marking(exercise, markers, results, adjusting, grading)
+                if order.rejudge:
+                    rejudge(marking, grading, intake, submissions, console, partial(_may_replace, order, console))
+                    marking.take_in(intake)
+                    return _finish(marking, grading, intake, console, adjusting.deadline, order.publish)
                 plan = marking.plan(intake, submissions, lambda who: "*" in order.regrade or who in order.regrade)
                 for one, error in unreadable:
                     marking.give_up(Entry(one.student, one.file.name, _unread(grading, one)), f"reading it: {error}")
                 try:
                     _grade(marking, plan, submissions, console)
-                    return _finish(marking, grading, intake, console, adjusting.deadline)
+                    return _finish(marking, grading, intake, console, adjusting.deadline, order.publish)
                 except KeyboardInterrupt:
                     kept, wanted = len(marking.entries), len(intake.handed_in)
                     told = f"Stopped. {kept} of {wanted} are graded and kept; the same command goes on from there."
@@ -88,7 +97,18 @@ def _grade(marking: Marking, plan: Plan, submissions: Mapping[str, Submission], 
             progress.done(entry, difference(former.grade, entry.grade) if former else "")
 
 
-def _finish(marking: Marking, grading: Grading, intake: Intake, console: Console, deadline: Deadline | None) -> int:
+def _may_replace(order: Order, console: Console, count: int) -> bool:
+    """Ask the instructor, where there is a terminal to ask in."""
+    if order.replace or not sys.stdin.isatty():
+        if not order.replace:
+            console.print("To replace them: the same command with --yes.")
+        return order.replace
+    return Confirm.ask(f"Replace {count} grades?", console=console, default=False)
+
+
+def _finish(
+    marking: Marking, grading: Grading, intake: Intake, console: Console, deadline: Deadline | None, publishes: bool
+) -> int:
     every = [_writable(entry, marking, deadline) for _, entry in sorted(marking.entries.items())]
     faults = [entry for entry in every if entry.final is None]
     entries = [entry for entry in every if entry.final is not None]
@@ -102,6 +122,8 @@ def _finish(marking: Marking, grading: Grading, intake: Intake, console: Console
     if others:
         console.print(f"of an earlier run, left as they are: {', '.join(others)}", style="yellow")
     tell_end(console, entries, faults, intake.questions)
+    if publishes:
+        console.print(f"One zip per student: {publish(folder, entries)}", soft_wrap=True, markup=False)
     console.print(f"Open {folder / 'index.html'}.", soft_wrap=True, markup=False)
     return FAULTS if faults else QUESTIONS if intake.questions else DONE
 

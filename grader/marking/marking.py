@@ -8,8 +8,9 @@ from dataclasses import dataclass, field, replace
 from grader.classroom import Adjustment, Entry
 from grader.exercise import Exercise
 from grader.feedback.page import feedback_page
+from grader.grading.grading import Grading
 from grader.intake import HandedIn, Intake
-from grader.marking.key import with_submission
+from grader.marking.key import recordings_key, with_submission
 from grader.marking.marks import Marked, Markers
 from grader.marking.results import Results
 from grader.submission import Submission
@@ -35,6 +36,8 @@ class Marking:
     markers: Markers
     results: Results
     adjust: Adjust
+    grading: Grading | None = None
+    """Set where recordings are to be kept."""
     entries: dict[str, Entry] = field(default_factory=dict)
 
     def plan(self, intake: Intake, submissions: Mapping[str, Submission], regrade: Callable[[str], bool]) -> Plan:
@@ -53,6 +56,13 @@ class Marking:
             else:
                 to_grade.append(handed_in)
         return Plan(tuple(to_grade), tuple(unchanged), former)
+
+    def take_in(self, intake: Intake) -> None:
+        """Take the entries that are kept of these students, where no other is known, as they are."""
+        for one in intake.handed_in:
+            kept = self.results.entry(one.student.id)
+            if kept and one.student.id not in self.entries:
+                self.entries[one.student.id] = kept[0]
 
     def run(self, plan: Plan, submissions: Mapping[str, Submission]) -> Iterator[Entry]:
         """Grade what has to be, and give each entry once it is kept.
@@ -73,7 +83,7 @@ class Marking:
     def _kept(self, handed_in: HandedIn, marked: Marked, submission: Submission) -> Entry:
         """Keep a grade; one whose page or files can't be written is a `host-error`, and stops nobody else's."""
         try:
-            return self._keep(handed_in, marked, submission)
+            return self.keep(handed_in, marked, submission)
         except Exception as error:
             return self.give_up(Entry(handed_in.student, handed_in.file.name, marked.grade), not_written(error))
 
@@ -87,11 +97,15 @@ class Marking:
         self.results.forget(entry.student.id)
         return entry
 
-    def _keep(self, handed_in: HandedIn, marked: Marked, submission: Submission) -> Entry:
+    def keep(self, handed_in: HandedIn, marked: Marked, submission: Submission) -> Entry:
+        """Write a grade with its page into the student's folder."""
         # Who grades may see the file under another name.
         grade = replace(marked.grade, submission=handed_in.file.name)
         entry = self._entry(handed_in, Entry(handed_in.student, handed_in.file.name, grade))
         key = "" if grade.outcome == "host-error" else self._key(submission)
+        if grade.recordings and self.grading:
+            recorded = recordings_key(self.grading, submission)
+            self.results.keep_recordings(entry.student.id, recorded, grade.recordings)
         self.results.write(entry, key, feedback_page(entry, self.exercise, marked.plot), marked.plot)
         # What was recorded is in the page now; kept for a whole class, it would fill the memory.
         self.entries[entry.student.id] = entry = replace(entry, grade=replace(grade, recordings={}, references={}))

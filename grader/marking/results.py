@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
+import gzip
 import os
+import zlib
 from pathlib import Path
 from types import TracebackType
 
 from grader.classroom import Entry
 from grader.classroom.store import STUDENTS, folder_of, from_json, to_json
-from grader.classroom.writing import write
+from grader.classroom.writing import write, write_bytes
+from grader.recording import Recording
+from grader.recording.store import from_json as recordings_from_json
+from grader.recording.store import to_json as recordings_to_json
+
+#: In a student's folder: what was recorded, as JSON below a line with the key of what it depends on.
+RECORDINGS = "recordings.json.gz"
 
 
 class Busy(Exception):
@@ -37,6 +45,20 @@ class Results:
             return (folder_of(self.folder, student) / "plot.svg").read_text(encoding="utf-8")
         except (OSError, ValueError):
             return None
+
+    def recordings(self, student: str, key: str) -> dict[str, Recording] | None:
+        """What is kept of a student's run, by scenario; None where nothing is kept under this key."""
+        try:
+            content = (folder_of(self.folder, student) / RECORDINGS).read_bytes()
+            first, _, text = gzip.decompress(content).decode().partition("\n")
+            return recordings_from_json(text) if first == key else None
+        except (OSError, EOFError, zlib.error, ValueError, KeyError, TypeError):
+            return None
+
+    def keep_recordings(self, student: str, key: str, recordings: dict[str, Recording]) -> None:
+        """Keep what was recorded of a student's run, so that changed checks can judge it."""
+        content = gzip.compress(f"{key}\n{recordings_to_json(recordings)}".encode(), mtime=0)
+        write_bytes(folder_of(self.folder, student) / RECORDINGS, content)
 
     def write(self, entry: Entry, key: str, page: str, plot: str | None) -> None:
         """Keep a student's entry. Whenever this is broken off, what is there is whole, or is made again."""

@@ -7,6 +7,7 @@ import fcntl
 import json
 import re
 import shutil
+import zipfile
 from pathlib import Path
 
 import jsonschema
@@ -49,7 +50,7 @@ def test_all_files_lie_where_they_are_looked_for(graded: tuple[SmallClass, str])
     }
     for student in POINTS:
         there = {file.name for file in (results / "students" / student).iterdir()}
-        assert there - {"plot.svg"} == {"feedback.html", "grade.json", "results.json"}
+        assert there - {"plot.svg", "recordings.json.gz"} == {"feedback.html", "grade.json", "results.json"}
 
 
 def test_students_stand_under_the_mistakes_that_they_make(graded: tuple[SmallClass, str]) -> None:
@@ -206,3 +207,30 @@ def test_no_name_of_a_student_and_no_fault_in_one_stops_a_class_of_sixty(small_c
     code, printed = small_class.grade()
     assert code == 0, printed
     assert "59 unchanged since they were graded." in printed
+
+
+def test_changed_checks_judge_what_was_recorded_and_replace_nothing_unasked(done: SmallClass) -> None:
+    checks = done.exercise / "hidden_checks.py"
+    text = checks.read_text(encoding="utf-8")
+    weaker = text.replace('    backwards.must_match("data")', "    assert backwards.received")
+    assert weaker != text
+    checks.write_text(weaker, encoding="utf-8")
+    done.hand_in("bert", "changed = True\n")
+    code, printed = done.grade("--rejudge")
+    assert code == 0, printed
+    assert "carl: 16 -> 20 points; up: test_too_fast_backwards (+4)" in printed
+    assert "emil: 14 -> 18 points; up: test_too_fast_backwards (+4)" in printed
+    assert "no recordings that fit, so grade them without --rejudge: bert" in printed
+    assert "Nothing was replaced." in printed
+    assert done.finals() == POINTS
+    code, printed = done.grade("--rejudge", "--yes", "--publish")
+    assert code == 0, printed
+    assert done.finals() == {**POINTS, "carl": 20, "emil": 18}
+    zips = done.folder / "results" / "to-students"
+    assert {file.stem for file in zips.iterdir()} == set(POINTS)
+    with zipfile.ZipFile(zips / "carl.zip") as archive:
+        assert archive.namelist() == ["speed_limit/feedback.html"]
+        assert b"20" in archive.read("speed_limit/feedback.html")
+    done.hand_in("bert", (done.submissions / "ana.py").read_text(encoding="utf-8"))
+    code, printed = done.grade()
+    assert "5 unchanged since they were graded." in printed, "the new grades are as good as others"
