@@ -63,6 +63,14 @@ FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
     help="A class: a CSV file with the columns student, points or due, reason.",
 )
 @click.option("--scheduler", metavar="ADDRESS", default="", help="A class: let this Dask cluster do the work.")
+@click.option(
+    "--rejudge",
+    is_flag=True,
+    help="A class: judge the stored recordings with the checks as they are now, without running anything, and show "
+    "what is different before any grade is replaced.",
+)
+@click.option("--yes", is_flag=True, help="With --rejudge: replace the grades without asking.")
+@click.option("--publish", is_flag=True, help="A class: also write one zip per student, to hand out.")
 def grade(
     exercise: str,
     submission: str,
@@ -79,6 +87,9 @@ def grade(
     regrade: tuple[str, ...],
     overrides: Path | None,
     scheduler: str,
+    rejudge: bool,
+    yes: bool,
+    publish: bool,
 ) -> None:
     """Grade one SUBMISSION for an EXERCISE, or a whole class: spin the node, and say what is right and wrong.
 
@@ -106,6 +117,7 @@ def grade(
       spinbook grade joint_velocity submissions/ --out results/
       spinbook grade joint_velocity moodle.zip --out results/ --overrides extensions.csv
       spinbook grade joint_velocity submissions/ --out results/ --regrade anna
+      spinbook grade joint_velocity submissions/ --out results/ --rejudge
     """
     options = Options(
         isolation=Isolation(isolation) if isolation else None,
@@ -120,7 +132,8 @@ def grade(
             click.echo(warning, err=True)
         found = load(_folder(exercise))
         if out:
-            sys.exit(_class(found, Order(Path(submission), out, options, jobs, regrade, overrides, scheduler)))
+            wishes = (jobs, regrade, overrides, scheduler, rejudge, yes, publish)
+            sys.exit(_class(found, Order(Path(submission), out, options, *wishes)))
         if Path(submission).is_dir() or submission.endswith(".csv"):
             raise click.UsageError(f"{submission}: to grade a class, say with --out where the results go.")
         handed_in = read(submission, found)

@@ -22,8 +22,10 @@ VERBS = {
     "grade": "grader.command:grade",
     "gradebook": "spinbook.gradebook.command:gradebook",
     "gradescope": "grader.gradescope.command:gradescope",
+    "classroom50": "grader.classroom50.command:classroom50",
     "audit": "grader.audit.command:audit",
     "handout": "spinbook.handout.command:command",
+    "check": "spinbook.submit.check_command:check",
     "submit": "spinbook.submit.command:submit",
     "update": "spinbook.update.command:update",
     "new": "spinbook.new.command:new",
@@ -65,13 +67,16 @@ def spinbook() -> None:
       spinbook import BOOK        a course from a book that exists (MkDocs, Docusaurus, Jupyter Book …)
       spinbook gradebook RESULTS  one page for all exercises of a class
       spinbook gradescope E       an autograder to upload to Gradescope
+      spinbook classroom50 E      an autograder for Classroom 50 and GitHub Actions
       spinbook handout            what students get: no solutions, no hidden checks
       spinbook audit              whether the exercises' checks catch what is wrong
 
     In a student's folder of a course:
 
     \b
+      spinbook check EXERCISE     what the public checks say of your node
       spinbook submit EXERCISE    one file to upload, with what the public checks say
+      spinbook package            your notebooks' nodes as a ROS 2 package
       spinbook update NEW.zip     a newer handout, with your work kept
     """
 

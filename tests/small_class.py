@@ -70,16 +70,18 @@ class SmallClass:
 
     def wait_for_grades(self, count: int, process: subprocess.Popen[str], out: str = "results") -> None:
         """Wait until `count` students have a grade, or the command has ended."""
-        wait_until(lambda: len(list((self.folder / out).glob("*/grade.json"))) >= count or process.poll() is not None)
+        students = self.folder / out / "students"
+        wait_until(lambda: len(list(students.glob("*/grade.json"))) >= count or process.poll() is not None)
 
     def entry(self, student: str, out: str = "results") -> dict[str, Any]:
         """What is in a student's grade.json."""
-        entry: dict[str, Any] = json.loads((self.folder / out / student / "grade.json").read_text(encoding="utf-8"))
+        file = self.folder / out / "students" / student / "grade.json"
+        entry: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
         return entry
 
     def finals(self, out: str = "results") -> dict[str, float]:
         """The points that count, by student."""
-        students = sorted(file.parent.name for file in (self.folder / out).glob("*/grade.json"))
+        students = sorted(file.parent.name for file in (self.folder / out).glob("students/*/grade.json"))
         return {student: self.entry(student, out)["final"] for student in students}
 
 
@@ -95,7 +97,8 @@ def without_timings(results: Path) -> dict[str, str]:
     """Every file in a folder of results, by its path; timings are left out."""
     found = {}
     for file in sorted(results.rglob("*")):
-        if file.is_file() and file.name != ".lock":
+        # Recordings are compressed, and hold timings, too.
+        if file.is_file() and file.name not in (".lock", "recordings.json.gz"):
             text = file.read_text(encoding="utf-8")
             text = re.sub(r'"(seconds|execution_time)": [\d.e-]+', r'"\1": 0', text)
             found[str(file.relative_to(results))] = re.sub(r' time="[\d.]+"', "", text)

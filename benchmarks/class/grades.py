@@ -14,7 +14,7 @@ from grader.intake.handed_in import student_id
 
 def wrong_with(handed: Handed, results: Path) -> str:
     """Why a student's grade is not what it must be, or nothing."""
-    file = results / student_id(handed.student) / "grade.json"
+    file = results / "students" / student_id(handed.student) / "grade.json"
     try:
         entry = json.loads(file.read_text(encoding="utf-8"))
     except OSError:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from grader.checking import Run, check
 
 
-@check(points=3, hint="Create the publisher in __init__ and call publish() in the callback.")
+@check(points=3, hint="Create the subscription and the publisher in __init__, and call publish() in the callback.")
 def test_publishes_velocities(chapter: Run) -> None:
     """It hears /joint_commands and publishes JointState messages on /joint_velocities."""
     chapter.must_have_interface()

@@ -14,6 +14,7 @@ import pytest
 
 from grader.checking.plugin import Checks, fixtures_of
 from grader.checking.run import Run
+from grader.checking.spelling import with_spelling
 from grader.checking.verdict import Verdict
 from grader.exercise import Exercise, ExerciseError
 from grader.recording import Recording
@@ -30,7 +31,8 @@ def judge(
     runs = {name: Run(exercise, recordings[name], references[name], titles.get(name, "")) for name in recordings}
     checks = Checks()
     run_pytest(exercise, runs, checks)
-    return tuple(checks.verdicts.values())
+    topics = [topic.name for topic in exercise.topics]
+    return tuple(with_spelling(verdict, topics) for verdict in checks.verdicts.values())
 
 
 def load_pytest() -> None:

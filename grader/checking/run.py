@@ -18,6 +18,9 @@ from grader.checking.wrong import Finding, Wrong
 from grader.recording import EndPoint, Received, Recording, Sent
 from grader.scenario.scenario import SECOND, START
 
+#: On which the grader tells simulated time. Whatever uses simulated time subscribes to it.
+CLOCK = "/clock"
+
 
 class Part:
     """Some fields of a message, by name: `message.header.frame_id`."""
@@ -130,8 +133,12 @@ class Run(SeriesChecks, ServiceChecks, ActionChecks, ParameterChecks, Trajectory
         return [e for e in self.recording.end_points if e.kind == "subscription" and e.topic == topic]
 
     def topics(self, kind: str) -> list[str]:
-        """Names of all topics that the student's nodes publish (kind "publisher") or subscribe ("subscription")."""
-        return sorted({e.topic for e in self.recording.end_points if e.kind == kind})
+        """Names of all topics that the student's nodes publish (kind "publisher") or subscribe to ("subscription").
+
+        A subscription to `/clock` is left out unless the exercise is about it: the grader makes rclpy have it.
+        """
+        ours = {CLOCK} - {topic.name for topic in self.exercise.topics} if kind == "subscription" else set()
+        return sorted({e.topic for e in self.recording.end_points if e.kind == kind} - ours)
 
     def must_match(self, field: str, per: str = "", tolerance: float = 1e-6, missing_ok: bool = False) -> None:
         """Wherever the solution answers, the node must answer, with the same `field`.

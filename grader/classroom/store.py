@@ -1,9 +1,10 @@
-"""An entry as JSON: `results/STUDENT/grade.json`. docs/grade.schema.json tells its form to other programs."""
+"""An entry as JSON: `results/students/STUDENT/grade.json`. docs/grade.schema.json describes it for other programs."""
 
 from __future__ import annotations
 
 import json
 from datetime import datetime
+from pathlib import Path
 from typing import Any
 
 from grader.checking.verdict import Verdict
@@ -11,6 +12,15 @@ from grader.checking.wrong import Finding
 from grader.classroom.entry import Adjustment, Entry, Student
 from grader.grading import Grade
 from grader.report.as_json import as_json
+
+#: The folder in a class's results that holds one folder per student. Nothing that a student is called can be the name
+#: of a file of ours beside it: a file `index.html.py` is from a student `index.html`.
+STUDENTS = "students"
+
+
+def folder_of(results: Path, student_id: str) -> Path:
+    """Return the folder of one student in a class's folder of results."""
+    return results / STUDENTS / student_id
 
 
 def to_json(entry: Entry, key: str = "") -> str:

@@ -9,7 +9,11 @@ from pathlib import Path
 
 def write(file: Path, content: str) -> None:
     """Make `file` hold `content`, unless it does already. Whoever reads meanwhile sees the old or the new."""
-    data = content.encode("utf-8", errors="backslashreplace")
+    write_bytes(file, content.encode("utf-8", errors="backslashreplace"))
+
+
+def write_bytes(file: Path, data: bytes) -> None:
+    """Make `file` hold `data`, unless it does already. Whoever reads meanwhile sees the old or the new."""
     try:
         if file.read_bytes() == data:
             return

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import re
 
-from grader.report.printable import printable
+from grader.report.printable import as_students_see_it, printable
 
 LINES, LONGEST_LINE = 40, 400
 
 #: Colours and other orders to a terminal (ECMA-48): they say nothing on a page.
 ORDERS = re.compile(r"\x1b(\[[0-?]*[ -/]*[@-~]|\][^\x07\x1b]*(\x07|\x1b\\)?|[ -~])")
-
-#: Where a library lies on the machine that graded is nothing to a student.
-LIBRARY = re.compile(r'(?<=File ")[^"\n]*/(?:site|dist)-packages/')
 
 
 def tail(log: str) -> tuple[str, int]:
@@ -23,4 +20,4 @@ def tail(log: str) -> tuple[str, int]:
 
 
 def _readable(line: str) -> str:
-    return printable(LIBRARY.sub("", ORDERS.sub("", line)), LONGEST_LINE)
+    return printable(as_students_see_it(ORDERS.sub("", line)), LONGEST_LINE)

@@ -81,7 +81,8 @@ def canvas(exercise: Exercise, entries: Sequence[Entry]) -> str:
 def moodle(exercise: Exercise, entries: Sequence[Entry]) -> str:
     """Moodle's offline grading worksheet (mod/assign/feedback/offline/importgradeslib.php), to upload as it is.
 
-    Moodle finds students by Identifier, "Participant 1234567". It leaves out a row whose grade is above the maximum,
+    Moodle finds students by Identifier, "Participant 1234567", which only Moodle's own download or a table can tell: it
+    is empty where neither did, and Moodle then finds nobody. It leaves out a row whose grade is above the maximum,
     so extra credit is cut off there, and told in the comment; and a row without a grade, so a fault of ours changes
     nothing. Columns of a worksheet that was read are given back as they were.
     """
@@ -91,7 +92,7 @@ def moodle(exercise: Exercise, entries: Sequence[Entry]) -> str:
     for entry in entries:
         final, points = entry.final, entry.grade.points
         cells: dict[str, Cell] = {
-            "Identifier": entry.student.id,
+            "Identifier": "",
             "Full name": entry.student.name,
             "Email address": entry.student.email,
             "Status": "Submitted for grading",
@@ -105,6 +106,11 @@ def moodle(exercise: Exercise, entries: Sequence[Entry]) -> str:
         }
         rows.append([cells[column] for column in columns])
     return csv_text(columns, rows)
+
+
+def unknown_to_moodle(entries: Sequence[Entry]) -> int:
+    """Return how many students Moodle can't find, because nothing has told how Moodle identifies them."""
+    return sum(not entry.student.lms.get("Identifier") for entry in entries)
 
 
 def _comment(entry: Entry) -> str:

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from grader.exercise import Exercise
+from grader.gradescope.installed import NotInstalled, installed_wheel, pins
 from grader.grading.reference import solution_file
 from grader.sandbox import Isolation
 from interface_compiler import activation
@@ -20,12 +21,14 @@ SOURCE = Path(__file__).parents[2]
 #: What of it the container needs.
 NEEDED = ("pyproject.toml", "README.md", "LICENSE", "constraints.txt", "constraints-ros.txt")
 
+PACKAGES = ("grader", "spinbook", "rmw_lockstep", "interface_compiler")
+
 #: The same content gives the same bytes: every entry has the earliest date that a zip can name.
 DATE = (1980, 1, 1, 0, 0, 0)
 
 
 class NoSource(Exception):
-    """Raised where the software is installed without its source, from which a container could install it."""
+    """Raised where neither a checkout nor an installed wheel tells what the container is to install."""
 
 
 def bundle(exercise: Exercise, isolation: Isolation | None = None) -> bytes:
@@ -35,15 +38,42 @@ def bundle(exercise: Exercise, isolation: Isolation | None = None) -> bytes:
     `isolation` is the level at which students' programs are run, None for the strongest that works in the container.
     Raises `NoSource`, and `ExerciseError` where there is no solution.
     """
-    if not (SOURCE / "pyproject.toml").exists():
-        raise NoSource("Spinbook was installed without its source. Run this in a checkout of it.")
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, script in (("setup.sh", "setup.sh"), ("run_autograder", "run_autograder.sh")):
-            _add(archive, name, _script(script, exercise, isolation).encode(), 0o755)
-        for name, file in _files(exercise):
-            _add(archive, f"course/{name}", file.read_bytes(), 0o644)
+        for name, (content, mode) in autograder_files(exercise, isolation).items():
+            _add(archive, name, content, mode)
     return out.getvalue()
+
+
+def autograder_files(exercise: Exercise, isolation: Isolation | None = None) -> dict[str, tuple[bytes, int]]:
+    """Return the content and mode of each file of an autograder, by name. Raises as `bundle` does."""
+    files = {
+        name: (_script(script, exercise, isolation).encode(), 0o755)
+        for name, script in (("setup.sh", "setup.sh"), ("run_autograder", "run_autograder.sh"))
+    }
+    for name, content in (_source() if (SOURCE / "pyproject.toml").exists() else _installed()).items():
+        files[f"course/{name}"] = (content, 0o644)
+    for name, file in _files(exercise):
+        files[f"course/{name}"] = (file.read_bytes(), 0o644)
+    return files
+
+
+def _source() -> dict[str, bytes]:
+    """Return a checkout, as far as the container needs it."""
+    files = {name: (SOURCE / name).read_bytes() for name in NEEDED}
+    for package in PACKAGES:
+        for file in _within(SOURCE / package):
+            files[f"{package}/{file.relative_to(SOURCE / package)}"] = file.read_bytes()
+    return files
+
+
+def _installed() -> dict[str, bytes]:
+    """Return the wheel that is installed here, and the versions of all that it needs."""
+    try:
+        name, content = installed_wheel()
+    except NotInstalled as error:
+        raise NoSource(str(error)) from None
+    return {name: content, "pins.txt": "".join(f"{pin}\n" for pin in pins()).encode()}
 
 
 def _script(file: str, exercise: Exercise, isolation: Isolation | None) -> str:
@@ -53,12 +83,7 @@ def _script(file: str, exercise: Exercise, isolation: Isolation | None) -> str:
 
 
 def _files(exercise: Exercise) -> Iterator[tuple[str, Path]]:
-    """Every file of the container's course, with its name there."""
-    for name in NEEDED:
-        yield name, SOURCE / name
-    for package in ("grader", "spinbook", "rmw_lockstep", "interface_compiler"):
-        for file in _within(SOURCE / package):
-            yield f"{package}/{file.relative_to(SOURCE / package)}", file
+    """The files of the course itself, with their names in the container."""
     for file in _within(exercise.folder):
         yield f"exercises/{exercise.name}/{file.relative_to(exercise.folder)}", file
     yield f"solutions/{exercise.name}/solution.py", solution_file(exercise)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs once, when Gradescope builds the container: installs Python, the sandbox, the grader and ROS 2 from PyPI.
+# Runs once, when Gradescope builds the container or another runner makes itself ready: installs Python, the sandbox, the grader and ROS 2 from PyPI.
 set -euo pipefail
 EXERCISE=@EXERCISE@
 ISOLATION=@ISOLATION@
@@ -12,15 +12,23 @@ command -v g++ >/dev/null || missing+=(g++)
 python3 -c 'import os, sys, sysconfig; sys.exit(not os.path.exists(sysconfig.get_path("include") + "/Python.h"))' ||
     missing+=(python3-dev)
 if [ "${#missing[@]}" -gt 0 ]; then
-    apt-get update -qq
-    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
+    as_root=
+    if [ "$(id -u)" != 0 ]; then as_root="sudo -n"; fi
+    $as_root apt-get update -qq
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
 fi
 
-# The versions that are pinned for the course, without their hashes: a folder that is installed has none.
-cat "$here/course/constraints.txt" "$here/course/constraints-ros.txt" |
-    sed -n 's/^\([A-Za-z0-9].*[^ \\]\) *\\$/\1/p' >"$here/pins.txt"
+# A wheel with the versions that it ran with; or a checkout with those that are pinned, without their hashes: a folder
+# that is installed has none.
+software=$(ls "$here"/course/spinbook-*.whl 2>/dev/null || echo "$here/course")
+if [ -f "$here/course/pins.txt" ]; then
+    cp "$here/course/pins.txt" "$here/pins.txt"
+else
+    cat "$here/course/constraints.txt" "$here/course/constraints-ros.txt" |
+        sed -n 's/^\([A-Za-z0-9].*[^ \\]\) *\\$/\1/p' >"$here/pins.txt"
+fi
 python3 -m venv "$here/venv"
-"$here/venv/bin/python" -m pip install --quiet --disable-pip-version-check -c "$here/pins.txt" "$here/course[ros]"
+"$here/venv/bin/python" -m pip install --quiet --disable-pip-version-check -c "$here/pins.txt" "$software[ros]"
 
 # The grader's own middleware. Where it can't be compiled Fast DDS is used, and the build's output has the reason.
 "$here/venv/bin/python" -m rmw_lockstep.build || true

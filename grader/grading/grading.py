@@ -35,11 +35,21 @@ class Grading:
     def grade(self, submission: Submission) -> Grade:
         """The grade of one submission; a fault of the machine's or ours becomes a `host-error`, never a score."""
         began = time.monotonic()
-        exercise = self.spinner.exercise
         try:
             recordings = self._recordings(submission)
-            titles = {scenario.name: scenario.title for scenario in self.spinner.scenarios}
-            job = JudgeJob(exercise, recordings, self.references, titles)
+        except HostFault as fault:
+            told = str(fault).strip().splitlines()[-1]
+            return self._grade(submission, {}, (), "host-error", f"This is not your fault: {told}", began)
+        return self._judged(submission, recordings, began)
+
+    def judge(self, submission: Submission, recordings: dict[str, Recording]) -> Grade:
+        """The grade of a submission of which these are the recordings, by scenario; nothing is run."""
+        return self._judged(submission, recordings, time.monotonic())
+
+    def _judged(self, submission: Submission, recordings: dict[str, Recording], began: float) -> Grade:
+        titles = {scenario.name: scenario.title for scenario in self.spinner.scenarios}
+        job = JudgeJob(self.spinner.exercise, recordings, self.references, titles)
+        try:
             verdicts: tuple[Verdict, ...] = self.spinner.crew.do(job)
         except HostFault as fault:
             told = str(fault).strip().splitlines()[-1]

@@ -31,8 +31,15 @@ def walk(root: Path) -> Iterator[File | Skipped]:
         for name in sorted(names):
             if not is_noise(name):
                 path = Path(folder, name)
-                date = datetime.fromtimestamp(path.lstat().st_mtime, timezone.utc)
-                yield File((inside / name).as_posix(), path, date, "the file's date")
+                yield File((inside / name).as_posix(), path, date_of(path), "the file's date")
+
+
+def date_of(path: Path) -> datetime | None:
+    """Return the file's date; an archive can give a file one that no calendar has."""
+    try:
+        return datetime.fromtimestamp(path.lstat().st_mtime, timezone.utc)
+    except (OSError, ValueError, OverflowError):
+        return None
 
 
 def by_student(files: list[File]) -> Sorted:

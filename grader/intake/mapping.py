@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from datetime import datetime, timezone
 from pathlib import Path
 
 from grader.classroom import Skipped, Student
+from grader.intake.folder import date_of
 from grader.intake.handed_in import File, IntakeError, Sorted, student_id
 from grader.intake.moment import moment
 from grader.intake.table import rows
@@ -33,7 +33,7 @@ def by_row(table: Path) -> Sorted:
                 given = row["submitted"]
                 raise IntakeError(f"{table}:{number}: submitted = {given!r}. Write it as 2026-11-22 23:59.")
         else:
-            date, told_by = datetime.fromtimestamp(path.lstat().st_mtime, timezone.utc), "the file's date"
+            date, told_by = date_of(path), "the file's date"
         lms = {column: value for column, value in row.items() if column not in KNOWN}
         student = Student(student_id(row["student"]), row.get("name", ""), row.get("email", ""), lms)
         found.append((student, File(row["file"], path, date, told_by)))

@@ -8,8 +8,10 @@ import threading
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
+from grader.exercise import ExerciseError
 from grader.grading.grading import Grading
 from grader.grading.helping import Helping
+from grader.marking.fault import fault
 from grader.marking.key import key_of
 from grader.marking.marks import Marked
 from grader.marking.picture import picture
@@ -85,8 +87,18 @@ class Here:
                 helping.help(core)
                 return
             try:
-                grade = grading.grade(submission)
-                done.put(Marked(who, grade, picture(grade, grading.spinner.exercise)))
-            except BaseException as fault:  # the exercise's author's, or ours: it must not be waited for
-                done.put(fault)
+                done.put(_marked(who, grading, submission))
+            except BaseException as stopped:  # the exercise's author's, or the run's end
+                done.put(stopped)
                 return
+
+
+def _marked(who: str, grading: Grading, submission: Submission) -> Marked:
+    """Grade one submission. A fault in the grader is this student's `host-error`, and stops nobody else's grading."""
+    try:
+        grade = grading.grade(submission)
+    except ExerciseError:
+        raise
+    except Exception as error:
+        return Marked(who, fault(grading.spinner, submission, f"{type(error).__name__}: {error}"), None)
+    return Marked(who, grade, picture(grade, grading.spinner.exercise))

@@ -6,9 +6,11 @@ import hashlib
 import json
 from dataclasses import asdict, replace
 from pathlib import Path
+from typing import Any
 
 from grader.grading.grading import Grading
 from grader.grading.versions import digest_of, versions
+from grader.submission import Submission
 
 
 def key_of(grading: Grading) -> str:
@@ -26,6 +28,20 @@ def key_of(grading: Grading) -> str:
         # The exercise as it was read: a due date, which is not in it, can be changed after grading.
         "exercise": repr(replace(exercise, folder=Path(), solution_folder=None)),
         "files": digest_of([file for file in files if file.exists()]),
+        **_of_a_run(grading),
+    }
+    return _digest(depends)
+
+
+def recordings_key(grading: Grading, submission: Submission) -> str:
+    """The same as long as a submission's recordings would be, whatever the checks are."""
+    return with_submission(_digest(_of_a_run(grading)), submission.digest)
+
+
+def _of_a_run(grading: Grading) -> dict[str, Any]:
+    """What a recording depends on, besides the submission."""
+    spinner = grading.spinner
+    return {
         "scenarios": [scenario.digest for scenario in spinner.scenarios],
         "versions": versions(spinner.middleware),
         "seed": spinner.options.seed,
@@ -33,6 +49,9 @@ def key_of(grading: Grading) -> str:
         "limits": asdict(spinner.options.limits),
         "isolation": str(spinner.isolation),
     }
+
+
+def _digest(depends: dict[str, Any]) -> str:
     return hashlib.sha256(json.dumps(depends, sort_keys=True).encode()).hexdigest()
 
 

@@ -15,6 +15,8 @@ class Order:
     `jobs` is how many submissions are graded at once, None for as many as suit
     this machine. `regrade` names students whose submissions are graded again
     though nothing has changed, `*` all of them. `overrides` is a CSV file, `scheduler` a Dask scheduler's address.
+    `rejudge` asks for new verdicts on stored recordings, and `replace` for keeping them unasked. `publish` asks for one
+    zip per student.
     """
 
     source: Path
@@ -24,3 +26,6 @@ class Order:
     regrade: tuple[str, ...] = ()
     overrides: Path | None = None
     scheduler: str = ""
+    rejudge: bool = False
+    replace: bool = False
+    publish: bool = False

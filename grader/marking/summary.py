@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.classroom import Entry, Skipped
+from grader.gradebook.tables import unknown_to_moodle
 from grader.intake import Question
 from grader.report.printable import printable
 
@@ -36,6 +37,14 @@ def tell_end(
         middle = (finals[(len(finals) - 1) // 2] + finals[len(finals) // 2]) / 2
         full = sum(final >= points for final in finals)
         _say(console, f"{len(finals)} grades: median {middle:g} of {points:g} points, {full} with full marks.", "bold")
+    if entries and (unknown := unknown_to_moodle(entries)):
+        who = "no student" if unknown == len(entries) else f"not {unknown} of the {len(entries)} students"
+        _say(
+            console,
+            f"moodle.csv: Moodle will find {who}, for lack of an Identifier. If you use Moodle, grade its own "
+            "download, or a CSV file with the column Identifier.",
+            "dim",
+        )
     for question in questions:
         _say(console, f"not graded: {question} Keep one of them, or name it in a CSV file.", "yellow")
     for entry in faults:

@@ -25,8 +25,8 @@ def overview_page(
     """The page `results/index.html`: how the class did, a row a student, which checks and mistakes cost most.
 
     `entries` have a score; `faults` are those that have none, by a fault of ours. Each row opens
-    `STUDENT/feedback.html` beside the page. The page is one HTML file; its one script sorts the table, which is in
-    order without it, too.
+    `students/STUDENT/feedback.html` beside the page. The page is one HTML file; its one script sorts the table,
+    which is in order without it, too.
     """
     faulty = [*faults, *(entry for entry in entries if entry.final is None and entry not in faults)]
     scored = [entry for entry in entries if entry.final is not None]

@@ -8,6 +8,7 @@ from urllib.parse import quote
 
 from grader.checking.verdict import Verdict
 from grader.classroom.entry import Entry
+from grader.classroom.store import STUDENTS
 from grader.misconception import Misconceptions
 
 OUTCOMES = {
@@ -50,7 +51,7 @@ class Tally:
 
 def page_of(entry: Entry) -> str:
     """Where a student's page lies, as seen from the instructor's."""
-    return f"{quote(entry.student.id, safe='')}/feedback.html"
+    return f"{STUDENTS}/{quote(entry.student.id, safe='')}/feedback.html"
 
 
 def row(entry: Entry, misconceptions: Misconceptions) -> Row:

@@ -10,7 +10,7 @@ from grader.checking.verdict import Status, Verdict
 from grader.exercise import Exercise
 from grader.grading import Grade
 from grader.report import self_check
-from grader.report.printable import printable
+from grader.report.printable import as_students_see_it, printable
 
 SIGNS: dict[Status, tuple[str, str]] = {
     "passed": ("✓", "green"),
@@ -38,7 +38,7 @@ def show(grade: Grade, exercise: Exercise, console: Console, verbose: bool = Fal
     console.print(Text(made_by, style="dim"))
     if verbose:
         console.print(Text("the node's log:", style="bold"))
-        console.print(Text(printable(grade.log) or "(nothing)"), soft_wrap=True)
+        console.print(Text(printable(as_students_see_it(grade.log)) or "(nothing)"), soft_wrap=True)
 
 
 def _show_verdict(verdict: Verdict, grade: Grade, console: Console) -> None:

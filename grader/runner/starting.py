@@ -9,8 +9,9 @@ from grader.runner.stopped import Stopped
 from grader.scenario.scenario import SECOND
 from rmw_lockstep.hub import Hub
 
-#: Importing large libraries takes CPU time; nothing that a node needs takes this much.
-START_CPU_S = 20.0
+#: Importing large libraries takes CPU time; nothing that a node needs takes this much. A student with an endless loop
+#: waits so long for the check to say so.
+START_CPU_S = 6.0
 
 #: How long a program may sleep before it makes a node, or spins it, by the computer's clock (ns).
 LONGEST = 10 * SECOND
@@ -19,6 +20,10 @@ LONGEST = 10 * SECOND
 LONGEST_FOR_SUBSCRIPTIONS = 3 * SECOND // 2
 
 NO_NODE_BUSY = f"Your program computed for {START_CPU_S:g} s and created no node. Is there an endless loop before it?"
+NOT_SPUN_BUSY = (
+    f"Your program created its node, then computed for {START_CPU_S:g} s and did not spin it. Is there an endless loop "
+    "before rclpy.spin(node), such as in __init__?"
+)
 NO_NODE_BLOCKED = (
     "Your program waits and creates no node. Does something wait or sleep before the node is created, and is main() "
     "called?"
@@ -36,6 +41,15 @@ def wait_until_up(hub: Hub, connected: Callable[[], bool], has_nodes: Callable[[
     Raises:
         Stopped: when there will be no node.
     """
+    try:
+        _wait_until_up(hub, connected)
+    except Stopped as stopped:
+        if stopped.story == NO_NODE_BUSY and has_nodes(hub):
+            raise Stopped(stopped.outcome, NOT_SPUN_BUSY) from None
+        raise
+
+
+def _wait_until_up(hub: Hub, connected: Callable[[], bool]) -> None:
     began = hub.now
     hub.wait_until_idle()
     while not (has_nodes() and connected()):

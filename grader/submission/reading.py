@@ -6,6 +6,7 @@ import contextlib
 import errno
 import hashlib
 import os
+import re
 import stat
 from collections.abc import Iterator
 from dataclasses import replace
@@ -65,7 +66,7 @@ def read(given: str, exercise: Exercise) -> Submission:
 def of_source(name: str, code: bytes, exercise: Exercise, digest: str = "") -> Submission:
     """A submission of this Python source. It runs under the exercise's file name, whatever it was called."""
     source = code.decode("utf-8", errors="replace")
-    problem = "" if code.strip() else "Your file is empty."
+    problem = not_python(code) if code.strip() else "Your file is empty."
     files = {exercise.file_name: code}
     if exercise.programs:
         files = {file: text.encode() for file, text in parts(source).items()}
@@ -74,6 +75,42 @@ def of_source(name: str, code: bytes, exercise: Exercise, digest: str = "") -> S
             problem = f"There is no {missing[0]} in it. Begin its part of the file with a line: # file: {missing[0]}"
     program = None if problem else Program(next(iter(files)), files)
     return Submission(name, digest or _digest(code), exercise.file_name, source, program, problem)
+
+
+#: How the ways to save text begin that are not UTF-8 (Unicode 15, chapter 23.8, "Byte Order Mark").
+UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+
+
+def not_python(code: bytes) -> str:
+    """Say why Python can't read a file at all, where Python itself says it badly; empty if it can, or says it well."""
+    if code.startswith(UTF_16):
+        return (
+            "Your file is saved as UTF-16, which Python can't read. Save it as UTF-8: in VS Code, click UTF-16 below."
+        )
+    if b"\0" in code:
+        line = code[: code.index(b"\0")].count(b"\n") + 1
+        return f"Line {line} of your file holds a NUL byte, so it is not a text file. Save your code as text, in UTF-8."
+    deepest = max(map(_nested, code.splitlines()), default=0)
+    if deepest > DEEPEST:
+        return f"A line of your file nests {deepest:,} operators or brackets. Python can't read anything as deep."
+    return ""
+
+
+#: Python's parser gives up, or takes all memory, at some thousands (CPython, Parser/parser.c, MAXSTACK).
+DEEPEST = 5_000
+
+
+def _nested(line: bytes) -> int:
+    """Return about how deeply the expressions of a line are nested; text in quotes is left out."""
+    if len(line) <= DEEPEST:
+        return 0
+    bare = re.sub(rb"""(['"])(?:\\.|(?!\1).)*\1""", b"", line)
+    depth = deepest = 0
+    for bracket in re.findall(rb"[([{)\]}]", bare):
+        depth += 1 if bracket in b"([{" else -1
+        deepest = max(deepest, depth)
+    operators = (len(re.findall(rb"[-+~*/%@&|^]|\bnot\b", part)) for part in re.split(rb"[,:()\[\]{}]", bare))
+    return deepest + max(operators, default=0)
 
 
 def of_upload(name: str, content: bytes, exercise: Exercise) -> Submission:

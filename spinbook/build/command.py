@@ -159,3 +159,5 @@ def _report_executed(console: Console, executed: Executed) -> None:
         console.print(f"  ✗ {name}: {count} cell{'s' * (count > 1)} failed", markup=False, style="red")
         for failure in executed.failures:
             console.print(str(failure), markup=False)
+    for warning in executed.warnings:
+        console.print(str(warning), markup=False, style="yellow")

@@ -17,7 +17,7 @@ from typing import Any
 import grader
 from interface_compiler import activation
 from spinbook.build.digest import code_digest, digest, folders_digest, versions
-from spinbook.build.failures import CellFailure, find_failures
+from spinbook.build.failures import CellFailure, find_failures, find_warnings
 from spinbook.runtime.process import KeptProcess
 from spinbook.written import write_if_changed
 
@@ -37,6 +37,8 @@ class Executed:
     failures: tuple[CellFailure, ...]
     seconds: float
     cached: bool
+    warnings: tuple[CellFailure, ...] = ()
+    """Cells that did not fail, and yet did not show what they should."""
 
 
 @dataclass(frozen=True)
@@ -108,7 +110,8 @@ def _execute_one(job: Job, on_progress: Callable[[Progress], None], again: bool,
     if not again and (remembered := _remembered(job, key)) is not None:
         write_if_changed(job.executed, _with_outputs(notebook, remembered["outputs"]))
         _write_graph(job, remembered["graph"])
-        return Executed(job.chapter, job.executed, (), 0.0, cached=True)
+        warnings = find_warnings(job.chapter, json.loads(job.executed.read_text(encoding="utf-8")))
+        return Executed(job.chapter, job.executed, (), 0.0, cached=True, warnings=tuple(warnings))
     started = time.monotonic()
     raw = job.folder.with_name(f"{job.name}.ipynb")
     ended = _run(job, raw, on_progress, given_up)
@@ -123,7 +126,10 @@ def _execute_one(job: Job, on_progress: Callable[[Progress], None], again: bool,
     job.record.unlink(missing_ok=True)
     if not failures:
         write_if_changed(job.record, json.dumps({"key": key, "outputs": outputs, "graph": graph}))
-    return Executed(job.chapter, job.executed, tuple(failures), time.monotonic() - started, cached=False)
+    never = tuple(find_warnings(job.chapter, ran))
+    return Executed(
+        job.chapter, job.executed, tuple(failures), time.monotonic() - started, cached=False, warnings=never
+    )
 
 
 def _graph_of(raw: Path) -> Path:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from spinbook.runtime.showing import in_short
+from spinbook.runtime.showing import NEVER_CAME, in_short
 
 _ANSI = re.compile(r"\x1b\[[0-9;]*m")
 #: A traceback's line in a module that a node cell wrote, or in a snippet's cell.
@@ -53,6 +53,18 @@ def find_failures(chapter: Path, ran: dict[str, Any], ended: dict[str, Any]) -> 
             CellFailure(chapter, 1, "the notebook could not be run (this is not the chapter's fault).", words)
         )
     return failures
+
+
+def find_warnings(chapter: Path, ran: dict[str, Any]) -> list[CellFailure]:
+    """Find the cells that waited for a text in vain (`until=`): what the chapter says of it can't be seen there."""
+    found = []
+    for cell in ran["cells"]:
+        if cell["cell_type"] == "code" and (never := NEVER_CAME.search(_printed(cell))):
+            what = (
+                f"`until` never came: {never[1]} was not printed within {never[2]} s. Correct it, or raise `seconds`."
+            )
+            found.append(CellFailure(chapter, _line(cell), what, ""))
+    return found
 
 
 def _failed_cells(chapter: Path, cells: list[dict[str, Any]]) -> Iterator[CellFailure]:

@@ -25,8 +25,7 @@ def run(session: Session, shell: Any, name: str, course: str, seconds: float) ->
     notebook = notebook_file(shell.user_ns, os.environ)
     exercise = exercise_of(name, course, notebook)
     code = code_of(exercise, session, notebook)
-    if code.note:
-        print(code.note)
+    print(code.note("Checked", f"%check {exercise.name}"))
     display(checked(exercise.folder, code.text, seconds), raw=True)
 
 
@@ -43,6 +42,6 @@ def exercise_of(name: str, course: str, notebook: Path | None) -> Exercise:
             raise CellFailed(f"The exercise is at fault, not your code.\n{error}") from None
     where = " and ".join(str(place.resolve()) for place in places)
     raise CellFailed(
-        f"{told}\nI looked in {where} and above. Keep the notebook in the folder of the handout, "
-        f"or say where that folder is: %check {name} --course FOLDER"
+        f"{told}\nI looked in {where} and above. A notebook from the course's website: run its first code cells. "
+        f"One from a handout: keep the notebook in the folder of the handout, or name it: %check {name} --course FOLDER"
     )

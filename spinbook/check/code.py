@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 
 from grader.exercise import Exercise
@@ -13,10 +14,19 @@ from spinbook.runtime.session import Session
 
 @dataclass(frozen=True)
 class Code:
-    """The exercise's code, its lines numbered as in the cell. `note` tells where it is from, if that may surprise."""
+    """The exercise's code, its lines numbered as in the cell, and where it is from.
+
+    `origin` completes "Checked: …". `warning` says that the cell's text is another one now; empty if that is not known.
+    """
 
     text: str
-    note: str = ""
+    origin: str
+    warning: str = ""
+
+    def note(self, what: str, command: str) -> str:
+        """Return what to tell the student: `what` is "Checked" or "Handed in", `command` what to run again."""
+        told = f"{what}: {self.origin}."
+        return f"{told}\nWARNING: {self.warning.format(command=command)}" if self.warning else told
 
 
 def code_of(exercise: Exercise, session: Session, notebook: Path | None) -> Code:
@@ -30,17 +40,22 @@ def code_of(exercise: Exercise, session: Session, notebook: Path | None) -> Code
         # The line with %%node is the cell's first.
         text = "\n" + session.ran[node]
         edited = saved and saved.strip() != text.strip() and _saved_after(notebook, session.ran_at[node])
-        return Code(text, _edited(node, exercise) if edited else "")
+        return Code(text, _as_run(node, session.ran_at[node]), _edited(node) if edited else "")
     if saved and notebook:
-        told = f"The cell %%node {node} has not been run since the kernel started."
-        return Code(saved, f"{told} This checks it as it was last saved in {notebook.name}.")
+        not_run = f"it has not been run since the kernel started, so this is how it was last saved in {notebook.name}"
+        return Code(saved, f"the cell %%node {node}; {not_run}")
     raise CellFailed(f"Run the cell that begins with %%node {node} first. Then run this one again.")
 
 
-def _edited(node: str, exercise: Exercise) -> str:
+def _as_run(node: str, moment: float) -> str:
+    at = datetime.fromtimestamp(moment).strftime("%H:%M:%S")
+    return f"the cell %%node {node} as you ran it at {at}, without any change that you made after that"
+
+
+def _edited(node: str) -> str:
     return (
-        f"This checks the cell %%node {node} as you ran it last. You have changed it since: run that cell again, then "
-        f"%check {exercise.name}, to check what stands there now."
+        f"You have changed the cell %%node {node} since you ran it, and the change is not in this result. "
+        "Run that cell again, then {command}."
     )
 
 

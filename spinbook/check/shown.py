@@ -19,7 +19,7 @@ from grader.feedback.outcomes import advice
 from grader.feedback.told import Told, told
 from grader.grading import Grade
 from grader.report import self_check
-from grader.report.printable import printable
+from grader.report.printable import as_students_see_it, printable
 from grader.report.terminal import show
 
 #: Columns of the plain text.
@@ -27,6 +27,9 @@ WIDTH = 100
 
 #: Of one text no more is shown: a student can publish a name of a megabyte.
 LONGEST = 4000
+
+#: How many lines of what a node printed the plain text has.
+LAST_LINES = 12
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,9 @@ def as_text(grade: Grade, exercise: Exercise) -> str:
     out = io.StringIO()
     show(grade, exercise, Console(file=out, width=WIDTH, color_system=None, highlight=False))
     lines = [line.rstrip() for line in out.getvalue().rstrip("\n").split("\n")]
+    if printed := _end(grade.log):
+        last = printed.splitlines()[-LAST_LINES:]
+        lines += ["What your program printed:", *(f"  {printable(line, WIDTH)}" for line in last)]
     return "\n".join([*lines, f"Next: {next_step(grade, exercise)}"])
 
 
@@ -57,7 +63,7 @@ def next_step(grade: Grade, exercise: Exercise) -> str:
     if grade.outcome == "host-error":
         return "run this cell again."
     node = exercise.file_name.removesuffix(".py")
-    what = "mend the first ✗" if grade.outcome == "graded" else "mend that"
+    what = "fix the first ✗" if grade.outcome == "graded" else "fix that"
     return f"{what}, run the cell that begins with %%node {node}, then this one again."
 
 
@@ -78,7 +84,8 @@ def as_html(grade: Grade, exercise: Exercise) -> str:
         full=grade.full_marks,
         message=grade.message,
         step=_first_step(grade, exercise),
-        log=_end(grade.log) if grade.outcome != "graded" else "",
+        log=_end(grade.log),
+        log_open=grade.outcome != "graded",
         rows=_rows(grade),
         # As an image an SVG can neither run nor load anything, whatever is in it.
         plot=Markup("data:image/svg+xml;base64,") + base64.b64encode(plot.encode()).decode() if plot else "",
@@ -101,7 +108,7 @@ def _first_step(grade: Grade, exercise: Exercise) -> str:
 
 def _end(log: str) -> str:
     """The end of a log, where the reason for an end stands."""
-    return log.strip()[-LONGEST:]
+    return as_students_see_it(log).strip()[-LONGEST:]
 
 
 def _rows(grade: Grade) -> list[Row]:

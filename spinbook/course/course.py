@@ -45,6 +45,8 @@ class Course:
     ros_distro: str = "jazzy"
     glossary: Path | None = None
     """The file whose headings are the course's terms."""
+    site: str = ""
+    """Where the website is published; empty where course.toml does not say and it can't be known."""
 
     @property
     def build_folder(self) -> Path:
@@ -129,7 +131,16 @@ def read_course(root: Path) -> Course:
         repository=str(data.get("repository", "")).rstrip("/"),
         ros_distro=str(data.get("ros_distro", "jazzy")),
         glossary=Path(str(data["glossary"])) if data.get("glossary") else None,
+        site=_site(str(data.get("site", "")), str(data.get("repository", ""))),
     )
+
+
+def _site(given: str, repository: str) -> str:
+    """The website's address with a slash at its end: as given, or that of the repository's GitHub Pages."""
+    if given:
+        return given.rstrip("/") + "/"
+    match = re.fullmatch(r"https://github\.com/([\w-]+)/([\w.-]+?)(?:\.git)?/?", repository)
+    return f"https://{match[1].lower()}.github.io/{match[2]}/" if match else ""
 
 
 def _text(data: dict[str, Any], key: str, problems: list[Problem]) -> str:

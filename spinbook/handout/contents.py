@@ -16,7 +16,7 @@ from spinbook.course.course import Course
 from spinbook.handout.exercise import exercise_files
 from spinbook.handout.guide import Listing, guide_files
 from spinbook.handout.interface_wheels import interface_wheels
-from spinbook.handout.leaks import leaks
+from spinbook.handout.leaks import located
 from spinbook.handout.notebook import for_students
 from spinbook.handout.secrets import Secret, hidden_names, secrets
 from spinbook.handout.wheel import wheel
@@ -110,8 +110,13 @@ def _prove(files: dict[str, bytes], known: list[Secret]) -> None:
     """See to it that no secret is in any file."""
     mend = (
         "Students must not see it. Take it out of the chapter, the task or the public checks. A line of the solution "
-        "that they may see belongs before # BEGIN SOLUTION."
+        "that they may see belongs before # BEGIN SOLUTION. "
+        "Exercises that no chapter holds count, too."
     )
-    if found := list(leaks(files, known)):
-        folder = Path("build", "handout")
-        raise SpinbookError(*(Problem(folder / file, None, f"{what} would be in it.", mend) for file, what in found))
+    folder = Path("build", "handout")
+    problems = []
+    for leak in located(files, known):
+        place = f" ({leak.at})" if leak.at else ""
+        problems.append(Problem(folder / leak.file, leak.line, f"{leak.what} would be in it{place}.", mend))
+    if problems:
+        raise SpinbookError(*problems)

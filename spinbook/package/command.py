@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
 
+from interface_compiler.definition import Definition
 from spinbook.build.reading import read_all
 from spinbook.chapter.chapter import Cell
-from spinbook.course.course import Course, find_course
+from spinbook.course.course import FILE, Course, Package, find_course
 from spinbook.interfaces.collect import checked
 from spinbook.package.files import Module
+from spinbook.package.from_notebooks import read_notebooks
 from spinbook.package.write import write_package
 from spinbook.package.write_interfaces import write_interface_packages
 from spinbook.problem import Problem, SpinbookError
@@ -26,22 +30,56 @@ def package(start: Path, workspace: Path | None) -> None:
     Then:
       cd humanoid_ws
       colcon build --symlink-install
-      spinbook ros2 run humanoid_control joint_publisher
+      ros2 run humanoid_control joint_publisher
+
+    In a handout, where there are no chapters, the nodes are those of the notebooks, as you saved them.
     """
-    course = find_course(start)
-    modules = course_modules(course)
-    target = workspace or course.root / course.package.workspace
-    interfaces = checked(course)
-    folder = write_package(target, course.package, modules, interfaces.packages)
-    click.echo(f"{folder}: {len(modules)} modules")
-    for module in modules:
-        runs = f"ros2 run {course.package.name} {module.name}" if module.has_main else "(no main(): a module only)"
+    made = _of_course(find_course(start)) if _is_course(start) else _of_notebooks(start)
+    target = workspace or made.root / made.package.workspace
+    folder = write_package(target, made.package, made.modules, made.interfaces)
+    click.echo(f"{folder}: {len(made.modules)} modules")
+    for module in made.modules:
+        runs = f"ros2 run {made.package.name} {module.name}" if module.has_main else "(no main(): a module only)"
         click.echo(f"  {module.name}.py".ljust(28) + runs)
-    for package_folder in write_interface_packages(target, course.package, interfaces.definitions):
-        members = [item for item in interfaces.definitions if item.package == package_folder.name]
+    for package_folder in write_interface_packages(target, made.package, made.definitions):
+        members = [item for item in made.definitions if item.package == package_folder.name]
         click.echo(f"{package_folder}: {len(members)} interfaces")
         for item in sorted(members, key=lambda item: item.path):
             click.echo(f"  {item.path}".ljust(28) + f"ros2 interface show {item.full_name}")
+
+
+@dataclass(frozen=True)
+class Sources:
+    """What a package is written from, and the folder where its workspace goes.
+
+    `interfaces` are the names of the packages that `definitions` make.
+    """
+
+    root: Path
+    package: Package
+    modules: Sequence[Module]
+    definitions: Sequence[Definition]
+    interfaces: Sequence[str]
+
+
+def _is_course(start: Path) -> bool:
+    folder = start.resolve()
+    return any((place / FILE).is_file() for place in (folder, *folder.parents))
+
+
+def _of_course(course: Course) -> Sources:
+    interfaces = checked(course)
+    return Sources(
+        course.root, course.package, course_modules(course), tuple(interfaces.definitions), tuple(interfaces.packages)
+    )
+
+
+def _of_notebooks(folder: Path) -> Sources:
+    read = read_notebooks(folder)
+    assert read.package is not None
+    modules = [read.modules[name] for name in sorted(read.modules)]
+    definitions = tuple(read.definitions.values())
+    return Sources(folder, read.package, modules, definitions, sorted({item.package for item in definitions}))
 
 
 def course_modules(course: Course) -> list[Module]:

@@ -1,4 +1,4 @@
-"""`python -m spinbook.ros2`: the same as `spinbook ros2`, ready sooner."""
+"""`ros2` and `python -m spinbook.ros2`: the same as `spinbook ros2`, ready sooner."""
 
 from __future__ import annotations
 
@@ -15,4 +15,5 @@ def main() -> None:
         sys.exit(2)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -14,11 +14,13 @@ from spinbook.ros2.real import hand_over
 
 NOUNS = {
     "action": Entry("spinbook.ros2.action:action", "List actions, send a goal to one."),
+    "bag": Entry("spinbook.ros2.bag:bag", "Record topics into a file, play them again."),
     "daemon": Entry("spinbook.ros2.daemon:daemon", "There is none: says so."),
+    "doctor": Entry("spinbook.ros2.doctor:doctor", "Check whether ROS 2 works here."),
     "interface": Entry("spinbook.ros2.interface:interface", "Show the fields of message, service and action types."),
     "node": Entry("spinbook.ros2.node:node", "List running nodes, show what one offers."),
     "param": Entry("spinbook.ros2.param:param", "Read and change parameters of running nodes."),
-    "pkg": Entry("spinbook.ros2.pkg:pkg", "List packages and their executables."),
+    "pkg": Entry("spinbook.ros2.pkg:pkg", "List packages and their executables, make a package."),
     "run": Entry("spinbook.ros2.run:run", "Start an executable of a package."),
     "service": Entry("spinbook.ros2.service:service", "List services, call one."),
     "topic": Entry("spinbook.ros2.topic:topic", "Watch, measure and publish topics."),

@@ -30,6 +30,13 @@ class Menu(click.Group):
         super().__init__(context_settings=CONTEXT, **attributes)
         self.entries = entries
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        if not args and not ctx.resilient_parsing:
+            # As the real command: help is no error.
+            click.echo(ctx.get_help())
+            ctx.exit(0)
+        return super().parse_args(ctx, args)
+
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(self.entries)
 

@@ -68,12 +68,16 @@ def info(node_name: str, include_hidden: bool, spin_time: float | None, use_sim_
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
         from spinbook.ros2.names import absolute_node, seen
 
-        full = absolute_node(node_name)
+        # The real command knows nodes by their full names alone.
+        full = node_name
         graph.settle(lambda: any(found.full_name == full for found in graph.nodes()))
         same = [found for found in graph.nodes() if found.full_name == full]
         if not same:
+            meant = absolute_node(node_name)
+            is_there = meant != node_name and any(found.full_name == meant for found in graph.nodes())
             raise Refusal(
                 f"Unable to find node '{node_name}'",
+                *([f"Its name begins with a slash: ros2 node info {meant}"] if is_there else []),
                 seen("Nodes", (found.full_name for found in graph.nodes() if not found.hidden)),
             )
         if len(same) > 1:

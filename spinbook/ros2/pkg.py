@@ -1,8 +1,9 @@
-"""`ros2 pkg`: list, executables and prefix."""
+"""`ros2 pkg`: list, executables, prefix and xml."""
 
 from __future__ import annotations
 
 import sys
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import click
@@ -14,9 +15,11 @@ from spinbook.ros2.refusal import Refusal
 pkg = Menu(
     name="pkg",
     entries={
+        "create": Entry("spinbook.ros2.creating:create", "Make a new package of Python."),
         "executables": Entry("spinbook.ros2.pkg:executables", "What `ros2 run` can start."),
         "list": Entry("spinbook.ros2.pkg:list_", "The packages there are."),
         "prefix": Entry("spinbook.ros2.pkg:prefix", "Where a package is installed."),
+        "xml": Entry("spinbook.ros2.pkg:xml", "A package's package.xml, or one tag of it."),
     },
     help="""List packages and their executables; a built colcon workspace here counts.
 
@@ -74,3 +77,28 @@ def prefix(package_name: str) -> None:
     if package_name not in packages and package_name not in search.BUILT_IN:
         raise Refusal("Package not found", "`ros2 pkg list` shows those that are there.")
     click.echo(str(packages.get(package_name, sys.prefix)))
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("package_name")
+@click.option("-t", "--tag", help="Print only this tag's text, such as version.")
+def xml(package_name: str, tag: str | None) -> None:
+    """A package's package.xml, or one tag of it.
+
+    \b
+      ros2 pkg xml std_msgs
+      ros2 pkg xml std_msgs --tag version
+    """
+    prefix = search.everywhere(Path.cwd()).get(package_name)
+    file = prefix / "share" / package_name / "package.xml" if prefix else None
+    if file is None or not file.is_file():
+        raise Refusal(f"Package '{package_name}' not found", "`ros2 pkg list` shows those that are there.")
+    text = file.read_text(encoding="utf-8")
+    if tag is None:
+        click.echo(text.rstrip("\n"))
+        return
+    found = [element.text or "" for element in ElementTree.fromstring(text).iter(tag)]
+    if not found:
+        raise Refusal(f"No tag '{tag}' in {file}")
+    for value in found:
+        click.echo(value.strip())

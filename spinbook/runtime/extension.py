@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import atexit
 import os
+import sysconfig
 import warnings
 from typing import Any
 
@@ -31,7 +32,15 @@ def load(shell: Any) -> None:
     session = Session(domain.shared(int(asked_for)) if asked_for.isdigit() else domain.claim())
     shell.spinbook_session = session
     magics.register(shell, session)
+    _find_scripts()
     atexit.register(farewell, session)
+
+
+def _find_scripts() -> None:
+    """Let `!ros2` and `%%bash` find this environment's programs: its kernel may run without it being activated."""
+    folders = os.environ.get("PATH", os.defpath).split(os.pathsep)
+    if (scripts := sysconfig.get_path("scripts")) not in folders:
+        os.environ["PATH"] = os.pathsep.join([*folders, scripts])
 
 
 def farewell(session: Session) -> None:

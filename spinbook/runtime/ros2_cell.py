@@ -38,12 +38,22 @@ def _create_package(session: Session, words: list[str]) -> None:
 
 
 def _run_executable(session: Session, words: list[str], bound: Bound) -> None:
-    """`ros2 run PACKAGE EXECUTABLE …`: a node like any other of the notebook, named for its executable."""
+    """`ros2 run PACKAGE EXECUTABLE …`: a node like any other of the notebook, called as it or as `__node:=` says."""
     if len(words) < 2 or words[0].startswith("-"):
         raise CellFailed("Write: ros2 run PACKAGE EXECUTABLE, such as ros2 run turtlesim turtlesim_node")
     executable = words[1]
-    if session.run_executable(words[0], executable, words[2:], bound):
+    name = _renamed(words[2:]) or executable
+    if session.run_executable(words[0], executable, words[2:], bound, name):
         return
     argv = [sys.executable, "-m", "spinbook.ros2", "run", *words]
     cwd = session.workspace if session.workspace.is_dir() else Path.cwd()
-    session.run_background(executable, argv, {}, cwd, bound)
+    session.run_background(name, argv, {}, cwd, bound)
+
+
+def _renamed(words: list[str]) -> str:
+    """What `__node:=NAME` or `__name:=NAME` calls the node: a second one of that executable, beside the first."""
+    for word in words:
+        option, found, name = word.partition(":=")
+        if found and option in ("__node", "__name"):
+            return name
+    return ""

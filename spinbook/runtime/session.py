@@ -127,11 +127,15 @@ class Session:
         paths = [os.fspath(module.parents[1]), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
         return {"PYTHONPATH": os.pathsep.join(path for path in paths if path)}
 
-    def run_executable(self, package: str, executable: str, words: Sequence[str], bound: Bound) -> bool:
-        """Start the node that a cell made as this executable. False if no cell did."""
+    def run_executable(self, package: str, executable: str, words: Sequence[str], bound: Bound, known_as: str) -> bool:
+        """Start the node that a cell made as this executable. False if no cell did.
+
+        `known_as` is another name than the executable's where it runs beside the one that has that.
+        """
         for name, (file, start) in self.starts.items():
             if f"{package}/{executable}" in start.known_as:
-                self.run_background(name, start.argv(file, words), self._import_path(file), Path.cwd(), bound)
+                instance = name if known_as == executable else known_as
+                self.run_background(instance, start.argv(file, words), self._import_path(file), Path.cwd(), bound)
                 return True
         return False
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import time
 from collections import deque
@@ -66,18 +67,29 @@ class Shown:
         sys.stdout.flush()
 
 
+#: What is said where a text was waited for in vain: see `never_came`.
+NEVER_CAME = re.compile(r"^— the text (.+) did not come within ([\d.]+) s —$", re.MULTILINE)
+
+
+def never_came(bound: Bound) -> str:
+    """Say that the text a cell waited for was not printed in its time; `NEVER_CAME` finds it again."""
+    return f"— the text {bound.until!r} did not come within {bound.seconds:g} s —"
+
+
 def show_for(process: KeptProcess, bound: Bound, rest_is: str) -> None:
-    """Show what a process prints until it ends, or until its time is up."""
+    """Show what a process prints until it ends, or until its time is up; then it says which text never came."""
     shown = Shown()
     deadline = time.monotonic() + bound.seconds
+    came = False
     while True:
         shown.add(*process.read())
-        if not process.status.running or time.monotonic() >= deadline:
-            break
-        if bound.until is not None and bound.until in shown.seen:
+        came = bound.until is not None and bound.until in shown.seen
+        if came or not process.status.running or time.monotonic() >= deadline:
             break
         time.sleep(_POLL_S)
     shown.end(process.status.lines, rest_is)
+    if bound.until is not None and not came:
+        print(never_came(bound))
 
 
 def in_short(text: str, first: int = FIRST_LINES, last: int = LAST_LINES) -> str:

@@ -88,7 +88,7 @@ def build_site(course: Course, on_page: Callable[[str], None], *, as_it_ran: boo
         made.append(page)
         on_page(page)
 
-    html, problems = run_sphinx(contents, source, cache, course.title, course.repository, heard)
+    html, problems = run_sphinx(contents, source, cache, course, heard)
     pages = [*(page.name for page in contents.pages), names.SEARCH]
     publish(html, pages, contents.files, folder)
     _write_branch(contents.branch, course.build_folder / "launch")

@@ -22,6 +22,7 @@ from spinbook.handout.comments import without_comments
 from spinbook.problem import Problem, Severity, SpinbookError
 from spinbook.site import names
 from spinbook.site.about_page import about_markdown
+from spinbook.site.addresses import address_files
 from spinbook.site.chapter_page import ExerciseCard, Ran, as_text, chapter_notebook, stills
 from spinbook.site.drawing import drawing_files, drawing_html
 from spinbook.site.exercise_page import exercise_markdown
@@ -45,7 +46,8 @@ class Contents:
     `pages` are in reading order, the home page first. `pictures` are those that the text shows: path in the site ->
     content. `files` go into the site as they are, `branch` into the
     branch of notebooks: path -> text. `origins` says for a staged page which file an author would mend, and `lines`
-    for a chapter's page the first line of each of its cells. `taught` is the code of the chapters' nodes.
+    for a chapter's page the first line of each of its cells. `taught` is the code of the chapters' nodes, `copies` what
+    the notebooks bring of the exercises: path -> content.
     """
 
     pages: list[Page] = field(default_factory=list)
@@ -57,6 +59,7 @@ class Contents:
     origins: dict[str, Path] = field(default_factory=dict)
     lines: dict[str, list[int]] = field(default_factory=dict)
     taught: list[str] = field(default_factory=list)
+    copies: dict[str, bytes] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
 
 
@@ -93,20 +96,24 @@ def read_contents(course: Course) -> Contents:
                 page = _exercise(exercises[cell.name or ""], chapter, links, drawings, contents)
                 contents.pages.append(page)
     contents.pages += _closing_pages(course, repository, first, contents)
-    _notebooks(course, chapters, exercises, repository, contents)
+    copies = _copies(exercises)
+    contents.copies |= {name: content for files in copies.values() for name, content in files.items()}
+    _notebooks(course, chapters, copies, repository, contents)
     for code, picture in drawings.pictures.items():
         if picture is not None:
             contents.files |= drawing_files(code, picture)
     contents.pictures |= links.pictures
     contents.files |= links.pictures
     if can_run():
-        contents.files |= run_files(_public_parts(exercises))
+        contents.files |= run_files(contents.copies)
+    contents.files |= address_files(course.site, course.title, contents.pages)
     return contents
 
 
-def _public_parts(exercises: Mapping[str, Exercise]) -> dict[str, bytes]:
+def _copies(exercises: Mapping[str, Exercise]) -> dict[str, dict[str, bytes]]:
+    """The files of each exercise that a check needs, by path."""
     try:
-        return public_parts(exercises.values())
+        return {name: public_parts([exercise]) for name, exercise in exercises.items()}
     except ExerciseError as error:
         raise SpinbookError(Problem(error.file, error.line, error.found, error.mend)) from None
 
@@ -187,8 +194,27 @@ def _chapter(
     text = as_text(notebook)
     runs = can_run()
     return Page(
-        name, chapter.title, "chapter", ".ipynb", text, source, chapter.name, summary=chapter.summary, runs=runs
+        name,
+        chapter.title,
+        "chapter",
+        ".ipynb",
+        text,
+        source,
+        chapter.name,
+        summary=chapter.summary,
+        about={"minutes": _minutes(chapter)},
+        runs=runs,
     )
+
+
+#: Words that most people read in a minute, of a text that they want to understand.
+WORDS_PER_MINUTE = 200
+
+
+def _minutes(chapter: Chapter) -> int:
+    """How long the prose takes to read, in minutes; the code is for trying, at a pace of one's own."""
+    words = sum(len(cell.source.split()) for cell in chapter.cells if cell.kind is CellKind.PROSE)
+    return max(1, round(words / WORDS_PER_MINUTE))
 
 
 def _downloads(chapter: Chapter, contents: Contents) -> dict[str, str]:
@@ -299,37 +325,44 @@ def _home(
 def _notebooks(
     course: Course,
     chapters: list[Chapter],
-    exercises: Mapping[str, Exercise],
+    copies: Mapping[str, Mapping[str, bytes]],
     repository: Repository,
     contents: Contents,
 ) -> None:
-    """The notebooks to download and to open elsewhere, which install what they need."""
+    """The notebooks to download and to open elsewhere, which install what they need and bring their exercises."""
     wanted = requirement(repository)
     written: list[str] = []
     for chapter in chapters:
         file = course.build_folder / "notebooks" / f"{chapter.name}.ipynb"
         notebook = json.loads(file.read_text(encoding="utf-8"))
-        _add_notebook(chapter.name, notebook, wanted, contents)
+        held = [cell for cell in chapter.cells if cell.kind is CellKind.EXERCISE and cell.name]
+        brought = {path: data for cell in held for path, data in copies[cell.name or ""].items()}
+        _add_notebook(chapter.name, notebook, wanted, brought, contents)
         written.append(chapter.name)
-        for cell in chapter.cells:
-            if cell.kind is CellKind.EXERCISE and cell.name:
-                name = names.exercise_notebook(cell.name)
-                _add_notebook(name, _only_exercise(notebook, cell.name), wanted, contents)
-                written.append(name)
+        for cell in held:
+            name = names.exercise_notebook(cell.name or "")
+            _add_notebook(name, _only_exercise(notebook, cell.id), wanted, copies[cell.name or ""], contents)
+            written.append(name)
     contents.branch |= branch_files(written, wanted, course.title)
     for name in written:
         contents.openers[name] = [{"name": o.name, "url": o.url} for o in openers(repository, name)]
 
 
-def _only_exercise(notebook: Mapping[str, Any], exercise: str) -> dict[str, Any]:
-    """A chapter's notebook without all but its set-up and one exercise."""
-    prefix = f"exercise-{exercise}-"
-    kept = [c for c in notebook["cells"] if c["id"] == "spinbook-setup" or c["id"].startswith(prefix)]
-    return {**notebook, "cells": kept}
+def _only_exercise(notebook: Mapping[str, Any], cell_id: str) -> dict[str, Any]:
+    """A chapter's notebook without all but its set-up and one exercise: task, starter and check.
+
+    `cell_id` is the exercise's in the chapter, from which the notebook's cells have theirs.
+    """
+    wanted = {f"{cell_id}-{part}" for part in ("task", "starter", "check")}
+    task, *rest = [cell for cell in notebook["cells"] if cell["id"] in wanted]
+    setup = [cell for cell in notebook["cells"] if cell["id"] == "spinbook-setup"]
+    return {**notebook, "cells": [task, *setup, *rest]}
 
 
-def _add_notebook(name: str, notebook: Mapping[str, Any], wanted: str, contents: Contents) -> None:
-    ready = launch_notebook(notebook, wanted)
+def _add_notebook(
+    name: str, notebook: Mapping[str, Any], wanted: str, exercises: Mapping[str, bytes], contents: Contents
+) -> None:
+    ready = launch_notebook(notebook, wanted, exercises)
     for cell in ready["cells"]:
         if cell["cell_type"] == "markdown":
             cell["source"] = without_comments(cell["source"])

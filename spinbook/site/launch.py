@@ -8,7 +8,9 @@ https://docs.github.com/codespaces/setting-up-your-project-for-codespaces.
 
 from __future__ import annotations
 
+import base64
 import json
+import lzma
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -37,6 +39,21 @@ if missing := [name for name in ("rclpy", "spinbook") if importlib.util.find_spe
     print("Installed.")
 else:
     print("Everything is here.")"""
+
+
+_EXERCISES = '''\
+# Brings the files by which %check works: what students may see of the exercises. Yours are left as they are.
+import base64, json, lzma, pathlib
+
+packed = r"""
+{packed}
+"""
+for name, text in json.loads(lzma.decompress(base64.b85decode("".join(packed.split())))).items():
+    file = pathlib.Path(name)
+    if not file.exists():
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(text.encode("utf-8", "surrogateescape"))
+print("The exercises are in the folder", pathlib.Path("exercises").resolve())'''
 
 
 @dataclass(frozen=True)
@@ -68,19 +85,37 @@ def requirement(repository: Repository) -> str:
     return f"{extras} @ git+{repository.url}@{repository.commit or 'main'}"
 
 
-def launch_notebook(notebook: Mapping[str, Any], wanted: str) -> dict[str, Any]:
-    """The notebook with a cell before its first code cell that installs `wanted` where it is missing."""
+def launch_notebook(notebook: Mapping[str, Any], wanted: str, exercises: Mapping[str, bytes]) -> dict[str, Any]:
+    """The notebook with a cell before its first code cell that installs `wanted` where it is missing.
+
+    `exercises` are the files of students' copies, by path: a notebook that somebody opens by itself brings them along,
+    so that `%check` works wherever it is opened.
+    """
     cells = list(notebook["cells"])
     first = next((index for index, cell in enumerate(cells) if cell["cell_type"] == "code"), len(cells))
-    install: dict[str, Any] = {
+    added = [_hidden("install", _INSTALL.replace("{requirement!r}", repr(wanted)))]
+    if exercises:
+        added.append(_hidden("exercises", _EXERCISES.replace("{packed}", _packed(exercises))))
+    return {**notebook, "cells": [*cells[:first], *added, *cells[first:]]}
+
+
+def _hidden(kind: str, source: str) -> dict[str, Any]:
+    """A cell whose code JupyterLab folds away."""
+    return {
         "cell_type": "code",
-        "id": "spinbook-install",
-        "metadata": {"spinbook": {"kind": "install", "line": 1}},
-        "source": _INSTALL.replace("{requirement!r}", repr(wanted)),
+        "id": f"spinbook-{kind}",
+        "metadata": {"spinbook": {"kind": kind, "line": 1}, "jupyter": {"source_hidden": True}},
+        "source": source,
         "outputs": [],
         "execution_count": None,
     }
-    return {**notebook, "cells": [*cells[:first], install, *cells[first:]]}
+
+
+def _packed(files: Mapping[str, bytes]) -> str:
+    """Files as lines of text that a Python string can hold."""
+    plain = json.dumps({name: content.decode("utf-8", "surrogateescape") for name, content in sorted(files.items())})
+    text = base64.b85encode(lzma.compress(plain.encode())).decode()
+    return "\n".join(text[start : start + 110] for start in range(0, len(text), 110))
 
 
 def branch_files(names: Iterable[str], wanted: str, title: str) -> dict[str, str]:

@@ -46,4 +46,6 @@ def _published(contents: Contents) -> dict[str, bytes]:
     files |= {f"{page.name}.frame": page.frame(contents.openers) for page in contents.pages}
     files |= {f"site/{path}": content for path, content in contents.files.items()}
     files |= {f"launch/{path}": content for path, content in contents.branch.items()}
+    # Packed, nothing could be found in them.
+    files |= {f"launch/{path}": content for path, content in contents.copies.items()}
     return {path: content.encode() if isinstance(content, str) else content for path, content in files.items()}

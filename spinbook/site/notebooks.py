@@ -40,6 +40,8 @@ def bring_up_to_date(course: Course, console: Console, *, is_strict: bool) -> bo
         ):
             for failure in executed.failures:
                 console.print(str(failure), markup=False)
+            for warning in executed.warnings:
+                console.print(str(warning), markup=False)
             if not executed.cached and not executed.failures:
                 console.print(f"{executed.chapter} ran in {executed.seconds:.0f} s", markup=False)
             good = good and not (is_strict and executed.failures)

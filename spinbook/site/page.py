@@ -3,9 +3,18 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
+
+_BLOB = re.compile(r"(https://github\.com/[^/]+/[^/]+)/blob/[^/]+/([^?#]+\.md)(?:[?#].*)?")
+
+
+def edit_address(source: str) -> str:
+    """Return where GitHub lets a reader change the file that `source` shows; "" for what is not Markdown on GitHub."""
+    match = _BLOB.fullmatch(source)
+    return f"{match[1]}/edit/main/{match[2]}" if match else ""
 
 
 @dataclass(frozen=True)
@@ -34,6 +43,7 @@ class Page:
             {
                 "kind": self.kind,
                 "source": self.source,
+                "edit": edit_address(self.source),
                 "notebook": self.notebook,
                 "openers": openers.get(self.notebook, []),
                 "summary": self.summary,

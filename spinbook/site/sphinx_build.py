@@ -13,6 +13,7 @@ from typing import Any
 from sphinx.application import Sphinx
 from sphinx.errors import SphinxError
 
+from spinbook.course.course import Course
 from spinbook.problem import Problem, Severity, SpinbookError
 from spinbook.site.contents import Contents
 from spinbook.site.extension import NAME
@@ -28,7 +29,7 @@ _LINES_A_CELL = 10_000
 
 
 def run_sphinx(
-    contents: Contents, source: Path, cache: Path, title: str, repository: str, on_page: Callable[[str], None]
+    contents: Contents, source: Path, cache: Path, course: Course, on_page: Callable[[str], None]
 ) -> tuple[Path, list[Problem]]:
     """Make the pages in `cache / "html"` from the staged folder `source`. Returns that folder, and what to mend.
 
@@ -43,7 +44,7 @@ def run_sphinx(
             outdir=output,
             doctreedir=cache / "doctrees",
             buildername="html",
-            confoverrides=_settings(contents, title, repository),
+            confoverrides=_settings(contents, course),
             status=None,
             warning=told,
             parallel=1,
@@ -62,11 +63,11 @@ def run_sphinx(
     return output, list(_problems(told.getvalue(), contents, source))
 
 
-def _settings(contents: Contents, title: str, repository: str) -> dict[str, Any]:
+def _settings(contents: Contents, course: Course) -> dict[str, Any]:
     terms = [(form, term.anchor) for term in contents.terms for form in term.forms]
     nav = [{"page": page.name, "title": page.title, "kind": page.kind} for page in contents.pages if page.name != HOME]
     return {
-        "project": title,
+        "project": course.title,
         "language": "en",
         "extensions": ["myst_nb", NAME],
         "exclude_patterns": [],
@@ -79,14 +80,14 @@ def _settings(contents: Contents, title: str, repository: str) -> dict[str, Any]
         "myst_all_links_external": False,
         "html_theme": "theme",
         "html_theme_path": [str(_THEMES)],
-        "html_title": title,
+        "html_title": course.title,
         "html_math_renderer": "mathml",
         "html_copy_source": False,
         "html_show_sourcelink": False,
         "html_use_index": False,
         "html_permalinks_icon": "#",
         "html_additional_pages": {SEARCH: "search.html"},
-        "html_context": {"nav": nav, "repository": repository},
+        "html_context": {"nav": nav, "repository": course.repository, "site": course.site},
         "spinbook_terms": terms,
         "suppress_warnings": ["misc.highlighting_failure", "myst.xref_missing_ignored"],
     }

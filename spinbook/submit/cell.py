@@ -20,8 +20,7 @@ def run(session: Session, shell: Any, name: str, course: str, student: str | Non
     notebook = notebook_file(shell.user_ns, os.environ)
     exercise = exercise_of(name, course, notebook)
     code = code_of(exercise, session, notebook)
-    if code.note:
-        print(code.note.replace("checks", "hands in").replace("%check", "%submit"))
+    print(code.note("Handed in", f"%submit {exercise.name}"))
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, exercise.file_name)
         file.write_text(code.text, encoding="utf-8")

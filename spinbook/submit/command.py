@@ -9,13 +9,12 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from grader.exercise import Exercise, ExerciseError, load
-from grader.exercise.finding import NoExercise, find
+from grader.exercise import Exercise
 from grader.report.terminal import show
-from grader.submission import NoSubmission, read
 from spinbook.problem import Problem, SpinbookError
 from spinbook.submit import student as names
-from spinbook.submit.candidates import Candidate, candidates, cells_that_differ, is_starter
+from spinbook.submit.candidates import Candidate, cells_that_differ, is_starter
+from spinbook.submit.choosing import exercise_named, found, given
 from spinbook.submit.hand_in import HandIn, default_target, write_upload
 from spinbook.submit.self_check import SelfCheck, self_check
 
@@ -46,8 +45,8 @@ def submit(
     Exit codes: 0 the file is written, 1 it could not be written, 2 wrong usage.
     """
     folder = Path.cwd()
-    wanted = _exercise(exercise)
-    chosen = _ran(code, file, wanted) if code else _given(file, wanted) if file else _found(wanted, folder)
+    wanted = exercise_named(exercise)
+    chosen = _ran(code, file, wanted) if code else given(file, wanted) if file else _found(wanted, folder)
     name = _student(student, folder)
     checked = SelfCheck(None, "It was left out.") if no_check else self_check(wanted, chosen.submission)
     console = Console(soft_wrap=False, highlight=False)
@@ -78,52 +77,13 @@ def tell(checked: SelfCheck, exercise: Exercise, console: Console) -> None:
         console.print(f"No self-check: {checked.why} You can hand in all the same.", markup=False, soft_wrap=True)
 
 
-def _exercise(name: str) -> Exercise:
-    try:
-        return load(find(name, Path.cwd()))
-    except NoExercise as error:
-        raise click.UsageError(str(error)) from None
-    except ExerciseError as error:
-        raise SpinbookError(Problem(error.file, error.line, error.found, error.mend)) from None
-
-
-def _given(file: Path, exercise: Exercise) -> Candidate:
-    if file.suffix not in (".py", ".ipynb"):
-        raise click.UsageError(f"{file}: hand in a notebook (.ipynb) or a Python file (.py).")
-    try:
-        submission = read(str(file), exercise)
-    except NoSubmission as error:
-        raise click.UsageError(str(error)) from None
-    if submission.program is None:
-        raise SpinbookError(Problem(file, None, submission.problem, "There is nothing in it to hand in yet."))
-    return Candidate(file, submission, file.name)
-
-
 def _ran(code: Path, notebook: Path | None, exercise: Exercise) -> Candidate:
     """The code that a notebook's kernel ran last, which may not have been saved yet."""
-    return replace(_given(code, exercise), file=notebook, origin="the cell as you ran it last")
+    return replace(given(code, exercise), file=notebook, origin="the cell as you ran it last")
 
 
 def _found(exercise: Exercise, folder: Path) -> Candidate:
-    found = candidates(exercise, folder)
-    if not found:
-        raise SpinbookError(
-            Problem(
-                folder,
-                None,
-                f"nothing here holds {exercise.name}: no {exercise.file_name}, and no notebook with its cell.",
-                f"Go to the folder of your notebook, or name the file: spinbook submit {exercise.name} FILE",
-            )
-        )
-    if len(found) == 1:
-        return found[0]
-    listed = [candidate.origin for candidate in found]
-    if not sys.stdin.isatty():
-        raise click.UsageError(f"Which file? {', '.join(listed)}. Name it: spinbook submit {exercise.name} FILE")
-    click.echo("More than one file here holds this exercise:")
-    for number, name in enumerate(listed, start=1):
-        click.echo(f"  {number}  {name}")
-    return found[click.prompt("Which one do you hand in?", type=click.IntRange(1, len(found))) - 1]
+    return found(exercise, folder, "spinbook submit", "Which one do you hand in?")
 
 
 def _student(given: str | None, folder: Path) -> str:

@@ -11,7 +11,7 @@ import click
 from spinbook.problem import Problem, SpinbookError
 from spinbook.update.base import BASE
 from spinbook.update.carrying_out import carry_out
-from spinbook.update.handout import read_handout
+from spinbook.update.handout import read_handout, refuse_another_course
 from spinbook.update.merging import Told
 from spinbook.update.plan import Plan, plan
 
@@ -42,7 +42,9 @@ def update(new_handout: Path | None, dry_run: bool) -> None:
     source = new_handout or _only_handout(folder)
     if source.resolve() == folder:
         raise click.UsageError(f"{source} is your own folder. Name the new handout.")
-    made = plan(folder, read_handout(source))
+    new = read_handout(source)
+    refuse_another_course(source, new, folder)
+    made = plan(folder, new)
     _tell(made)
     if not made.writes:
         if not dry_run and (made.base or made.forgotten):

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import stat
 import zipfile
 import zlib
+from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
 
+from grader.submission.upload import RECORD
 from spinbook.problem import Problem, SpinbookError
+from spinbook.update.base import BASE
 
 MOST_FILES = 5_000
 MOST_BYTES = 500_000_000
@@ -16,6 +20,11 @@ MOST_BYTES = 500_000_000
 _LEFT_OUT = {"__pycache__", ".ipynb_checkpoints", ".git", ".venv", "backups"}
 
 Files = dict[PurePosixPath, bytes]
+
+_GIVE = "Give the course's new handout, a folder or a zip."
+
+#: The line of a notebook's set-up cell that names the course's package, as it is in the notebook's JSON.
+_PACKAGE = re.compile(rb"%chapter [^\n\"\\]*--package ([a-z0-9_]+)")
 
 
 def read_handout(place: Path) -> Files:
@@ -28,10 +37,39 @@ def read_handout(place: Path) -> Files:
         found = f"it can't be read: {error}."
         raise SpinbookError(Problem(place, None, found, "Download the handout once more.")) from None
     files = _without_outer_folder(files)
-    if not any(path.suffix == ".ipynb" for path in files):
-        found = "there is no notebook in it."
-        raise SpinbookError(Problem(place, None, found, "Give the course's new handout, a folder or a zip."))
+    if found := _why_not(files):
+        raise SpinbookError(Problem(place, None, found, f"Nothing was changed. {_GIVE}"))
     return files
+
+
+def refuse_another_course(place: Path, files: Files, folder: Path) -> None:
+    """Raise `SpinbookError` where a handout's notebooks and those in the student's folder are of different courses."""
+    base = folder / BASE
+    mine = packages(file.read_bytes() for file in sorted((base if base.is_dir() else folder).glob("*.ipynb")))
+    new = packages(data for path, data in files.items() if path.suffix == ".ipynb" and len(path.parts) == 1)
+    if mine and new and not mine & new:
+        found = f"it is a handout of another course: its package is {_and(new)}, yours is {_and(mine)}."
+        raise SpinbookError(Problem(place, None, found, f"Nothing was changed. {_GIVE}"))
+
+
+def packages(notebooks: Iterable[bytes]) -> set[str]:
+    """Return the ROS packages that these notebooks' set-up cells name, which are one for each course."""
+    return {match.decode() for notebook in notebooks for match in _PACKAGE.findall(notebook)}
+
+
+def _why_not(files: Files) -> str:
+    """Say why this is not a handout; empty if it is one."""
+    if PurePosixPath(RECORD) in files:
+        return "it is a file to hand in, which `spinbook submit` wrote, and not a handout."
+    if not any(path.suffix == ".ipynb" for path in files):
+        return "there is no notebook in it."
+    if not any(path.is_relative_to(BASE) for path in files):
+        return f"it is not a handout: there is no {BASE} in it."
+    return ""
+
+
+def _and(names: Iterable[str]) -> str:
+    return " and ".join(sorted(names))
 
 
 def _of_folder(folder: Path) -> Files:

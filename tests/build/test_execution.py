@@ -93,6 +93,18 @@ def test_a_cell_that_fails_is_told_by_chapter_and_line_with_its_log_and_the_rest
     assert "bad: 2 cells failed" in course.spinbook("build", "--execute").stdout, "a failed run is not remembered"
 
 
+def test_a_text_that_was_waited_for_in_vain_is_reported_by_chapter_and_line(course: CourseFolder) -> None:
+    course.write(one=f"# One\n\n{TALKER.replace('until=talking', 'until=walking').replace('seconds=60', 'seconds=1')}")
+
+    first, again = course.spinbook("build", "--execute"), course.spinbook("build", "--execute")
+
+    for said in (first, again):
+        assert said.returncode == 0, said.stdout
+        assert "chapters/one.md:4: `until` never came: 'walking' was not printed within 1 s." in said.stdout
+    assert "unchanged since its last run" in again.stdout
+    assert "— the text 'walking' did not come within 1 s —" in course.outputs("one")["node-talker"]
+
+
 def test_failing_can_be_the_lesson(course: CourseFolder) -> None:
     course.write(one="# One\n\n```python raises\n1 / 0\n```\n\n```python raises\n'fine'\n```\n")
 

@@ -46,7 +46,7 @@ def test_the_starter_gets_no_points_and_is_told_what_to_mend_first(kernel: Kerne
         assert re.search(r"\d+ hidden checks \(\d+ points\) will be judged after you hand in\.", told)
         assert "This is a self-check, not your grade." in told
         assert "Next:" in told
-        assert "mend the first ✗, run the cell that begins with %%node joint_velocity, then this one again." in told
+        assert "fix the first ✗, run the cell that begins with %%node joint_velocity, then this one again." in told
     assert text.count("Can't be judged before this is right: It hears /joint_commands") == PUBLIC - 1
     assert html.count('class="sb-failed"') == 1
     assert html.count('class="sb-blocked"') == PUBLIC - 1
@@ -81,6 +81,15 @@ def test_a_mistake_is_told_with_what_was_expected_what_came_when_and_which_joint
     assert "First wrong: 0.10 s, left_shoulder_pitch." in html
 
 
+def test_a_misspelled_topic_is_named_and_nothing_that_the_grader_itself_brings(kernel: Kernel) -> None:
+    text, html = texts(shown_of(kernel, solution().replace("/joint_commands", "/joint_comands")))
+
+    for told in (text, html):
+        assert "Is /joint_comands a misspelling of /joint_commands?" in told
+        assert "Create the subscription and the publisher in __init__" in told
+        assert "/clock" not in told
+
+
 def test_nothing_of_the_students_becomes_markup(kernel: Kernel) -> None:
     bad = "<script>alert(1)</script><img src=x onerror=alert(2)>"
     spoiled = solution().replace("answer.name.append(name)", f"answer.name.append({bad!r})")
@@ -102,6 +111,36 @@ def test_a_program_that_can_not_start_is_told_with_its_line(kernel: Kernel) -> N
     for told in (text, html):
         assert "Your program did not start: SyntaxError" in told
         assert f"line {line}" in told, "lines are counted as in the cell, the one with %%node included"
+
+
+def test_lines_are_those_of_the_cell_files_have_their_own_names_and_what_was_printed_is_shown(kernel: Kernel) -> None:
+    broken = solution().replace("def main():\n", "def main():\n    print('one two three')\n    1 / 0\n", 1)
+
+    text, html = texts(shown_of(kernel, broken))
+
+    line = 1 + next(i for i, line in enumerate(broken.split("\n"), start=1) if "1 / 0" in line)
+    for told in (text, html.replace("&#34;", '"')):
+        assert "What your program printed" in told
+        assert "one two three" in told
+        assert f'File "joint_velocity.py", line {line}, in main' in told
+        assert "/submission" not in told
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize(
+    ("before", "told"),
+    [
+        ("    rclpy.spin(node)", "Your program created its node, then computed for 6 s and did not spin it."),
+        ("    rclpy.init()", "Your program computed for 6 s and created no node. Is there an endless loop before it?"),
+    ],
+)
+def test_a_loop_before_the_spin_is_named_as_such(kernel: Kernel, before: str, told: str) -> None:
+    line = next(line for line in solution().split("\n") if line.strip() == before.strip())
+    looping = solution().replace(line, line.replace(before.strip(), f"while True: pass\n{line}"), 1)
+
+    text, _ = texts(shown_of(kernel, looping))
+
+    assert told in text
 
 
 def test_a_loop_without_end_is_told_and_the_kernel_goes_on(kernel: Kernel) -> None:

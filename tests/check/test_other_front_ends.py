@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -48,7 +49,8 @@ def test_colab_a_notebook_alone_is_told_what_it_lacks_and_works_once_it_has_it(e
     elsewhere.run(node_cell(solution()))
     shown = elsewhere.run("%check joint_velocity")
     assert "There is no exercise 'joint_velocity' here" in shown.error
-    assert "Keep the notebook in the folder of the handout" in shown.error
+    assert "from the course's website: run its first code cells" in shown.error
+    assert "keep the notebook in the folder of the handout" in shown.error
     assert "%check joint_velocity --course FOLDER" in shown.error
     assert "Traceback" not in shown.error
 
@@ -66,7 +68,7 @@ def test_vs_code_the_notebooks_own_folder_counts_and_the_saved_cell_where_none_w
 
     shown = elsewhere.run("%check joint_velocity")
 
-    assert "has not been run since the kernel started. This checks it as it was last saved in week3.ipynb" in shown.text
+    assert "it has not been run since the kernel started, so this is how it was last saved in week3" in shown.text
     assert "0 of 41 points" in texts(shown)[0]
 
 
@@ -75,12 +77,15 @@ def test_a_cell_that_was_changed_since_it_was_run_is_told_and_one_that_was_not_s
 ) -> None:
     elsewhere.run(f"{VS_CODE} = {os.fspath(place / 'week3.ipynb')!r}")
     elsewhere.run(node_cell("raise SystemExit"))
-    assert "changed it since" not in elsewhere.run("%check joint_velocity").text
+    said = elsewhere.run("%check joint_velocity").text
+    assert re.search(r"Checked: the cell %%node joint_velocity as you ran it at \d\d:\d\d:\d\d, without", said)
+    assert "WARNING" not in said
 
     save(place / "week3.ipynb", solution())
     shown = elsewhere.run("%check joint_velocity")
 
-    assert "as you ran it last. You have changed it since: run that cell again" in shown.text
+    assert "WARNING: You have changed the cell %%node joint_velocity since you ran it" in shown.text
+    assert "Run that cell again, then %check joint_velocity." in shown.text
 
 
 def test_a_restarted_kernel_needs_only_the_first_cell_and_then_any_cell_may_come_first(place: Path) -> None:

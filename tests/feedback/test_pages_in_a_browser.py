@@ -42,15 +42,15 @@ def site(graded: dict[str, Grade], exercise: Exercise, tmp_path: Path) -> Path:
     page = overview_page(exercise, entries, skipped, faults, grouped(entries, [dt]))
     (tmp_path / "index.html").write_text(page, encoding="utf-8")
     for number, one in enumerate([*entries, *faults]):
-        folder = tmp_path / (f"evil{number}" if one.student.name == EVIL else one.student.id)
-        folder.mkdir()
+        folder = tmp_path / "students" / (f"evil{number}" if one.student.name == EVIL else one.student.id)
+        folder.mkdir(parents=True)
         page = feedback_page(one, exercise, feedback_plot(one.grade, exercise))
         (folder / "feedback.html").write_text(page, encoding="utf-8")
     return tmp_path
 
 
 def every_page(site: Path) -> list[Path]:
-    return [site / "index.html", *sorted(site.glob("*/feedback.html"))]
+    return [site / "index.html", *sorted(site.glob("students/*/feedback.html"))]
 
 
 def test_no_page_runs_or_requests_what_a_student_wrote(browser: Browser, site: Path) -> None:
@@ -62,7 +62,7 @@ def test_no_page_runs_or_requests_what_a_student_wrote(browser: Browser, site: P
 
 
 def test_the_policy_stops_a_script_even_if_one_got_in(browser: Browser, site: Path) -> None:
-    for page in (site / "index.html", site / "s-solution" / "feedback.html"):
+    for page in (site / "index.html", site / "students" / "s-solution" / "feedback.html"):
         forced = page.with_name(f"forced-{page.name}")
         html = page.read_text(encoding="utf-8").replace("</main>", "<script>window.pwned = 1</script></main>")
         forced.write_text(html, encoding="utf-8")
@@ -128,8 +128,8 @@ def test_the_table_is_sorted_by_a_click_and_is_in_order_without_script(browser: 
 def test_a_student_of_any_id_has_a_link_that_stays_in_the_results(browser: Browser, site: Path) -> None:
     with opened(browser, site / "index.html") as shown:
         links = [link.get_attribute("href") or "" for link in shown.page.locator("tbody a").all()]
-        assert "..%2Fa%20b%23%3F%25/feedback.html" in links
-        assert all(link.count("/") == 1 for link in links)
+        assert "students/..%2Fa%20b%23%3F%25/feedback.html" in links
+        assert all(link.count("/") == 2 for link in links)
 
 
 def test_an_empty_class_has_a_page_too(browser: Browser, exercise: Exercise, tmp_path: Path) -> None:

@@ -9,9 +9,11 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 import plain_grades as plain
+from rich.console import Console
 
 from grader.classroom import Adjustment, Entry, Student
 from grader.gradebook import write_gradebook
+from grader.marking.summary import tell_end
 
 LATE = Adjustment("late", -1.0, "handed in 1 h 0 min late")
 EXTRA = Adjustment("override", 3.0, "found a mistake")
@@ -95,7 +97,7 @@ def test_a_fault_of_ours_is_no_zero_anywhere(tmp_path: Path) -> None:
     assert rows(tmp_path, "nbgrader.csv", entries)[0]["score"] == ""
     assert rows(tmp_path, "canvas.csv", entries)[1][plain.exercise().title] == ""
     assert rows(tmp_path, "moodle.csv", entries)[0]["Grade"] == ""
-    assert '"score"' not in (tmp_path / "ada" / "results.json").read_text()
+    assert '"score"' not in (tmp_path / "students" / "ada" / "results.json").read_text()
 
 
 def test_no_name_becomes_a_formula_and_no_line_a_row(tmp_path: Path) -> None:
@@ -125,3 +127,18 @@ def test_junit_has_a_suite_a_student_and_a_case_a_check(tmp_path: Path) -> None:
     assert crashed[0].get("name") == "outcome"
     assert crashed.find("testcase/failure").get("type") == "crashed"  # type: ignore[union-attr]
     assert (fault.get("errors"), fault.get("failures")) == ("1", "0")
+
+
+def test_a_student_whom_moodle_does_not_know_has_no_identifier_and_that_is_said(tmp_path: Path) -> None:
+    known = plain.entry(plain.HALF, Student("jörg", "Jörg Müller", "", MOODLE))
+    unknown = plain.entry(plain.HALF, Student("ada", "Ada Lovelace"))
+    found = {row["Full name"]: row["Identifier"] for row in rows(tmp_path, "moodle.csv", [known, unknown])}
+    assert found == {"Jörg Müller": "Participant 77", "Ada Lovelace": ""}
+    for entries, told in (([known], ""), ([known, unknown], "not 1 of the 2 students"), ([unknown], "no student")):
+        said = io.StringIO()
+        tell_end(Console(file=said, width=500), entries, [], [])
+        assert (
+            (f"moodle.csv: Moodle will find {told}" in said.getvalue())
+            if told
+            else ("moodle.csv" not in said.getvalue())
+        )

@@ -95,3 +95,25 @@ def test_what_is_not_there_is_a_matter_of_usage(given: str, exercise: Exercise) 
     with pytest.raises(NoSubmission) as caught:
         read(given, exercise)
     assert given in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ("import rclpy\n".encode("utf-16"), "Your file is saved as UTF-16, which Python can't read."),
+        (b"import rclpy\nx = 1\0\n", "Line 2 of your file holds a NUL byte, so it is not a text file."),
+        (b"x = " + b"-" * 200_000 + b"1\n", "A line of your file nests 200,000 operators or brackets."),
+        (b"x = " + b"+".join([b"1"] * 100_000) + b"\n", "A line of your file nests 99,999 operators or brackets."),
+    ],
+    ids=["UTF-16", "NUL", "signs", "sum"],
+)
+def test_what_python_can_not_read_is_named(tmp_path: Path, exercise: Exercise, content: bytes, told: str) -> None:
+    (tmp_path / "node.py").write_bytes(content)
+    submission = read(str(tmp_path / "node.py"), exercise)
+    assert submission.program is None
+    assert submission.problem.startswith(told)
+
+
+def test_a_long_line_of_data_is_read(tmp_path: Path, exercise: Exercise) -> None:
+    (tmp_path / "node.py").write_text(f"x = [{'[-1, 1], ' * 20_000}]\ny = '{'-' * 20_000}'\n")
+    assert read(str(tmp_path / "node.py"), exercise).program

@@ -4,18 +4,23 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import stat
 import subprocess
 import sys
 import zipfile
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 
 import plain_grades as plain
 import pytest
-from small_class import EXERCISE, TEMPLATE
+from click.testing import CliRunner
+from small_class import EXERCISE, ROOT, TEMPLATE
 
 from grader.classroom import Adjustment
+from grader.classroom50.command import classroom50
+from grader.classroom50.result import result, summary
 from grader.exercise import load
 from grader.gradescope.bundle import bundle
 from grader.gradescope.results import results
@@ -119,3 +124,112 @@ def test_an_autograder_that_is_broken_gives_no_score(autograder: Path) -> None:
         checks.write_text(text, encoding="utf-8")
     assert "score" not in told
     assert "not your fault" in str(told["output"])
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder in which Spinbook is installed from a wheel, far from its checkout."""
+    folder = tmp_path_factory.mktemp("installed")
+    name, content = as_wheel(folder)
+    (folder / name).write_bytes(content)
+    install(folder / name, folder / "site")
+    return folder
+
+
+def install(wheel: Path, into: Path) -> None:
+    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target"]
+    subprocess.run([*pip, str(into), str(wheel)], check=True, timeout=280)
+
+
+def as_wheel(folder: Path) -> tuple[str, bytes]:
+    """Spinbook's wheel, as setuptools builds it."""
+    shutil.copytree(ROOT, folder / "source", ignore=shutil.ignore_patterns(*NOT_IN_A_WHEEL))
+    build = "import sys; from setuptools.build_meta import build_wheel; build_wheel(sys.argv[1])"
+    command = [sys.executable, "-c", build, str(folder / "out")]
+    subprocess.run(command, cwd=folder / "source", check=True, capture_output=True, timeout=280)
+    [wheel] = (folder / "out").iterdir()
+    return wheel.name, wheel.read_bytes()
+
+
+#: What a checkout has besides, some of it large.
+NOT_IN_A_WHEEL = (".*", "build", "tests", "docs", "chapters", "benchmarks", "__pycache__", "humanoid_ws", "*.egg-info")
+
+
+def test_an_installed_wheel_makes_the_autograder_with_itself_and_its_versions_in_it(
+    installed: Path, tmp_path: Path
+) -> None:
+    command = [sys.executable, "-m", "spinbook", "gradescope", str(TEMPLATE / "exercises" / EXERCISE), "--out", "a.zip"]
+    environment = {**os.environ, "PYTHONPATH": str(installed / "site")}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=280)
+    assert done.returncode == 0, done.stderr
+    with zipfile.ZipFile(tmp_path / "a.zip") as archive:
+        names = archive.namelist()
+        [wheel] = [name for name in names if name.endswith(".whl")]
+        assert wheel == "course/spinbook-0.1.0-py3-none-any.whl"
+        with zipfile.ZipFile(BytesIO(archive.read(wheel))) as inner:
+            packed = set(inner.namelist())
+            assert inner.testzip() is None
+        pins = archive.read("course/pins.txt").decode().splitlines()
+    assert {"grader/command.py", "rmw_lockstep/CMakeLists.txt", "interface_compiler/activation.py"} <= packed
+    assert "spinbook/new/template/course.toml" in packed
+    assert f"course/solutions/{EXERCISE}/solution.py" in names
+    assert any(pin.startswith("numpy==") for pin in pins)
+    (tmp_path / wheel).parent.mkdir()
+    with zipfile.ZipFile(tmp_path / "a.zip") as archive:
+        archive.extract(wheel, tmp_path)
+    install(tmp_path / wheel, tmp_path / "again")
+    assert (tmp_path / "again" / "grader" / "gradescope" / "setup.sh").exists()
+
+
+#: The fields that Classroom 50's collector asks for, besides those that its runner adds.
+RESULT_FIELDS = {
+    *("schema", "classroom", "assignment", "submission", "commit", "release", "review", "datetime"),
+    *("score", "max-score", "tests"),
+}
+RUNNER = {
+    "CLASSROOM": "ros",
+    "ASSIGNMENT": "speed-limit",
+    "SUBMISSION_TAG": "submit/2026-11-20T23-41-07Z-a1b2c3d",
+    "COMMIT_URL": "https://github.com/o/r/commit/a1b2c3d",
+    "RELEASE_URL": "https://github.com/o/r/releases/tag/submit%2F2026-11-20T23-41-07Z-a1b2c3d",
+    "REVIEW_URL": "https://github.com/o/r/compare/0...a1b2c3d",
+}
+
+
+def test_a_grade_is_a_result_of_classroom_50() -> None:
+    made = result(plain.HALF, RUNNER)
+    assert set(made) == RESULT_FIELDS
+    assert (made["schema"], made["classroom"], made["assignment"]) == ("classroom50/result/v1", "ros", "speed-limit")
+    assert (made["score"], made["max-score"]) == (6, 10)
+    assert [(test["test-name"], test["passed"], test["score"], test["max-score"]) for test in made["tests"]] == [
+        ("It answers each message.", True, 6, 6),
+        ("It survives a long gap.", False, 0, 4),
+    ]
+    for secret in ("test_secret_gap", "31.40", "expected 2.5"):
+        assert secret not in json.dumps(made)
+        assert secret not in summary(plain.HALF, "Speed")
+    halves = plain.grade(replace(plain.PUBLIC, points=2.5))
+    assert (result(halves, RUNNER)["score"], result(halves, RUNNER)["max-score"]) == (250, 250)
+    job = {"GITHUB_SERVER_URL": "https://github.com", "GITHUB_REPOSITORY": "o/r", "GITHUB_SHA": "abc"}
+    assert result(plain.HALF, job)["review"] == "https://github.com/o/r/commit/abc"
+
+
+def test_classroom_50s_runner_gets_a_result_and_after_a_fault_of_ours_none(tmp_path: Path) -> None:
+    done = CliRunner().invoke(classroom50, [str(TEMPLATE / "exercises" / EXERCISE), "--out", str(tmp_path / "grader")])
+    assert done.exit_code == 0, done.output
+    (tmp_path / "grader" / "venv").symlink_to(sys.prefix)
+    repository = tmp_path / "repository"
+    repository.mkdir()
+    solution = TEMPLATE / "solutions" / EXERCISE / "solution.py"
+    shutil.copy(solution, repository / "speed_limit.py")
+    command = [sys.executable, str(tmp_path / "grader" / "autograder.py")]
+    environment = {**os.environ, **RUNNER, "GITHUB_STEP_SUMMARY": str(tmp_path / "summary.md")}
+    subprocess.run(command, cwd=repository, env=environment, check=True, timeout=280)
+    made = json.loads((repository / "result.json").read_text(encoding="utf-8"))
+    assert (made["score"], made["max-score"]) == (20, 20)
+    assert "20 of 20 points" in (repository / "release-body.md").read_text(encoding="utf-8")
+    assert "20 of 20 points" in (tmp_path / "summary.md").read_text(encoding="utf-8")
+    (repository / "result.json").unlink()
+    (tmp_path / "grader" / "course" / "exercises" / EXERCISE / "exercise.toml").write_text("points = ")
+    assert subprocess.run(command, cwd=repository, env=environment, timeout=280).returncode == 1
+    assert not (repository / "result.json").exists()

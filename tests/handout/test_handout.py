@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import ast
 import json
+import re
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
+from course_folder import CourseFolder
 
 from grader.exercise import load
 from handout.conftest import CHAPTER, NOTE, ROOT, HandedOut, append, copy_course
@@ -156,7 +159,13 @@ def test_a_chapter_or_a_task_that_gives_something_away_is_refused(tmp_path: Path
 
     assert done.returncode == 1
     assert f"{chapter.stem}.ipynb: error: a part of the solution of joint_velocity would be in it" in done.stderr
-    assert "task.md: error: the hidden check test_lost_messages of joint_velocity would be in it" in done.stderr
+    assert re.search(
+        r"task\.md:\d+: error: the hidden check test_lost_messages of joint_velocity would be", done.stderr
+    )
+    assert re.search(
+        r"\(chapters/03-nodes-and-topics\.md:\d+, the same as solutions/joint_velocity/solution\.py", done.stderr
+    )
+    assert "the same as exercises/joint_velocity/hidden_checks.py:" in done.stderr
     assert "Take it out of the chapter" in done.stderr
     assert "Traceback" not in done.stderr
     assert not (course.root / "build" / "handout").exists()
@@ -268,3 +277,27 @@ def test_what_an_editor_put_into_a_built_notebook_does_not_get_out(tmp_path: Pat
 )
 def test_comments_are_taken_out_of_prose_and_left_in_code(markdown: str, shown: str) -> None:
     assert without_comments(markdown) == shown
+
+
+def test_a_student_makes_the_same_package_from_the_notebooks_as_the_course_does(
+    real: HandedOut, tmp_path: Path
+) -> None:
+    student = CourseFolder(shutil.copytree(real.folder, tmp_path / "handout"))
+    done = student.spinbook("package")
+    assert done.returncode == 0, done.stdout + done.stderr
+    author = copy_course(tmp_path / "course")
+    assert author.spinbook("package").returncode == 0
+    theirs, ours = (
+        {file.relative_to(root).as_posix(): file.read_bytes() for file in (root / "humanoid_ws").rglob("*.py")}
+        for root in (student.root, author.root)
+    )
+    package = "humanoid_ws/src/humanoid_control"
+    assert {name for name in ours if name not in theirs} == set()
+    assert [name for name in ours if theirs[name] != ours[name]] == [f"{package}/setup.py"]
+    # What the chapters teach, and the student's own exercises besides.
+    assert f"{package}/humanoid_control/joint_velocity.py" in theirs
+    assert b"'joint_velocity = humanoid_control.joint_velocity:main'" in theirs[f"{package}/setup.py"]
+    (tmp_path / "empty").mkdir()
+    refused = CourseFolder(tmp_path / "empty").spinbook("package")
+    assert refused.returncode == 1
+    assert "no notebook of a course here" in refused.stderr

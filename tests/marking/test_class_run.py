@@ -7,6 +7,7 @@ import fcntl
 import json
 import re
 import shutil
+import zipfile
 from pathlib import Path
 
 import jsonschema
@@ -48,14 +49,14 @@ def test_all_files_lie_where_they_are_looked_for(graded: tuple[SmallClass, str])
         *(".lock", "index.html", "grades.csv", "nbgrader.csv", "canvas.csv", "moodle.csv", "junit.xml"),
     }
     for student in POINTS:
-        there = {file.name for file in (results / student).iterdir()}
-        assert there - {"plot.svg"} == {"feedback.html", "grade.json", "results.json"}
+        there = {file.name for file in (results / "students" / student).iterdir()}
+        assert there - {"plot.svg", "recordings.json.gz"} == {"feedback.html", "grade.json", "results.json"}
 
 
 def test_students_stand_under_the_mistakes_that_they_make(graded: tuple[SmallClass, str]) -> None:
     page = (graded[0].folder / "results" / "index.html").read_text(encoding="utf-8")
     groups = re.findall(r"<summary><b>(\d+)</b> students?: (.*?)</summary>(.*?)</details>", page, re.DOTALL)
-    found = {what: re.findall(r'href="(\w+)/feedback.html"', names) for _, what, names in groups}
+    found = {what: re.findall(r'href="students/(\w+)/feedback.html"', names) for _, what, names in groups}
     assert found == {
         "Limits the speed forwards, and not backwards.": ["carl", "emil"],
         "Never asks whether the speed is a number.": ["dora", "emil"],
@@ -80,7 +81,7 @@ def test_what_changed_is_graded_again_and_the_difference_is_told(done: SmallClas
 
 
 def test_regrade_grades_one_student_again_though_nothing_changed(done: SmallClass) -> None:
-    kept = done.folder / "results" / "dora" / "grade.json"
+    kept = done.folder / "results" / "students" / "dora" / "grade.json"
     entry = json.loads(kept.read_text(encoding="utf-8"))
     for verdict in entry["grade"]["verdicts"]:
         # As an older, mistaken version might have judged.
@@ -153,7 +154,7 @@ def test_late_work_loses_and_a_changed_due_date_needs_no_grading(done: SmallClas
     reasons = [adjustment["reason"] for adjustment in done.entry("carl")["adjustments"]]
     assert reasons[0].startswith("handed in 23 h 7 min late, by the file's date: 10 % of 16 points")
     assert reasons[1] == "found a mistake in the task"
-    assert "was ill" in (done.folder / "results" / "ana" / "feedback.html").read_text(encoding="utf-8")
+    assert "was ill" in (done.folder / "results" / "students" / "ana" / "feedback.html").read_text(encoding="utf-8")
 
 
 def test_a_mistake_in_the_overrides_is_told_with_its_line(done: SmallClass) -> None:
@@ -171,3 +172,65 @@ def test_two_gradings_never_write_into_one_folder(done: SmallClass) -> None:
         code, printed = done.grade()
     assert code == 2
     assert "another grading is at work in this folder" in printed
+
+
+#: File names that are also names of files in the results, that mean something to a spreadsheet, a page, a terminal or a
+#: shell, or that no text can hold.
+HOSTILE_NAMES = (
+    *("index.html", "grades.csv", "nbgrader.csv", "canvas.csv", "moodle.csv", "junit.xml", "students", "plot.svg"),
+    *("=HYPERLINK(1)", "<script>alert(1)<_script>", "[bold]red[_bold]", "\x1b[2J", "a\nb", "\udcff", "-rf", "--out"),
+    *("CON", "$(reboot)", "%s%n", "\u202egnp", "x" * 240, "\u00e9" * 100, "{{ 7 * 7 }}"),
+)
+
+
+def test_no_name_of_a_student_and_no_fault_in_one_stops_a_class_of_sixty(small_class: SmallClass) -> None:
+    for file in small_class.submissions.iterdir():
+        file.unlink()
+    names = [*HOSTILE_NAMES, *(f"student{number:02}" for number in range(60 - len(HOSTILE_NAMES)))]
+    for name in names:
+        small_class.hand_in(name, "")
+    results = small_class.folder / "results"
+    (results / "students").mkdir(parents=True)
+    (results / "students" / "student00").write_text("no folder can be made here")
+    code, printed = small_class.grade()
+    assert code == 3, printed
+    assert "59 grades: median 0 of" in printed
+    assert "not graded, a fault of ours or the machine's: student00" in printed
+    kept = {file.parent.name for file in results.glob("students/*/grade.json")}
+    assert len(kept) == 59
+    assert {"index.html", "grades.csv", "junit.xml", "students"} < kept
+    with (results / "grades.csv").open(encoding="utf-8-sig", newline="") as file:
+        assert len(list(csv.DictReader(file))) == 59
+    page = (results / "index.html").read_text(encoding="utf-8")
+    assert 'href="students/index.html/feedback.html"' in page
+    (results / "students" / "student00").unlink()
+    code, printed = small_class.grade()
+    assert code == 0, printed
+    assert "59 unchanged since they were graded." in printed
+
+
+def test_changed_checks_judge_what_was_recorded_and_replace_nothing_unasked(done: SmallClass) -> None:
+    checks = done.exercise / "hidden_checks.py"
+    text = checks.read_text(encoding="utf-8")
+    weaker = text.replace('    backwards.must_match("data")', "    assert backwards.received")
+    assert weaker != text
+    checks.write_text(weaker, encoding="utf-8")
+    done.hand_in("bert", "changed = True\n")
+    code, printed = done.grade("--rejudge")
+    assert code == 0, printed
+    assert "carl: 16 -> 20 points; up: test_too_fast_backwards (+4)" in printed
+    assert "emil: 14 -> 18 points; up: test_too_fast_backwards (+4)" in printed
+    assert "no recordings that fit, so grade them without --rejudge: bert" in printed
+    assert "Nothing was replaced." in printed
+    assert done.finals() == POINTS
+    code, printed = done.grade("--rejudge", "--yes", "--publish")
+    assert code == 0, printed
+    assert done.finals() == {**POINTS, "carl": 20, "emil": 18}
+    zips = done.folder / "results" / "to-students"
+    assert {file.stem for file in zips.iterdir()} == set(POINTS)
+    with zipfile.ZipFile(zips / "carl.zip") as archive:
+        assert archive.namelist() == ["speed_limit/feedback.html"]
+        assert b"20" in archive.read("speed_limit/feedback.html")
+    done.hand_in("bert", (done.submissions / "ana.py").read_text(encoding="utf-8"))
+    code, printed = done.grade()
+    assert "5 unchanged since they were graded." in printed, "the new grades are as good as others"

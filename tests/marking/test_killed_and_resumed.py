@@ -68,7 +68,7 @@ def test_killed_at_ten_random_moments(
         assert not leftovers, f"half a file in round {round_}"
         if len(small_class.finals()) == len(POINTS):
             for student in chance.sample(sorted(POINTS), 4):
-                (small_class.folder / "results" / student / "grade.json").unlink()
+                (small_class.folder / "results" / "students" / student / "grade.json").unlink()
     code, printed = small_class.grade()
     assert code == 0, printed
     assert without_timings(small_class.folder / "results") == undisturbed

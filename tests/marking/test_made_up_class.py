@@ -65,9 +65,9 @@ WRONG = {**RIGHT, "name": "test_b", "status": "failed", "points": 4, "finding": 
 def told_of(tmp_path: Path, expected: students.Expected, *verdicts: dict[str, Any], **fields: Any) -> str:
     score = sum(verdict["points"] for verdict in verdicts if verdict["status"] == "passed")
     grade = {"outcome": "graded", "message": "", "score": score, "points": 10, "log": "", "verdicts": verdicts}
-    (tmp_path / "Ada_Abe").mkdir(exist_ok=True)
+    (tmp_path / "students" / "Ada_Abe").mkdir(parents=True, exist_ok=True)
     entry = {"final": score, "grade": {**grade, **fields}}
-    (tmp_path / "Ada_Abe" / "grade.json").write_text(json.dumps(entry))
+    (tmp_path / "students" / "Ada_Abe" / "grade.json").write_text(json.dumps(entry))
     handed = students.Handed("Ada Abe", "right", "solution", expected, lambda folder: None)
     return grades.wrong_with(handed, tmp_path)
 

@@ -152,3 +152,12 @@ def test_either_a_course_or_an_exercise(words: list[str]) -> None:
     done = made(*words)
     assert done.exit_code == 2
     assert "one of the two" in done.output
+
+
+@pytest.mark.soak
+def test_an_audit_of_the_untouched_course_has_nothing_to_fix(pristine: Path, tmp_path: Path) -> None:
+    for number in range(2):
+        environment = {**os.environ, "PYTEST_ADDOPTS": "", "SPINBOOK_CACHE": str(tmp_path / f"cache{number}")}
+        command = [sys.executable, "-m", "spinbook", "audit"]
+        done = subprocess.run(command, cwd=pristine, env=environment, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr

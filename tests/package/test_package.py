@@ -45,12 +45,31 @@ def test_modules_are_the_chapters_code_to_the_byte(course: CourseFolder) -> None
     assert (folder / "resource/robot").read_bytes() == b""
 
 
+def test_no_line_of_what_is_written_is_too_long_for_ament_flake8(course: CourseFolder) -> None:
+    course.write(one=CHAPTER)
+    file = course.root / "course.toml"
+    description = "Robots that don't fall over, " * 9
+    file.write_text(file.read_text() + f'description = "{description}"\n')
+    course.spinbook("package")
+
+    folder = course.root / "robot_ws/src/robot"
+    written = [folder / "setup.py", *sorted((folder / "test").glob("*.py"))]
+    assert [file.name for file in written[1:]] == ["test_copyright.py", "test_flake8.py", "test_pep257.py"]
+    assert max(len(line) for file in written for line in file.read_text().splitlines()) <= 99
+    said = subprocess.run(
+        [sys.executable, "setup.py", "--description"], cwd=folder, capture_output=True, text=True, check=True
+    )
+    assert said.stdout.strip() == description.strip()
+
+
 def test_package_xml_names_what_the_modules_import(course: CourseFolder) -> None:
     course.write(one=CHAPTER).spinbook("package")
 
     root = ElementTree.parse(course.root / "robot_ws/src/robot/package.xml").getroot()
     assert root.findtext("name") == "robot"
     assert [item.text for item in root.findall("exec_depend")] == ["rclpy", "std_msgs"]
+    tests = [item.text for item in root.findall("test_depend")]
+    assert tests == ["ament_copyright", "ament_flake8", "ament_pep257", "python3-pytest"]
     assert root.findtext("export/build_type") == "ament_python"
 
 
@@ -94,6 +113,17 @@ def test_colcon_builds_it_and_ros2_run_runs_it_and_ctrl_c_ends_it(course: Course
         text=True,
     )
     assert "1 package finished" in built.stdout, built.stderr
+    # With the linters' tests skipped where ROS 2 is not installed, and not without any test, which is a failure.
+    tested = subprocess.run(
+        [sys.executable, "-m", "colcon", "test", "--return-code-on-test-failure"],
+        cwd=course.root / "robot_ws",
+        env={**os.environ, "AMENT_PREFIX_PATH": sys.prefix, "PYTEST_ADDOPTS": ""},
+        capture_output=True,
+        text=True,
+    )
+    assert tested.returncode == 0, tested.stdout + tested.stderr
+    report = ElementTree.parse(course.root / "robot_ws/build/robot/pytest.xml").getroot()
+    assert report.find("testsuite").attrib["tests"] == "3"  # type: ignore[union-attr]
 
     node = subprocess.Popen(
         [sys.executable, "-m", "spinbook", "ros2", "run", "robot", "hello"],

@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 
 import click
@@ -49,6 +50,38 @@ def test_what_is_not_here_is_refused_with_what_is(terminal: Terminal) -> None:
     noun = terminal.ros2("launch", "x")
     assert noun.code == 2
     assert "there is no 'ros2 launch' here" in noun.err
+
+
+def test_a_noun_without_a_verb_shows_its_help_and_is_no_error(terminal: Terminal) -> None:
+    answer = terminal.ros2("topic")
+    assert (answer.code, answer.err) == (0, "")
+    assert "Print the messages of a topic." in answer.out
+
+
+def test_a_package_is_created_and_its_xml_can_be_read(
+    terminal: Terminal, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    words = ("--build-type", "ament_python", "--node-name", "talker", "my_robot", "--dependencies", "rclpy", "std_msgs")
+    made = terminal.ros2("pkg", "create", *words)
+    assert made.code == 0, made.err
+    assert "going to create a new package\npackage name: my_robot\n" in made.out
+    package = (tmp_path / "my_robot" / "package.xml").read_text()
+    assert "  <depend>rclpy</depend>\n  <depend>std_msgs</depend>\n" in package
+    assert "'talker = my_robot.talker:main'" in (tmp_path / "my_robot" / "setup.py").read_text()
+    run = subprocess.run([sys.executable, "my_robot/my_robot/talker.py"], capture_output=True, text=True, check=True)
+    assert run.stdout == "Hi from my_robot.\n"
+    assert "already exists" in terminal.ros2("pkg", "create", *words).err
+    cpp = terminal.ros2("pkg", "create", "other")
+    assert (cpp.code, "--build-type ament_python other" in cpp.err) == (1, True)
+    assert terminal.ros2("pkg", "xml", "std_msgs", "-t", "name").out == "std_msgs\n"
+    assert "<name>std_msgs</name>" in terminal.ros2("pkg", "xml", "std_msgs").out
+
+
+def test_the_doctor_says_whether_ros_works(terminal: Terminal) -> None:
+    answer = terminal.ros2("doctor", "--report")
+    assert answer.code == 0, answer.err
+    assert "All 8 checks passed" in answer.out
 
 
 def test_help_loads_neither_rclpy_nor_numpy() -> None:
@@ -111,6 +144,22 @@ def test_an_installed_ros2_answers_instead(terminal: Terminal) -> None:
     assert terminal.ros2("topic", "list", "-t", "--any").out == "real topic list -t --any\nguard=\n"
     assert terminal.ros2("bag", "record", "-a").out.startswith("real bag record -a\n")
     assert terminal.ros2("--help").out.startswith("real --help\n")
+
+
+def in_a_shell(line: str) -> str:
+    """What a shell prints for a line, in which the environment's own programs come first."""
+    path = f"{sysconfig.get_path('scripts')}{os.pathsep}{os.environ['PATH']}"
+    return subprocess.run(["sh", "-c", line], env={**os.environ, "PATH": path}, stdout=-1, text=True).stdout
+
+
+def test_ros2_is_a_command_of_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SPINBOOK_ROS2")
+    assert in_a_shell("ros2 daemon status").startswith("The daemon is not running")
+
+
+@pytest.mark.usefixtures("installed")
+def test_the_environments_ros2_hands_over_to_a_real_one() -> None:
+    assert in_a_shell("ros2 topic list") == "real topic list\nguard=\n"
 
 
 @pytest.mark.usefixtures("installed")

@@ -43,6 +43,12 @@ def test_an_unknown_node_is_refused(standing: Robot, terminal: Terminal) -> None
     answer = terminal.ros2("node", "info", "/jointpublisher")
     assert answer.code == 1
     assert answer.err.startswith("Unable to find node '/jointpublisher'\nNodes seen: /joint_publisher.")
+    # As the real command, which knows nodes by their full names.
+    bare = terminal.ros2("node", "info", "joint_publisher")
+    assert bare.code == 1
+    assert bare.err.startswith(
+        "Unable to find node 'joint_publisher'\nIts name begins with a slash: ros2 node info /joint_publisher\n"
+    )
 
 
 def test_service_list_has_types(standing: Robot, terminal: Terminal) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import struct
 from base64 import b64decode
 from collections.abc import Callable
@@ -159,3 +160,21 @@ def test_the_turtle_runs_and_is_shown(arm: Kernel) -> None:
 
     assert min(size_of(picture)) >= 300
     assert kernel.run("%stop turtlesim_node").text == "turtlesim_node stopped.\n"
+
+
+def test_ros2_is_a_command_of_the_shell_too_though_the_environment_is_not_activated(
+    new_kernel: Callable[..., Kernel],
+) -> None:
+    kernel = new_kernel(PATH="/usr/bin:/bin", SPINBOOK_ROS2="own")
+    assert "The daemon is not running" in kernel.run("!ros2 daemon status").text
+    assert "The daemon is not running" in kernel.run("%%bash\nros2 daemon status").text
+
+
+def test_a_second_instance_under_another_name_runs_beside_the_first(new_kernel: Callable[..., Kernel]) -> None:
+    kernel = new_kernel()
+    for words in ("", " --ros-args -r __node:=second"):
+        assert not kernel.run(f"%ros2 --seconds 60 --until Spawning run turtlesim turtlesim_node{words}").error
+    listed = kernel.run("%nodes").text
+    assert re.search(r"^turtlesim_node +running", listed, re.MULTILINE)
+    assert re.search(r"^second +running", listed, re.MULTILINE)
+    kernel.run("%stop --all")

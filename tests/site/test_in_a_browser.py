@@ -46,6 +46,44 @@ def test_the_search_finds_publisher(browser: Browser, built: SmallCourse, addres
         assert shown.faults == []
 
 
+@pytest.mark.parametrize("from_folder", [True, False])
+def test_the_search_answers_while_one_types_and_forgives(
+    browser: Browser, built: SmallCourse, address: str, from_folder: bool
+) -> None:
+    start: str | Path = built.site / "chapters" / "01-talk.html" if from_folder else f"{address}/chapters/01-talk.html"
+    with opened(browser, start) as shown:
+        field, results = shown.page.get_by_role("searchbox"), shown.page.locator("#search-now a")
+        shown.page.keyboard.press("/")
+        expect(field).to_be_focused()
+        for typed in ("publisher", "publishers", "publihser", "pubisher"):
+            field.fill(typed)
+            expect(results.first).to_be_visible(timeout=PATIENCE_MS)
+            expect(shown.page.locator("#search-now")).to_contain_text("Publisher")
+        assert shown.violations() == []
+        shown.page.keyboard.press("ArrowDown")
+        expect(results.first).to_be_focused()
+        shown.page.keyboard.press("Escape")
+        expect(results.first).to_be_hidden()
+        field.fill("xylophone")
+        expect(shown.page.locator("#search-now")).to_contain_text("No results for “xylophone”.")
+        field.fill("publihsers")
+        field.press("Enter")
+        expect(shown.page.locator("#search-count")).to_contain_text("for “publisher”", timeout=PATIENCE_MS)
+        assert shown.faults == []
+
+
+def test_a_chapter_tells_how_far_one_has_read_and_leads_back(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/01-talk.html", height=300) as shown:
+        bar, back = shown.page.locator("progress.reading"), shown.page.get_by_role("link", name="Back to top")
+        expect(back).to_be_hidden()
+        assert bar.evaluate("bar => bar.value") == 0
+        shown.page.evaluate("scrollTo(0, document.documentElement.scrollHeight)")
+        expect(back).to_be_visible()
+        shown.page.wait_for_function("document.querySelector('progress.reading').value > 990")
+        back.click()
+        expect(back).to_be_hidden()
+
+
 def test_the_switch_changes_colours_and_they_stay(browser: Browser, address: str) -> None:
     with opened(browser, f"{address}/index.html") as shown:
         light = shown.page.evaluate("getComputedStyle(document.body).backgroundColor")
@@ -106,6 +144,11 @@ def test_what_moves_stands_still_on_paper_and_for_those_who_prefer_no_motion(
         moving, still = shown.page.locator("main img.moving"), shown.page.locator("main img.still")
         expect(moving).to_be_visible()
         expect(still).to_be_hidden()
+        shown.page.get_by_role("button", name="Pause this picture").click()
+        expect(moving).to_be_hidden()
+        expect(still).to_be_visible()
+        shown.page.get_by_role("button", name="Play this picture").click()
+        expect(moving).to_be_visible()
         shown.page.emulate_media(reduced_motion="reduce")
         expect(moving).to_be_hidden()
         expect(still).to_be_visible()

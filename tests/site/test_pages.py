@@ -5,12 +5,18 @@ from __future__ import annotations
 import ast
 import json
 import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from urllib.parse import unquote, urldefrag
 
 import nbformat
 import pytest
+from latex2mathml.converter import convert
 from small_course import ROOT, SmallCourse
+
+from spinbook.site.extension.maths import spaced
 
 TALK = "chapters/01-talk.html"
 EXERCISE = "exercises/joint_velocity.html"
@@ -22,7 +28,7 @@ def text_of(html: str) -> str:
 
 def test_every_page_is_there(built: SmallCourse) -> None:
     assert built.pages == [
-        "about.html", TALK, "chapters/02-more.html", EXERCISE, "glossary.html", "index.html", "search.html",
+        "404.html", "about.html", TALK, "chapters/02-more.html", EXERCISE, "glossary.html", "index.html", "search.html",
     ]  # fmt: skip
 
 
@@ -108,6 +114,27 @@ def test_notebooks_to_download_begin_by_installing_what_is_missing(built: SmallC
         assert "pip" in first.source
 
 
+def test_an_exercise_s_notebook_holds_all_that_it_takes_to_do_it_and_check_it(
+    built: SmallCourse, tmp_path: Path
+) -> None:
+    notebook = nbformat.read(built.site / "downloads" / "exercise-joint_velocity.ipynb", as_version=4)
+    kinds = [cell.metadata.get("spinbook", {}).get("kind", cell.cell_type) for cell in notebook.cells]
+    assert kinds == ["markdown", "install", "exercises", "setup", "exercise", "check"]
+    assert "/joint_velocities" in notebook.cells[0].source
+    assert notebook.cells[-1].source == "%check joint_velocity"
+    for name in ("01-talk", "exercise-joint_velocity"):
+        alone = nbformat.read(built.root / "build" / "launch" / f"{name}.ipynb", as_version=4)
+        brings = next(cell.source for cell in alone.cells if cell.id == "spinbook-exercises")
+        (tmp_path / name).mkdir()
+        # As in Colab: nothing but the notebook. Then the check that its last cell makes.
+        subprocess.run([sys.executable, "-c", brings], cwd=tmp_path / name, check=True, timeout=60)
+    (tmp_path / "node.py").write_text((ROOT / "solutions/joint_velocity/solution.py").read_text())
+    check = [sys.executable, "-m", "spinbook", "check", "joint_velocity", "../node.py"]
+    done = subprocess.run(check, cwd=tmp_path / "01-talk", capture_output=True, text=True, timeout=280)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "36 of 36 points" in done.stdout
+
+
 def test_the_branch_of_notebooks_has_a_container_for_each(built: SmallCourse) -> None:
     branch = built.root / "build" / "launch"
 
@@ -185,3 +212,31 @@ def assert_holds_none(file: Path, secrets: set[str]) -> None:
     for version in (text, re.sub(r"</?span[^>]*>", "", text), text.replace('\\"', '"')):
         found = [line for line in secrets if line in version]
         assert not found, f"{file}: {found[:3]}"
+
+
+def test_names_of_functions_stand_apart_in_formulas() -> None:
+    thin = '<mspace width="0.167em" />'
+    assert f"<mn>0.5</mn>{thin}<mi>sin</mi>{thin}<mi>t</mi>" in spaced(convert(r"0.5 \sin t"))
+    assert f"</msup>{thin}<mi>t</mi>" in spaced(convert(r"\sin^2 t"))
+    assert f"<mn>3</mn>{thin}<mi>cos</mi><mo" in spaced(convert(r"3\cos(t)"))
+
+
+def test_other_programs_learn_where_the_pages_are_and_what_they_are_about(built: SmallCourse) -> None:
+    site = "https://example.github.io/course/"
+    page = built.page(TALK)
+    assert f'<link rel="canonical" href="{site}chapters/01-talk.html">' in page
+    assert '<meta property="og:title" content="Talk">' in page
+    assert '<meta property="og:description" content="One node that talks.">' in page
+    assert f'<link rel="canonical" href="{site}">' in built.page("index.html")
+    locations = re.findall(r"<loc>(.*?)</loc>", (built.site / "sitemap.xml").read_text())
+    assert {f"{site}chapters/01-talk.html", f"{site}chapters/02-more.html", site} <= set(locations)
+    feed = ElementTree.parse(built.site / "feed.xml").getroot()
+    assert next(item.findtext("title") for item in feed.iter("item")) == "Talk"
+    assert f'href="{site}_static/site.css"' in (built.site / "404.html").read_text()
+
+
+def test_a_page_can_be_edited_and_a_cell_names_its_source(built: SmallCourse) -> None:
+    page = built.page(TALK)
+    assert 'href="https://github.com/example/course/edit/main/chapters/01-talk.md">Edit this page</a>' in page
+    assert re.search(r'aria-label="Source of talker\.py, line \d+">source</a>', page)
+    assert "About 1 minute to read" in page

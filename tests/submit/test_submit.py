@@ -17,6 +17,7 @@ from grader.exercise import load, starter
 from grader.submission import read
 from grader.submission.upload import Upload, unpack
 from spinbook.problem import SpinbookError
+from spinbook.submit.check_command import check
 from spinbook.submit.command import submit
 
 ROOT = Path(__file__).parents[2]
@@ -175,7 +176,7 @@ def test_a_self_check_that_can_not_run_keeps_nobody_from_handing_in(folder: Path
     ("words", "told"),
     [
         (["nowhere.py"], "there is no such file"),
-        (["pkg/executable"], "hand in a notebook"),
+        (["pkg/executable"], "give a notebook"),
     ],
 )
 def test_wrong_usage_is_told(folder: Path, words: list[str], told: str) -> None:
@@ -203,3 +204,15 @@ def test_an_empty_file_is_nothing_to_hand_in(folder: Path) -> None:
     done = submitted("joint_velocity.py")
     assert "empty" in str(done.exception)
     assert not Path(UPLOAD).exists()
+
+
+def test_the_public_checks_run_in_a_terminal_too(folder: Path) -> None:
+    Path("mine.py").write_text(SOLUTION.replace("/joint_velocities", "/velocities"))
+    done = CliRunner().invoke(check, ["joint_velocity", "mine.py"])
+    assert done.exit_code == 1, done.output
+    assert "Checking mine.py." in done.output
+    assert "of 36 points" in done.output
+    assert not Path(UPLOAD).exists()
+    assert CliRunner().invoke(check, ["joint_velocity", "none.py"]).exit_code == 2
+    with pytest.raises(SpinbookError, match="nothing here holds joint_velocity"):
+        CliRunner().invoke(check, ["joint_velocity"], catch_exceptions=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import stat
 import zipfile
 from pathlib import Path
@@ -209,3 +210,33 @@ def test_a_folder_that_is_no_course_is_told(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.chdir(tmp_path / "empty")
     assert "no folder of a course" in str(updated("../new").exception)
     assert json.loads(OLD["week3.ipynb"])["cells"]
+
+
+SETUP = cell("%load_ext spinbook\n%chapter week3 --package humanoid_control --workspace humanoid_ws", "spinbook-setup")
+
+
+def other_course() -> dict[str, bytes]:
+    setup = {**SETUP, "source": SETUP["source"].replace("humanoid_control", "cooking")}
+    return handout(TITLE, setup, LOUDER)
+
+
+@pytest.mark.parametrize(
+    ("files", "told"),
+    [
+        ({"week3.ipynb": notebook(TITLE, LOUDER), "submission.json": b"{}"}, "it is a file to hand in"),
+        ({"week3.ipynb": notebook(TITLE, LOUDER)}, "it is not a handout: there is no .spinbook/base in it."),
+        ({"notes.txt": b"x"}, "there is no notebook in it."),
+        (other_course(), "it is a handout of another course: its package is cooking, yours is humanoid_control."),
+    ],
+    ids=["a submission", "a zip with a notebook", "a zip", "another course"],
+)
+def test_what_is_not_a_handout_of_this_course_is_refused_and_nothing_is_changed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, files: dict[str, bytes], told: str
+) -> None:
+    folder = write(tmp_path / "mine", handout(TITLE, SETUP, TALKER, STARTER))
+    monkeypatch.chdir(folder)
+    before = everything(folder)
+    (tmp_path / "given.zip").write_bytes(zipped(files, ""))
+    with pytest.raises(SpinbookError, match=re.escape(told)):
+        CliRunner().invoke(update, ["../given.zip"], catch_exceptions=False)
+    assert everything(folder) == before

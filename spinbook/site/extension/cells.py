@@ -56,7 +56,7 @@ def _head(kind: str, about: dict[str, Any]) -> str:
     of = shown or f"this {_KINDS.get(kind, 'cell').lower()} block"
     source = (
         f'<a class="cell-source" href="{escape(about["source"])}" '
-        f'aria-label="Source of {escape(of)}, line {about["line"]}">line {about["line"]}</a>'
+        f'aria-label="Source of {escape(of)}, line {about["line"]}">source</a>'
         if about["source"]
         else ""
     )

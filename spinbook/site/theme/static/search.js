@@ -1,33 +1,65 @@
-// Searches the sections of the course for words, without a server.
+// Searches the sections of the course for words, without a server: on the search page, and below the field while one types.
 "use strict";
 
-const asked = new URLSearchParams(location.search).get("q") ?? "";
-const wanted = asked.toLowerCase().split(/\s+/).filter(Boolean);
-const count = document.getElementById("search-count");
-const list = document.getElementById("search-results");
 const MOST = 50;
+const MOST_NOW = 8;
+
+// Plurals and their singular are one word.
+const singular = (word) => (word.length > 3 ? word.replace(/(?<=[sxz]|[cs]h)es$|ies$|(?<![su])s$/, (end) => (end === "ies" ? "y" : "")) : word);
+const wordsOf = (text) => text.toLowerCase().match(/[\p{L}\p{N}_]+/gu) ?? [];
+const vocabulary = new Set(courseSections.flatMap(([, page, heading, text]) => wordsOf(`${page} ${heading} ${text}`)));
+
+// How many letters have to be changed, added, left out or swapped with their neighbour (optimal string alignment).
+function distance(a, b) {
+  let [former, row] = [[], Array.from({ length: b.length + 1 }, (_, at) => at)];
+  for (let i = 1; i <= a.length; i += 1) {
+    const next = [i];
+    for (let j = 1; j <= b.length; j += 1) {
+      next[j] = Math.min(row[j] + 1, next[j - 1] + 1, row[j - 1] + (a[i - 1] === b[j - 1] ? 0 : 1));
+      if (i > 1 && j > 1 && a[i - 1] === b[j - 2] && a[i - 2] === b[j - 1]) next[j] = Math.min(next[j], former[j - 2] + 1);
+    }
+    [former, row] = [row, next];
+  }
+  return row[b.length];
+}
+
+// The words of the course that a typed word may stand for: itself, or else the nearest, one letter in four being wrong.
+function meant(word) {
+  const plain = singular(word);
+  for (const known of vocabulary) if (known.includes(plain)) return [plain];
+  const allowed = Math.min(2, Math.floor(plain.length / 4));
+  const near = [...vocabulary]
+    .filter((known) => Math.abs(known.length - plain.length) <= allowed)
+    .map((known) => [distance(plain, singular(known)), singular(known)])
+    .filter(([changes]) => changes <= allowed)
+    .sort((a, b) => a[0] - b[0]);
+  return near.length ? [...new Set(near.filter(([changes]) => changes === near[0][0]).map(([, known]) => known))] : [plain];
+}
 
 // How well a section fits: every word must be in it; a heading weighs more than the text.
-function weight([, page, heading, text]) {
+function weight([, page, heading, text], wanted) {
+  const [inPage, inHeading, inText] = [page, heading, text].map((part) => part.toLowerCase());
   let total = 0;
-  for (const word of wanted) {
-    const inHeading = heading.toLowerCase().includes(word) ? 20 : 0;
-    const inPage = page.toLowerCase().includes(word) ? 5 : 0;
-    const inText = Math.min(text.toLowerCase().split(word).length - 1, 10);
-    if (inHeading + inPage + inText === 0) return 0;
-    total += inHeading + inPage + inText;
+  for (const alternatives of wanted) {
+    const points = alternatives.map(
+      (word) =>
+        (inHeading.includes(word) ? 20 : 0) + (inPage.includes(word) ? 5 : 0) + Math.min(inText.split(word).length - 1, 10),
+    );
+    const best = Math.max(...points);
+    if (best === 0) return 0;
+    total += best;
   }
   return total;
 }
 
 // A piece of the text around the first word that was found, with every found word marked.
-function excerpt(text) {
+function excerpt(text, words) {
   const lower = text.toLowerCase();
-  const first = Math.min(...wanted.map((word) => lower.indexOf(word)).filter((at) => at >= 0));
+  const first = Math.min(...words.map((word) => lower.indexOf(word)).filter((at) => at >= 0));
   const start = Number.isFinite(first) ? Math.max(0, text.lastIndexOf(" ", Math.max(0, first - 70)) + 1) : 0;
   const piece = `${start > 0 ? "… " : ""}${text.slice(start, start + 220)}${text.length > start + 220 ? " …" : ""}`;
   const paragraph = document.createElement("p");
-  const pattern = new RegExp(`(${wanted.map((word) => word.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).join("|")})`, "gi");
+  const pattern = new RegExp(`(${words.map((word) => word.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).join("|")})`, "gi");
   piece.split(pattern).forEach((part, index) => {
     const element = index % 2 ? document.createElement("mark") : document.createTextNode("");
     element.textContent = part;
@@ -36,15 +68,17 @@ function excerpt(text) {
   return paragraph;
 }
 
-if (wanted.length > 0) {
-  document.getElementById("search-field").value = asked;
+function search(asked) {
+  const wanted = asked.toLowerCase().split(/\s+/).filter(Boolean).map(meant);
   const found = courseSections
-    .map((section) => [weight(section), section])
-    .filter(([points]) => points > 0)
+    .map((section) => [weight(section, wanted), section])
+    .filter(([points]) => wanted.length > 0 && points > 0)
     .sort((a, b) => b[0] - a[0]);
-  const places = found.length === 1 ? "1 place" : `${found.length} places`;
-  count.textContent = found.length ? `“${asked}” is in ${places}.` : `“${asked}” is nowhere in the course.`;
-  for (const [, [address, page, heading, text]] of found.slice(0, MOST)) {
+  return { words: wanted.flat(), sections: found.map(([, section]) => section) };
+}
+
+function items({ words, sections }, most, withText) {
+  return sections.slice(0, most).map(([address, page, heading, text]) => {
     const item = document.createElement("li");
     const link = document.createElement("a");
     link.href = document.documentElement.dataset.root + address;
@@ -52,7 +86,42 @@ if (wanted.length > 0) {
     const where = document.createElement("span");
     where.className = "search-page";
     where.textContent = heading === page ? "" : page;
-    item.append(link, where, excerpt(text));
-    list.append(item);
+    item.append(link, where);
+    if (withText) item.append(excerpt(text, words));
+    return item;
+  });
+}
+
+// What was found, in words; a word that was taken for another one is named.
+function inWords(asked, { words, sections }) {
+  const typed = asked.toLowerCase().split(/\s+/).filter(Boolean).map(singular);
+  const others = words.filter((word) => !typed.includes(word));
+  const count = sections.length === 1 ? "1 result" : `${sections.length || "No"} results`;
+  return others.length ? `${count} for “${others.join(" ")}”. You typed “${asked}”.` : `${count} for “${asked}”.`;
+}
+
+const field = document.getElementById("search-field");
+const list = document.getElementById("search-results");
+const now = document.getElementById("search-now");
+
+function show() {
+  const asked = field.value.trim();
+  const found = search(asked);
+  if (list) {
+    list.replaceChildren(...items(found, MOST, true));
+    document.getElementById("search-count").textContent = asked ? inWords(asked, found) : "";
+    return;
+  }
+  now.hidden = asked.length < 2;
+  now.replaceChildren(...items(found, MOST_NOW, false));
+  document.getElementById("said").textContent = now.hidden ? "" : inWords(asked, found);
+  if (!now.hidden && found.sections.length === 0) {
+    const none = document.createElement("li");
+    none.textContent = inWords(asked, found);
+    now.append(none);
   }
 }
+
+field.addEventListener("input", show);
+if (list && !field.value) field.value = new URLSearchParams(location.search).get("q") ?? "";
+if (field.value) show();

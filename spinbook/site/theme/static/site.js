@@ -137,7 +137,77 @@ function printing() {
   });
 }
 
+// The search: its data come when somebody begins to search. "/" goes there from anywhere but a place to write in.
+function searching() {
+  const field = document.getElementById("search-field");
+  const now = document.getElementById("search-now");
+  const load = (name) =>
+    new Promise((done) => {
+      const script = document.createElement("script");
+      script.src = `${root.dataset.root}_static/${name}`;
+      script.addEventListener("load", done);
+      document.head.append(script);
+    });
+  const isThere = document.querySelector('script[src$="search.js"]') !== null;
+  if (!isThere) {
+    field.addEventListener("focus", () => load("search-data.js").then(() => load("search.js")), { once: true });
+  }
+  document.addEventListener("keydown", (event) => {
+    const writes = event.target.closest("input, textarea, select, [contenteditable]");
+    if (event.key === "/" && !writes && !event.ctrlKey && !event.metaKey && !event.altKey) {
+      event.preventDefault();
+      field.focus();
+    } else if (event.key === "Escape" && !now.hidden) {
+      now.hidden = true;
+      field.focus();
+    } else if (event.key === "ArrowDown" && event.target === field && !now.hidden) {
+      event.preventDefault();
+      now.querySelector("a")?.focus();
+    }
+  });
+  document.addEventListener("click", (event) => {
+    if (!event.target.closest(".search")) now.hidden = true;
+  });
+}
+
+// What moves can be stopped (WCAG 2.2.2): its still takes its place.
+function pausing() {
+  for (const picture of document.querySelectorAll("main img.moving")) {
+    const still = picture.parentElement.querySelector("img.still");
+    if (!still) continue;
+    const button = document.createElement("button");
+    button.type = "button";
+    button.className = "pause";
+    button.textContent = "Pause";
+    button.setAttribute("aria-label", "Pause this picture");
+    button.addEventListener("click", () => {
+      const paused = picture.parentElement.classList.toggle("paused");
+      button.textContent = paused ? "Play" : "Pause";
+      button.setAttribute("aria-label", paused ? "Play this picture" : "Pause this picture");
+    });
+    still.after(button);
+  }
+}
+
+// How far one has read, and the way back.
+function progress() {
+  const bar = document.querySelector("progress.reading");
+  const back = document.querySelector(".to-top");
+  if (!bar) return;
+  const show = () => {
+    const length = root.scrollHeight - innerHeight;
+    bar.value = length > 0 ? Math.round((1000 * scrollY) / length) : 1000;
+    back.hidden = scrollY < 1.5 * innerHeight;
+  };
+  addEventListener("scroll", show, { passive: true });
+  addEventListener("resize", show);
+  show();
+}
+
 colours();
+searching();
+pausing();
+progress();
 menu();
 copying();
 scrolling();

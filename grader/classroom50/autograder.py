@@ -1,0 +1,27 @@
+"""Grades the repository in the current folder with Spinbook. Classroom 50's runner starts this once per submission.
+
+It needs Python's own library alone: setup.sh installs everything else beside this file. Exits with 0 once result.json
+is written, whatever the score, and with 1 where nothing could be graded by a fault that is not the student's.
+"""
+
+import subprocess
+import sys
+from pathlib import Path
+
+EXERCISE, ISOLATION = "@EXERCISE@", "@ISOLATION@"
+HERE = Path(__file__).resolve().parent
+
+
+def main() -> int:
+    """Install what is missing, then grade."""
+    python = HERE / "venv" / "bin" / "python"
+    if not python.exists():
+        # What is installed is told on standard error: standard output is the runner's.
+        subprocess.run(["bash", str(HERE / "setup.sh")], check=True, stdout=sys.stderr)
+    exercise = HERE / "course" / "exercises" / EXERCISE
+    words = [str(python), "-m", "grader.classroom50.run", str(exercise), ".", *filter(None, [ISOLATION])]
+    return subprocess.run(words, check=False).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main())

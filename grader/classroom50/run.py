@@ -1,0 +1,56 @@
+"""Grades a repository: `python -m grader.classroom50.run EXERCISE_FOLDER REPOSITORY [ISOLATION]`.
+
+Writes result.json and release-body.md into REPOSITORY, as Classroom 50's runner expects, and the same text into the
+summary of a job of GitHub Actions. Exits with 1, without either, where the machine or the exercise is at fault.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from pathlib import Path
+
+from grader.classroom.writing import write
+from grader.classroom50.result import result, summary
+from grader.crew import Crew, HostFault
+from grader.exercise import Exercise, ExerciseError, load
+from grader.gradescope.kept import keep_beside
+from grader.gradescope.run import submission
+from grader.grading import Grade, Options, grading_of
+from grader.sandbox import Isolation, SandboxUnavailable
+
+
+def main(folder: Path, repository: Path, isolation: str = "") -> int:
+    """Grade what is in `repository`; return the exit code."""
+    keep_beside(folder)
+    try:
+        exercise = load(folder)
+        grade = _grade(exercise, repository, isolation)
+    except (ExerciseError, SandboxUnavailable, HostFault) as error:
+        return _fault(str(error))
+    if grade.outcome == "host-error":
+        return _fault(grade.message)
+    text = summary(grade, exercise.title)
+    write(repository / "result.json", json.dumps(result(grade, os.environ), indent=2, ensure_ascii=False) + "\n")
+    write(repository / "release-body.md", text)
+    if page := os.environ.get("GITHUB_STEP_SUMMARY"):
+        with Path(page).open("a", encoding="utf-8") as file:
+            file.write(text)
+    print(f"{grade.score:g} of {grade.points:g} points")
+    return 0
+
+
+def _grade(exercise: Exercise, repository: Path, isolation: str) -> Grade:
+    with Crew() as crew:
+        options = Options(Isolation(isolation) if isolation else None)
+        return grading_of(exercise, options, crew).grade(submission(repository, exercise))
+
+
+def _fault(told: str) -> int:
+    print(f"Not graded, and that is not the student's fault: {told}", file=sys.stderr)
+    return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1]), Path(sys.argv[2]), *sys.argv[3:4]))

@@ -1,0 +1,37 @@
+"""`ros2 bag` writes what topics carry, of a course's own types too, says what is in a bag, and plays it again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from ros2_terminal import Robot, Terminal
+
+
+def test_what_was_recorded_is_told_and_played_again(
+    robot: Robot, terminal: Terminal, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    publisher = robot("publisher")
+    recording = terminal.start("bag", "record", "-o", "swing", "/joint_commands")
+    assert recording.lines(2) == ["Recording... Press Ctrl-C to stop.", "Subscribed to topic '/joint_commands'"]
+    echo = terminal.ros2("topic", "echo", "--once", "/joint_commands")  # by then the recording has heard some, too
+    assert echo.code == 0
+    stopped = recording.stop()
+    assert "messages in swing" in stopped.out
+    publisher.kill()
+    publisher.communicate()
+
+    told = terminal.ros2("bag", "info", "swing")
+    assert told.code == 0, told.err
+    assert "Storage id:        mcap" in told.out
+    assert "Topic information: Topic: /joint_commands | Type: sensor_msgs/msg/JointState | Count: " in told.out
+    listener = terminal.start("topic", "echo", "/joint_commands", "sensor_msgs/msg/JointState")
+    played = terminal.ros2("bag", "play", "swing", "--rate", "100")
+    assert played.code == 0, played.err
+    assert listener.lines(1) == ["header:"]
+    listener.stop()
+
+    again = terminal.ros2("bag", "record", "-o", "swing", "-a")
+    assert (again.code, "already exists" in again.err) == (1, True)
+    assert "can't be read as a bag" in terminal.ros2("bag", "info", "nothing").err
