@@ -129,7 +129,7 @@ def _run(cell: Cell) -> dict[str, Any]:
     """What a page adds to code that is not whole by itself, what `ros2 run` calls a node, how long output is shown."""
     how = ["--main"] if cell.runs_main else ["--class", *cell.spin_classes] if cell.spin_classes else []
     names = [f"{package}/{executable}" for package, executable in cell.executables]
-    about = {"before": cell.before, "start": how, "executables": names}
+    about: dict[str, Any] = {"before": cell.before, "start": how, "executables": names}
     about |= {"seconds": cell.seconds, "until": cell.until, "raises": cell.raises}
     return {key: value for key, value in about.items() if value}
 

@@ -28,22 +28,30 @@ function registered(kind) {
 export function tokens(source) {
   const found = [];
   let before = "";
+  let module = false;
+  let isFrom = false;
   for (const match of source.matchAll(TOKEN)) {
     const [whole, text, note, number, decorator, word] = match;
     const at = match.index;
     if (text) found.push(...pieces(whole, at));
     else if (note) found.push(["note", at, at + whole.length]);
     else if (number) found.push(["number", at, at + whole.length]);
-    else if (decorator || ["def", "class", "import", "from"].includes(before)) found.push(["name", at, at + whole.length]);
+    else if (source[at - 1] === "." && found.at(-1)?.[2] === at - 1 && module) found.at(-1)[2] = at + whole.length;
+    else if (decorator || ["def", "class", "from"].includes(before) || (before === "import" && !isFrom)) {
+      found.push(["name", at, at + whole.length]);
+      module = before === "from" || before === "import";
+    }
     else if (WORDS.has(word) && !(SOFT.has(word) && !/^\s+[\w"'([{-].*:\s*(#.*)?$/m.test(line(source, at + whole.length)))) {
       found.push(["word", at, at + whole.length]);
     } else if (BUILTINS.has(word) && source[at - 1] !== ".") found.push(["name", at, at + whole.length]);
     else if (/^__\w+__$/.test(word)) found.push(["name", at, at + whole.length]);
     before = word ?? "";
+    if (word === "from" || word === "import") [isFrom, module] = [word === "from" || (isFrom && !newLine(source, at)), false];
   }
   return found;
 }
 
+const newLine = (source, at) => at === 0 || source[at - 1] === "\n";
 const line = (source, at) => source.slice(at, (source.indexOf("\n", at) + 1 || source.length + 1) - 1);
 
 // What an f-string computes is not text.

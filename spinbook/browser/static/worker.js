@@ -36,13 +36,29 @@ async function archive(py, name, part) {
   self.postMessage({ op: "progress", part });
 }
 
+// Where there is no memory for another program, Pyodide only warns and never comes back: a promise that fails then.
+const lacking = new Promise((resolve, reject) => {
+  for (const name of ["instantiate", "instantiateStreaming"]) {
+    const original = WebAssembly[name];
+    WebAssembly[name] = async (...given) => {
+      try {
+        return await original.apply(WebAssembly, given);
+      } catch (error) {
+        if (error instanceof RangeError) reject(error);
+        throw error;
+      }
+    };
+  }
+});
+
 async function start(identity) {
   self.postMessage({ op: "progress", part: "Python" });
-  const py = await loadPyodide({
+  const loading = loadPyodide({
     indexURL: new URL("./", import.meta.url).href,
     stdout: print("stdout"),
     stderr: print("stderr"),
   });
+  const py = await Promise.race([loading, lacking]);
   await archive(py, "ros.zip", "ROS 2");
   const process = py.pyimport("spinbook.browser.in_page.process");
   process.open_process(page, identity);

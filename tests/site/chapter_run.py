@@ -1,6 +1,6 @@
 """Runs every cell of a chapter's page in order, and compares what each shows with the executed notebook.
 
-    python tests/browser/chapter_run.py SITE EXECUTED_NOTEBOOK …
+    python tests/site/chapter_run.py SITE EXECUTED_NOTEBOOK …
 
 prints the cells that differ. Numbers that depend on time count as equal; what a page's cell shows of something that
 goes on for ever must hold every kind of line that was recorded.
@@ -25,7 +25,11 @@ _ENDLESS = re.compile(
 )
 _NUMBER = re.compile(r"\b([0-9a-f]{2}\.){8,}[0-9a-f]{2}\b|-?(?<![\w.])\d+(\.\d+)?(e[+-]?\d+)?")
 _FILE = re.compile(r'File "[^"]*?([^/"<>]+|<[^>]*>)"')
-_OF_THE_NOTEBOOK = re.compile(r"^— .* —$|^\(restarting .*\)$|^env: |^\.\.\. \(\d+ lines|^~?\^+~?$")
+_OF_THE_NOTEBOOK = re.compile(
+    r"^— .* —$|^\(restarting .*\)$|^env: |^\.\.\. \(\d+ lines|^~?\^+~?$"
+    # Who looks too early waits, in a notebook as in a page.
+    r"|^waiting for service"
+)
 #: The longest that a cell is waited for (ms): machines may have much else to do.
 PATIENCE_MS = 120_000
 
@@ -158,7 +162,7 @@ def _exact(cell: Recorded) -> bool:
 
 def main(site: Path, notebooks: list[Path]) -> int:
     """Run the chapters' pages and print the differences."""
-    sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[1] / "site")]
+    sys.path.insert(0, str(Path(__file__).parents[1]))
     from browser import chromium, opened
     from small_course import served
 
