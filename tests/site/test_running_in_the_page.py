@@ -69,7 +69,7 @@ def test_a_page_runs_its_nodes(browser: Browser, address: str) -> None:
         expect(bar).to_be_hidden(timeout=PATIENCE_MS)
 
         failing = page.locator(".cell-snippet").first
-        failing.get_by_role("button", name="Run").click()
+        failing.get_by_role("button", name="Run cell 2", exact=True).click()
         expect(failing.get_by_role("log")).to_contain_text("ZeroDivisionError", timeout=PATIENCE_MS)
         assert "spinbook" not in failing.get_by_role("log").inner_text()
 

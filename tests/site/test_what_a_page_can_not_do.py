@@ -33,10 +33,10 @@ def shown(browser: Browser, address: str) -> Iterator[Opened]:
 def run(cell: Locator, code: str) -> Locator:
     """Put the code into the cell and run it; its output."""
     if cell.get_by_role("textbox").count() == 0:
-        cell.get_by_role("button", name="Run", exact=False).first.click()
+        cell.get_by_role("button", name="Run").first.click()
     field = cell.get_by_role("textbox")
     field.evaluate("(field, code) => { field.textContent = code; field.dispatchEvent(new Event('input')); }", code)
-    cell.get_by_role("button", name="Run", exact=False).first.click()
+    cell.get_by_role("button", name="Run").first.click()
     return cell.get_by_role("log")
 
 
