@@ -16,7 +16,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from playwright.sync_api import Browser, BrowserContext, Page
+from playwright.sync_api import Browser, BrowserContext, Page, Response
 
 ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "site")]
@@ -66,7 +66,12 @@ class Watch:
     def __init__(self, context: BrowserContext, site: Path, address: str) -> None:
         self._site, self._address = site, address
         self.paths: list[str] = []
-        context.on("request", lambda request: self.paths.append(request.url.removeprefix(address).split("?")[0]))
+        context.on("response", self._heard)
+
+    def _heard(self, response: Response) -> None:
+        """Note what came over the network, and not from the service worker's cache."""
+        if not response.from_service_worker:
+            self.paths.append(response.url.removeprefix(self._address).split("?")[0])
 
     def taken(self) -> Transfer:
         """What was asked for since the last call; a file that several ask for is transferred once."""

@@ -53,7 +53,8 @@ def says(page: Page, name: str, text: str) -> None:
 
 
 def clean(shown: Opened) -> None:
-    assert shown.violations() == []
+    found = shown.violations()
+    assert found == [], found
     assert shown.faults == []
     assert not shown.scrolls_sideways()
 

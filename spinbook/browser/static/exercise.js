@@ -4,7 +4,7 @@ import { editing } from "./editing.js";
 import { button, element, failure, hindrance, style } from "./elements.js";
 import { Process } from "./processes.js";
 
-const LIMIT_S = 60;
+const LIMIT_S = 120;
 const SIGNS = { passed: "✓", failed: "✗", blocked: "–", error: "!" };
 
 let process = null;
