@@ -294,11 +294,13 @@ class Participant:
             self.link.send({"op": op, "from": source, "to": far, "sent": now, "n": number}, data)
         self._changed()
 
-    def pump(self) -> None:
-        """Take in what others have sent."""
+    def pump(self, enough: Callable[[], bool] = lambda: False) -> None:
+        """Take in what others have sent, until there is no more of it or it is `enough`."""
         with self.link.lock:
             for frame, data in self.link.receive():
                 _HANDLERS[frame["op"]](self, frame, data)
+                if enough():
+                    return
 
     def _arrived(self, message: Arrival) -> Arrival:
         return Arrival(message.data, message.sent, self.link.system(), message.sequence, message.source)

@@ -65,10 +65,14 @@ class WaitSet(Destroyable):
         with here.link.lock:
             here.link.breathe()
             until = None if timeout < 0 else here.link.steady() + timeout
-            here.pump()
+            here.pump(self._event_is_ready)
             while not self._collect() and (until is None or here.link.steady() < until):
                 here.link.wait(self._left(until))
-                here.pump()
+                here.pump(self._event_is_ready)
+
+    def _event_is_ready(self) -> bool:
+        """Whether an event can be reported: two in a row are two reports, as over a network."""
+        return any(event.is_ready() for event in self._entities["event"])
 
     def _collect(self) -> bool:
         """Note what is ready. Guard conditions that end the wait are reset."""

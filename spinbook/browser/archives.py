@@ -24,7 +24,18 @@ _ROS = ("rclpy", "rpyutils", "rosidl_parser", "rosidl_generator_py", "ament_inde
 _CHECKS = ("pytest", "_pytest", "py", "pluggy", "iniconfig", "packaging", "pygments")
 #: Of its hundreds, pytest needs the lexers of Python.
 _LEXERS = ("__init__.py", "_mapping.py", "python.py", "diff.py")
-_SPINBOOK = ("__init__.py", "problem.py", "ros2", "runtime/__init__.py", "runtime/entry.py", "turtlesim", "browser")
+_SPINBOOK = (
+    "__init__.py",
+    "problem.py",
+    "ros2",
+    "runtime/__init__.py",
+    "runtime/entry.py",
+    "turtlesim",
+    "browser",
+    "graph",
+    "chapter/__init__.py",
+    "chapter/terminal.py",
+)
 #: What of the grader judges recordings; the rest starts and confines programs.
 _GRADER = ("__init__.py", "checking", "exercise", "recording", "scenario", "report", "feedback")
 _INDEXED = ("rosidl_interfaces", "packages")

@@ -101,9 +101,10 @@ def _code(cell: Cell, ran: Ran, source_link: str, download: str) -> dict[str, An
         "alts": [alternative(output, cell) for output in outputs if is_picture(output)],
         "stills": [still.path if still else "" for still in stills],
         "fails": cell.raises,
+        "run": _run(cell),
     }
     if cell.kind is CellKind.NODE:
-        about |= {"file": cell.module, "download": download, "after": _after(cell), "run": _run(cell)}
+        about |= {"file": cell.module, "download": download, "after": _after(cell)}
     elif cell.kind is CellKind.PART and cell.runs_in_kernel:
         about["runs_as"] = CellKind.SNIPPET.value
     elif cell.kind is CellKind.INTERFACE:
@@ -125,10 +126,11 @@ def _after(cell: Cell) -> str:
 
 
 def _run(cell: Cell) -> dict[str, Any]:
-    """What a page adds to the code of a node that is not whole by itself, and what `ros2 run` calls it."""
+    """What a page adds to code that is not whole by itself, what `ros2 run` calls a node, how long output is shown."""
     how = ["--main"] if cell.runs_main else ["--class", *cell.spin_classes] if cell.spin_classes else []
     names = [f"{package}/{executable}" for package, executable in cell.executables]
-    about = {"before": cell.before, "start": how, "executables": names}
+    about: dict[str, Any] = {"before": cell.before, "start": how, "executables": names}
+    about |= {"seconds": cell.seconds, "until": cell.until, "raises": cell.raises}
     return {key: value for key, value in about.items() if value}
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import shutil
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from small_course import SmallCourse, served, write_course
+from small_course import ROOT, SmallCourse, served, write_course
 
 
 @pytest.fixture(scope="session")
@@ -24,6 +26,20 @@ def address(built: SmallCourse) -> Iterator[str]:
     """Where the site is served."""
     with served(built.site) as url:
         yield url
+
+
+@pytest.fixture(scope="session")
+def real_course(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The build folder of the real course, built and run in a folder of its own."""
+    folder = tmp_path_factory.mktemp("course")
+    shutil.copy(ROOT / "course.toml", folder)
+    for name in ("chapters", "exercises", "solutions", "interfaces"):
+        if (ROOT / name).is_dir():
+            shutil.copytree(ROOT / name, folder / name)
+    command = [sys.executable, "-m", "spinbook", "site"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=1500, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return folder / "build"
 
 
 @pytest.fixture

@@ -63,12 +63,16 @@ def test_a_node_in_pieces_runs_with_the_messages_of_its_chapter(tmp_path: Path, 
         cell.get_by_role("button", name="Run counter.py").click()
         expect(cell.get_by_role("log")).to_contain_text("[counter]: counted 7", timeout=PATIENCE_MS)
 
+        shown.page.get_by_role("button", name="Run robot_interfaces/msg/Count.msg").click()
+        interface = shown.page.locator(".cell-interface").get_by_role("log")
+        expect(interface).to_contain_text("from robot_interfaces.msg import Count", timeout=PATIENCE_MS)
+
         part = shown.page.locator(".cell-part")
-        part.get_by_role("button", name="Run").click()
-        expect(shown.page.locator("#said")).to_have_text("cell 1: done", timeout=PATIENCE_MS)
+        part.get_by_role("button", name="Run cell 2", exact=True).click()
+        expect(shown.page.locator("#said")).to_have_text("cell 2: done", timeout=PATIENCE_MS)
 
         terminal = shown.page.locator(".cell-shell")
-        terminal.get_by_role("button", name="Run").click()
+        terminal.get_by_role("button", name="Run cell 4", exact=True).click()
         expect(terminal.get_by_role("log")).to_contain_text("[counter]: counted 7", timeout=PATIENCE_MS)
         assert shown.violations() == []
         assert shown.faults == []

@@ -69,10 +69,36 @@ def test_a_page_runs_its_nodes(browser: Browser, address: str) -> None:
         expect(bar).to_be_hidden(timeout=PATIENCE_MS)
 
         failing = page.locator(".cell-snippet").first
-        failing.get_by_role("button", name="Run").click()
+        failing.get_by_role("button", name="Run cell 2", exact=True).click()
         expect(failing.get_by_role("log")).to_contain_text("ZeroDivisionError", timeout=PATIENCE_MS)
         assert "spinbook" not in failing.get_by_role("log").inner_text()
+
+        page.get_by_role("button", name="Run all above cell 3").click()
+        expect(page.locator("#said")).to_have_text("Ran 2 cells above.", timeout=PATIENCE_MS)
+        expect(log).to_contain_text("[talker]: number 3")
+        page.get_by_role("button", name="Node graph").click()
+        expect(page.get_by_role("region", name="Node graph")).to_contain_text("talker", timeout=PATIENCE_MS)
+        assert shown.violations() == []
         assert shown.faults == []
+
+
+@pytest.mark.soak
+def test_a_course_that_was_run_once_runs_without_a_network(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/01-talk.html") as shown:
+        page = shown.page
+        page.get_by_role("button", name="Run talker.py").click()
+        log = page.locator(".cell-node").get_by_role("log")
+        expect(log).to_contain_text("[talker]: number 3", timeout=PATIENCE_MS)
+
+        assert shown.faults == []
+
+        page.context.set_offline(True)
+        page.reload()
+        assert "A publisher sends messages." in page.inner_text("main")
+        page.get_by_role("button", name="Run talker.py").click()
+        expect(log).to_contain_text("[talker]: number 3", timeout=PATIENCE_MS)
+        page.goto(f"{address}/chapters/02-more.html")
+        assert "Words only." in page.inner_text("main")
 
 
 def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str) -> None:

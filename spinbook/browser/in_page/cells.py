@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import ast
+import json
 import os
 import shlex
 import signal
+import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from spinbook.browser.in_page.process import status_of
@@ -30,6 +33,44 @@ def _run(source: str) -> None:
         value = eval(compile(ast.Expression(last.value), "<cell>", "eval"), _variables)
         if value is not None:
             print(repr(value))
+
+
+def set_environment(variables: Mapping[str, str]) -> None:
+    """Set what `%env` and `export` have set in the page."""
+    os.environ.update(variables)
+
+
+def commands(source: str) -> str:
+    """The commands of a terminal's cell, read as a chapter's are: JSON of kind, words and text, or why it can't run."""
+    from spinbook.chapter.terminal import Command, read_commands
+
+    return json.dumps(
+        [
+            {"kind": item.kind.value, "words": item.words, "text": item.text}
+            if isinstance(item, Command)
+            else {"text": item.text, "why": item.why}
+            for item in read_commands(source)
+        ]
+    )
+
+
+_SHARE = Path("/opt/ros/share")
+_OTHER_TEXT = (
+    "This text is not the one that the page's classes were made of. A page can't compile interfaces: "
+    "press Reset, or change it in the notebook."
+)
+
+
+def define(path: str, text: str) -> int:
+    """Say that an interface of the chapter (`PACKAGE/msg/NAME.msg`) can be used; 1 if its text was changed."""
+    file = _SHARE / path
+    if not file.is_file() or file.read_text(encoding="utf-8").strip() != text.strip():
+        print(_OTHER_TEXT, file=sys.stderr)
+        return 1
+    package, kind, name = path.split("/")
+    stem = name.partition(".")[0]
+    print(f"{package}/{kind}/{stem}: ready. In Python: from {package}.{kind} import {stem}")
+    return 0
 
 
 def run_command(line: str) -> int:

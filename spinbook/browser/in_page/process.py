@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import builtins
+import errno
 import linecache
 import os
 import sys
@@ -21,6 +23,9 @@ _NO_THREADS = (
     "here, do the same with a timer."
 )
 _NO_NUMPY = "This program imports {name}, which a web page does not have. It runs in a notebook and in the grader."
+_NO_MEMORY = "This program needs more memory than a web page has. It runs in a notebook."
+_NO_PROCESSES = "This program starts another one, which a web page can't. It runs in a notebook."
+_NO_INPUT = "This program asks for input, and a web page has no terminal to type in. Use a parameter, or the notebook."
 _ABSENT = ("numpy", "matplotlib", "scipy", "cv2", "pandas")
 
 
@@ -32,6 +37,11 @@ def open_process(page: Any, identity: str) -> None:
     logs.write = lambda line: print(line, file=sys.stderr)
     rcl_python.install()
     _refuse_threads()
+    builtins.input = _refuse_input
+
+
+def _refuse_input(prompt: object = "") -> str:
+    raise RuntimeError(_NO_INPUT)
 
 
 def _refuse_threads() -> None:
@@ -97,6 +107,11 @@ def _show_traceback() -> None:
 
 
 def _explain(error: BaseException) -> None:
+    """Say in one sentence what a page does not have, where that was it."""
     name = (getattr(error, "name", None) or "").partition(".")[0]
     if isinstance(error, ImportError) and name in _ABSENT:
         print(_NO_NUMPY.format(name=name), file=sys.stderr)
+    elif isinstance(error, MemoryError):
+        print(_NO_MEMORY, file=sys.stderr)
+    elif getattr(error, "errno", None) == errno.ENOTSUP or name == "_multiprocessing":
+        print(_NO_PROCESSES, file=sys.stderr)

@@ -1,4 +1,5 @@
 // Code that can be changed in place. Changes are kept in this browser.
+import { colours } from "./highlight.js";
 
 const STEP = "    ";
 
@@ -19,8 +20,8 @@ function store(key, text) {
   }
 }
 
-// Makes the code in `place`, a <pre>, a field. Tab indents; Escape, then Tab, leaves it.
-export function editing(place, key, name) {
+// Makes the code in `place`, a <pre>, a field. Tab indents; Escape, then Tab, leaves it. Python keeps its colours.
+export function editing(place, key, name, language = "") {
   // A field of its own: the page gives the <pre> another role where it scrolls.
   const code = document.createElement("span");
   code.className = "editor";
@@ -28,7 +29,13 @@ export function editing(place, key, name) {
   place.append(code);
   const original = code.innerHTML;
   const written = code.textContent;
+  const colour = language === "python" ? colours(code) : () => {};
   let leaving = false;
+  const fill = (text) => {
+    if (language === "python" || text !== written) code.textContent = text;
+    else code.innerHTML = original;
+    colour();
+  };
   const field = {
     onchange: () => {},
     focus: () => code.focus(),
@@ -44,11 +51,10 @@ export function editing(place, key, name) {
     },
     restore() {
       store(key, null);
-      code.innerHTML = original;
+      fill(written);
     },
   };
-  const before = stored(key);
-  if (before !== null && before !== written) code.textContent = before;
+  fill(stored(key) ?? written);
   code.contentEditable = "plaintext-only";
   code.spellcheck = false;
   code.setAttribute("role", "textbox");
@@ -56,6 +62,7 @@ export function editing(place, key, name) {
   code.setAttribute("aria-label", `Code of ${name}. Escape, then Tab, leaves it.`);
   code.addEventListener("input", () => {
     store(key, field.changed ? code.textContent : null);
+    colour();
     field.onchange();
   });
   code.addEventListener("keydown", (event) => {

@@ -1,9 +1,10 @@
 // The editor of an exercise's page, and Check: the public checks, in this page.
+import { download as load } from "./download.js";
 import { editing } from "./editing.js";
+import { button, element, failure, hindrance, style } from "./elements.js";
 import { Process } from "./processes.js";
-import { button, element, hindrance, style } from "./page.js";
 
-const LIMIT_S = 60;
+const LIMIT_S = 120;
 const SIGNS = { passed: "✓", failed: "✗", blocked: "–", error: "!" };
 
 let process = null;
@@ -63,7 +64,7 @@ export function open(section) {
   style();
   const name = location.pathname.split("/").pop().replace(/\.html$/, "");
   const file = document.querySelector(".facts code").textContent;
-  const editor = editing(section.querySelector("pre"), location.pathname, file);
+  const editor = editing(section.querySelector("pre"), location.pathname, file, "python");
   const state = element("p", { className: "run-state" });
   state.setAttribute("role", "status");
   const result = element("div", { className: "check-result" });
@@ -76,12 +77,12 @@ export function open(section) {
     say("Starting …");
     checking.disabled = true;
     try {
+      await load(say);
       const found = await check(name, editor.text, say);
       say(found.total ?? "");
       result.replaceChildren(...panel(found));
     } catch (error) {
-      const words = error.message.split("\n").filter((line) => /^[\w.]+(Error|Exception|Fault)\b/.test(line));
-      say(`The check could not run here: ${words.at(-1) ?? error.message}`);
+      say(failure(error));
     } finally {
       checking.disabled = false;
     }

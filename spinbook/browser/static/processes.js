@@ -1,23 +1,31 @@
 // The processes of a page and the hub between them: each is a web worker, and what one sends the others get.
 
 const STOP_MS = 2000;
-// Log lines look as in the notebook.
-const ENVIRONMENT = { RCUTILS_CONSOLE_OUTPUT_FORMAT: "[{severity}] [{name}]: {message}" };
+// How often a program is asked whether it still listens, and after how long without an answer it does not.
+const ASK_MS = 2000;
+const SILENT_MS = 10_000;
+// What programs find in os.environ; log lines look as in the notebook.
+export const environment = { RCUTILS_CONSOLE_OUTPUT_FORMAT: "[{severity}] [{name}]: {message}" };
+// Says when a process has started or ended.
+export const changes = new EventTarget();
 const base = new URL("./", import.meta.url);
 const all = new Map();
 let count = 0;
 
 export const running = () => [...all.values()].filter((process) => process.running);
+export const working = () => [...all.values()].filter((process) => process.task);
 export const named = (name) => running().find((process) => process.name === name);
 
+const changed = () => changes.dispatchEvent(new Event("change"));
 const processOf = (key) => key.slice(0, key.lastIndexOf("."));
+const after = (ms) => new Promise((resolve) => setTimeout(resolve, ms, "late"));
 
 // Frames to named endpoints go to the processes that have them; all others go to everybody.
 function route(from, head, data) {
   const frame = JSON.parse(head);
   const wanted = frame.to ? new Set(frame.to.map(processOf)) : null;
   for (const process of all.values()) {
-    if (process !== from && process.joined && (!wanted || wanted.has(process.identity))) {
+    if (process !== from && (!wanted || wanted.has(process.identity))) {
       process.worker.postMessage({ op: "frame", head, data });
     }
   }
@@ -28,7 +36,6 @@ export class Process {
     this.name = name;
     this.hears = hears;
     this.identity = `w${++count}`;
-    this.joined = true;
     this.running = false;
     this.calls = new Map();
     this.worker = new Worker(new URL("worker.js", base), { type: "module", name });
@@ -39,8 +46,9 @@ export class Process {
     this.ready.catch(() => this.end());
   }
 
-  // Have the worker do something; a promise of what comes of it.
+  // Have the worker do something; a promise of what comes of it, null where it is ended before.
   call(op, given = {}) {
+    if (!all.has(this.identity)) return Promise.resolve(null);
     const id = ++count;
     this.worker.postMessage({ op, id, ...given });
     return new Promise((resolve, reject) => this.calls.set(id, { resolve, reject }));
@@ -51,6 +59,7 @@ export class Process {
     else if (message.op === "output") this.hears.output?.(message.text, message.stream);
     else if (message.op === "picture") this.hears.picture?.(message.text);
     else if (message.op === "progress") this.hears.progress?.(message.part);
+    else if (message.op === "here") this.#listens();
     else if (message.op === "done") {
       const { resolve, reject } = this.calls.get(message.id);
       this.calls.delete(message.id);
@@ -73,26 +82,60 @@ export class Process {
   async stop() {
     if (!all.has(this.identity)) return;
     this.signal("SIGINT");
-    await Promise.race([this.ended, new Promise((resolve) => setTimeout(resolve, STOP_MS))]);
+    const ended = this.ended ?? this.idle;
+    if ((await Promise.race([ended, after(STOP_MS)])) !== "late") return;
+    this.forced = true;
     this.end();
+    await ended;
   }
 
   // Run a program to its end; its exit status, or null if it had to be ended.
   async program(source, file, args = []) {
     this.running = true;
+    changed();
     this.ended = this.ready
-      .then(() => this.call("program", { source, file, args, environment: ENVIRONMENT }))
+      .then(() => this.#watch())
+      .then(() => this.call("program", { source, file, args, environment }))
       .finally(() => this.end());
     return this.ended;
+  }
+
+  // It works on this cell from now on, or on nothing.
+  work(task) {
+    this.task = task;
+    if (task) this.idle = new Promise((resolve) => (this.rest = resolve));
+    else this.rest();
+    changed();
+  }
+
+  // Ask again and again whether it listens: a program that computes without a pause does not.
+  #watch() {
+    this.watching = setInterval(() => {
+      if (!this.asked) {
+        this.asked = Date.now();
+        this.worker.postMessage({ op: "ask" });
+      } else if (!this.silent && Date.now() - this.asked > SILENT_MS) {
+        this.silent = true;
+        this.hears.silent?.(true);
+      }
+    }, ASK_MS);
+  }
+
+  #listens() {
+    this.asked = 0;
+    if (this.silent) this.hears.silent?.(false);
+    this.silent = false;
   }
 
   end() {
     if (!all.delete(this.identity)) return;
     this.running = false;
+    clearInterval(this.watching);
     this.worker.terminate();
     for (const { resolve } of this.calls.values()) resolve(null);
     this.calls.clear();
     route(this, JSON.stringify({ op: "bye", from: this.identity }));
     this.hears.end?.();
+    changed();
   }
 }

@@ -36,13 +36,29 @@ async function archive(py, name, part) {
   self.postMessage({ op: "progress", part });
 }
 
+// Where there is no memory for another program, Pyodide only warns and never comes back: a promise that fails then.
+const lacking = new Promise((resolve, reject) => {
+  for (const name of ["instantiate", "instantiateStreaming"]) {
+    const original = WebAssembly[name];
+    WebAssembly[name] = async (...given) => {
+      try {
+        return await original.apply(WebAssembly, given);
+      } catch (error) {
+        if (error instanceof RangeError) reject(error);
+        throw error;
+      }
+    };
+  }
+});
+
 async function start(identity) {
   self.postMessage({ op: "progress", part: "Python" });
-  const py = await loadPyodide({
+  const loading = loadPyodide({
     indexURL: new URL("./", import.meta.url).href,
     stdout: print("stdout"),
     stderr: print("stderr"),
   });
+  const py = await Promise.race([loading, lacking]);
   await archive(py, "ros.zip", "ROS 2");
   const process = py.pyimport("spinbook.browser.in_page.process");
   process.open_process(page, identity);
@@ -61,12 +77,20 @@ const does = {
     const { py, process } = await ready;
     return await process.run_program.callPromising(source, file, py.toPy(args), py.toPy(environment));
   },
+  environment: async ({ environment }) => (await cells()).set_environment((await ready).py.toPy(environment)),
   python: async ({ source }) => (await cells()).run_python.callPromising(source),
   command: async ({ source }) => {
     const { py } = await ready;
     await shares(py);
     return (await cells()).run_command.callPromising(source);
   },
+  commands: async ({ source }) => JSON.parse((await cells()).commands(source)),
+  define: async ({ name, text }) => {
+    await shares((await ready).py);
+    return (await cells()).define(name, text);
+  },
+  graph: async () => JSON.parse((await pictures()).now()),
+  count: async ({ seconds }) => JSON.parse(await (await pictures()).counted.callPromising(seconds)),
   record: async ({ topics, seconds }) => {
     const { py } = await ready;
     const lines = await (await cells()).record.callPromising(py.toPy(topics), seconds);
@@ -90,6 +114,11 @@ async function cells() {
   return py.pyimport("spinbook.browser.in_page.cells");
 }
 
+async function pictures() {
+  const { py } = await ready;
+  return py.pyimport("spinbook.browser.in_page.node_graph");
+}
+
 // What interfaces there are, and their files: unpacked when the first command or check runs.
 function shares(py) {
   py.shared ??= unpackShares(py);
@@ -108,6 +137,7 @@ self.onmessage = async ({ data: message }) => {
     arrived();
     return;
   }
+  if (message.op === "ask") return void self.postMessage({ op: "here" });
   if (message.op === "key") return void keys.push(message);
   try {
     self.postMessage({ op: "done", id: message.id, value: await does[message.op](message) });

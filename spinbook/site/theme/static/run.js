@@ -2,7 +2,7 @@
 "use strict";
 
 (() => {
-  const places = [...document.querySelectorAll("main .cell:is(.cell-node, .cell-shell, .cell-snippet)")];
+  const places = [...document.querySelectorAll("main .cell:is(.cell-node, .cell-shell, .cell-snippet, .cell-interface)")];
   const load = (name) => import(new URL(`${document.documentElement.dataset.root}run/${name}`, location.href));
 
   function add(place, module, text, label, act) {
@@ -13,7 +13,7 @@
     button.setAttribute("aria-label", label);
     button.addEventListener("click", async () => {
       try {
-        act(await load(module), button);
+        await act(await load(module), button);
       } catch {
         document.getElementById("said").textContent = "Nodes can't run in a page that is opened from a file.";
         button.textContent = "Only on a website";
@@ -24,7 +24,15 @@
 
   for (const [index, cell] of places.entries()) {
     const name = cell.querySelector(".cell-file")?.textContent ?? `cell ${index + 1}`;
-    add(cell.querySelector(".cell-links"), "page.js", "Run", `Run ${name}`, (page) => page.run(cell));
+    const links = cell.querySelector(".cell-links");
+    if (index > 0) {
+      add(links, "page.js", "Run all above", `Run all above ${name}`, async (page, button) => {
+        button.disabled = true;
+        await page.runAbove(cell);
+        button.disabled = false;
+      });
+    }
+    add(links, "page.js", "Run", `Run ${name}`, (page) => page.run(cell));
   }
   const starter = document.querySelector("body.kind-exercise main #starter");
   if (starter) {

@@ -1,0 +1,77 @@
+"""The node graph of the page: as this process knows it at once, or with the rates that a look has counted."""
+
+from __future__ import annotations
+
+import json
+
+from rcl_python import participant
+from rcl_python.graph import PUBLISHER, SUBSCRIPTION, EndpointInfo, Graph, NodeInfo
+from rcl_python.qos import first_incompatible
+from spinbook.graph.model import End, NodeGraph, SeenNode, Topic
+from spinbook.graph.picture import in_words, node_graph_svgs
+from spinbook.graph.shapes import drawings
+
+#: Every node has these.
+_INTERNAL = ("/rosout", "/parameter_events")
+
+
+def now() -> str:
+    """The graph as JSON: `pictures`, an SVG element for each part, and `words`. Never waits."""
+    here = participant.current()
+    here.join()
+    here.pump()
+    return _shown(node_graph(here.graph))
+
+
+def counted(seconds: float) -> str:
+    """As `now`, with the rates of what could be counted in so many seconds."""
+    from spinbook.graph.now import graph_now
+
+    return _shown(graph_now(seconds))
+
+
+def _shown(graph: NodeGraph) -> str:
+    pictures = node_graph_svgs(graph) if graph.nodes else []
+    return json.dumps({"pictures": pictures, "words": in_words(drawings(graph))})
+
+
+def node_graph(graph: Graph) -> NodeGraph:
+    """What `%graph` draws: nodes and topics that are not hidden."""
+    nodes = {node.key: _full_name(node) for node in graph.nodes_in(0)}
+    shown = {key: name for key, name in nodes.items() if not _is_hidden(name)}
+    ends = [end for end in graph.ends(0, PUBLISHER, SUBSCRIPTION) if end.node in shown and _is_shown(end.topic)]
+    topics = [_topic(name, ends, shown) for name in sorted({end.topic for end in ends})]
+    return NodeGraph(tuple(SeenNode(name) for name in sorted(set(shown.values()))), tuple(topics))
+
+
+def _topic(name: str, ends: list[EndpointInfo], nodes: dict[str, str]) -> Topic:
+    publishers, subscriptions = (
+        [end for end in ends if end.topic == name and end.kind == kind] for kind in (PUBLISHER, SUBSCRIPTION)
+    )
+    return Topic(name, _ends(publishers, subscriptions, nodes), _ends(subscriptions, publishers, nodes))
+
+
+def _ends(ends: list[EndpointInfo], others: list[EndpointInfo], nodes: dict[str, str]) -> tuple[End, ...]:
+    """One end for each node and type; connected if any of its ends is."""
+    connected: dict[tuple[str, str], bool] = {}
+    for end in ends:
+        key = nodes[end.node], end.type
+        connected[key] = connected.get(key, False) or any(_fit(end, other) for other in others)
+    return tuple(sorted(End(node, kind, fits) for (node, kind), fits in connected.items()))
+
+
+def _fit(one: EndpointInfo, other: EndpointInfo) -> bool:
+    publisher, subscription = (one, other) if one.kind == PUBLISHER else (other, one)
+    return one.type == other.type and first_incompatible(publisher.qos, subscription.qos) is None
+
+
+def _full_name(node: NodeInfo) -> str:
+    return f"{node.namespace.rstrip('/')}/{node.name}"
+
+
+def _is_hidden(name: str) -> bool:
+    return any(part.startswith("_") for part in name.split("/"))
+
+
+def _is_shown(topic: str) -> bool:
+    return topic not in _INTERNAL and not _is_hidden(topic)

@@ -1,0 +1,39 @@
+// The bar below a page: which nodes run, Stop for each and for all, and their graph.
+import { button, element } from "./elements.js";
+import { follow } from "./graph.js";
+import { changes, running, working } from "./processes.js";
+
+let place = null;
+
+// Show the bar from now on, whenever something runs.
+export function bar() {
+  if (place) return;
+  place = document.body.appendChild(element("div", { className: "running", hidden: true }));
+  place.setAttribute("role", "region");
+  place.setAttribute("aria-label", "Running nodes");
+  const list = element("ul");
+  const every = button("Stop all", "Stop all nodes", () => Promise.all([...running(), ...working()].map((node) => node.stop())));
+  const graph = follow();
+  place.append(graph.panel, element("span", { className: "running-title", textContent: "Running" }), list, graph.toggle, every);
+  changes.addEventListener("change", () => fill(list, graph));
+}
+
+function fill(list, graph) {
+  const nodes = [...running(), ...working()];
+  place.hidden = nodes.length === 0;
+  document.body.classList.toggle("has-running", !place.hidden);
+  // Buttons that stay are left alone, so that the focus stays as well.
+  const there = new Map([...list.children].map((item) => [item.dataset.key, item]));
+  const items = nodes.map((node) => there.get(key(node)) ?? item(node));
+  if (items.length !== list.children.length || items.some((each) => !each.isConnected)) list.replaceChildren(...items);
+  graph.changed(nodes.length);
+}
+
+const key = (node) => `${node.identity} ${node.task ?? ""}`;
+
+function item(node) {
+  const name = node.task || node.name;
+  const made = element("li", {}, element("span", { textContent: name }), button("Stop", `Stop ${name}`, () => node.stop()));
+  made.dataset.key = key(node);
+  return made;
+}

@@ -1,0 +1,110 @@
+// A cell of the page: its code, its output, and what it is.
+import { editing } from "./editing.js";
+import { button, element } from "./elements.js";
+
+const LINES = 500;
+const KINDS = ["node", "shell", "snippet", "interface"];
+
+export const cells = new Map();
+// What each node has printed, for %log.
+export const logs = new Map();
+
+class Cell {
+  constructor(node) {
+    this.node = node;
+    this.file = node.querySelector(".cell-file")?.textContent ?? "";
+    this.kind = KINDS.find((kind) => node.classList.contains(`cell-${kind}`));
+    this.name = this.file.replace(/\.py$/, "") || `cell ${cells.size + 1}`;
+    // What makes the code a whole program where the chapter shows it in pieces; how long its output is waited for.
+    this.about = JSON.parse(node.querySelector(".cell-head").dataset.run ?? "{}");
+    this.code = node.querySelector(".cell_input pre, .highlight pre");
+    this.recorded = node.querySelector(".cell_output");
+    this.links = node.querySelector(".cell-links");
+    const language = this.kind === "node" || this.kind === "snippet" ? "python" : "";
+    this.editor = editing(this.code, `${location.pathname}#${this.name}`, this.file || "this cell", language);
+    this.reset = button("Reset", `Reset ${this.name}`, () => this.restore());
+    this.reset.hidden = !this.editor.changed;
+    this.editor.onchange = () => (this.reset.hidden = false);
+    this.links.prepend(this.reset);
+  }
+
+  get source() {
+    return this.editor.text;
+  }
+
+  get program() {
+    const { before = "", start } = this.about;
+    const call = start ? `\n\nfrom spinbook.runtime import entry as _entry\n_entry.start(globals(), ${JSON.stringify(start)})\n` : "";
+    return before + this.source + call;
+  }
+
+  // The page's own code and its recorded output again.
+  restore() {
+    this.editor.restore();
+    this.shown?.remove();
+    this.shown = null;
+    if (this.recorded) this.recorded.hidden = false;
+    this.reset.hidden = true;
+  }
+
+  // A new place for output, instead of the recorded one.
+  clear() {
+    this.shown?.remove();
+    if (this.recorded) this.recorded.hidden = true;
+    this.output = element("pre", { tabIndex: 0 });
+    this.output.setAttribute("role", "log");
+    this.output.setAttribute("aria-label", `Output of ${this.name}`);
+    this.state = element("p", { className: "run-state" });
+    this.state.setAttribute("role", "status");
+    this.shown = element("div", { className: "ran" }, this.state, this.output);
+    this.node.append(this.shown);
+    this.reset.hidden = false;
+    this.count = 0;
+    this.failed = false;
+    this.until = this.about.until;
+    this.seen = new Promise((resolve) => (this.see = resolve));
+  }
+
+  say(text) {
+    if (this.state.textContent !== text) this.state.textContent = text;
+  }
+
+  print(text, stream = "stdout") {
+    const line = element("span", { className: `stream-${stream}`, textContent: `${text}\n` });
+    this.output.append(line);
+    if (++this.count > LINES) this.output.firstChild.remove();
+    this.output.scrollTop = this.output.scrollHeight;
+    if (this.until && text.includes(this.until)) this.see();
+  }
+
+  fail(text) {
+    this.failed = true;
+    if (text) this.print(text, "stderr");
+  }
+
+  // Until its output holds what the chapter waits for, or for as long as the chapter shows it (s).
+  shows(seconds) {
+    return Promise.race([this.seen, new Promise((resolve) => setTimeout(resolve, 1000 * (this.about.seconds ?? seconds)))]);
+  }
+
+  hears(name) {
+    return {
+      progress: (part) => this.say(`Loading ${part} …`),
+      output: (text, stream) => {
+        logs.set(name, [...(logs.get(name) ?? []), text].slice(-LINES));
+        this.print(text, stream);
+      },
+      silent: (is) =>
+        this.say(is ? `${name} computes without a pause, or waits for a thread, so it gets neither messages nor Ctrl-C. Stop ends it.` : `${name} runs.`),
+    };
+  }
+}
+
+export function cellAt(node) {
+  if (!cells.has(node)) cells.set(node, new Cell(node));
+  return cells.get(node);
+}
+
+// The cell that belongs to a module of the chapter, as `ros2 run` names it.
+export const cellOf = (name, full = "") =>
+  [...cells.values()].find((cell) => cell.kind === "node" && (cell.name === name || cell.about.executables?.includes(full)));

@@ -1,0 +1,49 @@
+// What every part of a page that runs is made of: elements, buttons, the style sheet, and why a page can't run.
+
+const TOO_OLD =
+  "This browser can't run nodes: it lacks JavaScript Promise Integration. Chrome and Edge 137 or newer and " +
+  "Firefox 153 or newer have it. The outputs on this page are recorded from real nodes.";
+const FROM_FILE =
+  "Nodes can't run in a page that is opened from a file. Open this course on its website, or put it on any web server.";
+const NO_MEMORY = "There is not enough memory for this. Stop a node, close other tabs, or reload the page.";
+
+// What a page can't do, in one sentence, or "".
+export function hindrance() {
+  if (location.protocol === "file:") return FROM_FILE;
+  return typeof WebAssembly === "object" && "Suspending" in WebAssembly ? "" : TOO_OLD;
+}
+
+// What went wrong when something could not start, in one sentence.
+export function failure(error) {
+  const text = String(error?.message ?? error);
+  if (/memory|RangeError|Maximum call stack/i.test(text)) return NO_MEMORY;
+  if (/fetch|NetworkError|: 404/i.test(text)) return "It could not be loaded: is the website still there? Try again.";
+  const words = text.split("\n").filter((line) => /^[\w.]+(Error|Exception|Fault)\b/.test(line));
+  return `It could not run here: ${words.at(-1) ?? text.split("\n")[0]}`;
+}
+
+export function element(tag, properties = {}, ...children) {
+  const made = Object.assign(document.createElement(tag), properties);
+  made.append(...children);
+  return made;
+}
+
+export function button(text, label, act) {
+  const made = element("button", { type: "button", className: "run-button", textContent: text });
+  made.setAttribute("aria-label", label);
+  made.addEventListener("click", act);
+  return made;
+}
+
+// For screen readers, what has just happened.
+export function announce(text) {
+  document.getElementById("said").textContent = text;
+}
+
+// The page's style sheet for all this, once.
+export function style() {
+  if (document.querySelector("link[data-run]")) return;
+  const sheet = element("link", { rel: "stylesheet", href: new URL("run.css", import.meta.url).href });
+  sheet.dataset.run = "";
+  document.head.append(sheet);
+}

@@ -1,0 +1,101 @@
+// The nodes of a page: started by their cells or by `ros2 run`, listed and stopped as a notebook does it.
+import { cellOf, logs } from "./cell.js";
+import { failure } from "./elements.js";
+import { Process, named } from "./processes.js";
+import { turtle } from "./turtle.js";
+
+const TURTLESIM =
+  "import sys\nfrom spinbook.browser.in_page import canvas\ncanvas.use()\n" +
+  "from spinbook.turtlesim.node import main\nsys.exit(main())\n";
+// What `ros2 run` of a turtlesim_node shows before the cell goes on (s).
+const SHOWN_S = 3;
+
+// Every node that was started and not stopped since, by name, in order.
+const started = new Map();
+
+// Start a program as a node; its process, once it runs.
+async function start(name, into, program, file, args) {
+  await named(name)?.stop();
+  logs.delete(name);
+  started.delete(name);
+  const process = new Process(name, into.hears(name));
+  started.set(name, process);
+  into.ended = process.program(program, file, args).then(
+    (status) => {
+      into.say(ending(name, status, process));
+      if (status) into.failed = true;
+    },
+    (error) => into.fail(into.say(failure(error))),
+  );
+  await process.ready;
+  if (process.running) into.say(`${name} runs.`);
+}
+
+function ending(name, status, process) {
+  process.status = status;
+  if (status !== null) return `${name} ended with ${status}.`;
+  if (!process.forced) return `${name} was ended.`;
+  return `${name} did not react to Ctrl-C, so it was ended after 2 s. A loop that never waits hears nothing: use a timer.`;
+}
+
+// Run a node's cell. Resolves when it has started, or has ended at once.
+export async function runNode(cell, into = cell, args = []) {
+  await start(cell.name, into, cell.program, cell.file, args);
+  await Promise.race([into.ended, new Promise((resolve) => setTimeout(resolve, 500))]);
+}
+
+// `ros2 run PACKAGE EXECUTABLE …`: a node of this page, or turtlesim.
+export async function runExecutable(cell, [, , pack, executable, ...args]) {
+  if (executable === "turtlesim_node") {
+    await start(executable, cell, TURTLESIM, "turtlesim_node.py", args);
+    await cell.shows(SHOWN_S);
+    return cell.say("turtlesim_node runs. Look at it with %turtle.");
+  }
+  const wanted = cellOf(executable, `${pack}/${executable}`);
+  if (!wanted) return cell.fail(`There is no node ${executable} on this page.`);
+  await runNode(wanted, cell, args);
+  await Promise.race([cell.shows(SHOWN_S), cell.ended]);
+}
+
+export function showNodes(cell) {
+  if (started.size === 0) cell.print("No node runs. Run one.");
+  for (const [name, process] of started) {
+    const state = process.running ? "running" : `ended (exit code ${process.status})`;
+    cell.print(`${name.padEnd(28)} ${state.padEnd(22)} ${logs.get(name)?.length ?? 0} lines logged`);
+  }
+}
+
+export function showLog(cell, [name]) {
+  if (!started.has(name) && !logs.has(name)) return refuse(cell, name);
+  for (const line of logs.get(name) ?? []) cell.print(line);
+}
+
+function refuse(cell, name) {
+  cell.fail(`This page has started no node \`${name}\`. Started are: ${[...started.keys()].join(", ") || "none"}.`);
+}
+
+export async function stop(cell, words) {
+  const names = words.includes("--all") ? [...started.keys()] : words;
+  const unknown = names.find((name) => !started.has(name));
+  if (unknown) return refuse(cell, unknown);
+  if (words.length === 0) return cell.fail("Which one? %stop NAME, or %stop --all.");
+  const wanted = names.map((name) => started.get(name));
+  const hadEnded = wanted.map((process) => !process.running);
+  await Promise.all(wanted.map((process) => process.running && process.stop()));
+  for (const [at, process] of wanted.entries()) {
+    cell.print(stopped(process, hadEnded[at]));
+    started.delete(process.name);
+  }
+}
+
+function stopped({ name, status, forced }, hadEnded) {
+  if (hadEnded) return `${name} had ended before (exit code ${status}).`;
+  if (forced) return `${name} ignored Ctrl-C for 2 s; it was ended.`;
+  return status ? `${name} stopped with exit code ${status}; a node that ends in order has 0.` : `${name} stopped.`;
+}
+
+export function showTurtle(cell) {
+  const node = named("turtlesim_node");
+  if (node) cell.shown?.append(turtle(node.ended));
+  else cell.fail("turtlesim does not run: ros2 run turtlesim turtlesim_node");
+}

@@ -1,0 +1,154 @@
+// Plain cells, terminals and interfaces. They share one process, which starts with the first of them.
+import { graph } from "./graph.js";
+import { runExecutable, showLog, showNodes, showTurtle, stop } from "./nodes.js";
+import { plot } from "./plot.js";
+import { Process, environment } from "./processes.js";
+
+const LOOK_S = 6;
+const GRAPH_S = 2.5;
+const LONGEST_S = 60;
+const ENDLESS = /^ros2 (topic (echo|hz|bw|delay|pub)|service echo)\b/;
+const BOUNDED = / (--once|-1|--times|-t) /;
+
+let shared = null;
+
+// The shared process, with its output in this cell.
+async function sharedProcess(cell) {
+  if (!shared || shared.gone) shared = new Process("notebook", { end: () => (shared.gone = true) });
+  const { progress } = cell.hears("");
+  Object.assign(shared.hears, { progress, output: (text, stream) => cell.print(text, stream) });
+  await shared.ready;
+  await shared.call("environment", { environment });
+  cell.say("");
+  return shared;
+}
+
+// The shared process if it is there, for who only looks; it draws the graph while a cell runs as well.
+export async function observer() {
+  if (!shared || shared.gone) shared = new Process("notebook", { end: () => (shared.gone = true) });
+  await shared.ready;
+  return shared;
+}
+
+// Have the shared process do something on behalf of a cell; the bar can stop it.
+async function busy(cell, process, op, given) {
+  process.work(cell.name);
+  try {
+    const status = await process.call(op, given);
+    if (status === null) cell.fail(cell.say("It was ended, and the variables of the cells above are gone: run those cells again."));
+    else if (status) cell.failed = true;
+    return status;
+  } finally {
+    process.work("");
+  }
+}
+
+export async function runPlain(cell) {
+  const process = await sharedProcess(cell);
+  for (const part of parts(cell.source)) {
+    if (part.magic) await magic(cell, process, part.magic);
+    else await busy(cell, process, "python", { source: part.python });
+    if (cell.failed) return;
+  }
+}
+
+// A plain cell's lines: `%stop left_toe` is for the page, the rest is Python.
+function parts(source) {
+  const found = [];
+  let python = [];
+  const finish = () => {
+    if (python.join("").trim()) found.push({ python: python.join("\n") });
+    python = [];
+  };
+  for (const line of source.split("\n")) {
+    if (!/^%\w/.test(line)) {
+      python.push(line);
+      continue;
+    }
+    finish();
+    found.push({ magic: line.slice(1).trim().split(/\s+/) });
+  }
+  finish();
+  return found;
+}
+
+async function magic(cell, process, [word, ...args]) {
+  const known = { nodes: showNodes, log: showLog, stop, turtle: showTurtle, env: setVariable };
+  if (word in known) await known[word](cell, args);
+  else if (word === "plot") await drawPlot(cell, process, args);
+  else if (word === "graph") await drawGraph(cell, process, args);
+  else if (word === "ros2") await runCommand(cell, process, { kind: "ros2", words: ["ros2", ...args], text: `ros2 ${args.join(" ")}` });
+  else cell.fail(`%${word} does not work in a page. It works in the notebook.`);
+}
+
+// `%env NAME=VALUE`, `%env NAME VALUE`, `%env NAME`, `%env`, and a terminal's `export`: for what starts from now on.
+function setVariable(cell, args) {
+  const [name, ...rest] = args.join(" ").split(/[=\s]+/);
+  if (!name) return Object.entries(environment).forEach(([key, value]) => cell.print(`${key}=${value}`));
+  if (rest.length === 0) return cell.print(environment[name] ?? "");
+  environment[name] = rest.join(" ").replace(/^(["'])(.*)\1$/, "$2");
+  cell.print(`env: ${name}=${environment[name]}`);
+}
+
+const option = (args, name, usual) => (args.includes(name) ? Number(args[args.indexOf(name) + 1]) : usual);
+
+async function drawPlot(cell, process, args) {
+  const seconds = option(args, "--seconds", cell.about.seconds ?? LOOK_S);
+  const topics = args.filter((word) => word.startsWith("/"));
+  cell.say(`Recording for ${seconds} s …`);
+  const lines = await process.call("record", { topics, seconds });
+  cell.say("");
+  cell.shown?.append(plot(lines ?? [], seconds));
+}
+
+async function drawGraph(cell, process, args) {
+  const seconds = option(args, "--seconds", GRAPH_S);
+  cell.say(`Counting messages for ${seconds} s …`);
+  const found = await process.call("count", { seconds });
+  cell.say("");
+  if (found?.pictures.length) cell.shown?.append(graph(found));
+  else cell.print("No node runs. Run one.");
+}
+
+export async function runTerminal(cell) {
+  const process = await sharedProcess(cell);
+  for (const command of await process.call("commands", { source: cell.source })) {
+    await runCommand(cell, process, command);
+    if (cell.failed) return;
+  }
+}
+
+async function runCommand(cell, process, command) {
+  const { kind, words, text, why } = command;
+  const exported = /^# export (\w+=.*)/.exec(text);
+  if (why) cell.print(`${text}\n    does not run in a page: ${why}.`, "stderr");
+  else if (exported) setVariable(cell, [exported[1]]);
+  else if (kind === "rqt_plot") await drawPlot(cell, process, words.slice(1));
+  else if (kind === "colcon") cell.print("colcon is not needed in a page: `ros2 run` finds the page's nodes as they are.");
+  else if (kind === "ros2" && words[1] === "run") await runExecutable(cell, words);
+  else if (kind === "ros2") await bounded(cell, process, text);
+}
+
+// What does not end by itself is ended after a while, as in the notebook, or once it shows what the chapter waits for.
+async function bounded(cell, process, line) {
+  const endless = ENDLESS.test(line) && !BOUNDED.test(`${line} `);
+  const seconds = endless ? (cell.about.seconds ?? LOOK_S) : LONGEST_S;
+  let interrupted = false;
+  const interrupt = () => {
+    interrupted = true;
+    process.signal("SIGINT");
+  };
+  const timer = setTimeout(interrupt, 1000 * seconds);
+  if (endless && cell.until) cell.seen.then(interrupt);
+  try {
+    const status = await busy(cell, process, "command", { source: line });
+    if (interrupted && status !== null) cell.failed = false;
+  } finally {
+    clearTimeout(timer);
+  }
+}
+
+export async function runInterface(cell) {
+  const process = await sharedProcess(cell);
+  await busy(cell, process, "define", { name: cell.file, text: cell.source });
+}

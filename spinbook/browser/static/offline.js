@@ -1,0 +1,29 @@
+// The service worker of a course that has been run once: its pages and its nodes go on without a network.
+
+const PAGES = "pages";
+// What changes only with its version is taken from the cache first; see download.js.
+const LARGE = /\/run\/(pyodide[^/]*|[^/]+\.(zip|wasm))$/;
+
+self.addEventListener("install", () => self.skipWaiting());
+self.addEventListener("activate", (event) => event.waitUntil(self.clients.claim()));
+self.addEventListener("fetch", (event) => {
+  const { request } = event;
+  const { origin, pathname } = new URL(request.url);
+  if (request.method !== "GET" || origin !== self.location.origin) return;
+  const kept = LARGE.test(pathname) && request.cache !== "reload";
+  event.respondWith(kept ? cacheFirst(request) : networkFirst(request));
+});
+
+async function cacheFirst(request) {
+  return (await caches.match(request)) ?? fetch(request);
+}
+
+async function networkFirst(request) {
+  try {
+    const response = await fetch(request);
+    if (response.ok && request.cache !== "reload") (await caches.open(PAGES)).put(request, response.clone());
+    return response;
+  } catch {
+    return (await caches.match(request, { ignoreSearch: true })) ?? Response.error();
+  }
+}

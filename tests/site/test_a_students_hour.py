@@ -1,0 +1,130 @@
+"""A student's hour with Week 3 in a browser that knows nothing yet, from the first Run to the grade.
+
+SPINBOOK_SCREENSHOTS names a folder that gets pictures of each step.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from browser import Opened, opened
+from playwright.sync_api import Browser, Page, expect
+from small_course import ROOT, served
+
+from grader.exercise import load
+from grader.grading import grade_submission
+from grader.submission import read
+
+SOLUTIONS = ROOT / "solutions" / "joint_velocity"
+MISTAKES = ("wrong_topic", "degrees", "fixed_dt", "no_guard_for_dt_0", "sign_turned_round")
+PATIENCE_MS = 180_000
+WIDTHS = (1280, 390)
+
+pytestmark = [pytest.mark.soak, pytest.mark.timeout(1800)]
+
+
+def picture(page: Page, name: str) -> None:
+    if folder := os.environ.get("SPINBOOK_SCREENSHOTS"):
+        page.screenshot(path=Path(folder, f"{name}-{(page.viewport_size or {})['width']}.png"))
+
+
+def press(page: Page, name: str) -> None:
+    page.get_by_role("button", name=name, exact=True).click()
+
+
+def change(page: Page, file: str, old: str, new: str) -> None:
+    field = page.get_by_role("textbox", name=f"Code of {file}. ")
+    assert old in field.inner_text()
+    field.evaluate(
+        "(field, [old, now]) => { field.textContent = field.textContent.replace(old, now);"
+        " field.dispatchEvent(new Event('input')); }",
+        [old, new],
+    )
+
+
+def output(name: str) -> str:
+    return f'.ran [role=log][aria-label="Output of {name}"]'
+
+
+def says(page: Page, name: str, text: str) -> None:
+    expect(page.locator(output(name))).to_contain_text(text, timeout=PATIENCE_MS)
+
+
+def clean(shown: Opened) -> None:
+    found = shown.violations()
+    assert found == [], found
+    assert shown.faults == []
+    assert not shown.scrolls_sideways()
+
+
+def the_chapter(shown: Opened) -> None:
+    """Run two nodes, edit one, break one, stop one; what was edited is there after a reload."""
+    page = shown.page
+    press(page, "Run left_toe.py")
+    says(page, "left_toe", "I publish 102.0 N")
+    press(page, "Run balance_controller.py")
+    says(page, "balance_controller", "I hear")
+    press(page, "Node graph")
+    expect(page.locator(".graph-panel svg")).to_contain_text("/left_foot/toe", timeout=PATIENCE_MS)
+    clean(shown)
+    picture(page, "1-two-nodes")
+    press(page, "Node graph")
+
+    change(page, "left_toe.py", "self.force += 1.0", "self.force += 10.0")
+    press(page, "Run left_toe.py")
+    says(page, "left_toe", "I publish 120.0 N")
+    change(page, "left_toe.py", "self.create_timer(", "self.creat_timer(")
+    press(page, "Run left_toe.py")
+    says(page, "left_toe", "AttributeError")
+    picture(page, "2-broken")
+    press(page, "Stop balance_controller")
+    expect(page.get_by_role("region", name="Running nodes")).to_be_hidden(timeout=PATIENCE_MS)
+    page.reload()
+    press(page, "Run left_toe.py")
+    says(page, "left_toe", "AttributeError")
+    press(page, "Reset left_toe")
+    expect(page.locator(".cell-node").first.locator(".cell_output")).to_be_visible()
+
+
+def the_exercise(shown: Opened, downloads: Path) -> Path:
+    """Five typical mistakes, then the solution; the draft outlives a reload. Returns the downloaded file."""
+    page = shown.page
+    press(page, "Edit and check the starter here")
+    for name in MISTAKES:
+        check(page, SOLUTIONS / "mistakes" / f"{name}.py")
+        expect(page.locator(".check-failed").first).to_be_visible()
+        if name == "degrees":
+            clean(shown)
+            picture(page, "3-degrees")
+    check(page, SOLUTIONS / "solution.py")
+    expect(page.locator(".check-total")).to_contain_text("8 of 8 public checks", timeout=PATIENCE_MS)
+    picture(page, "4-solved")
+    page.reload()
+    press(page, "Edit and check the starter here")
+    with page.expect_download() as download:
+        press(page, "Download your joint_velocity.py")
+    file = downloads / download.value.suggested_filename
+    download.value.save_as(file)
+    return file
+
+
+def check(page: Page, file: Path) -> None:
+    page.get_by_label("A file to go on with").set_input_files(file)
+    expect(page.get_by_role("textbox", name="Code of joint_velocity.py")).to_contain_text(file.read_text()[:40])
+    page.locator(".check-result").evaluate("place => place.replaceChildren()")
+    press(page, "Check joint_velocity.py")
+    expect(page.locator(".check-total")).to_be_visible(timeout=PATIENCE_MS)
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_a_students_hour(real_course: Path, browser: Browser, tmp_path: Path, width: int) -> None:
+    with served(real_course / "site") as address:
+        with opened(browser, f"{address}/chapters/03-nodes-and-topics.html", width=width) as shown:
+            the_chapter(shown)
+        with opened(browser, f"{address}/exercises/joint_velocity.html", width=width) as shown:
+            file = the_exercise(shown, tmp_path)
+    exercise = load(ROOT / "exercises" / "joint_velocity")
+    grade = grade_submission(exercise, read(str(file), exercise))
+    assert {verdict.status for verdict in grade.verdicts} == {"passed"}

@@ -1,0 +1,36 @@
+"""Every cell of every chapter, run in order in a real Chromium, shows what the executed notebook shows."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+from browser import opened
+from chapter_run import recorded, run_chapter
+from playwright.sync_api import Browser
+from small_course import served
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+EXPECTED = Path(__file__).with_name("differences_in_the_page.toml")
+
+#: What differs only because Pyodide's Python is newer than this one.
+SAME_PYTHON = {"code-the-wrong-value-may-slip-through"} if sys.version_info >= (3, 12) else set()
+
+
+@pytest.mark.soak
+@pytest.mark.timeout(3600)
+def test_every_chapter_shows_in_its_page_what_it_shows_in_its_notebook(real_course: Path, browser: Browser) -> None:
+    expected = tomllib.loads(EXPECTED.read_text(encoding="utf-8"))
+    with served(real_course / "site") as address:
+        for notebook in sorted((real_course / "executed").glob("*.ipynb")):
+            with opened(browser, f"{address}/chapters/{notebook.stem}.html") as shown:
+                found = run_chapter(shown.page, recorded(notebook))
+                known = set(expected.get(notebook.stem, {})) - SAME_PYTHON
+                assert set(found) == known, found
+                assert shown.faults == []
+                assert shown.violations() == []

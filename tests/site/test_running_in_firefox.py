@@ -1,0 +1,65 @@
+"""Pages run their own nodes in a real Firefox, from a plain server with a strict content security policy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from firefox import PROGRAM, Firefox, firefox
+
+from spinbook.browser.files import can_run
+
+pytestmark = [
+    pytest.mark.soak,
+    pytest.mark.timeout(900),
+    pytest.mark.skipif(not can_run(), reason="set-up could not fetch Pyodide from npm"),
+    pytest.mark.skipif(PROGRAM is None, reason="Firefox is not installed: sudo apt-get install firefox-esr"),
+]
+
+LOG = ".cell-node .ran [role=log]"
+
+
+@pytest.fixture(scope="module")
+def page(address: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Firefox]:
+    """A chapter's page in a Firefox with a fresh profile."""
+    with firefox(tmp_path_factory.mktemp("firefox")) as running:
+        running.open(f"{address}/chapters/01-talk.html")
+        if not running.evaluate("return 'Suspending' in WebAssembly"):
+            pytest.skip("this Firefox is older than 153 and has no JavaScript Promise Integration")
+        yield running
+
+
+def test_a_page_runs_edits_and_stops_a_node(page: Firefox) -> None:
+    page.click("Run talker.py")
+    page.wait_for(LOG, "[INFO] [talker]: number 3")
+    page.wait_for(".running", "talker")
+    page.click("Node graph")
+    page.wait_for(".graph-panel svg", "talker")
+
+    before = page.evaluate("return document.querySelector('.cell-node .editor').textContent")
+    page.evaluate("const f = document.querySelector('.cell-node .editor'); f.focus(); getSelection().collapse(f, 0);")
+    page.type(".cell-node .editor", "# one\n\n# two\n")
+    after = page.evaluate("return document.querySelector('.cell-node .editor').textContent")
+    assert sorted(after.replace("# one\n\n# two\n", "", 1)) == sorted(before)
+    assert "# one\n\n# two\n" in after
+
+    page.click("Reset talker")
+    page.click("Run talker.py")
+    page.wait_for(LOG, "[talker]: number 3")
+    page.click("Stop talker")
+    page.wait_for(".cell-node .run-state", "talker ended with 0.")
+
+
+def test_an_exercise_is_checked(page: Firefox, address: str) -> None:
+    solution = Path(__file__).parents[2] / "solutions" / "joint_velocity" / "solution.py"
+    page.open(f"{address}/exercises/joint_velocity.html")
+    page.click("Edit and check the starter here")
+    page.wait_for(".check-tools", "Check")
+    page.evaluate(
+        "const f = document.querySelector('.editor'); f.textContent = arguments[0];"
+        "f.dispatchEvent(new Event('input'));",
+        solution.read_text(),
+    )
+    page.click("Check joint_velocity.py")
+    page.wait_for(".check-total", "8 of 8 public checks, 36 of 36 points")

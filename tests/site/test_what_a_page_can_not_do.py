@@ -1,0 +1,102 @@
+"""What a page can't do it says in one sentence, and it still reads: in a real Chromium."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from browser import Opened, opened
+from playwright.sync_api import Browser, Locator, Route, expect
+
+from spinbook.browser.files import can_run
+
+pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Pyodide from npm")
+
+#: Pyodide starts in a few seconds; on a machine with much else to do, in many.
+PATIENCE_MS = 120_000
+WITHOUT_JSPI = "delete WebAssembly.Suspending; delete WebAssembly.promising;"
+#: What a browser does that has no memory left for another program.
+WITHOUT_MEMORY = """
+WebAssembly.instantiateStreaming = WebAssembly.instantiate = async () => {
+  throw new RangeError("WebAssembly.instantiate(): Out of memory: Cannot allocate Wasm memory for new instance");
+};
+"""
+
+
+@pytest.fixture(scope="module")
+def shown(browser: Browser, address: str) -> Iterator[Opened]:
+    """One page for all tests: its plain cells share one process."""
+    with opened(browser, f"{address}/chapters/01-talk.html") as page:
+        yield page
+
+
+def run(cell: Locator, code: str) -> Locator:
+    """Put the code into the cell and run it; its output."""
+    if cell.get_by_role("textbox").count() == 0:
+        cell.get_by_role("button", name="Run").first.click()
+    field = cell.get_by_role("textbox")
+    field.evaluate("(field, code) => { field.textContent = code; field.dispatchEvent(new Event('input')); }", code)
+    cell.get_by_role("button", name="Run").first.click()
+    return cell.get_by_role("log")
+
+
+SENTENCES = {
+    "import threading\nthreading.Thread(target=print).start()": "This program starts a thread",
+    "from concurrent.futures import ThreadPoolExecutor\nThreadPoolExecutor().submit(print)": "a web page has none",
+    "import numpy as np\nnp.linspace(0, 1)": "a web page does not have numpy",
+    "import matplotlib.pyplot": "This program imports matplotlib, which a web page does not have.",
+    "import subprocess\nsubprocess.run(['ls'])": "This program starts another one, which a web page can't.",
+    "input('How far? ')": "a web page has no terminal to type in",
+    "raise MemoryError": "This program needs more memory than a web page has.",
+    "from time import sleep\nsleep(0.01)\nprint('slept')": "slept",
+    "import threading\nprint(threading.Event().wait(0.01))": "False",
+}
+
+
+def test_a_program_that_needs_more_than_a_page_has_is_told_so(shown: Opened) -> None:
+    cell = shown.page.locator(".cell-snippet").first
+    for code, sentence in SENTENCES.items():
+        expect(run(cell, code)).to_contain_text(sentence, timeout=PATIENCE_MS)
+    assert shown.faults == []
+
+
+def test_a_cell_that_computes_for_ever_can_be_stopped(shown: Opened) -> None:
+    cell = shown.page.locator(".cell-snippet").first
+    expect(run(cell, "print('begins')\nwhile True: pass")).to_contain_text("begins", timeout=PATIENCE_MS)
+    bar = shown.page.get_by_role("region", name="Running nodes")
+    bar.get_by_role("button", name="Stop all nodes").click()
+    expect(cell.get_by_role("status")).to_contain_text("It was ended, and the variables", timeout=PATIENCE_MS)
+    expect(bar).to_be_hidden()
+
+
+@pytest.mark.soak
+def test_a_node_that_computes_for_ever_is_reported_and_can_be_stopped(shown: Opened) -> None:
+    node = shown.page.locator(".cell-node").first
+    expect(run(node, "print('begins')\nwhile True: pass")).to_contain_text("begins", timeout=PATIENCE_MS)
+    state = node.get_by_role("status")
+    expect(state).to_contain_text("talker computes without a pause", timeout=PATIENCE_MS)
+    shown.page.get_by_role("button", name="Stop talker").click()
+    expect(state).to_contain_text("talker did not react to Ctrl-C, so it was ended after 2 s.", timeout=PATIENCE_MS)
+
+
+def test_a_browser_without_promise_integration_is_told_so(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/01-talk.html") as page:
+        page.page.add_init_script(WITHOUT_JSPI)
+        page.page.reload()
+        page.page.get_by_role("button", name="Run talker.py", exact=True).click()
+        expect(page.page.locator(".cell-node").get_by_role("status")).to_contain_text("This browser can't run nodes")
+        assert "A publisher sends messages." in page.page.inner_text("main")
+        assert page.violations() == []
+        assert page.faults == []
+
+
+def test_a_browser_without_memory_for_another_node_is_told_so(browser: Browser, address: str) -> None:
+    def exhausted(route: Route) -> None:
+        response = route.fetch()
+        route.fulfill(response=response, body=WITHOUT_MEMORY + response.text())
+
+    with opened(browser, f"{address}/chapters/01-talk.html") as page:
+        page.page.context.route("**/run/pyodide.mjs", exhausted)
+        page.page.get_by_role("button", name="Run talker.py", exact=True).click()
+        state = page.page.locator(".cell-node").get_by_role("status")
+        expect(state).to_contain_text("There is not enough memory for this. Stop a node", timeout=PATIENCE_MS)
