@@ -29,14 +29,17 @@ def package(start: Path, workspace: Path | None) -> None:
       spinbook ros2 run humanoid_control joint_publisher
     """
     course = find_course(start)
-    modules = course_modules(course)
+    modules, files = course_modules(course), course_files(course)
     target = workspace or course.root / course.package.workspace
     interfaces = checked(course)
-    folder = write_package(target, course.package, modules, interfaces.packages)
+    folder = write_package(target, course.package, modules, interfaces.packages, files)
     click.echo(f"{folder}: {len(modules)} modules")
     for module in modules:
         runs = f"ros2 run {course.package.name} {module.name}" if module.has_main else "(no main(): a module only)"
         click.echo(f"  {module.name}.py".ljust(28) + runs)
+    for path in files:
+        runs = f"ros2 launch {course.package.name} {path.rpartition('/')[2]}" if path.startswith("launch/") else ""
+        click.echo(f"  {path}".ljust(28) + runs)
     for package_folder in write_interface_packages(target, course.package, interfaces.definitions):
         members = [item for item in interfaces.definitions if item.package == package_folder.name]
         click.echo(f"{package_folder}: {len(members)} interfaces")
@@ -64,3 +67,22 @@ def course_modules(course: Course) -> list[Module]:
     if problems:
         raise SpinbookError(*problems)
     return [Module(name, cell.whole) for name, (_, cell) in sorted(first.items())]
+
+
+def course_files(course: Course) -> dict[str, str]:
+    """Every launch and parameter file of the course: its path in the package -> its text.
+
+    Raises SpinbookError where two chapters' files clash.
+    """
+    first: dict[str, tuple[Path, Cell]] = {}
+    for reading in read_all(course):
+        for cell in reading.chapter.files if reading.chapter else ():
+            assert cell.name is not None
+            assert reading.chapter is not None
+            file, known = first.setdefault(cell.name, (reading.chapter.file, cell))
+            if file == reading.chapter.file:
+                first[cell.name] = (file, cell)
+            elif known.source != cell.source:
+                found = f"the file `{cell.name}` also stands in {file}:{known.line}, with other text."
+                raise SpinbookError(Problem(reading.chapter.file, cell.line, found, "Give one of them another name."))
+    return {name: cell.source.rstrip("\n") + "\n" for name, (_, cell) in sorted(first.items())}

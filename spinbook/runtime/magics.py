@@ -101,6 +101,15 @@ class SpinbookMagics(Magics):
 
     @no_var_expand
     @cell_magic
+    def package_file(self, line: str, cell: str) -> None:
+        """%%package_file launch/NAME.launch.py: put this cell's text into the package as a file."""
+        reader = LineReader("%%package_file", "Put a launch or parameter file into the package.")
+        reader.add_argument("path", help="launch/NAME.launch.py (.yaml, .xml) or config/NAME.yaml")
+        if given := reader.read(line):
+            self.session.write_file(given.path, cell)
+
+    @no_var_expand
+    @cell_magic
     def node(self, line: str, cell: str) -> None:
         """%%node NAME: run this cell's code as a process of its own, as `ros2 run` would."""
         reader = LineReader("%%node", "Run this cell as a node: a process of its own. Running it again restarts it.")

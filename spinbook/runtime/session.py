@@ -9,11 +9,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from spinbook.chapter.package_file import is_package_file
 from spinbook.chapter.python_code import CodeError
 from spinbook.course.course import Package
 from spinbook.course.joining import join
 from spinbook.package.files import Module
-from spinbook.package.write import add_module
+from spinbook.package.write import add_file, add_module
 from spinbook.runtime import environment
 from spinbook.runtime.domain import Domain
 from spinbook.runtime.failure import CellFailed
@@ -99,6 +100,15 @@ class Session:
         file = add_module(self.workspace, package, module)
         self.starts[name] = (file, start)
         self.run_background(name, start.argv(file), self._import_path(file), Path.cwd(), bound)
+
+    def write_file(self, path: str, text: str) -> None:
+        """Put a launch or parameter file into the package. Raises CellFailed for any other path."""
+        if not is_package_file(path):
+            raise CellFailed(
+                f"`{path}` is no launch or parameter file. Write launch/NAME.launch.py or config/NAME.yaml."
+            )
+        file = add_file(self.workspace, self.package, path, text.rstrip("\n") + "\n")
+        print(f"Wrote {file.relative_to(Path.cwd())}")
 
     def _package_of(self, known_as: Sequence[str]) -> tuple[Package, tuple[str, ...]]:
         """The package to which a node belongs, and what its executables are called there."""
