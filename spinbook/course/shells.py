@@ -25,6 +25,15 @@ _ASKING = {
     "action": {"info", "send_goal"},
     "param": {"list", "get", "set", "describe", "dump", "load", "delete"},
 }
+#: The services that every node has for its parameters.
+_PARAMETER_SERVICES = {
+    "describe_parameters",
+    "get_parameter_types",
+    "get_parameters",
+    "list_parameters",
+    "set_parameters",
+    "set_parameters_atomically",
+}
 #: Programs that fail where there is no keyboard.
 _READ_KEYS = {("turtlesim", "turtle_teleop_key")}
 _TYPE = re.compile(r"(\w+)/(msg|srv|action)/(\w+)")
@@ -240,7 +249,7 @@ class Shells:
         words = [word for word in command.words[3:] if not word.startswith("-")]
         if command.words[1] not in _ASKING or command.words[2] not in _ASKING[command.words[1]] or self.has_exercise:
             return None
-        name = words[0].strip("/").rsplit("/", 1)[-1].lower() if words else ""
+        name = _last_name(words[0]) if words else ""
         typed = command.words[1:3] == ("topic", "echo") and len(words) > 1
         if not name or typed or name in {"rosout", "parameter_events"} or name in self._said:
             return None
@@ -259,6 +268,12 @@ class Shells:
                 mend = f"Did you mean `{close[0]}`?" if close else "Look at `ros2 interface list`."
                 return _Refused(f"`{package}/{kind}` has no `{name}`", mend, "")
         return None
+
+
+def _last_name(path: str) -> str:
+    """The last part of a name, which a program's text holds; of a node's parameter services, the node's name."""
+    node, _, last = path.strip("/").lower().rpartition("/")
+    return _last_name(node) if last in _PARAMETER_SERVICES and node else last
 
 
 def _file_name(path: str) -> str:

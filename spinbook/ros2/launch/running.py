@@ -42,7 +42,7 @@ class Launched:
         self._print_lock = threading.Lock()
 
     def run(self, steps: Sequence[ProcessToStart | str]) -> int:
-        """Start all, wait until all have ended; 1 if one died by itself with an error, otherwise 0."""
+        """Start all, wait until all have ended; 1 if one had died before and nobody interrupted, otherwise 0."""
         with self._listening():
             try:
                 for step in _numbered(steps):
@@ -51,7 +51,7 @@ class Launched:
                     self._wait()
             finally:
                 self._kill()
-        return int(self._died)
+        return int(self._died and self._deadline is None)
 
     def _step(self, step: ProcessToStart | str) -> None:
         if isinstance(step, str):
@@ -107,7 +107,7 @@ class Launched:
         if code == 0:
             self._say("INFO", running.name, f"process has finished cleanly [pid {pid}]")
             return
-        self._died = self._died or self._deadline is None
+        self._died = True
         self._say("ERROR", running.name, f"process has died [pid {pid}, exit code {code}]")
 
     def _signal(self, number: signal.Signals) -> None:
