@@ -164,7 +164,8 @@ def test_the_arguments_are_shown_as_the_real_command_shows_them(workspace: Path,
     write(workspace, "        DeclareLaunchArgument('gain', default_value='0.5', description='How strong'),\n")
     answer = terminal.ros2("launch", "--show-args", "arm", "arm.launch.py", cwd=workspace)
     assert answer.out == (
-        "Arguments (pass arguments as '<name>:=<value>'):\n\n    'gain':\n        How strong\n        (default: '0.5')\n"
+        "Arguments (pass arguments as '<name>:=<value>'):\n\n"
+        "    'gain':\n        How strong\n        (default: '0.5')\n"
     )
 
 
