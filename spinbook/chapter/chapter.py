@@ -19,7 +19,7 @@ class CellKind(str, Enum):
     PART = "part"
     SHELL = "shell"
     INTERFACE = "interface"
-    FILE = "file"
+    FILE = "package_file"
     EXERCISE = "exercise"
 
 

@@ -71,7 +71,7 @@ class FenceKind(str, Enum):
     PART = "part"
     SHELL = "shell"
     INTERFACE = "interface"
-    FILE = "file"
+    FILE = "package_file"
     STATIC = "static"
 
 

@@ -18,7 +18,7 @@ _KINDS = {
     "snippet": "Notebook",
     "part": "Part of a node",
     "interface": "Interface",
-    "file": "File of the package",
+    "package_file": "File",
 }
 
 
