@@ -77,6 +77,9 @@ def _runnable(cell: Cell) -> dict[str, Any]:
     elif cell.kind is CellKind.INTERFACE:
         metadata["interface"] = cell.name
         source = f"%%interface {cell.name}\n{cell.source}"
+    elif cell.kind is CellKind.FILE:
+        metadata["file"] = cell.name
+        source = f"%%package_file {cell.name}\n{cell.source}"
     elif cell.kind is CellKind.SHELL:
         source = "\n".join(_shell_line(command, cell) for command in cell.commands)
     else:

@@ -19,6 +19,7 @@ _KINDS = {
     FenceKind.SNIPPET: CellKind.SNIPPET,
     FenceKind.SHELL: CellKind.SHELL,
     FenceKind.INTERFACE: CellKind.INTERFACE,
+    FenceKind.FILE: CellKind.FILE,
 }
 
 
@@ -83,6 +84,8 @@ def _id(item: Classified, ids: _Ids) -> str:
         return ids.named(f"part-{item.name}")
     if item.kind is FenceKind.INTERFACE:
         return ids.named(f"interface-{(item.name or '').rpartition('/')[2]}")
+    if item.kind is FenceKind.FILE:
+        return ids.named(f"file-{(item.name or '').rpartition('/')[2]}")
     if item.kind is FenceKind.SHELL:
         return ids.named(next(command for command in item.commands if command.kind is not CommandKind.NOTE).text)
     return ids.snippet()

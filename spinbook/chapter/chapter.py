@@ -19,6 +19,7 @@ class CellKind(str, Enum):
     PART = "part"
     SHELL = "shell"
     INTERFACE = "interface"
+    FILE = "package_file"
     EXERCISE = "exercise"
 
 
@@ -90,6 +91,11 @@ class Chapter:
     def interfaces(self) -> Iterator[Cell]:
         """The cells that define messages, services and actions, in order."""
         return (cell for cell in self.cells if cell.kind is CellKind.INTERFACE)
+
+    @property
+    def files(self) -> Iterator[Cell]:
+        """The launch and parameter files of the package, in order."""
+        return (cell for cell in self.cells if cell.kind is CellKind.FILE)
 
     @property
     def nodes(self) -> Iterator[Cell]:

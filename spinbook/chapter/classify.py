@@ -10,6 +10,7 @@ from pathlib import Path
 
 from spinbook.chapter.definition_title import interface_path, is_someone_elses
 from spinbook.chapter.fence import ATTRIBUTES, Fence
+from spinbook.chapter.package_file import is_package_file, unsupported_in_launch_file
 from spinbook.chapter.python_code import CodeError, PythonCode, has_magics, inspect, programs_in_magics
 from spinbook.chapter.terminal import Command, CommandKind, NotRunnable, looks_like_shell, read_commands
 from spinbook.problem import Problem, Severity
@@ -63,13 +64,14 @@ NEVER_RUN = frozenset(
 
 
 class FenceKind(str, Enum):
-    """What a fence is. A part is code that later programs of the chapter use."""
+    """What a fence is. A part is code that later programs of the chapter use; a file is a launch or parameter file."""
 
     NODE = "node"
     SNIPPET = "snippet"
     PART = "part"
     SHELL = "shell"
     INTERFACE = "interface"
+    FILE = "package_file"
     STATIC = "static"
 
 
@@ -125,6 +127,8 @@ def first_look(fence: Fence, file: Path, interface_package: str = "") -> tuple[C
         return Classified(fence, FenceKind.STATIC, "it says `static`"), problems
     if interface := interface_path(fence.title or "", interface_package):
         return _interface(fence, interface, interface_package), problems
+    if is_package_file(fence.title or "") and (item := _package_file(fence)):
+        return item, problems
     fence = with_language(fence)
     if fence.is_shell:
         item, found = _shell(fence, file)
@@ -142,6 +146,17 @@ def _interface(fence: Fence, path: str, own: str) -> Classified:
     if is_someone_elses(package, own):
         return Classified(fence, FenceKind.STATIC, f"it shows an interface of {package}, which is installed")
     return Classified(fence, FenceKind.INTERFACE, name=path)
+
+
+def _package_file(fence: Fence) -> Classified | None:
+    """A launch or parameter file that the package gets; None for a launch file that `ros2 launch` can't run here."""
+    if fence.is_python:
+        try:
+            if unsupported_in_launch_file(fence.code):
+                return None
+        except SyntaxError:
+            return None
+    return Classified(fence, FenceKind.FILE, name=fence.title)
 
 
 def with_language(fence: Fence) -> Fence:

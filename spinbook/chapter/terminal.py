@@ -19,7 +19,7 @@ ROS2 = {
     "interface": {"show", "list", "package", "packages", "proto"},
     "service": {"list", "call", "type", "find", "info"},
     "action": {"list", "info", "send_goal", "type"},
-    "param": {"list", "get", "set", "describe", "dump", "delete"},
+    "param": {"list", "get", "set", "describe", "dump", "load", "delete"},
     "pkg": {"list", "executables", "prefix", "create"},
     "daemon": {"status", "start", "stop"},
     "run": set(),

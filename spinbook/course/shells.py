@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import itertools
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -22,7 +23,16 @@ _ASKING = {
     "service": {"call", "type", "info"},
     "node": {"info"},
     "action": {"info", "send_goal"},
-    "param": {"list", "get", "set", "describe", "dump", "delete"},
+    "param": {"list", "get", "set", "describe", "dump", "load", "delete"},
+}
+#: The services that every node has for its parameters.
+_PARAMETER_SERVICES = {
+    "describe_parameters",
+    "get_parameter_types",
+    "get_parameters",
+    "list_parameters",
+    "set_parameters",
+    "set_parameters_atomically",
 }
 #: Programs that fail where there is no keyboard.
 _READ_KEYS = {("turtlesim", "turtle_teleop_key")}
@@ -75,6 +85,8 @@ class Shells:
     interfaces: frozenset[str] = frozenset()
     problems: list[Problem] = field(default_factory=list)
     _created: set[str] = field(default_factory=set)
+    _files: set[str] = field(default_factory=set)
+    """Launch and parameter files that cells above have put into the package, by name."""
     _launch_files: dict[str, str] = field(default_factory=dict)
     _said: _Said = field(default_factory=_Said)
     _nodes: dict[str, int] = field(default_factory=dict)
@@ -92,6 +104,8 @@ class Shells:
                 self._created.add((item.name or "").partition("/")[0])
             elif item.kind is not FenceKind.STATIC:
                 self._said.add(item.whole)
+            if item.kind is FenceKind.FILE:
+                self._files.add((item.name or "").rpartition("/")[2])
             if item.code is not None and item.code.is_launch_file:
                 name = item.fence.title or self.told.get(item.fence.line) or f"launch file {number}"
                 self._launch_files[name.rsplit("/", 1)[-1]] = item.fence.code
@@ -117,12 +131,14 @@ class Shells:
             return self._colcon(command)
         if command.kind is not CommandKind.ROS2:
             return None
-        if "--params-file" in command.words:
+        if self._lacks_file(command):
             mend = "Give the parameters with -p NAME:=VALUE."
             return _Refused("it reads a file of parameters, which is not here", mend, "files of parameters")
         if command.runs is not None:
             return self._run(*command.runs, out)
         if command.words[1:2] == ("launch",):
+            if any(_file_name(word) in self._files for word in command.words[2:]):
+                return None
             return _Refused("no fence above is its launch file", "Show it in a fence above.", "launch files")
         if command.words[1:3] == ("pkg", "create"):
             return self._create(command)
@@ -180,11 +196,21 @@ class Shells:
         is_own = package in self.own.names and module is not None
         return unnamed[-1] if is_own and len(unnamed) == 1 else None
 
+    def _lacks_file(self, command: Command) -> bool:
+        """Whether it reads a file of parameters that no cell above has put into the package."""
+        words = command.words
+        named = [after for word, after in itertools.pairwise(words) if word == "--params-file"]
+        if words[1:3] == ("param", "load"):
+            named += [word for word in words[4:] if not word.startswith("-")]
+        return any(_file_name(word) not in self._files for word in named)
+
     def _launched(self, command: Command) -> list[Command]:
         """`ros2 launch` of a launch file above as a comment, and the commands that start its nodes."""
         if command.kind is not CommandKind.ROS2 or command.words[1:2] != ("launch",):
             return [command]
         files = [word for word in command.words[2:] if word.endswith(".py")]
+        if any(_file_name(word) in self._files for word in command.words[2:]):
+            return [command]
         code = self._launch_files.get(files[0].rsplit("/", 1)[-1] if files else "", "")
         if not code and len(self._launch_files) == 1 and files:
             (code,) = self._launch_files.values()
@@ -223,7 +249,7 @@ class Shells:
         words = [word for word in command.words[3:] if not word.startswith("-")]
         if command.words[1] not in _ASKING or command.words[2] not in _ASKING[command.words[1]] or self.has_exercise:
             return None
-        name = words[0].strip("/").rsplit("/", 1)[-1].lower() if words else ""
+        name = _last_name(words[0]) if words else ""
         typed = command.words[1:3] == ("topic", "echo") and len(words) > 1
         if not name or typed or name in {"rosout", "parameter_events"} or name in self._said:
             return None
@@ -242,6 +268,16 @@ class Shells:
                 mend = f"Did you mean `{close[0]}`?" if close else "Look at `ros2 interface list`."
                 return _Refused(f"`{package}/{kind}` has no `{name}`", mend, "")
         return None
+
+
+def _last_name(path: str) -> str:
+    """The last part of a name, which a program's text holds; of a node's parameter services, the node's name."""
+    node, _, last = path.strip("/").lower().rpartition("/")
+    return _last_name(node) if last in _PARAMETER_SERVICES and node else last
+
+
+def _file_name(path: str) -> str:
+    return path.rpartition("/")[2]
 
 
 def _selected(words: Sequence[str]) -> list[str]:

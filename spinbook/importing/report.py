@@ -14,7 +14,7 @@ from spinbook.course.course import Course
 from spinbook.course.obstacles import by_itself, obstacles
 from spinbook.problem import Problem
 
-_RUNS = (CellKind.NODE, CellKind.SNIPPET, CellKind.PART, CellKind.SHELL, CellKind.INTERFACE)
+_RUNS = (CellKind.NODE, CellKind.SNIPPET, CellKind.PART, CellKind.SHELL, CellKind.INTERFACE, CellKind.FILE)
 _PLACES = 12
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import click
@@ -36,11 +36,14 @@ def package(start: Path, workspace: Path | None) -> None:
     """
     made = _of_course(find_course(start)) if _is_course(start) else _of_notebooks(start)
     target = workspace or made.root / made.package.workspace
-    folder = write_package(target, made.package, made.modules, made.interfaces)
+    folder = write_package(target, made.package, made.modules, made.interfaces, made.files)
     click.echo(f"{folder}: {len(made.modules)} modules")
     for module in made.modules:
         runs = f"ros2 run {made.package.name} {module.name}" if module.has_main else "(no main(): a module only)"
         click.echo(f"  {module.name}.py".ljust(28) + runs)
+    for path in made.files:
+        runs = f"ros2 launch {made.package.name} {path.rpartition('/')[2]}" if path.startswith("launch/") else ""
+        click.echo(f"  {path}".ljust(28) + runs)
     for package_folder in write_interface_packages(target, made.package, made.definitions):
         members = [item for item in made.definitions if item.package == package_folder.name]
         click.echo(f"{package_folder}: {len(members)} interfaces")
@@ -52,7 +55,7 @@ def package(start: Path, workspace: Path | None) -> None:
 class Sources:
     """What a package is written from, and the folder where its workspace goes.
 
-    `interfaces` are the names of the packages that `definitions` make.
+    `interfaces` are the names of the packages that `definitions` make; `files` are launch and parameter files.
     """
 
     root: Path
@@ -60,6 +63,7 @@ class Sources:
     modules: Sequence[Module]
     definitions: Sequence[Definition]
     interfaces: Sequence[str]
+    files: Mapping[str, str] = field(default_factory=dict)
 
 
 def _is_course(start: Path) -> bool:
@@ -70,7 +74,12 @@ def _is_course(start: Path) -> bool:
 def _of_course(course: Course) -> Sources:
     interfaces = checked(course)
     return Sources(
-        course.root, course.package, course_modules(course), tuple(interfaces.definitions), tuple(interfaces.packages)
+        course.root,
+        course.package,
+        course_modules(course),
+        tuple(interfaces.definitions),
+        tuple(interfaces.packages),
+        course_files(course),
     )
 
 
@@ -102,3 +111,22 @@ def course_modules(course: Course) -> list[Module]:
     if problems:
         raise SpinbookError(*problems)
     return [Module(name, cell.whole) for name, (_, cell) in sorted(first.items())]
+
+
+def course_files(course: Course) -> dict[str, str]:
+    """Every launch and parameter file of the course: its path in the package -> its text.
+
+    Raises SpinbookError where two chapters' files clash.
+    """
+    first: dict[str, tuple[Path, Cell]] = {}
+    for reading in read_all(course):
+        for cell in reading.chapter.files if reading.chapter else ():
+            assert cell.name is not None
+            assert reading.chapter is not None
+            file, known = first.setdefault(cell.name, (reading.chapter.file, cell))
+            if file == reading.chapter.file:
+                first[cell.name] = (file, cell)
+            elif known.source != cell.source:
+                found = f"the file `{cell.name}` also stands in {file}:{known.line}, with other text."
+                raise SpinbookError(Problem(reading.chapter.file, cell.line, found, "Give one of them another name."))
+    return {name: cell.source.rstrip("\n") + "\n" for name, (_, cell) in sorted(first.items())}

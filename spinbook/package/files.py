@@ -74,18 +74,27 @@ TEST_DEPENDENCIES = ("ament_copyright", "ament_flake8", "ament_pep257", "python3
 LONGEST_LINE = 99
 
 
-def package_files(package: Package, modules: Sequence[Module], interfaces: Sequence[str] = ()) -> dict[str, str]:
-    """Path within the package's folder -> content. `interfaces` are the course's own packages of interfaces."""
+def package_files(
+    package: Package, modules: Sequence[Module], interfaces: Sequence[str] = (), extra: Mapping[str, str] | None = None
+) -> dict[str, str]:
+    """Path within the package's folder -> content. `interfaces` are the course's own packages of interfaces.
+
+    `extra` are launch and parameter files (path -> content): setup.py installs their folders.
+    """
+    extra = extra or {}
+    folders = sorted({path.partition("/")[0] for path in extra})
     files = {
-        "package.xml": _package_xml(package, _dependencies(modules, interfaces)),
-        "setup.py": _setup_py(package, _executables(modules)),
+        "package.xml": _package_xml(
+            package, [*_dependencies(modules, interfaces), *(["ros2launch"] if "launch" in folders else [])]
+        ),
+        "setup.py": _setup_py(package, _executables(modules), folders),
         "setup.cfg": _setup_cfg(package),
         f"resource/{package.name}": "",
         f"{package.name}/__init__.py": "",
         **{f"test/test_{name}.py": text for name, text in TESTS.items()},
     }
     files.update({f"{package.name}/{module.name}.py": module.code for module in modules})
-    return files
+    return {**files, **extra}
 
 
 def _executables(modules: Sequence[Module]) -> list[tuple[str, str]]:
@@ -130,8 +139,9 @@ def _package_xml(package: Package, dependencies: Sequence[str]) -> str:
     )
 
 
-def _setup_py(package: Package, executables: Sequence[tuple[str, str]]) -> str:
+def _setup_py(package: Package, executables: Sequence[tuple[str, str]], folders: Sequence[str] = ()) -> str:
     scripts = "".join(f"            '{name} = {package.name}.{module}:main',\n" for name, module in executables)
+    data = "".join(f"        ('share/' + package_name + '/{name}', glob('{name}/*')),\n" for name in folders)
     settings: Mapping[str, str] = {
         "name": "package_name",
         "version": repr(package.version),
@@ -140,6 +150,7 @@ def _setup_py(package: Package, executables: Sequence[tuple[str, str]]) -> str:
             "[\n"
             "        ('share/ament_index/resource_index/packages', ['resource/' + package_name]),\n"
             "        ('share/' + package_name, ['package.xml']),\n"
+            f"{data}"
             "    ]"
         ),
         "install_requires": "['setuptools']",
@@ -153,7 +164,8 @@ def _setup_py(package: Package, executables: Sequence[tuple[str, str]]) -> str:
         "entry_points": "{\n        'console_scripts': [\n" + scripts + "        ],\n    }",
     }
     body = "".join(f"    {key}={value},\n" for key, value in settings.items())
-    return f"from setuptools import setup\n\npackage_name = {package.name!r}\n\nsetup(\n{body})\n"
+    imports = "from glob import glob\n\n" if folders else ""
+    return f"{imports}from setuptools import setup\n\npackage_name = {package.name!r}\n\nsetup(\n{body})\n"
 
 
 def _literal(key: str, text: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from spinbook.course.course import Package
@@ -11,6 +11,8 @@ from spinbook.written import write_if_changed
 
 #: What was written is remembered here, one module per line.
 _RECORD = ".spinbook-modules"
+#: And the launch and parameter files here, one path per line.
+_FILES = ".spinbook-files"
 
 
 def package_folder(workspace: Path, package: Package) -> Path:
@@ -18,18 +20,30 @@ def package_folder(workspace: Path, package: Package) -> Path:
     return workspace / "src" / package.name
 
 
-def write_package(workspace: Path, package: Package, modules: Sequence[Module], interfaces: Sequence[str] = ()) -> Path:
+def write_package(
+    workspace: Path,
+    package: Package,
+    modules: Sequence[Module],
+    interfaces: Sequence[str] = (),
+    extra: Mapping[str, str] | None = None,
+) -> Path:
     """Make the package's sources exactly these modules; files that a person put beside them stay. Returns its folder.
 
     A module that was written before and is no longer among them is removed: its executable is gone too.
-    `interfaces` are the course's own packages of interfaces, on which modules may depend.
+    `interfaces` are the course's own packages of interfaces, on which modules may depend. `extra` are launch and
+    parameter files, by their path in the package.
     """
+    extra = extra or {}
     folder = package_folder(workspace, package)
-    files = package_files(package, modules, interfaces)
+    files = package_files(package, modules, interfaces, extra)
     for path, content in files.items():
         write_if_changed(folder / path, content)
     for name in set(_written(folder)) - {module.name for module in modules}:
         (folder / package.name / f"{name}.py").unlink(missing_ok=True)
+    for path in set(_written_files(folder)) - set(extra):
+        (folder / path).unlink(missing_ok=True)
+    if extra or (folder / _FILES).exists():
+        write_if_changed(folder / _FILES, "".join(f"{path}\n" for path in extra))
     lines = (" ".join([module.name, *module.executables]) for module in modules)
     write_if_changed(folder / _RECORD, "".join(f"{line}\n" for line in lines))
     return folder
@@ -42,13 +56,32 @@ def _written(folder: Path) -> dict[str, tuple[str, ...]]:
     return {words[0]: tuple(words[1:]) for words in map(str.split, lines) if words}
 
 
+def _written_files(folder: Path) -> dict[str, str]:
+    """The launch and parameter files that were written before, as they are now."""
+    record = folder / _FILES
+    paths = record.read_text(encoding="utf-8").splitlines() if record.exists() else []
+    return {path: (folder / path).read_text(encoding="utf-8") for path in paths if (folder / path).is_file()}
+
+
+def _written_modules(folder: Path, package: Package) -> list[Module]:
+    """The modules that were written before, as they are now."""
+    return [
+        Module(name, file.read_text(encoding="utf-8"), executables)
+        for name, executables in _written(folder).items()
+        if (file := folder / package.name / f"{name}.py").exists()
+    ]
+
+
 def add_module(workspace: Path, package: Package, module: Module) -> Path:
     """Put one module into the package, beside those that are there. Returns the module's file."""
     folder = package_folder(workspace, package)
-    modules = [
-        Module(name, file.read_text(encoding="utf-8"), executables)
-        for name, executables in _written(folder).items()
-        if name != module.name and (file := folder / package.name / f"{name}.py").exists()
-    ]
-    write_package(workspace, package, [*modules, module])
+    others = [other for other in _written_modules(folder, package) if other.name != module.name]
+    write_package(workspace, package, [*others, module], extra=_written_files(folder))
     return folder / package.name / f"{module.name}.py"
+
+
+def add_file(workspace: Path, package: Package, path: str, text: str) -> Path:
+    """Put a launch or parameter file into the package, at `path` within it. Returns the file."""
+    folder = package_folder(workspace, package)
+    write_package(workspace, package, _written_modules(folder, package), extra={**_written_files(folder), path: text})
+    return folder / path

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import yaml
@@ -81,6 +82,24 @@ def parameter_value(text: str) -> Any:
 
         # Not YAML, so a text, as the real command takes it.
         return ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=text)
+
+
+def parameters_of_file(file: Path, node: str, *, use_wildcard: bool) -> list[Any]:
+    """What a parameter file says for a node (full name), as rcl_interfaces/msg/Parameter. Raises `Refusal`."""
+    from rclpy.parameter import parameter_dict_from_yaml_file
+
+    try:
+        found = parameter_dict_from_yaml_file(str(file), use_wildcard, target_nodes=[node])
+    except OSError as error:
+        raise Refusal(f"{file}: {error.strerror}") from None
+    except yaml.YAMLError as error:
+        raise Refusal(f"{file} is not valid YAML: {error}") from None
+    except (RuntimeError, TypeError, AttributeError, ValueError) as error:
+        raise Refusal(
+            f"{file} has no parameters for {node}: {error}",
+            f"It needs the node's name, then ros__parameters, then the parameters: {node}: {{ros__parameters: {{…}}}}",
+        ) from None
+    return list(found.values())
 
 
 def value_of(value: Any) -> Any:

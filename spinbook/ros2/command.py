@@ -18,6 +18,7 @@ NOUNS = {
     "daemon": Entry("spinbook.ros2.daemon:daemon", "There is none: says so."),
     "doctor": Entry("spinbook.ros2.doctor:doctor", "Check whether ROS 2 works here."),
     "interface": Entry("spinbook.ros2.interface:interface", "Show the fields of message, service and action types."),
+    "launch": Entry("spinbook.ros2.launch.command:launch", "Start the nodes of a launch file."),
     "node": Entry("spinbook.ros2.node:node", "List running nodes, show what one offers."),
     "param": Entry("spinbook.ros2.param:param", "Read and change parameters of running nodes."),
     "pkg": Entry("spinbook.ros2.pkg:pkg", "List packages and their executables, make a package."),

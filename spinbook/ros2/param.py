@@ -1,7 +1,8 @@
-"""`ros2 param`: list, get, set, describe, dump and delete, through each node's own parameter services."""
+"""`ros2 param`: list, get, set, describe, dump, load and delete, through each node's own parameter services."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -23,6 +24,7 @@ param = Menu(
         "dump": Entry("spinbook.ros2.param:dump", "All parameters of a node, in a parameter file's YAML."),
         "get": Entry("spinbook.ros2.param:get", "The value of a parameter."),
         "list": Entry("spinbook.ros2.param:list_", "The parameters of one node or of all."),
+        "load": Entry("spinbook.ros2.param:load", "Set a node's parameters from a parameter file."),
         "set": Entry("spinbook.ros2.param:set_", "Give a parameter another value."),
     },
     help="""Read and change parameters of running nodes.
@@ -112,7 +114,7 @@ def get(
             raise Refusal("Parameter not set", _parameters_of(graph, name, client))
     kind = values[0].type
     label = _TYPES.get(kind, ("", f"Unknown parameter type '{kind}'"))[1]
-    value = asking.value_of(values[0])
+    value = _plain(asking.value_of(values[0]))
     if hide_type:
         click.echo(str(value))
     else:
@@ -224,6 +226,42 @@ def dump(node_name: str, include_hidden_nodes: bool, spin_time: float | None, us
             branch = branch.setdefault(step, {})
         branch[leaf] = _plain(asking.value_of(value))
     click.echo(yaml.dump({name: {"ros__parameters": tree}}, default_flow_style=False))
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("node_name")
+@click.argument("parameter_file", type=click.Path(path_type=Path))
+@_hidden_nodes
+@click.option("--no-use-wildcard", is_flag=True, help="Leave out what the file has under /**.")
+@discovery_options
+def load(
+    node_name: str,
+    parameter_file: Path,
+    include_hidden_nodes: bool,
+    no_use_wildcard: bool,
+    spin_time: float | None,
+    use_sim_time: bool,
+) -> None:
+    """Set a running node's parameters from a parameter file, one after the other.
+
+    \b
+      ros2 param load /joint_state_monitor monitor.yaml
+    """
+    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        name = asking.find_node(graph, node_name, include_hidden_nodes)
+        parameters = asking.parameters_of_file(parameter_file, name, use_wildcard=not no_use_wildcard)
+        client = asking.client_of(graph, name)
+        results = asking.answer(graph, name, client.set_parameters(parameters)).results
+    refused = []
+    for parameter, result in zip(parameters, results, strict=True):
+        outcome = "successful" if result.successful else "failed"
+        line = _with_reason(f"Set parameter {parameter.name} {outcome}", result.reason)
+        if result.successful:
+            click.echo(line)
+        else:
+            refused.append(line)
+    if refused:
+        raise Refusal(*refused)
 
 
 def _parameters_of(graph: Graph, name: str, client: Any) -> str:

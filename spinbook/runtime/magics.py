@@ -16,7 +16,7 @@ from IPython.core.magic import Magics, cell_magic, line_magic, magics_class, no_
 from spinbook.course.course import Package
 from spinbook.runtime import colcon_cell, domain, graph_cell, interface_cell, plot_cell, ros2_cell, turtle_cell
 from spinbook.runtime.failure import CellFailed
-from spinbook.runtime.session import COMMAND_SECONDS, GRAPH_SECONDS, NODE_SECONDS, Session, Start
+from spinbook.runtime.session import COMMAND_SECONDS, GRAPH_SECONDS, LOG_SECONDS, NODE_SECONDS, Session, Start
 from spinbook.runtime.showing import Bound
 
 _OWN_OPTION = re.compile(r"""\s*--(seconds|until)\s+("[^"]*"|'[^']*'|\S+)\s*""")
@@ -101,6 +101,15 @@ class SpinbookMagics(Magics):
 
     @no_var_expand
     @cell_magic
+    def package_file(self, line: str, cell: str) -> None:
+        """%%package_file launch/NAME.launch.py: put this cell's text into the package as a file."""
+        reader = LineReader("%%package_file", "Put a launch or parameter file into the package.")
+        reader.add_argument("path", help="launch/NAME.launch.py (.yaml, .xml) or config/NAME.yaml")
+        if given := reader.read(line):
+            self.session.write_file(given.path, cell)
+
+    @no_var_expand
+    @cell_magic
     def node(self, line: str, cell: str) -> None:
         """%%node NAME: run this cell's code as a process of its own, as `ros2 run` would."""
         reader = LineReader("%%node", "Run this cell as a node: a process of its own. Running it again restarts it.")
@@ -180,11 +189,15 @@ class SpinbookMagics(Magics):
     @no_var_expand
     @line_magic
     def log(self, line: str) -> None:
-        """%log NAME [--all]: what a node has printed so far."""
+        """%log NAME [--all] [--until TEXT]: what a node has printed so far."""
         reader = LineReader("%log", "Show what a node has printed since it was started.")
         reader.add_argument("name")
         reader.add_argument("--all", action="store_true", help="every line, however many")
+        reader.add_argument("--until", help="wait until the log holds this text")
+        reader.add_argument("--seconds", type=float, default=LOG_SECONDS, help="how long to wait for it at most")
         if given := reader.read(line):
+            if given.until is not None:
+                self.session.wait_for(given.name, Bound(given.seconds, given.until))
             print(self.session.log(given.name, given.all))
 
     @no_var_expand

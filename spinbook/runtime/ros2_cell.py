@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -18,11 +19,28 @@ def run(session: Session, words: list[str], bound: Bound) -> None:
     if words[:1] == ["run"] and not {"-h", "--help"} & set(words):
         _run_executable(session, words[1:], bound)
         return
+    if words[:1] == ["launch"] and not {"-h", "--help", "-s", "--show-args", "--show-arguments"} & set(words):
+        _launch(session, words, bound)
+        return
     if words[:2] == ["pkg", "create"]:
         _create_package(session, words)
         return
     argv = [sys.executable, "-m", "spinbook.ros2", *words]
-    session.run_command(argv, {}, Path.cwd(), bound, "ros2 " + " ".join(words[:2]))
+    session.run_command(argv, {}, _folder(session, words), bound, "ros2 " + " ".join(words[:2]))
+
+
+def _folder(session: Session, words: list[str]) -> Path:
+    """Where a command runs: in the workspace if it reads files of the package, as in a terminal."""
+    reads_files = words[:1] == ["launch"] or words[:2] == ["param", "load"]
+    return session.workspace if reads_files and session.workspace.is_dir() else Path.cwd()
+
+
+def _launch(session: Session, words: list[str], bound: Bound) -> None:
+    """`ros2 launch …`: goes on behind the cell as a node does, under the name of its file: `humanoid`."""
+    files = [word.rpartition("/")[2] for word in words if re.search(r"launch\.(py|ya?ml|xml)$", word)]
+    name = files[0].split(".")[0] if files else "launch"
+    argv = [sys.executable, "-m", "spinbook.ros2", *words]
+    session.run_background(name, argv, {}, _folder(session, words), bound)
 
 
 def _create_package(session: Session, words: list[str]) -> None:

@@ -9,11 +9,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from spinbook.chapter.package_file import is_package_file
 from spinbook.chapter.python_code import CodeError
 from spinbook.course.course import Package
 from spinbook.course.joining import join
 from spinbook.package.files import Module
-from spinbook.package.write import add_module
+from spinbook.package.write import add_file, add_module
 from spinbook.runtime import environment
 from spinbook.runtime.domain import Domain
 from spinbook.runtime.failure import CellFailed
@@ -24,6 +25,10 @@ from spinbook.runtime.showing import Bound, in_short, show_for
 #: How long a node's log is shown, and how long a command that does not end may run (s).
 NODE_SECONDS = 3.0
 COMMAND_SECONDS = 5.0
+#: How long `%log --until` waits at most (s).
+LOG_SECONDS = 30.0
+#: How often it looks (s).
+_LOG_POLL_S = 0.1
 #: How long messages are counted for the graph (s).
 GRAPH_SECONDS = 2.5
 #: How long a bounded command may take to end by itself when it is told to (s): its last lines are wanted.
@@ -99,6 +104,15 @@ class Session:
         file = add_module(self.workspace, package, module)
         self.starts[name] = (file, start)
         self.run_background(name, start.argv(file), self._import_path(file), Path.cwd(), bound)
+
+    def write_file(self, path: str, text: str) -> None:
+        """Put a launch or parameter file into the package. Raises CellFailed for any other path."""
+        if not is_package_file(path):
+            raise CellFailed(
+                f"`{path}` is no launch or parameter file. Write launch/NAME.launch.py or config/NAME.yaml."
+            )
+        file = add_file(self.workspace, self.package, path, text.rstrip("\n") + "\n")
+        print(f"Wrote {file.relative_to(Path.cwd())}")
 
     def _package_of(self, known_as: Sequence[str]) -> tuple[Package, tuple[str, ...]]:
         """The package to which a node belongs, and what its executables are called there."""
@@ -182,6 +196,17 @@ class Session:
             print(f"— {shown_as} ignored Ctrl-C and was killed —")
         elif not bounded and status.exit != 0:
             raise CellFailed(f"{shown_as}: {_how_it_ended(status.exit or 0)}")
+
+    def wait_for(self, name: str, bound: Bound) -> None:
+        """Wait until a node's log holds the bound's text, or its time is up. Raises CellFailed for an unknown name."""
+        node = self.find(name)
+        deadline = time.monotonic() + bound.seconds
+        text = (bound.until or "").encode()
+        while text not in node.process.read_all()[0]:
+            if not node.process.status.running or time.monotonic() >= deadline:
+                print(f"({name} did not print {bound.until!r} within {bound.seconds:g} s)")
+                return
+            time.sleep(_LOG_POLL_S)
 
     def log(self, name: str, whole: bool) -> str:
         """All that is kept of what a node printed. Raises CellFailed for a name that nothing has."""

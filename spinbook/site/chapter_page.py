@@ -109,6 +109,8 @@ def _code(cell: Cell, ran: Ran, source_link: str, download: str) -> dict[str, An
         about["runs_as"] = CellKind.SNIPPET.value
     elif cell.kind is CellKind.INTERFACE:
         about["interface"] = cell.name
+    elif cell.kind is CellKind.FILE:
+        about["package_file"] = cell.name
     return {
         "cell_type": "code",
         "id": cell.id,

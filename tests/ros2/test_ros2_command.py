@@ -47,9 +47,9 @@ def test_what_is_not_here_is_refused_with_what_is(terminal: Terminal) -> None:
     assert verb.code == 2
     assert "Did you mean 'echo'?" in verb.err
     assert "There is: bw, delay, echo, find, hz, info, list, pub, type." in verb.err
-    noun = terminal.ros2("launch", "x")
+    noun = terminal.ros2("lifecycle", "nodes")
     assert noun.code == 2
-    assert "there is no 'ros2 launch' here" in noun.err
+    assert "there is no 'ros2 lifecycle' here" in noun.err
 
 
 def test_a_noun_without_a_verb_shows_its_help_and_is_no_error(terminal: Terminal) -> None:

@@ -10,12 +10,15 @@ from docutils import nodes
 from sphinx.transforms import SphinxTransform
 
 _LANGUAGES = {"shell": "bash", "node": "python", "part": "python", "interface": "text"}
+#: By how a package's file ends.
+_FILE_LANGUAGES = {"py": "python", "yaml": "yaml", "yml": "yaml", "xml": "xml"}
 _KINDS = {
     "shell": "Terminal",
     "node": "Node",
     "snippet": "Notebook",
     "part": "Part of a node",
     "interface": "Interface",
+    "package_file": "File",
 }
 
 
@@ -40,7 +43,7 @@ def _describe(cell: nodes.container, about: dict[str, Any]) -> None:
             continue
         if part.get("nb_element") == "cell_code_source":
             for code in part.findall(nodes.literal_block):
-                code["language"] = _LANGUAGES.get(kind, "ipython3")
+                code["language"] = _language(kind, about)
         elif part.get("nb_element") == "cell_code_output":
             _pictures(part, about["alts"], about["stills"])
             words = "Output: it fails, as it is meant to" if about["fails"] else "Output"
@@ -48,9 +51,14 @@ def _describe(cell: nodes.container, about: dict[str, Any]) -> None:
     cell.insert(0, nodes.raw("", _head(kind, about), format="html"))
 
 
+def _language(kind: str, about: dict[str, Any]) -> str:
+    ending = str(about.get("package_file", "")).rpartition(".")[2]
+    return _FILE_LANGUAGES.get(ending) or _LANGUAGES.get(kind, "ipython3")
+
+
 def _head(kind: str, about: dict[str, Any]) -> str:
     file = about.get("file", "")
-    shown = file or about.get("interface", "")
+    shown = file or about.get("interface", "") or about.get("package_file", "")
     name = f'<span class="cell-file">{escape(shown)}</span>' if shown else ""
     name += f'<span class="cell-kind">{escape(about["after"])}</span>' if about.get("after") else ""
     of = shown or f"this {_KINDS.get(kind, 'cell').lower()} block"
