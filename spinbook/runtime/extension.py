@@ -36,6 +36,8 @@ def load(shell: Any) -> None:
 
 def farewell(session: Session) -> None:
     """End every node, as gently as a kernel's end allows."""
+    if session.timeline is not None:
+        session.timeline.close()
     processes: list[KeptProcess] = [node.process for name in session.nodes.names() if (node := session.nodes.get(name))]
     for process in processes:
         process.stop((_FAREWELL_S / 2, _FAREWELL_S / 4))
