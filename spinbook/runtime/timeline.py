@@ -100,17 +100,19 @@ def _topic(name: str, events: list[Event]) -> Lane:
 
 
 def _calls(name: str, events: list[Event], end: float) -> Lane:
-    """Requests and their responses, which come in the order of the requests."""
-    answers = [event for event in events if event.what == "response"]
-    spans, marks = [], []
-    for asked in (event for event in events if event.what == "request"):
-        answer = next((each for each in answers if each.at >= asked.at), None)
-        marks.append(Mark(asked.at, "asked", "request"))
-        if answer is not None:
-            answers.remove(answer)
-            marks.append(Mark(answer.at, "answered", "response"))
-        spans.append(Span(asked.at, end if answer is None else answer.at, "waits", answer is None))
-    return Lane(name, name, tuple(spans), tuple(marks))
+    """Requests and their responses, which come in the order of the requests.
+
+    A response before the first request belongs to one that was sent before the recording began.
+    """
+    answers = [event.at for event in events if event.what == "response"]
+    asked = [event.at for event in events if event.what == "request"]
+    marks = [*(Mark(at, "asked", "request") for at in asked), *(Mark(at, "answered", "response") for at in answers)]
+    spans = []
+    for at in asked:
+        after = [answer for answer in answers if answer >= at]
+        spans.append(Span(at, after[0] if after else end, "waits", not after))
+        answers = after[1:]
+    return Lane(name, name, tuple(spans), tuple(sorted(marks, key=lambda mark: mark.at)))
 
 
 def _goals(name: str, events: list[Event], end: float) -> Iterator[Lane]:
@@ -125,12 +127,18 @@ def _goals(name: str, events: list[Event], end: float) -> Iterator[Lane]:
 
 
 def _answers(events: list[Event]) -> dict[str, list[Event]]:
-    """Goal -> the answers that name no goal: they come in the order of the questions."""
+    """Goal -> the answers that name no goal: they come in the order of the questions.
+
+    A goal that has got into any state was not rejected.
+    """
+    accepted = {event.goal for event in events if event.what in (*RUNS, *ENDS, "ACCEPTED")}
     found: dict[str, list[Event]] = {}
-    for question, answer in (("goal", ("accepted", "rejected")), ("cancel", ("cancel answered",))):
-        waiting = [event for event in events if event.what == question]
+    for question, answer in (("goal", "rejected"), ("cancel", "cancel answered")):
+        waiting = [
+            each for each in events if each.what == question and (answer != "rejected" or each.goal not in accepted)
+        ]
         for event in events:
-            if event.what in answer and waiting and waiting[0].at <= event.at:
+            if event.what == answer and waiting and waiting[0].at <= event.at:
                 found.setdefault(waiting.pop(0).goal, []).append(event)
     return found
 

@@ -5,14 +5,19 @@
 Lines: ["found", name, "action" | "service" | "topic"], ["error", words], and events, ["event", time (s), name, what,
 goal, text], where `what` is one of those in timeline.py, `goal` is a goal's number (hexadecimal) or "".
 
-Everything is read where it goes by, so the nodes are as they always are: requests by a second server that never
-answers, answers from their DDS topic, feedback and status by subscribing. Times are those at which it was sent.
+Everything is read where it goes by: requests by a second server that never answers, answers from their DDS topic,
+feedback and status by subscribing. Times are those at which it was sent.
+
+A client that has found this second server and not yet the real one takes the service for ready, and its request would
+be lost. So the requests of a service are read only if it has a client already, which then knows the real one. Clients
+of an action also wait for its status and feedback, which this does not publish.
 """
 
 from __future__ import annotations
 
 import json
 import sys
+import time
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import Any
@@ -46,7 +51,9 @@ class TimelineRecorder(Node):
     """Looks for what the names mean, and prints every event of theirs."""
 
     def __init__(self, names: list[str]) -> None:
-        super().__init__("_spinbook_timeline", start_parameter_services=False, enable_rosout=False)
+        # With parameter services: by them the `ros2` command makes sure that whoever serves has heard of its client.
+        super().__init__("_spinbook_timeline", enable_rosout=False)
+        self._began = time.time()
         self._missing = list(names)
         self._polled: list[tuple[Take, Callable[[float, Any], None]]] = []
         self._states: dict[str, int] = {}
@@ -89,7 +96,9 @@ class TimelineRecorder(Node):
 
     def _follow_service(self, name: str, type_name: str) -> None:
         kind = service_class(type_name)
-        self._follow_calls(kind, name, partial(_event, name, "request"), partial(_event, name, "response"))
+        if self.count_clients(name):
+            self._polled.append((self._requests(kind, name), partial(_event, name, "request")))
+        self._polled.append((ReplyReader(self, name, kind.Response).take, partial(_event, name, "response")))
 
     def _follow_calls(self, kind: Any, name: str, asked: Callable[..., None], answered: Callable[..., None]) -> None:
         self._polled.append((self._requests(kind, name), asked))
@@ -149,7 +158,9 @@ class TimelineRecorder(Node):
             number = _number(goal.goal_info.goal_id)
             if self._states.get(number) != goal.status:
                 self._states[number] = goal.status
-                _tell("event", at, name, _STATES.get(goal.status, "UNKNOWN"), number, "")
+                # The status is kept for late listeners: what is older than the recording is none of its business.
+                if at >= self._began:
+                    _tell("event", at, name, _STATES.get(goal.status, "UNKNOWN"), number, "")
 
 
 _STATES = {
