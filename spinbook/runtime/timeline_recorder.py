@@ -42,6 +42,8 @@ _HEARS_ALL = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT, du
 _FEEDBACK = QoSProfile(depth=100)
 _STATUS = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _LOOK_S = 0.01
+#: How long after a service its clients may be discovered (s).
+_CLIENTS_S = 0.5
 
 #: Reads what has arrived: (when it was sent in s, the message).
 Take = Callable[[], Iterator[tuple[float, Any]]]
@@ -58,11 +60,12 @@ class TimelineRecorder(Node):
         self._polled: list[tuple[Take, Callable[[float, Any], None]]] = []
         self._states: dict[str, int] = {}
         self._kept: list[Any] = []
+        self._seen: dict[str, float] = {}
 
     def look(self) -> None:
         """Look for what has not been found yet, and take in what has arrived."""
         for name in list(self._missing):
-            if found := self._kind(name):
+            if (found := self._kind(name)) and self._is_known(name, found[0]):
                 self._missing.remove(name)
                 kind, type_name = found
                 getattr(self, f"_follow_{kind}")(name, type_name)
@@ -70,6 +73,11 @@ class TimelineRecorder(Node):
         for take, tell in self._polled:
             for sent, message in take():
                 tell(sent, message)
+
+    def _is_known(self, name: str, kind: str) -> bool:
+        """Whether it is known who else uses what has been found: a service's clients may not be heard of yet."""
+        since = time.monotonic() - self._seen.setdefault(name, time.monotonic())
+        return kind != "service" or self.count_clients(name) > 0 or since > _CLIENTS_S
 
     def _kind(self, name: str) -> tuple[str, str] | None:
         """What a name means, and its type, if there is a node that serves or publishes it."""
