@@ -25,7 +25,7 @@ LONGEST_S = 20.0
 MOST_TICKS = 150
 _WIDTH, _LEFT, _RIGHT, _TOP = 420, 14, 16, 14
 _LABEL, _BAR, _ROW, _GAP = 18, 16, 14, 8
-_CHAR = 6.4
+_CHAR, _CAPITAL = 6.4, 8.0
 _GREY = "#808890"
 _SPANS = {"waits": ("#a8b0b8", "waits"), "runs": ("#0072B2", "runs"), "cancels": ("#E69F00", "is being canceled")}
 _MARKS = {
@@ -35,8 +35,9 @@ _MARKS = {
     "good": ("#009E73", ""),
     "bad": ("#D55E00", ""),
 }
-#: What is written at marks of these kinds.
+#: What marks of these kinds say is written at them, except for what the lane's legend says already.
 _WRITTEN = ("good", "bad", "cancel", "answered")
+_UNWRITTEN = "response"
 
 
 def span_of(lanes: Iterable[Lane]) -> tuple[float, float]:
@@ -109,7 +110,7 @@ def _few(marks: Sequence[Mark]) -> Iterator[Mark]:
 
 def _shape(mark: Mark, x: float, y: float) -> str:
     if mark.look == "tick":
-        return f'<path d="M{number(x)} {number(y - 6)}v12" stroke="currentColor" stroke-width="1.2"/>'
+        return f'<path d="M{number(x - 0.6)} {number(y - 6)}h1.2v12h-1.2z"/>'
     colour, _ = _MARKS[mark.look]
     if mark.look == "asked":
         return f'<path d="M{number(x - 4)} {number(y - 6)}l9 6l-9 6z" fill="{colour}"/>'
@@ -122,12 +123,16 @@ def _shape(mark: Mark, x: float, y: float) -> str:
 def _placed(marks: Sequence[Mark], across: Scale) -> Iterator[tuple[str, float, int]]:
     """(text, x in px, row) of what is written, so that no two texts lie on one another."""
     ends: list[float] = []
-    for mark in (mark for mark in marks if mark.text and mark.look in _WRITTEN):
-        width = _CHAR * len(mark.text)
+    for mark in filter(_is_written, marks):
+        width = sum(_CAPITAL if char.isupper() else _CHAR for char in mark.text)
         x = min(max(across.at(mark.at) - width / 2, _LEFT), _WIDTH - 4 - width)
         row = next((row for row, end in enumerate(ends) if end + 6 <= x), len(ends))
         ends[row : row + 1] = [x + width]
         yield mark.text, x, row
+
+
+def _is_written(mark: Mark) -> bool:
+    return mark.look in _WRITTEN and mark.text not in ("", _UNWRITTEN)
 
 
 def _axis(across: Scale, top: float, bottom: float) -> str:
@@ -226,6 +231,6 @@ def _draw_lane(draw: Axes, lane: Lane, y: float, start: float) -> None:
             continue
         shape = {"asked": ">", "cancel": "X", "bad": "X"}.get(mark.look, "o")
         draw.plot([at], [y], marker=shape, color=_MARKS[mark.look][0], markersize=8)
-        if mark.look in _WRITTEN:
+        if _is_written(mark):
             above = mark.look == "answered"
             draw.text(at, y + (0.19 if above else -0.33), mark.text, fontsize=8, ha="center")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import struct
 from base64 import b64decode
 from collections.abc import Callable
@@ -159,3 +160,28 @@ def test_the_turtle_runs_and_is_shown(arm: Kernel) -> None:
 
     assert min(size_of(picture)) >= 300
     assert kernel.run("%stop turtlesim_node").text == "turtlesim_node stopped.\n"
+
+
+def test_a_timeline_has_what_happened_on_topics_and_services_while_other_cells_ran(arm: Kernel) -> None:
+    begun = arm.run("%timeline --record /arm/joints /arm/list_parameters")
+    assert begun.text.startswith("Recording /arm/joints, /arm/list_parameters."), begun.error
+    arm.run("%ros2 param list /arm")
+
+    shown = arm.run("%timeline")
+
+    assert shown.error == ""
+    (picture,) = shown.pictures
+    topic, service = picture["text/plain"].splitlines()
+    assert re.match(r"/arm/joints: \d+ messages from", topic)
+    assert re.match(r"/arm/list_parameters: .*response at", service)
+    assert "prefers-reduced-motion" in picture["image/svg+xml"]
+    assert "Nothing is being recorded" in arm.run("%timeline").error
+
+
+def test_a_node_that_prints_nothing_is_said_to(arm: Kernel) -> None:
+    code = "import rclpy\nrclpy.init()\nrclpy.spin(rclpy.create_node('quiet'))\n"
+
+    shown = arm.run(f"%%node quiet --seconds 0.2\n{code}")
+
+    assert re.search(r"^— nothing arrived in \d+ s —$", shown.text, re.MULTILINE), shown.text
+    arm.run("%stop quiet")
