@@ -145,18 +145,6 @@ def test_a_success_that_nobody_called_so_is_aborted_and_so_is_an_exception(partn
         assert end_of(partner, 1) == (True, GoalStatus.STATUS_ABORTED)
 
 
-def test_a_server_with_threads_ends_on_ctrl_c_in_the_middle_of_a_goal(partner: Partner, tmp_path: Path) -> None:
-    with running(tmp_path, with_test_action("elbow_server.py").replace("0.02", "0.2")) as (server,):
-        client = ActionClient(partner.node, Fibonacci, "/move_elbow")
-        partner.spin_until(client.server_is_ready, "the action server")
-        handle = partner.done(client.send_goal_async(Fibonacci.Goal(order=1)), "the answer to the goal")
-        assert handle.accepted
-        server.send_signal(signal.SIGINT)
-        said, _ = server.communicate(timeout=PATIENCE)
-        assert server.returncode == 0, said
-        client.destroy()
-
-
 def test_the_table_of_times_names_every_section() -> None:
     text = CHAPTER.read_text(encoding="utf-8")
     sections = re.findall(r"^## (.+)$", text, re.MULTILINE)
