@@ -12,12 +12,19 @@ from spinbook.ros2.refusal import Refusal
 
 Kind = Literal["msg", "srv", "action"]
 
+#: How the type of an action's feedback topic ends.
+_FEEDBACK = "_FeedbackMessage"
+
 KINDS: dict[Kind, str] = {"msg": "message", "srv": "service", "action": "action"}
 
 
 def message_class(name: str) -> Any:
-    """The class of a message type. Raises `Refusal` for a name that is no type installed here."""
-    return _load(name, "msg")
+    """The class of a message type. Raises `Refusal` for a name that is no type installed here.
+
+    An action's feedback topic has a type of its own, such as `turtlesim/action/RotateAbsolute_FeedbackMessage`.
+    """
+    action, is_feedback, _ = name.partition(_FEEDBACK)
+    return action_class(action).Impl.FeedbackMessage if is_feedback else _load(name, "msg")
 
 
 def service_class(name: str) -> Any:

@@ -45,6 +45,8 @@ def _find_scripts() -> None:
 
 def farewell(session: Session) -> None:
     """End every node, as gently as a kernel's end allows."""
+    if session.timeline is not None:
+        session.timeline.close()
     processes: list[KeptProcess] = [node.process for name in session.nodes.names() if (node := session.nodes.get(name))]
     for process in processes:
         process.stop((_FAREWELL_S / 2, _FAREWELL_S / 4))

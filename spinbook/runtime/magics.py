@@ -14,7 +14,16 @@ from typing import Any, NoReturn
 from IPython.core.magic import Magics, cell_magic, line_magic, magics_class, no_var_expand
 
 from spinbook.course.course import Package
-from spinbook.runtime import colcon_cell, domain, graph_cell, interface_cell, plot_cell, ros2_cell, turtle_cell
+from spinbook.runtime import (
+    colcon_cell,
+    domain,
+    graph_cell,
+    interface_cell,
+    plot_cell,
+    ros2_cell,
+    timeline_cell,
+    turtle_cell,
+)
 from spinbook.runtime.failure import CellFailed
 from spinbook.runtime.session import COMMAND_SECONDS, GRAPH_SECONDS, LOG_SECONDS, NODE_SECONDS, Session, Start
 from spinbook.runtime.showing import Bound
@@ -224,6 +233,26 @@ class SpinbookMagics(Magics):
         reader.add_argument("--title", default="", help="stands above the plot")
         if given := reader.read(line):
             plot_cell.run(given.what, given.seconds, given.title)
+
+    @no_var_expand
+    @line_magic
+    def timeline(self, line: str) -> None:
+        """%timeline --record NAME …, and later %timeline: draw what happened on services, actions and topics."""
+        reader = LineReader("%timeline", "Record services, actions and topics while other cells run, then draw them.")
+        reader.add_argument("--record", nargs="+", metavar="NAME", help="begin to record these")
+        reader.add_argument("--title", default="", help="stands above the picture")
+        given = reader.read(line)
+        if given is None:
+            return
+        recorded, self.session.timeline = self.session.timeline, None
+        if given.record:
+            if recorded is not None:
+                recorded.close()
+            self.session.timeline = timeline_cell.begin(given.record)
+        elif recorded is None:
+            raise CellFailed("Nothing is being recorded. Begin with: %timeline --record /NAME")
+        else:
+            timeline_cell.show(recorded, given.title)
 
     @no_var_expand
     @line_magic

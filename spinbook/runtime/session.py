@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -20,7 +20,8 @@ from spinbook.runtime.domain import Domain
 from spinbook.runtime.failure import CellFailed
 from spinbook.runtime.node_registry import NodeRegistry, RunningNode, Stopped
 from spinbook.runtime.process import KeptProcess
-from spinbook.runtime.showing import Bound, in_short, show_for
+from spinbook.runtime.showing import Bound, in_short, joins, show_for, show_rest
+from spinbook.runtime.timeline_cell import Timeline
 
 #: How long a node's log is shown, and how long a command that does not end may run (s).
 NODE_SECONDS = 3.0
@@ -70,6 +71,8 @@ class Session:
     """Code that later nodes use, by its name."""
     starts: dict[str, tuple[Path, Start]] = field(default_factory=dict)
     """The file of each node and how it is started, by the node's name."""
+    timeline: Timeline | None = None
+    """What is being recorded for `%timeline`."""
 
     def __post_init__(self) -> None:
         self.use_domain(self.domain)
@@ -155,14 +158,17 @@ class Session:
 
     def run_background(self, name: str, argv: list[str], settings: dict[str, str], cwd: Path, bound: Bound) -> None:
         """Start a process that goes on behind the cell, and show its log for a while. Raises CellFailed."""
-        if self.nodes.get(name) and self.nodes.status(name).running:
-            print(f"(restarting {name})")
+        if self.nodes.get(name):
+            if self.nodes.status(name).running:
+                print(f"(restarting {name})")
+            self.nodes.stop(name)
+        has_joined = joins(self.domain.number)
         node = self.nodes.start(name, argv, settings, cwd)
-        self._show(node, bound)
+        self._show(node, bound, has_joined)
 
-    def _show(self, node: RunningNode, bound: Bound) -> None:
+    def _show(self, node: RunningNode, bound: Bound, has_joined: Callable[[], bool]) -> None:
         try:
-            show_for(node.process, bound, f": %log {node.name} shows them")
+            show_for(node.process, bound, f": %log {node.name} shows them", has_joined)
         except KeyboardInterrupt:
             print(f"\n{self.nodes.stop(node.name).in_words}")
             return
@@ -179,16 +185,17 @@ class Session:
 
         Raises CellFailed where it fails.
         """
+        has_joined = joins(self.domain.number)
         process = KeptProcess(argv, {**os.environ, **settings}, cwd)
         try:
             try:
-                show_for(process, bound, "")
+                show_for(process, bound, "", has_joined)
                 bounded = process.status.running
             except KeyboardInterrupt:
                 bounded = True
             if bounded:
                 process.stop(COMMAND_GRACE)
-                show_for(process, Bound(sum(COMMAND_GRACE) + 1), "")
+                show_rest(process, sum(COMMAND_GRACE) + 1)
         finally:
             process.close()
         status = process.status

@@ -178,3 +178,28 @@ def test_a_second_instance_under_another_name_runs_beside_the_first(new_kernel: 
     assert re.search(r"^turtlesim_node +running", listed, re.MULTILINE)
     assert re.search(r"^second +running", listed, re.MULTILINE)
     kernel.run("%stop --all")
+
+
+def test_a_timeline_has_what_happened_on_topics_and_services_while_other_cells_ran(arm: Kernel) -> None:
+    begun = arm.run("%timeline --record /arm/joints /arm/list_parameters")
+    assert begun.text.startswith("Recording /arm/joints, /arm/list_parameters."), begun.error
+    arm.run("%ros2 param list /arm")
+
+    shown = arm.run("%timeline")
+
+    assert shown.error == ""
+    (picture,) = shown.pictures
+    topic, service = picture["text/plain"].splitlines()
+    assert re.match(r"/arm/joints: \d+ messages from", topic)
+    assert re.match(r"/arm/list_parameters: .*response at", service)
+    assert "prefers-reduced-motion" in picture["image/svg+xml"]
+    assert "Nothing is being recorded" in arm.run("%timeline").error
+
+
+def test_a_node_that_prints_nothing_is_said_to(arm: Kernel) -> None:
+    code = "import rclpy\nrclpy.init()\nrclpy.spin(rclpy.create_node('quiet'))\n"
+
+    shown = arm.run(f"%%node quiet --seconds 0.2\n{code}")
+
+    assert re.search(r"^— nothing arrived in \d+ s —$", shown.text, re.MULTILINE), shown.text
+    arm.run("%stop quiet")

@@ -1,0 +1,195 @@
+"""What happened on services, actions and topics, as lanes along an axis of time: what `%timeline` draws."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Literal
+
+#: The states of a goal in which nothing more happens to it.
+ENDS = ("SUCCEEDED", "CANCELED", "ABORTED")
+#: The states in which a goal's action runs.
+RUNS = ("EXECUTING", "CANCELING")
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that was sent at a time (s): by which name, what, for which goal, and what it said in short.
+
+    `what` is "message" (topic), "request", "response" (service), "goal", "accepted", "rejected", "feedback", "cancel",
+    "cancel answered", or the state that a goal has got into.
+    """
+
+    at: float
+    name: str
+    what: str
+    goal: str = ""
+    text: str = ""
+
+
+@dataclass
+class Happenings:
+    """What the recorder has told so far."""
+
+    events: list[Event] = field(default_factory=list)
+    kinds: dict[str, str] = field(default_factory=dict)
+    error: str | None = None
+
+    def take(self, lines: Iterable[str]) -> None:
+        """Take in lines that the recorder printed; whatever a library printed among them is passed over."""
+        for line in lines:
+            try:
+                kind, *rest = json.loads(line)
+            except (ValueError, TypeError):
+                continue
+            if kind == "event":
+                self.events.append(Event(*rest))
+            elif kind == "found":
+                self.kinds[rest[0]] = rest[1]
+            elif kind == "error":
+                self.error = rest[0]
+
+
+@dataclass(frozen=True)
+class Span:
+    """A bar from one time to another (s). `look` says what goes on; `open` that it has not ended."""
+
+    start: float
+    end: float
+    look: Literal["waits", "runs", "cancels"]
+    open: bool = False
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A point in time (s) on a lane. `text` is written beside it, if there is any."""
+
+    at: float
+    look: Literal["tick", "asked", "answered", "cancel", "good", "bad"]
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class Lane:
+    """One line of the picture. `name` is whose it is, `label` what is written at it."""
+
+    name: str
+    label: str
+    spans: tuple[Span, ...]
+    marks: tuple[Mark, ...]
+
+
+def lanes(recording: Happenings) -> tuple[Lane, ...]:
+    """The lanes in the order of the names: one for each topic and service, one for each goal of an action."""
+    events = sorted(recording.events, key=lambda event: event.at)
+    end = max((event.at for event in events), default=0.0)
+    drawn: list[Lane] = []
+    for name, kind in recording.kinds.items():
+        own = [event for event in events if event.name == name]
+        if kind == "action":
+            drawn += _goals(name, own, end)
+        elif own:
+            drawn.append(_calls(name, own, end) if kind == "service" else _topic(name, own))
+    return tuple(drawn)
+
+
+def _topic(name: str, events: list[Event]) -> Lane:
+    return Lane(name, name, (), tuple(Mark(event.at, "tick") for event in events))
+
+
+def _calls(name: str, events: list[Event], end: float) -> Lane:
+    """Requests and their responses, which come in the order of the requests.
+
+    A response before the first request belongs to one that was sent before the recording began.
+    """
+    answers = [event.at for event in events if event.what == "response"]
+    asked = [event.at for event in events if event.what == "request"]
+    marks = [*(Mark(at, "asked", "request") for at in asked), *(Mark(at, "answered", "response") for at in answers)]
+    spans = []
+    for at in asked:
+        after = [answer for answer in answers if answer >= at]
+        spans.append(Span(at, after[0] if after else end, "waits", not after))
+        answers = after[1:]
+    return Lane(name, name, tuple(spans), tuple(sorted(marks, key=lambda mark: mark.at)))
+
+
+def _goals(name: str, events: list[Event], end: float) -> Iterator[Lane]:
+    """A lane for each goal, in the order in which they were sent."""
+    numbers = dict.fromkeys(event.goal for event in events if event.goal)
+    answers = _answers(events)
+    for count, number in enumerate(numbers, start=1):
+        own = [event for event in events if event.goal == number]
+        asked = next((event.text for event in own if event.what == "goal"), "")
+        label = f"{name} goal {count}" + (f": {asked}" if asked else "")
+        yield _goal(name, label, [*own, *answers.get(number, [])], end)
+
+
+def _answers(events: list[Event]) -> dict[str, list[Event]]:
+    """Goal -> the answers that name no goal: they come in the order of the questions.
+
+    A goal that has got into any state was not rejected.
+    """
+    accepted = {event.goal for event in events if event.what in (*RUNS, *ENDS, "ACCEPTED")}
+    found: dict[str, list[Event]] = {}
+    for question, answer in (("goal", "rejected"), ("cancel", "cancel answered")):
+        waiting = [
+            each for each in events if each.what == question and (answer != "rejected" or each.goal not in accepted)
+        ]
+        for event in events:
+            if event.what == answer and waiting and waiting[0].at <= event.at:
+                found.setdefault(waiting.pop(0).goal, []).append(event)
+    return found
+
+
+def _goal(name: str, label: str, events: list[Event], end: float) -> Lane:
+    events = sorted(events, key=lambda event: event.at)
+    return Lane(name, label, tuple(_bars(events, end)), tuple(filter(None, map(_mark, events))))
+
+
+def _bars(events: list[Event], end: float) -> Iterator[Span]:
+    """What the goal went through: it waits for an answer, runs, and is being cancelled."""
+    looks: dict[str, Literal["waits", "runs", "cancels"]] = {
+        "goal": "waits",
+        "ACCEPTED": "waits",
+        "EXECUTING": "runs",
+        "CANCELING": "cancels",
+    }
+    steps = [event for event in events if event.what in looks or event.what in (*ENDS, "rejected")]
+    for index, step in enumerate(steps):
+        if step.what in looks:
+            after = steps[index + 1].at if index + 1 < len(steps) else end
+            yield Span(step.at, after, looks[step.what], index + 1 == len(steps))
+
+
+def _mark(event: Event) -> Mark | None:
+    if event.what == "goal":
+        return Mark(event.at, "asked", "goal")
+    if event.what == "feedback":
+        return Mark(event.at, "tick")
+    if event.what == "cancel":
+        return Mark(event.at, "cancel", "cancel")
+    if event.what == "cancel answered":
+        return Mark(event.at, "answered", "answer to cancel")
+    if event.what in (*ENDS, "rejected"):
+        return Mark(event.at, "good" if event.what == "SUCCEEDED" else "bad", event.what)
+    return None
+
+
+def in_words(drawn: Iterable[Lane], start: float) -> str:
+    """What the picture shows, a line for each lane; times in s from `start`."""
+    lines = []
+    for lane in drawn:
+        told = [f"{mark.text} at {mark.at - start:.2f} s" for mark in lane.marks if mark.text]
+        ticks = [mark.at for mark in lane.marks if mark.look == "tick"]
+        if ticks:
+            told.insert(0, _ticks_in_words(ticks, start, "feedback" if lane.spans else "messages"))
+        lines.append(f"{lane.label}: {', '.join(told)}")
+    return "\n".join(lines)
+
+
+def _ticks_in_words(ticks: list[float], start: float, what: str) -> str:
+    gaps = [after - before for before, after in pairwise(ticks)]
+    longest = f", longest gap {max(gaps):.2f} s" if gaps else ""
+    return f"{len(ticks)} {what} from {ticks[0] - start:.2f} to {ticks[-1] - start:.2f} s{longest}"

@@ -1,0 +1,152 @@
+"""Week 4's nodes, as a student would save and run them: what the chapter claims and its notebook does not show."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+import rclpy
+from action_msgs.msg import GoalStatus
+from rclpy.action import ActionClient
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from std_msgs.msg import Int32
+from test_msgs.action import Fibonacci
+
+CHAPTER = Path(__file__).parents[2] / "chapters" / "04-services-and-actions.md"
+NODE_FENCE = re.compile(r'^```python title="(\w+\.py)"[^\n]*\n(.*?)^```$', re.MULTILINE | re.DOTALL)
+CODE = dict(NODE_FENCE.findall(CHAPTER.read_text(encoding="utf-8")))
+PATIENCE = 60.0  # s until a test gives up; far more than anything here takes
+
+
+class Partner:
+    """The test's own node, with a context of its own and no signal handlers."""
+
+    def __init__(self) -> None:
+        self.context = Context()
+        rclpy.init(context=self.context, signal_handler_options=SignalHandlerOptions.NO)
+        self.node = Node("partner", context=self.context)
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+
+    def spin_until(self, condition: Callable[[], bool], what: str) -> None:
+        deadline = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < deadline, f"waited {PATIENCE:.0f} s for {what}"
+            self.executor.spin_once(timeout_sec=0.05)
+
+    def done(self, future: Any, what: str) -> Any:
+        self.spin_until(future.done, what)
+        return future.result()
+
+
+@pytest.fixture
+def partner(ros_domain: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Partner]:
+    """A node in the test's own ROS domain."""
+    monkeypatch.setenv("ROS_LOG_DIR", os.fspath(tmp_path / "log"))
+    made = Partner()
+    yield made
+    made.executor.shutdown()
+    made.node.destroy_node()
+    made.context.try_shutdown()
+
+
+@contextmanager
+def running(folder: Path, *programs: str) -> Iterator[list[subprocess.Popen[str]]]:
+    """Programs, given by their code, that run until the end of the block."""
+    started = []
+    try:
+        for number, code in enumerate(programs):
+            file = folder / f"program{number}.py"
+            file.write_text(code, encoding="utf-8")
+            started.append(
+                subprocess.Popen(
+                    [sys.executable, os.fspath(file)],
+                    stdout=subprocess.PIPE,
+                    stderr=subprocess.STDOUT,
+                    text=True,
+                    start_new_session=True,
+                    preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+                )
+            )
+        yield started
+    finally:
+        for process in started:
+            process.kill()
+            process.communicate()
+
+
+def with_test_action(file: str) -> str:
+    """A node's code with an action that is installed everywhere, in the place of the course's own.
+
+    Fibonacci's goal is a whole number, and its result and feedback are lists: enough for what becomes of a goal.
+    """
+    code = CODE[file].replace("from humanoid_control_interfaces.action import MoveJoint\n", "")
+    code = code.replace("import rclpy\n", "import rclpy\nfrom test_msgs.action import Fibonacci as MoveJoint\n", 1)
+    code = code.replace("request.position", "request.order").replace("goal.position", "goal.order")
+    code = re.sub(r"MoveJoint\.(Result|Feedback)\(position=[\w.]+\)", r"MoveJoint.\1()", code)
+    # Steps take a tenth of the time: the tests wait for what happens, not for how long it takes.
+    return code.replace("self.position = 0.0", "self.position = 0").replace("seconds=0.2", "seconds=0.02")
+
+
+def end_of(partner: Partner, goal: int) -> tuple[bool, int]:
+    """(whether a goal is accepted, the status with which it ended)."""
+    client = ActionClient(partner.node, Fibonacci, "/move_elbow")
+    partner.spin_until(client.server_is_ready, "the action server")
+    handle = partner.done(client.send_goal_async(Fibonacci.Goal(order=goal)), "the answer to the goal")
+    answer = partner.done(handle.get_result_async(), "the result")
+    client.destroy()
+    return handle.accepted, answer.status
+
+
+def test_the_client_with_a_done_callback_ticks_on_and_the_one_that_calls_without_a_limit_never_again(
+    partner: Partner, tmp_path: Path
+) -> None:
+    ticks: list[int] = []
+    partner.node.create_subscription(Int32, "/ticks", lambda msg: ticks.append(msg.data), 100)
+    with running(tmp_path, CODE["tare_server.py"], CODE["tare_client.py"]):
+        partner.spin_until(lambda: any(tick > 45 for tick in ticks), "ticks after two questions")
+    ticks.clear()
+    # The third call of `ask` can only come if the first has returned.
+    stuck = CODE["stuck_client.py"].replace(", timeout_sec=1.5", "").replace("'/ticks'", "'/stuck_ticks'")
+    stuck_ticks: list[int] = []
+    partner.node.create_subscription(Int32, "/stuck_ticks", lambda msg: stuck_ticks.append(msg.data), 100)
+    with running(tmp_path, CODE["tare_server.py"], CODE["tare_client.py"], stuck):
+        partner.spin_until(lambda: any(tick > 80 for tick in ticks), "8 s of ticks of the client beside it")
+        partner.spin_until(lambda: bool(stuck_ticks), "ticks of the stuck client before it asks")
+    assert max(stuck_ticks) <= 21
+
+
+def test_the_complete_server_rejects_what_is_beyond_the_limits_and_a_rejected_goal_has_the_status_0(
+    partner: Partner, tmp_path: Path
+) -> None:
+    with running(tmp_path, with_test_action("elbow_server.py")):
+        assert end_of(partner, 3) == (False, GoalStatus.STATUS_UNKNOWN)
+        assert end_of(partner, 1) == (True, GoalStatus.STATUS_SUCCEEDED)
+        assert end_of(partner, 2) == (True, GoalStatus.STATUS_ABORTED)
+        assert end_of(partner, 0) == (True, GoalStatus.STATUS_SUCCEEDED)
+
+
+def test_a_success_that_nobody_called_so_is_aborted_and_so_is_an_exception(partner: Partner, tmp_path: Path) -> None:
+    with running(tmp_path, with_test_action("forgetful_elbow.py")):
+        assert end_of(partner, 1) == (True, GoalStatus.STATUS_ABORTED)
+        assert end_of(partner, -1) == (True, GoalStatus.STATUS_ABORTED)
+        assert end_of(partner, 1) == (True, GoalStatus.STATUS_ABORTED)
+
+
+def test_the_table_of_times_names_every_section() -> None:
+    text = CHAPTER.read_text(encoding="utf-8")
+    sections = re.findall(r"^## (.+)$", text, re.MULTILINE)
+    timed = re.findall(r"\[([^\]]+)\]\(#", text.split("That is about")[0])
+    assert [section for section in sections if section not in ("Practice", "What comes next")] == timed
