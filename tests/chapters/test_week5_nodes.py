@@ -79,6 +79,7 @@ def test_the_swing_keeps_to_range_type_and_read_only_and_moves_by_what_was_set(f
     assert positions[-1] == 1.2
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("given", "error"),
     [("amplitude:=1", "InvalidParameterTypeException"), ("amplitude:=3.0", "InvalidParameterValueException")],

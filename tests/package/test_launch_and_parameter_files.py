@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from course_folder import CourseFolder
 
 LAUNCH = """\
@@ -58,6 +59,7 @@ def test_they_are_in_the_package_and_setup_py_installs_them(course: CourseFolder
     assert "<exec_depend>ros2launch</exec_depend>" in (folder / "package.xml").read_text()
 
 
+@pytest.mark.soak
 def test_one_that_left_the_chapters_leaves_the_package(course: CourseFolder) -> None:
     course.write(one=CHAPTER).spinbook("package")
     course.write(one=CHAPTER.replace("config/hello.yaml", "config/other.yaml")).spinbook("package")
@@ -83,6 +85,7 @@ def test_a_file_that_no_cell_writes_is_not_read(course: CourseFolder) -> None:
     assert "it reads a file of parameters, which is not here" in said.stdout
 
 
+@pytest.mark.soak
 def test_a_launch_file_of_which_ros2_launch_knows_not_all_is_shown_and_its_nodes_run_one_by_one(
     course: CourseFolder,
 ) -> None:

@@ -6,7 +6,10 @@ import signal
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 from ros2_terminal import Terminal
+
+from spinbook.ros2.launch.command import launch
 
 # Prints what it is given, and the parameter files among it; `wait` makes it go on until Ctrl-C.
 PROGRAM = """\
@@ -204,12 +207,13 @@ def test_a_node_that_dies_is_named_and_the_launch_fails(workspace: Path, termina
     ],
 )
 def test_what_it_does_not_know_is_refused_with_file_and_line(
-    workspace: Path, terminal: Terminal, name: str, text: str, expected: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, text: str, expected: str
 ) -> None:
-    (workspace / name).write_text(text)
-    answer = terminal.ros2("launch", name, cwd=workspace)
-    assert answer.code == 1
-    assert expected in answer.err
+    monkeypatch.chdir(tmp_path)
+    Path(name).write_text(text)
+    answer = CliRunner().invoke(launch, [name])
+    assert answer.exit_code == 1
+    assert expected in answer.output
 
 
 def test_arguments_and_files_that_are_not_there_are_refused_with_those_that_are(
