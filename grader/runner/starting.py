@@ -42,14 +42,14 @@ def wait_until_up(hub: Hub, connected: Callable[[], bool], has_nodes: Callable[[
         Stopped: when there will be no node.
     """
     try:
-        _wait_until_up(hub, connected)
+        _wait_until_up(hub, connected, has_nodes)
     except Stopped as stopped:
-        if stopped.story == NO_NODE_BUSY and has_nodes(hub):
+        if stopped.story == NO_NODE_BUSY and has_nodes():
             raise Stopped(stopped.outcome, NOT_SPUN_BUSY) from None
         raise
 
 
-def _wait_until_up(hub: Hub, connected: Callable[[], bool]) -> None:
+def _wait_until_up(hub: Hub, connected: Callable[[], bool], has_nodes: Callable[[], bool]) -> None:
     began = hub.now
     hub.wait_until_idle()
     while not (has_nodes() and connected()):
