@@ -51,7 +51,7 @@ audit: setup   ## Show what every exercise's checks are worth; the report lies i
 	@mkdir -p build
 	$(BIN)/spinbook audit --html build/audit.html --json build/audit.json
 
-doctor: setup   ## Say what works on this machine, and how to mend what does not.
+doctor: setup   ## Say what works on this machine, and how to fix what does not.
 	$(BIN)/spinbook doctor
 
 rmw-wheel: setup   ## Write a wheel of the compiled middleware into build/, for machines without a C++ compiler.

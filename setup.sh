@@ -135,7 +135,7 @@ give_up() {
     elif grep -qi 'no space left' "$LOG"; then
         say "" "The disk is full: about 1 GB is needed in $VENV, and as much for a moment in ${TMPDIR:-/tmp}."
     fi
-    say "" "The whole log: $LOG. Run make again when it is mended; set-up starts over."
+    say "" "The whole log: $LOG. Run make again when it is fixed; set-up starts over."
     exit 1
 }
 

@@ -8,19 +8,18 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from grader.crew import Crew, HostFault
-from grader.deadline import OverridesError
+from grader.classroom.deadline import OverridesError
+from grader.classroom.handed_in import SubmissionsError
+from grader.classroom.request import ClassRequest, NoCluster
+from grader.classroom.results import Busy
 from grader.exercise import Exercise, ExerciseError, load
-from grader.exercise.finding import NoExercise, find
+from grader.exercise.loading import NoExercise, find
 from grader.grading import Grade, Options, grading_of
-from grader.intake import IntakeError
-from grader.marking.marks import NoCluster
-from grader.marking.order import Order
-from grader.marking.results import Busy
 from grader.report.as_json import as_json
 from grader.report.terminal import show
 from grader.sandbox import Isolation, Middleware, SandboxUnavailable, choose_middleware, to_be_compiled
 from grader.submission import NoSubmission, Submission, read
+from grader.workers import HostFault, WorkerPool
 
 #: Exit codes. 2 is click's own, for usage.
 FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
@@ -133,12 +132,12 @@ def grade(
         found = load(_folder(exercise))
         if out:
             wishes = (jobs, regrade, overrides, scheduler, rejudge, yes, publish)
-            sys.exit(_class(found, Order(Path(submission), out, options, *wishes)))
+            sys.exit(_class(found, ClassRequest(Path(submission), out, options, *wishes)))
         if Path(submission).is_dir() or submission.endswith(".csv"):
             raise click.UsageError(f"{submission}: to grade a class, say with --out where the results go.")
         handed_in = read(submission, found)
         result = _graded(found, handed_in, options)
-    except (NoSubmission, IntakeError, OverridesError, Busy, NoCluster) as error:
+    except (NoSubmission, SubmissionsError, OverridesError, Busy, NoCluster) as error:
         raise click.UsageError(str(error)) from None
     except ExerciseError as error:
         _stop(f"The exercise is at fault, not the submission.\n{error}")
@@ -154,15 +153,15 @@ def grade(
     sys.exit(OUR_FAULT if result.outcome == "host-error" else NOT_FULL_MARKS if not result.full_marks else FULL_MARKS)
 
 
-def _class(exercise: Exercise, order: Order) -> int:
-    from grader.marking.class_run import grade_class
+def _class(exercise: Exercise, order: ClassRequest) -> int:
+    from grader.classroom.class_run import grade_class
 
     return grade_class(exercise, order, Console(soft_wrap=False, highlight=False))
 
 
 def _graded(exercise: Exercise, submission: Submission, options: Options) -> Grade:
-    with Crew(options.middleware) as crew:
-        return grading_of(exercise, options, crew).grade(submission)
+    with WorkerPool(options.middleware) as workers:
+        return grading_of(exercise, options, workers).grade(submission)
 
 
 def _write(result: Grade, exercise: Exercise, plot: Path | None, bag: Path | None) -> None:

@@ -9,6 +9,6 @@ __version__ = "0.1.0"
 
 def load_ipython_extension(shell: Any) -> None:
     """What `%load_ext spinbook` calls."""
-    from spinbook.runtime.extension import load
+    from spinbook.kernel.extension import load
 
     load(shell)

@@ -19,7 +19,7 @@ class Severity(str, Enum):
 class Problem:
     """One thing to fix in one file.
 
-    `found` says what is there, `mend` what was expected and what to do. `line` counts from 1, and is None where the
+    `found` says what is there, `fix` what was expected and what to do. `line` counts from 1, and is None where the
     whole file is meant. Problems of one `group` have one cause, such as a package that is not installed: a report
     counts them. `alone` says that nothing else stands in the way there.
     """
@@ -27,7 +27,7 @@ class Problem:
     file: Path
     line: int | None
     found: str
-    mend: str
+    fix: str
     severity: Severity = Severity.ERROR
     group: str = ""
     alone: bool = True
@@ -39,7 +39,7 @@ class Problem:
 
     def __str__(self) -> str:
         place = f"{self.file}:{self.line}" if self.line is not None else f"{self.file}"
-        return f"{place}: {self.severity.value}: {self.found}\n    {self.mend}"
+        return f"{place}: {self.severity.value}: {self.found}\n    {self.fix}"
 
 
 class SpinbookError(Exception):

@@ -12,11 +12,11 @@ from pathlib import Path
 import pytest
 
 from grader.classroom import Adjustment, Entry, Student
-from grader.crew import Crew
 from grader.exercise import Exercise, load
 from grader.grading import Grade, Options, grading_of
 from grader.submission import Submission, read
 from grader.submission.reading import of_source
+from grader.workers import WorkerPool
 
 ROOT = Path(__file__).parents[1]
 EXERCISE = ROOT / "exercises" / "joint_velocity"
@@ -60,8 +60,8 @@ def _grades(exercise: Exercise, cache: Path) -> dict[str, Grade]:
     patch = pytest.MonkeyPatch()
     patch.setenv("SPINBOOK_CACHE", str(cache))
     try:
-        with Crew() as crew:
-            grading = grading_of(exercise, Options(), crew)
+        with WorkerPool() as workers:
+            grading = grading_of(exercise, Options(), workers)
             grades = {name: grading.grade(submission) for name, submission in _submissions(exercise).items()}
         # The worker is gone by now: a fault of ours, as the grader tells of it.
         grades["host_error"] = grading.grade(_submissions(exercise)["solution"])

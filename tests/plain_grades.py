@@ -6,8 +6,7 @@ from dataclasses import replace
 from datetime import datetime, timedelta, timezone
 from pathlib import Path
 
-from grader.checking.verdict import Verdict
-from grader.checking.wrong import Finding
+from grader.checking.verdict import Finding, Verdict
 from grader.classroom import Entry, Student
 from grader.exercise import Exercise, load
 from grader.grading import Grade

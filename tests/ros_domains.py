@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-LOOPBACK = Path(__file__).parents[1] / "spinbook" / "runtime" / "loopback.xml"
+LOOPBACK = Path(__file__).parents[1] / "spinbook" / "kernel" / "loopback.xml"
 
 
 @contextmanager

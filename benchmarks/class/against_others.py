@@ -31,10 +31,10 @@ from others_course import (
 from students import EXERCISE, FILE, ROOT, SOLUTIONS
 from variants import reworded
 
-from grader.crew import Crew
-from grader.crew.environment import PROFILE
 from grader.exercise import load
 from grader.grading import Options, grading_of
+from grader.workers import WorkerPool
+from grader.workers.pool import PROFILE
 
 PINS = (
     "nbgrader==0.9.6",
@@ -58,10 +58,10 @@ def main() -> int:
     try:
         students = the_students(wanted.ours)
         theirs = dict(list(students.items())[: wanted.submissions])
-        with Crew() as crew:
-            grading = grading_of(load(ROOT / "exercises" / EXERCISE), Options(), crew)
+        with WorkerPool() as workers:
+            grading = grading_of(load(ROOT / "exercises" / EXERCISE), Options(), workers)
             lasts = lay_scenarios(grading, base / "lib")
-            names = [scenario.name for scenario in grading.spinner.scenarios]
+            names = [scenario.name for scenario in grading.runner.scenarios]
         print(f"{len(names)} scenarios, {lasts:.0f} s of robot time", flush=True)
         rates = {"spinbook": ours(base / "ours", students)}
         rates["nbgrader autograde"] = nbgrader(base / "nbgrader", wanted.environment, names, base / "lib", theirs)

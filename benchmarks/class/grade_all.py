@@ -20,7 +20,7 @@ from grades import wrong_with
 from memory import Memory, Watched
 from students import EXERCISE, ROOT, Handed, the_class, write
 
-from grader.marking.here import at_once
+from grader.classroom.local import at_once
 
 
 def main() -> int:

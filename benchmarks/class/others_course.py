@@ -17,10 +17,10 @@ ASSIGNMENT = "joint_velocity"
 
 def lay_scenarios(grading: Grading, folder: Path) -> float:
     """Write real_time.py and scenarios.json into `folder`; how many seconds all scenarios last together."""
-    spinner = grading.spinner
+    runner = grading.runner
     told: dict[str, Any] = {}
-    for scenario in spinner.scenarios:
-        run = Run(spinner.exercise, grading.references[scenario.name], grading.references[scenario.name])
+    for scenario in runner.scenarios:
+        run = Run(runner.exercise, grading.references[scenario.name], grading.references[scenario.name])
         told[scenario.name] = {
             "messages": [{"at": (m.at - START) / SECOND, "fields": m.fields} for m in scenario.messages],
             "expected": [message.by("name", "velocity") for message in run.received],
@@ -28,7 +28,7 @@ def lay_scenarios(grading: Grading, folder: Path) -> float:
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "scenarios.json").write_text(json.dumps(told), encoding="utf-8")
     shutil.copy(HERE / "real_time.py", folder)
-    return sum(scenario.seconds for scenario in spinner.scenarios)
+    return sum(scenario.seconds for scenario in runner.scenarios)
 
 
 def nbgrader_course(folder: Path, names: list[str], lib: Path) -> Path:

@@ -22,12 +22,12 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from grader.crew import Crew
 from grader.exercise.loading import load
 from grader.grading import Grade, Options
 from grader.grading.grading import Grading, grading_of
 from grader.recording.store import to_json
 from grader.submission.reading import read
+from grader.workers import WorkerPool
 
 HERE = Path(__file__).parent
 COURSE = HERE.parents[1]
@@ -76,8 +76,8 @@ def _texts(grade: Grade) -> dict[str, str]:
 def main() -> int:
     """Run all rounds, print a line for each program, and return 1 if anything differed."""
     options = _options()
-    with Crew() as crew:
-        grading = grading_of(load(COURSE / "exercises" / "joint_velocity"), Options(parallel=1), crew)
+    with WorkerPool() as workers:
+        grading = grading_of(load(COURSE / "exercises" / "joint_velocity"), Options(parallel=1), workers)
         counts = {file: Counts() for file in _files(options.only)}
         for number in range(options.rounds):
             began = time.monotonic()
@@ -104,7 +104,7 @@ def _files(only: str) -> list[Path]:
 
 
 def _round(grading: Grading, counts: dict[Path, Counts]) -> None:
-    exercise = grading.spinner.exercise
+    exercise = grading.runner.exercise
     with ThreadPoolExecutor(2 * len(os.sched_getaffinity(0))) as pool:
         grades = {file: pool.submit(grading.grade, read(str(file), exercise)) for file in counts}
         for file, grade in grades.items():

@@ -12,10 +12,10 @@ import statistics
 import time
 from pathlib import Path
 
-from grader.crew import Crew
 from grader.exercise import load
 from grader.grading import Options, grading_of
 from grader.submission import read
+from grader.workers import WorkerPool
 
 ROOT = Path(__file__).parents[2]
 
@@ -36,16 +36,16 @@ def main() -> None:
     assert exercise.solution_file
     submission = read(str(exercise.solution_file), exercise)
     lockstep, whole, measure = [], [], []
-    with Crew() as crew:
-        grading = grading_of(exercise, Options(), crew)
-        alone = grading_of(exercise, Options(parallel=1), crew)
+    with WorkerPool() as workers:
+        grading = grading_of(exercise, Options(), workers)
+        alone = grading_of(exercise, Options(parallel=1), workers)
         for _ in range(runs):
             measure.append(yardstick())
             began = time.perf_counter()
             grade = grading.grade(submission)
             whole.append(time.perf_counter() - began)
             assert grade.full_marks, grade
-            chapter = alone.spinner.only("chapter").spin(submission)["chapter"]
+            chapter = alone.runner.only("chapter").spin(submission)["chapter"]
             lockstep.append(chapter.lockstep_seconds)
     unit = statistics.median(measure)
     for name, values in (("10 s of robot time at 10 Hz", lockstep), ("a complete grade", whole)):

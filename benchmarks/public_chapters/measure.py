@@ -22,11 +22,11 @@ from typing import Any
 
 from spinbook.build.execution import Job, execute
 from spinbook.build.notebooks import build_notebooks
-from spinbook.build.reading import read_all
 from spinbook.chapter.chapter import CellKind
 from spinbook.chapter.imports import missing_imports
 from spinbook.chapter.python_code import CodeError, PythonCode, inspect
 from spinbook.chapter.read import Reading
+from spinbook.chapters import read_all
 from spinbook.course.course import Course, read_course
 from spinbook.course.obstacles import ranked
 

@@ -1,31 +1,170 @@
-"""Audits one exercise."""
+"""Audits one exercise: plans what to try, tries several programs at once, and collects the results."""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from dataclasses import dataclass, field
+from typing import Protocol
 
-from grader.audit.costs import check_results, scenario_results
-from grader.audit.listing import Check, ChecksJob
-from grader.audit.plan import SEEDS, planned
-from grader.audit.programs import judged, problems_of
+from grader.audit.candidates import (
+    Candidate,
+    Seed,
+    baselines,
+    judged,
+    mistakes,
+    over_seed,
+    problems_of,
+    right_ones,
+    seeds_of,
+)
+from grader.audit.listing import Check, ChecksJob, problems_in_text
+from grader.audit.mutants import Mutant, mutants_of
+from grader.audit.recordings import Spins, tidy
 from grader.audit.result import LEAST_SCORE, Audit, MutantResult, Problem, score_of
-from grader.audit.spins import Spins, tidy
 from grader.audit.store import Store
-from grader.audit.surviving import problems_of_survivors, result_of
-from grader.audit.survivors import listed, stale
-from grader.audit.told import problems_in_text
-from grader.audit.trial import Trials
-from grader.audit.trying import Progress, try_all
-from grader.audit.worth import messages, problems_of_broken, problems_of_checks
-from grader.crew import Crew
+from grader.audit.survivors import listed, problems_of_survivors, result_of, stale
+from grader.audit.trial import Trial, Trials, Until
+from grader.audit.worth import check_results, messages, problems_of_broken, problems_of_checks, scenario_results
 from grader.exercise import Exercise
 from grader.grading import Options, grading_of
+from grader.grading.reference import solution_file
+from grader.submission.reading import of_source
+from grader.workers import WorkerPool
+
+#: Over how many seeds right solutions have to be right.
+SEEDS = 20
+
+#: How many mutants a quick audit tries.
+SAMPLE = 12
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Everything that is to be tried. `quick` is whether a trial ends as soon as it is clear.
+
+    `sampled` is whether there are more mutants than these.
+    """
+
+    right: list[Candidate]
+    seeds: list[Seed]
+    baselines: list[Candidate]
+    mistakes: list[Candidate]
+    mutants: tuple[Mutant, ...]
+    quick: bool
+    sampled: bool
+
+
+def planned(trials: Trials, quick: bool, most: int | None, seeds: int = SEEDS) -> Plan:
+    """All there is; in a quick audit without the other right solutions and the seeds. At most `most` mutants."""
+    exercise = trials.grading.runner.exercise
+    right = right_ones(exercise)
+    every = mutants_of(solution_file(exercise).read_text(encoding="utf-8"), exercise)
+    limit = SAMPLE if quick and most is None else most
+    chosen = every if limit is None else sample(every, limit)
+    return Plan(
+        right=right[:1] if quick else right,
+        seeds=[] if quick else seeds_of(trials, seeds),
+        baselines=baselines(exercise),
+        mistakes=mistakes(exercise),
+        mutants=chosen,
+        quick=quick,
+        sampled=len(chosen) < len(every),
+    )
+
+
+def sample(mutants: tuple[Mutant, ...], size: int) -> tuple[Mutant, ...]:
+    """So many mutants, of as many operators as there are; always the same."""
+    turns: dict[str, int] = {}
+    ranked: list[tuple[int, str, Mutant]] = []
+    for mutant in sorted(mutants, key=lambda mutant: mutant.id):
+        turns[mutant.operator] = turns.get(mutant.operator, 0) + 1
+        ranked.append((turns[mutant.operator], mutant.id, mutant))
+    chosen = [mutant for _, _, mutant in sorted(ranked, key=lambda entry: entry[:2])[:size]]
+    return tuple(sorted(chosen, key=lambda mutant: mutant.line))
+
+
+class Progress(Protocol):
+    """Hears how far an audit is."""
+
+    def begin(self, exercise: str, total: int) -> None:
+        """There are `total` things to try."""
+
+    def done(self) -> None:
+        """One of them is tried."""
+
+
+@dataclass(frozen=True)
+class Tried:
+    """The trials: of the author's programs by name, of mutants by id, of right solutions with each further seed."""
+
+    programs: dict[str, Trial] = field(default_factory=dict)
+    mutants: dict[str, Trial] = field(default_factory=dict)
+    seeds: dict[int, dict[str, Trial]] = field(default_factory=dict)
+
+    @property
+    def all(self) -> list[Trial]:
+        """Every trial with the usual seed."""
+        return [*self.programs.values(), *self.mutants.values()]
+
+
+def try_all(plan: Plan, trials: Trials, store: Store, progress: Progress) -> Tried:
+    """The trial of everything in the plan. Raises `HostFault` where the machine or we are at fault."""
+    tried = Tried()
+    work = _Work(plan, trials, store)
+    progress.begin(trials.grading.runner.exercise.name, len(plan.seeds) + len(plan.mutants) + len(_programs(plan)))
+    with ThreadPoolExecutor(trials.grading.runner.options.parallel) as pool:
+        # What takes longest first, so that nothing is left over at the end.
+        seeds = {pool.submit(over_seed, trials, store, seed, plan.right): seed for seed in plan.seeds}
+        programs = {pool.submit(work.program, program): program for program in _programs(plan)}
+        mutants = {pool.submit(work.mutant, mutant): mutant for mutant in plan.mutants}
+        every: list[Future[object]] = [*seeds, *programs, *mutants]  # type: ignore[list-item]
+        try:
+            for future in as_completed(every):
+                future.result()
+                progress.done()
+        except BaseException:
+            # Ctrl-C, or a fault: nobody wants to wait for what is under way.
+            trials.spins.stopped.set()
+            raise
+        finally:
+            for future in every:
+                future.cancel()
+        tried.seeds.update({seed.number: future.result() for future, seed in seeds.items()})
+        tried.programs.update({program.name: future.result() for future, program in programs.items()})
+        tried.mutants.update({mutant.id: future.result() for future, mutant in mutants.items()})
+    return tried
+
+
+def _programs(plan: Plan) -> list[Candidate]:
+    return [*plan.right, *plan.baselines, *plan.mistakes]
+
+
+@dataclass(frozen=True)
+class _Work:
+    plan: Plan
+    trials: Trials
+    store: Store
+
+    def program(self, program: Candidate) -> Trial:
+        """In a quick audit, of a mistake only what the checks that it names say."""
+        only = program.caught_by if self.plan.quick and program.kind == "mistake" else ()
+        make: Callable[[], Trial] = lambda: self.trials.try_(program.submission, only)  # noqa: E731
+        return self.store.trial({"code": program.submission.digest, "only": only}, make)
+
+    def mutant(self, mutant: Mutant) -> Trial:
+        """Most are caught in the first scenario, and need no other; in a quick audit any failure is enough."""
+        submission = of_source(mutant.id, mutant.source.encode(), self.trials.grading.runner.exercise)
+        until: Until = "a failure" if self.plan.quick else "a failure in the first"
+        make: Callable[[], Trial] = lambda: self.trials.try_(submission, until=until)  # noqa: E731
+        return self.store.trial({"code": submission.digest, "until": until}, make)
 
 
 def audit(
     exercise: Exercise,
     options: Options,
-    crew: Crew,
+    workers: WorkerPool,
     progress: Progress,
     quick: bool = False,
     most: int | None = None,
@@ -39,9 +178,9 @@ def audit(
     Raises what `grading_of` raises.
     """
     began = time.monotonic()
-    crew.prepare_to_judge()
-    grading = grading_of(exercise, options, crew)
-    checks: tuple[Check, ...] = crew.do(ChecksJob(exercise, grading.references))
+    workers.prepare_to_judge()
+    grading = grading_of(exercise, options, workers)
+    checks: tuple[Check, ...] = workers.do(ChecksJob(exercise, grading.references))
     trials = Trials(grading, checks, Spins(grading))
     store = Store(trials)
     reasons = listed(exercise)
@@ -53,7 +192,7 @@ def audit(
     different = {r.mutant.id: tried.mutants[r.mutant.id] for r in mutants if r.fate != "equivalent"}
     mistakes = {mistake.name: tried.programs[mistake.name] for mistake in plan.mistakes}
     evidence = {**mistakes, **{f"the mutant {id_}": trial for id_, trial in different.items()}}
-    programs = [*plan.right, *plan.nothings, *plan.mistakes]
+    programs = [*plan.right, *plan.baselines, *plan.mistakes]
     problems = problems_of(programs, tried.programs, checks)
     for number, with_seed in tried.seeds.items():
         problems += problems_of(plan.right, with_seed, checks, number)
@@ -65,7 +204,7 @@ def audit(
         problems += stale(exercise, reasons, {r.mutant.id: r.fate for r in mutants})
         problems += _low_score(exercise, mutants)
 
-    scenarios = scenario_results(grading.spinner.scenarios, checks, tried.all)
+    scenarios = scenario_results(grading.runner.scenarios, checks, tried.all)
     return Audit(
         exercise=exercise.name,
         title=exercise.title,
@@ -89,5 +228,5 @@ def _low_score(exercise: Exercise, mutants: tuple[MutantResult, ...]) -> list[Pr
     if score >= LEAST_SCORE:
         return []
     told = f"{score:.1%} of the mutants that can be told from the solution are caught"
-    mend = f"At least {LEAST_SCORE:.0%} are to be: add checks for what survives."
-    return [Problem(str(exercise.folder), exercise.name, told, mend)]
+    fix = f"At least {LEAST_SCORE:.0%} are to be: add checks for what survives."
+    return [Problem(str(exercise.folder), exercise.name, told, fix)]

@@ -1,15 +1,22 @@
-"""The programs of the author's that an exercise is audited with."""
+"""The programs an exercise is audited with: its author's files, and what each of them must score."""
 
 from __future__ import annotations
 
 import ast
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
+from grader.audit.listing import Check
+from grader.audit.result import Judged, Problem
+from grader.audit.store import Store
+from grader.audit.trial import Trial, Trials
 from grader.exercise import Exercise, starter
 from grader.grading.reference import solution_file
+from grader.recording import Recording
+from grader.scenario import Scenario
+from grader.scenario.declared import declared
 from grader.submission import Submission
 from grader.submission.reading import of_source
 
@@ -47,7 +54,7 @@ def mistakes(exercise: Exercise) -> list[Candidate]:
     return [_candidate("mistake", file, exercise) for file in sorted(folder.glob("*.py"))]
 
 
-def nothings(exercise: Exercise) -> list[Candidate]:
+def baselines(exercise: Exercise) -> list[Candidate]:
     """What must get no points at all: the starter, an empty file, a node that does nothing."""
     solution = solution_file(exercise)
     sources = {
@@ -77,3 +84,159 @@ def _header(text: str) -> str:
         return ast.get_docstring(ast.parse(text)) or ""
     except SyntaxError:
         return ""
+
+
+@dataclass(frozen=True)
+class Seed:
+    """One seed, with the scenarios that are not as with the audit's own."""
+
+    number: int
+    scenarios: tuple[Scenario, ...]
+    randomised: tuple[Scenario, ...]
+
+
+def seeds_of(trials: Trials, count: int) -> list[Seed]:
+    """The seeds beside the audit's own that make `count` with it; none where no scenario has chance in it."""
+    runner = trials.grading.runner
+    usual = {scenario.digest for scenario in runner.scenarios}
+    found = []
+    for number in range(1, count + 1):
+        if number != runner.options.seed:
+            scenarios = declared(runner.exercise, number)
+            changed = tuple(scenario for scenario in scenarios if scenario.digest not in usual)
+            if changed:
+                found.append(Seed(number, scenarios, changed))
+    return found
+
+
+def over_seed(trials: Trials, store: Store, seed: Seed, candidates: list[Candidate]) -> dict[str, Trial]:
+    """The trial of each candidate (the solution is the first) with this seed, by name."""
+    made: dict[str, Recording] = {}
+
+    def references() -> dict[str, Recording]:
+        if not made:
+            solution = candidates[0].submission
+            made.update(trials.grading.references)
+            made.update(_spun(trials, solution, seed.randomised))
+        return made
+
+    def trial_of(candidate: Candidate) -> Trial:
+        grading = trials.grading
+        runner = replace(grading.runner, scenarios=seed.scenarios)
+        with_seed = replace(trials, grading=replace(grading, runner=runner, references=references()))
+        if candidate is candidates[0]:
+            return with_seed.trial_of_recordings(references())
+        spun = _spun(trials, candidate.submission, seed.randomised)
+        return with_seed.trial_of_recordings({**references(), **spun})
+
+    digests = [scenario.digest for scenario in seed.randomised]
+    return {
+        candidate.name: store.trial(
+            {"code": candidate.submission.digest, "seed": seed.number, "randomised": digests},
+            lambda candidate=candidate: trial_of(candidate),  # type: ignore[misc]
+        )
+        for candidate in candidates
+    }
+
+
+def _spun(trials: Trials, submission: Submission, scenarios: tuple[Scenario, ...]) -> dict[str, Recording]:
+    """The recordings, by scenario.
+
+    What has the same messages and steps as another is not run again: here only the numbers are in question.
+    """
+    spun: list[Scenario] = []
+    made: dict[str, Recording] = {}
+    for scenario in scenarios:
+        like = next((one for one in spun if _content(one) == _content(scenario)), None)
+        if like:
+            made[scenario.name] = replace(made[like.name], scenario=scenario.name)
+        else:
+            made[scenario.name] = trials.spin(submission, scenario)
+            spun.append(scenario)
+    return made
+
+
+def _content(scenario: Scenario) -> Scenario:
+    """All that matters to which numbers there are."""
+    return replace(scenario, name="", title="", computer_time="apart")
+
+
+def judged(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> Judged:
+    """How a program did."""
+    return Judged(candidate.name, candidate.kind, candidate.title, trial.failed, _score(trial, checks))
+
+
+def problems_of(
+    candidates: list[Candidate], trials: dict[str, Trial], checks: tuple[Check, ...], seed: int | None = None
+) -> list[Problem]:
+    """What did not come out as it has to; `seed` is set where another than the usual one was tried."""
+    found: list[Problem] = []
+    for candidate in candidates:
+        trial = trials[candidate.name]
+        if candidate.kind == "nothing":
+            found += _nothing(candidate, trial, checks)
+        elif candidate.kind == "mistake":
+            found += _mistake(candidate, trial, checks)
+        else:
+            found += _right(candidate, trial, seed)
+    return found
+
+
+def _right(candidate: Candidate, trial: Trial, seed: int | None) -> list[Problem]:
+    with_seed = f" with --seed {seed}" if seed is not None else ""
+    fix = "Fix the check if the solution is right, else the solution."
+    return [
+        Problem(
+            str(candidate.file),
+            name,
+            f"the right solution {candidate.name} fails {name}{with_seed}: {trial.findings[name].text}",
+            fix,
+        )
+        for name in trial.failed
+    ]
+
+
+def _nothing(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> list[Problem]:
+    fix = "Let it depend on the check that says that anything comes at all."
+    return [
+        Problem(
+            f"{check.file}:{check.line}",
+            check.name,
+            f"{candidate.name} passes {check.name} and gets {check.points:g} points, where it must get none",
+            fix,
+        )
+        for check in checks
+        if trial.statuses.get(check.name) == "passed" and check.points
+    ]
+
+
+def _mistake(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> list[Problem]:
+    place = f"{candidate.file}:{candidate.line}"
+    said = f"the mistake {candidate.name} (“{candidate.title}”)"
+    known = {check.name for check in checks}
+    if not candidate.caught_by:
+        fix = "Write “Caught by:” in its docstring, and under it each check after “- ”."
+        return [Problem(place, candidate.name, f"{said} names no check that is to catch it", fix)]
+    found = []
+    for name in candidate.caught_by:
+        status = trial.statuses.get(name)
+        fix = "Fix the check so that it fails, or take it off the list under “Caught by:”."
+        if name not in known:
+            fix = "Write the check (again), or take it off the list under “Caught by:”."
+            found.append(Problem(place, name, f"{said} is to be caught by {name}: there is no such check", fix))
+        elif status == "passed":
+            found.append(Problem(place, name, f"{name} lets {said} through", fix))
+        elif status == "blocked":
+            by = ", ".join(trial.failed) or "another check"
+            told = f"{name} is to catch {said}, but is blocked: it depends on {by}, which fails"
+            found.append(Problem(place, name, told, fix))
+    for name in trial.failed:
+        if name not in candidate.caught_by:
+            told = f"{said} fails {name}, too, which it does not name: {trial.findings[name].text}"
+            fix = "Fix the check if this is no mistake in its eyes, else add it under “Caught by:”."
+            found.append(Problem(place, name, told, fix))
+    return found
+
+
+def _score(trial: Trial, checks: tuple[Check, ...]) -> float:
+    return sum(check.points for check in checks if trial.statuses.get(check.name) == "passed")

@@ -9,18 +9,16 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from grader.audit.report.as_json import write_json
-from grader.audit.report.progress import on
-from grader.audit.report.terminal import show, show_shadow
+from grader.audit.report import on, show, show_shadow, write_json
 from grader.audit.result import Audit, Problem
-from grader.crew import Crew, HostFault
 from grader.exercise import Exercise, ExerciseError, load
-from grader.exercise.finding import NoExercise, find
+from grader.exercise.loading import NoExercise, find
 from grader.grading import Options
 from grader.sandbox import Middleware, SandboxUnavailable, choose_middleware
+from grader.workers import HostFault, WorkerPool
 
 #: Exit codes, beside click's 2 for usage and a shell's 130 for Ctrl-C.
-PROVED, TO_MEND, OUR_FAULT, STOPPED = 0, 1, 3, 130
+PROVED, TO_FIX, OUR_FAULT, STOPPED = 0, 1, 3, 130
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
@@ -65,7 +63,7 @@ def audit(
     exercise takes minutes. What has been tried before is not tried again while nothing that it depends on has changed,
     so that an audit after a change takes seconds, and one that was stopped goes on.
 
-    Exit codes: 0 all is proved, 1 there is something to mend, 2 wrong usage, 3 a fault of the machine's or ours.
+    Exit codes: 0 all is proved, 1 there is something to fix, 2 wrong usage, 3 a fault of the machine's or ours.
     """
     for option, file in (("--json", json_), ("--html", html)):
         if file and (file.is_dir() or not file.absolute().parent.is_dir()):
@@ -82,20 +80,20 @@ def audit(
     try:
         if not shadow and (warning := choose_middleware(options.middleware).warning):
             click.echo(warning, err=True)
-        with Crew(*(Middleware if shadow else (options.middleware,))) as crew:
+        with WorkerPool(*(Middleware if shadow else (options.middleware,))) as workers:
             for folder in [_folder(name) for name in exercises] or _all_here():
                 try:
                     if shadow:
-                        differing += _shadowed(load(folder), options, crew, console)
+                        differing += _shadowed(load(folder), options, workers, console)
                         continue
-                    audits.append(_audited(load(folder), options, crew, console, quick, mutants, seeds))
+                    audits.append(_audited(load(folder), options, workers, console, quick, mutants, seeds))
                 except ExerciseError as error:
                     faulty.append(error)
                     click.echo(f"{error}\n    The rest of this exercise was not audited.", err=True)
         if json_:
             write_json(audits, [_problem(error) for error in faulty], json_)
         if html:
-            from grader.audit.report.html import write_html
+            from grader.audit.report import write_html
 
             write_html(audits, [_problem(error) for error in faulty], html)
     except (SandboxUnavailable, HostFault) as error:
@@ -107,15 +105,15 @@ def audit(
     except KeyboardInterrupt:
         click.echo("Stopped. What was tried is kept; the same command goes on from there.", err=True)
         sys.exit(STOPPED)
-    sys.exit(TO_MEND if faulty or differing or any(result.problems for result in audits) else PROVED)
+    sys.exit(TO_FIX if faulty or differing or any(result.problems for result in audits) else PROVED)
 
 
-def _shadowed(exercise: Exercise, options: Options, crew: Crew, console: Console) -> int:
+def _shadowed(exercise: Exercise, options: Options, workers: WorkerPool, console: Console) -> int:
     """Show on which verdicts the two middlewares disagree; how many there are."""
     from grader.audit.shadow import shadow
 
     with on(Console(stderr=True)) as progress:
-        result = shadow(exercise, options, crew, progress)
+        result = shadow(exercise, options, workers, progress)
     show_shadow(result, console)
     return len(result.differing)
 
@@ -123,29 +121,29 @@ def _shadowed(exercise: Exercise, options: Options, crew: Crew, console: Console
 def _audited(
     exercise: Exercise,
     options: Options,
-    crew: Crew,
+    workers: WorkerPool,
     console: Console,
     quick: bool,
     mutants: int | None,
     seeds: int | None,
 ) -> Audit:
     try:
+        from grader.audit.audit import SEEDS
         from grader.audit.audit import audit as audit_one
-        from grader.audit.plan import SEEDS
     except ModuleNotFoundError as error:
         if error.name != "libcst":
             raise
         told = "Mutants are made with libcst, which is not installed: pip install 'spinbook[audit]'"
         raise click.UsageError(told) from None
     with on(Console(stderr=True)) as progress:
-        result = audit_one(exercise, options, crew, progress, quick, mutants, seeds or SEEDS)
+        result = audit_one(exercise, options, workers, progress, quick, mutants, seeds or SEEDS)
     show(result, console)
     return result
 
 
 def _problem(error: ExerciseError) -> Problem:
     place = f"{error.file}:{error.line}" if error.line else f"{error.file}"
-    return Problem(place, error.file.parent.name, error.found, error.mend)
+    return Problem(place, error.file.parent.name, error.found, error.fix)
 
 
 def _folder(exercise: str) -> Path:

@@ -1,10 +1,11 @@
-"""Lists an exercise's checks as their author wrote them, and takes the time of each."""
+"""An exercise's checks as their author wrote them, their times, and what students are told of them."""
 
 from __future__ import annotations
 
 import contextlib
 import inspect
 import io
+import re
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,13 +14,15 @@ from typing import Any
 
 import pytest
 
-from grader.checking.check import mark_of
+from grader.audit.result import Problem
 from grader.checking.judging import run_pytest
 from grader.checking.plugin import Checks
 from grader.checking.run import Run
-from grader.exercise import Exercise
+from grader.checking.verdict import mark_of
+from grader.exercise import Exercise, starter
+from grader.grading.reference import solution_file
 from grader.recording import Recording
-from grader.sandbox import Nursery
+from grader.sandbox import ForkServer
 
 
 @dataclass(frozen=True)
@@ -50,7 +53,7 @@ class ChecksJob:
     exercise: Exercise
     references: dict[str, Recording]
 
-    def run(self, nursery: Nursery, ready: Callable[[], None]) -> Any:
+    def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Any:
         """A tuple of `Check`. Raises `ExerciseError` where the files of checks are unusable."""
         ready()
         runs = {name: Run(self.exercise, recording, recording) for name, recording in self.references.items()}
@@ -92,3 +95,51 @@ class _Listing(Checks):
             line=function.__code__.co_firstlineno,
             seconds=seconds,
         )
+
+
+#: A line of the solution that is shorter than this gives nothing away: `else:`, `return`, `pass`.
+SHORTEST = 12
+
+
+def problems_in_text(exercise: Exercise, checks: tuple[Check, ...]) -> list[Problem]:
+    """Hidden checks without their sentence in the task; hints and titles that hold a line of the solution."""
+    return [*_rules(exercise, checks), *_giveaways(exercise, checks)]
+
+
+def _rules(exercise: Exercise, checks: tuple[Check, ...]) -> list[Problem]:
+    task = _plain(exercise.task)
+    found = []
+    for check in checks:
+        place = f"{check.file}:{check.line}"
+        if check.hidden and not check.rule:
+            told = f"the hidden check {check.name} does not name the sentence of the task on which it stands"
+            found.append(Problem(place, check.name, told, 'Add rule="…" to @check, with the sentence of task.md.'))
+        elif check.rule and _plain(check.rule) not in task:
+            told = f"{check.name} stands on a sentence that is not in the task: “{check.rule}”"
+            found.append(Problem(place, check.name, told, "Write the sentence in task.md, or name the one there is."))
+    return found
+
+
+def _plain(text: str) -> str:
+    """Without Markdown's marks, and with one space wherever there is some."""
+    return " ".join(re.sub(r"[*`]", "", text).split())
+
+
+def _giveaways(exercise: Exercise, checks: tuple[Check, ...]) -> list[Problem]:
+    source = solution_file(exercise).read_text(encoding="utf-8")
+    given = {_squeezed(line) for line in starter(source).splitlines()}
+    lines = {line.split("  #")[0].strip() for line in source.splitlines() if not line.strip().startswith("#")}
+    secret = {_squeezed(line): line for line in lines if len(line) >= SHORTEST and _squeezed(line) not in given}
+    found = []
+    for check in checks:
+        for name, text in (("hint", check.hint), ("title", check.title)):
+            for squeezed, line in secret.items():
+                if squeezed in _squeezed(text):
+                    told = f"the {name} of {check.name} holds a line of the solution: {line}"
+                    fix = "Say where to look, not what to write."
+                    found.append(Problem(f"{check.file}:{check.line}", check.name, told, fix))
+    return found
+
+
+def _squeezed(text: str) -> str:
+    return re.sub(r"\s", "", text).replace('"', "'")

@@ -17,7 +17,7 @@ Fate = Literal["caught", "equivalent", "listed", "survived"]
 
 @dataclass(frozen=True)
 class Problem:
-    """Something for the exercise's author to mend.
+    """Something for the exercise's author to fix.
 
     `place` is a file, with a line where there is one. `about` names the check, the mistake or the mutant that it is
     about. `diff` is there for a mutant, and `evidence` for what it is that differs.
@@ -26,7 +26,7 @@ class Problem:
     place: str
     about: str
     found: str
-    mend: str
+    fix: str
     diff: str = ""
     evidence: str = ""
 

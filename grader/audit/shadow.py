@@ -11,15 +11,15 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
+from grader.audit.audit import Progress
 from grader.audit.candidates import Candidate, mistakes, right_ones
-from grader.audit.trying import Progress
 from grader.checking.verdict import Verdict
-from grader.crew import Crew, HostFault
 from grader.exercise import Exercise
 from grader.grading import Grade, Options, grading_of
 from grader.grading.grading import Grading
 from grader.recording import Recording
 from grader.sandbox import Middleware
+from grader.workers import HostFault, WorkerPool
 
 #: What is compared besides the checks.
 OUTCOME = "outcome"
@@ -62,14 +62,14 @@ class Shadow:
     seconds: float
 
 
-def shadow(exercise: Exercise, options: Options, crew: Crew, progress: Progress) -> Shadow:
+def shadow(exercise: Exercise, options: Options, workers: WorkerPool, progress: Progress) -> Shadow:
     """Grade every file of the exercise's solutions over both middlewares, and compare.
 
     Raises what `grading_of` raises, `MiddlewareUnavailable` where one can't be had, and `HostFault` where a program
     can't be graded by a fault of the machine's or ours.
     """
     began = time.monotonic()
-    gradings = [grading_of(exercise, replace(options, middleware=one), crew) for one in Middleware]
+    gradings = [grading_of(exercise, replace(options, middleware=one), workers) for one in Middleware]
     programs = [*right_ones(exercise), *mistakes(exercise)]
     progress.begin(exercise.name, len(programs))
     with ThreadPoolExecutor(options.parallel) as pool:
@@ -87,11 +87,11 @@ def _compared(program: Candidate, gradings: list[Grading], progress: Progress) -
 
 
 def _graded(program: Candidate, grading: Grading) -> Grade:
-    spinner = grading.spinner
-    one_at_a_time = replace(spinner, options=replace(spinner.options, parallel=1))
-    grade = replace(grading, spinner=one_at_a_time).grade(program.submission)
+    runner = grading.runner
+    one_at_a_time = replace(runner, options=replace(runner.options, parallel=1))
+    grade = replace(grading, runner=one_at_a_time).grade(program.submission)
     if grade.outcome == "host-error":
-        raise HostFault(f"{program.file} can't be graded over {spinner.middleware}: {grade.message}")
+        raise HostFault(f"{program.file} can't be graded over {runner.middleware}: {grade.message}")
     return grade
 
 

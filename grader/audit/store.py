@@ -9,12 +9,10 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
-from grader.audit.comparing import Difference
-from grader.audit.spins import audit_folder, engine, keep
-from grader.audit.trial import Trial, Trials
-from grader.checking.wrong import Finding
-from grader.grading.reference import solution_file
-from grader.grading.versions import digest_of
+from grader.audit.recordings import audit_folder, engine, keep
+from grader.audit.trial import Difference, Trial, Trials
+from grader.checking.verdict import Finding
+from grader.grading.reference import digest_of, solution_file
 
 #: What decides a trial beside what decides a recording.
 JUDGING = ("checking", "audit/trial.py", "audit/comparing.py", "audit/listing.py")
@@ -24,15 +22,15 @@ class Store:
     """The kept trials of one exercise. `made` and `kept` count those made now and known from before."""
 
     def __init__(self, trials: Trials) -> None:
-        spinner = trials.grading.spinner
-        exercise = spinner.exercise
+        runner = trials.grading.runner
+        exercise = runner.exercise
         self._folder = audit_folder(exercise.name)
         self._common = {
             "solution": digest_of([solution_file(exercise)]),
             "exercise": digest_of([exercise.folder / "exercise.toml", *exercise.check_files]),
-            "scenarios": [scenario.digest for scenario in spinner.scenarios],
-            "engine": engine(spinner.middleware, JUDGING),
-            "isolation": str(spinner.isolation),
+            "scenarios": [scenario.digest for scenario in runner.scenarios],
+            "engine": engine(runner.middleware, JUDGING),
+            "isolation": str(runner.isolation),
         }
         self._lock = threading.Lock()
         self.made = 0

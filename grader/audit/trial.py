@@ -1,21 +1,94 @@
-"""A trial: one program spun through the scenarios and judged, as far as its verdict needs."""
+"""A trial: one program run through the scenarios and judged, as far as its verdict needs."""
 
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, field
-from typing import Literal
+import json
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from typing import Any, Literal
 
-from grader.audit.comparing import Difference, differences
 from grader.audit.listing import Check
-from grader.audit.spins import Spins
-from grader.checking.verdict import Status, Verdict
-from grader.checking.wrong import Finding
-from grader.crew.jobs import JudgeJob
+from grader.audit.recordings import Spins
+from grader.checking.verdict import Finding, Status, Verdict
 from grader.grading.grading import Grading
-from grader.recording import Ending, Recording
+from grader.recording import Ending, Received, Recording
 from grader.scenario import Scenario
 from grader.submission import Submission
+from grader.workers.jobs import JudgeJob
+
+
+@dataclass(frozen=True)
+class Difference:
+    """One thing that differs in one scenario, in words."""
+
+    scenario: str
+    what: str
+
+
+def differences(recording: Recording, reference: Recording) -> tuple[Difference, ...]:
+    """Everything that can be seen of a node from outside and differs: messages, graph, how it ended. Its log is not."""
+    found: list[str] = []
+    if recording.ending != reference.ending:
+        found.append(f"it ended otherwise: {recording.ending.story or recording.ending.traceback or 'not in time'}")
+    if recording.nodes != reference.nodes:
+        found.append(f"nodes {_named(recording.nodes)}, the solution's {_named(reference.nodes)}")
+    found += _ends(recording, reference)
+    if recording.hold != reference.hold or recording.uses_sim_time != reference.uses_sim_time:
+        found.append("its services or its clock differ")
+    found += _messages(recording.received, reference.received)
+    found += _events(recording, reference)
+    return tuple(Difference(recording.scenario, what) for what in found)
+
+
+def _named(names: tuple[str, ...]) -> str:
+    return ", ".join(names) or "none"
+
+
+def _ends(recording: Recording, reference: Recording) -> list[str]:
+    mine, its = Counter(recording.end_points), Counter(reference.end_points)
+    words = (("more", mine - its), ("fewer", its - mine))
+    return [
+        f"one {end.kind} {word}: {end.topic} ({end.type}, {end.reliability}, {end.durability})"
+        for word, ends in words
+        for end in ends.elements()
+    ]
+
+
+def _messages(mine: tuple[Received, ...], its: tuple[Received, ...]) -> list[str]:
+    if len(mine) != len(its):
+        return [f"{len(mine)} messages, the solution's {len(its)}"]
+    fields: Counter[str] = Counter()
+    for message, other in zip(mine, its, strict=True):
+        if (message.at, message.after, message.topic) != (other.at, other.after, other.topic):
+            fields["when they came"] += 1
+        fields.update(name for name in other.fields if _text(message.fields.get(name)) != _text(other.fields[name]))
+    return [f"{count} of {len(its)} messages differ in {name}" for name, count in sorted(fields.items())]
+
+
+def _events(recording: Recording, reference: Recording) -> list[str]:
+    """What differs in calls, goals, parameters and ends of programs."""
+    found = []
+    events: tuple[tuple[str, Sequence[Any], Sequence[Any]], ...] = (
+        ("calls of services", recording.calls, reference.calls),
+        ("goals", recording.goals, reference.goals),
+        ("settings of parameters", recording.parameters, reference.parameters),
+        ("readings of parameters", recording.readings, reference.readings),
+        ("ends of programs", recording.exits, reference.exits),
+    )
+    for name, mine, its in events:
+        if len(mine) != len(its):
+            found.append(f"{len(mine)} {name}, the solution's {len(its)}")
+        elif differ := sum(_text(asdict(one)) != _text(asdict(other)) for one, other in zip(mine, its, strict=True)):
+            found.append(f"{differ} of {len(its)} {name} differ")
+    return found
+
+
+def _text(value: Any) -> str:
+    """NaN is not equal to itself; its text is."""
+    return json.dumps(value, sort_keys=True)
+
 
 #: Where a trial may end before its end.
 Until = Literal["a failure", "a failure in the first", "the end"]
@@ -70,7 +143,7 @@ class Trials:
         if not submission.program:
             return self._nothing(submission.problem)
         wanted_checks = self._with_what_they_depend_on(only)
-        scenarios = list(self.grading.spinner.scenarios)
+        scenarios = list(self.grading.runner.scenarios)
         recordings = {scenarios[0].name: self.spin(submission, scenarios[0])}
         first = recordings[scenarios[0].name]
         if first.ending.outcome != "completed":
@@ -92,9 +165,9 @@ class Trials:
 
     def judge(self, recordings: dict[str, Recording], references: dict[str, Recording]) -> dict[str, Verdict]:
         """The verdicts on these recordings, by check."""
-        spinner = self.grading.spinner
-        titles = {scenario.name: scenario.title for scenario in spinner.scenarios}
-        verdicts: tuple[Verdict, ...] = spinner.crew.do(JudgeJob(spinner.exercise, recordings, references, titles))
+        runner = self.grading.runner
+        titles = {scenario.name: scenario.title for scenario in runner.scenarios}
+        verdicts: tuple[Verdict, ...] = runner.workers.do(JudgeJob(runner.exercise, recordings, references, titles))
         return {verdict.name: verdict for verdict in verdicts}
 
     def trial_of_recordings(self, recordings: dict[str, Recording]) -> Trial:
@@ -107,7 +180,7 @@ class Trials:
         return self.spins.spin(submission, scenario, next(self._turn))
 
     def _nothing(self, problem: str) -> Trial:
-        scenarios = self.grading.spinner.scenarios
+        scenarios = self.grading.runner.scenarios
         story = Ending("did-not-start", problem)
         recordings = {s.name: Recording(s.name, (), (), (), (), "none", False, story) for s in scenarios}
         return self._trial(problem, {}, self._judged(recordings), self.checks)
@@ -143,7 +216,7 @@ class Trials:
             if check.name in names and set(check.depends) <= passed
             for scenario in check.scenarios
         }
-        return [s for s in self.grading.spinner.scenarios if s.name in asked - spun]
+        return [s for s in self.grading.runner.scenarios if s.name in asked - spun]
 
     def _with_what_they_depend_on(self, only: tuple[str, ...]) -> set[str]:
         if not only:

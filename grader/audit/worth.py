@@ -1,14 +1,16 @@
-"""What the checks are worth: that each can fail, for something of its own, and says what was expected."""
+"""What the checks are worth: each can fail for something of its own; what each catches and costs."""
 
 from __future__ import annotations
 
 import re
 from itertools import combinations
+from statistics import median
 
 from grader.audit.listing import Check
-from grader.audit.result import Problem
+from grader.audit.result import CheckResult, Problem, ScenarioResult
 from grader.audit.trial import Trial
-from grader.checking.wrong import Finding
+from grader.checking.verdict import Finding
+from grader.scenario import Scenario
 
 #: A message that names no expected value has to say in words what was to be.
 WORDS = re.compile(r"expect|must|should|has to|have to|was to|were to|instead of|may not", re.IGNORECASE)
@@ -42,8 +44,8 @@ def _that_fail_together(checks: tuple[Check, ...], trials: dict[str, Trial]) -> 
         many = judged.count(("failed", "failed"))
         if many and all(first == second for first, second in judged):
             told = f"{one.name} and {other.name} always fail together ({many} times): do both judge the same?"
-            mend = "Write a mistake that fails only one, let one depend on the other, or make them one check."
-            found.append(Problem(f"{other.file}:{other.line}", other.name, told, mend))
+            fix = "Write a mistake that fails only one, let one depend on the other, or make them one check."
+            found.append(Problem(f"{other.file}:{other.line}", other.name, told, fix))
     return found
 
 
@@ -54,8 +56,8 @@ def problems_of_broken(checks: tuple[Check, ...], trials: dict[str, Trial]) -> l
         for name, trial in trials.items():
             if trial.statuses.get(check.name) == "error":
                 told = f"{check.name} breaks on what {name} publishes: {trial.findings[check.name].text}"
-                mend = "Whatever a student's node publishes, a check has to pass or to fail: look before you take."
-                found.append(Problem(f"{check.file}:{check.line}", check.name, told, mend))
+                fix = "Whatever a student's node publishes, a check has to pass or to fail: look before you take."
+                found.append(Problem(f"{check.file}:{check.line}", check.name, told, fix))
                 break
     return found
 
@@ -76,3 +78,50 @@ def messages(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Proble
                 found.append(Problem(f"{check.file}:{check.line}", check.name, told, "Name it in the message."))
                 break
     return found
+
+
+def scenario_results(
+    scenarios: tuple[Scenario, ...], checks: tuple[Check, ...], trials: list[Trial]
+) -> tuple[ScenarioResult, ...]:
+    """What each scenario costs, over all its spins in these trials."""
+    return tuple(
+        ScenarioResult(
+            name=scenario.name,
+            title=scenario.title,
+            messages=len(scenario.messages),
+            simulated_s=scenario.seconds,
+            spinning_s=median([t.seconds[scenario.name] for t in trials if scenario.name in t.seconds] or [0.0]),
+            checks=sum(scenario.name in check.scenarios for check in checks),
+        )
+        for scenario in scenarios
+    )
+
+
+def check_results(
+    checks: tuple[Check, ...],
+    scenarios: tuple[ScenarioResult, ...],
+    mutants: dict[str, Trial],
+    mistakes: dict[str, Trial],
+) -> tuple[CheckResult, ...]:
+    """What each check is worth; `mutants` are the trials of those that can be told from the solution."""
+    seconds = {scenario.name: scenario.spinning_s for scenario in scenarios}
+    asked_by_one = {scenario.name for scenario in scenarios[1:] if scenario.checks == 1}
+    kills = {check.name: sum(check.name in trial.failed for trial in mutants.values()) for check in checks}
+    return tuple(
+        CheckResult(
+            name=check.name,
+            title=check.title,
+            points=check.points,
+            hidden=check.hidden,
+            rule=check.rule,
+            kills=kills[check.name],
+            score=kills[check.name] / len(mutants) if mutants else 0.0,
+            alone=sum(trial.failed == (check.name,) for trial in mutants.values()),
+            mistakes=tuple(name for name, trial in mistakes.items() if check.name in trial.failed),
+            scenarios=check.scenarios,
+            judging_s=check.seconds,
+            spinning_s=sum(seconds[name] for name in check.scenarios),
+            alone_s=sum(seconds[name] for name in check.scenarios if name in asked_by_one),
+        )
+        for check in checks
+    )

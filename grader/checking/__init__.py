@@ -3,8 +3,7 @@
 A page for authors is in docs/writing-checks.md.
 """
 
-from grader.checking.check import check
 from grader.checking.run import Exchange, Message, Run
-from grader.checking.wrong import Wrong, fail
+from grader.checking.verdict import Wrong, check, fail
 
 __all__ = ["Exchange", "Message", "Run", "Wrong", "check", "fail"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal, NoReturn
 
 from grader.checking.recorded import Recorded
-from grader.checking.wrong import Finding, Wrong
+from grader.checking.verdict import Finding, Wrong
 from grader.recording import EndPoint
 
 Kind = Literal["publisher", "subscription", "server", "client", "action server", "action client"]

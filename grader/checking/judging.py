@@ -1,4 +1,4 @@
-"""Runs an exercise's checks on recordings. The student's program is long gone by then."""
+"""Runs an exercise's checks on recordings, or lists them. The student's program has ended by then."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import os
 import sys
 import tempfile
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -84,3 +85,27 @@ def _nothing_from_outside():  # type: ignore[no-untyped-def]  # noqa: ANN202
         sys.dont_write_bytecode = wrote
         del os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"]
         os.environ.update(kept)
+
+
+@dataclass(frozen=True)
+class Listed:
+    """One check. `fixtures` are the names that it asks for, also by another fixture; scenarios are among them."""
+
+    name: str
+    points: float
+    hidden: bool
+    fixtures: tuple[str, ...]
+
+
+def listed(exercise: Exercise, scenarios: tuple[str, ...] = ()) -> tuple[Listed, ...]:
+    """Every check of the exercise, in the order in which they stand.
+
+    With names of `scenarios`, a check that asks for another one is a fault. Raises `ExerciseError` where the files of
+    checks are unusable. Imports them: call it in a process of its own.
+    """
+    checks = Checks(run=False)
+    run_pytest(exercise, dict.fromkeys(scenarios), checks)
+    return tuple(
+        Listed(verdict.name, verdict.points, verdict.hidden, checks.fixtures[verdict.name])
+        for verdict in checks.verdicts.values()
+    )

@@ -11,10 +11,8 @@ from typing import Any
 
 import pytest
 
-from grader.checking.check import Mark, mark_of
 from grader.checking.run import Run
-from grader.checking.verdict import Verdict
-from grader.checking.wrong import Finding, Wrong
+from grader.checking.verdict import Finding, Mark, Verdict, Wrong, mark_of
 from grader.exercise import ExerciseError
 
 
@@ -68,22 +66,22 @@ class Checks:
         line = inspect.unwrap(function).__code__.co_firstlineno if function else None
         mark = mark_of(function)
         if not mark:
-            found, mend = f"{item.name} is no check", "Put @check(points=…, hint=…) above it."
+            found, fix = f"{item.name} is no check", "Put @check(points=…, hint=…) above it."
         elif item.name in self._marks:
-            found, mend = f"there are two checks called {item.name}", "Give each a name of its own."
+            found, fix = f"there are two checks called {item.name}", "Give each a name of its own."
         elif not inspect.getdoc(function):
-            found, mend = f"{item.name} has no docstring", "Its docstring is the title that the student reads."
+            found, fix = f"{item.name} has no docstring", "Its docstring is the title that the student reads."
         elif isinstance(mark.points, bool) or not isinstance(mark.points, (int, float)) or not mark.points >= 0:
-            found, mend = f"{item.name} gives {mark.points!r} points", "Give points of 0 or more, such as points=5."
+            found, fix = f"{item.name} gives {mark.points!r} points", "Give points of 0 or more, such as points=5."
         elif missing := self._unknown_scenario(item):
             found = f"{item.name} asks for the scenario {missing}, which scenarios.py does not have"
-            mend = f"Its scenarios are: {', '.join(self.scenarios)}."
+            fix = f"Its scenarios are: {', '.join(self.scenarios)}."
         elif unknown := [name for name in mark.depends if name not in self._marks]:
             found = f"{item.name} depends on {unknown[0]}, which no check above it is called"
-            mend = "A check may depend on those that stand before it; public checks come before hidden ones."
+            fix = "A check may depend on those that stand before it; public checks come before hidden ones."
         else:
             return mark
-        raise ExerciseError(item.path, found, mend, line)
+        raise ExerciseError(item.path, found, fix, line)
 
     def _unknown_scenario(self, item: Any) -> str:
         """The first argument of a check that is neither a scenario nor another fixture; empty if there is none."""
@@ -92,7 +90,7 @@ class Checks:
         return next((name for name in info.names_closure if name not in known), "") if self.scenarios else ""
 
     def pytest_exception_interact(self, node: Any, call: pytest.CallInfo[Any], report: object) -> None:
-        """A file of checks that can't be imported is its author's to mend."""
+        """A file of checks that can't be imported is its author's to fix."""
         if isinstance(report, pytest.CollectReport) and call.excinfo and not self.problem:
             error = call.excinfo.value.__cause__ or call.excinfo.value
             told = (str(error).strip().splitlines() or [""])[0]

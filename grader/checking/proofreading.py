@@ -13,7 +13,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from grader.checking.listing import Listed, listed
+from grader.checking.judging import Listed, listed
 from grader.exercise import Exercise, ExerciseError, load
 from grader.exercise.starter import MarkError, starter
 from grader.scenario.declared import declared
@@ -34,7 +34,7 @@ def faults_of(folder: Path) -> tuple[ExerciseError, ...]:
     except (ValueError, IndexError):
         last = (run.stderr.strip().splitlines() or ["no message"])[-1]
         return (ExerciseError(folder, f"its Python files can't be read: {last}", "They must only define."),)
-    return tuple(ExerciseError(Path(file), found, mend, line) for file, found, mend, line in entries)
+    return tuple(ExerciseError(Path(file), found, fix, line) for file, found, fix, line in entries)
 
 
 def faults(folder: Path) -> Iterator[ExerciseError]:
@@ -124,9 +124,9 @@ def _of_mistakes(exercise: Exercise, checks: tuple[Listed, ...]) -> Iterator[Exe
                 line = line_with(file, rf"- {name}\s*$")
                 yield ExerciseError(file, found, "Name a check of this exercise, or take the line out.", line)
         if not named:
-            found, mend = "it names no check that is to catch it", "Write “Caught by:” and “- test_…” in its docstring."
-            yield ExerciseError(file, found, mend, 1)
+            found, fix = "it names no check that is to catch it", "Write “Caught by:” and “- test_…” in its docstring."
+            yield ExerciseError(file, found, fix, 1)
 
 
 if __name__ == "__main__":
-    print(json.dumps([(str(e.file), e.found, e.mend, e.line) for e in faults(Path(sys.argv[1]))]))
+    print(json.dumps([(str(e.file), e.found, e.fix, e.line) for e in faults(Path(sys.argv[1]))]))

@@ -7,11 +7,11 @@ from collections.abc import Iterable
 from typing import Any, NoReturn
 
 from grader.checking.comparator import difference
-from grader.checking.pattern import COMPUTER_CLOCK, common
+from grader.checking.matching import COMPUTER_CLOCK, common
 from grader.checking.shown import shown
-from grader.checking.wrong import Finding, Wrong
+from grader.checking.verdict import Finding, Wrong
 from grader.exercise import Exercise
-from grader.exercise.interface import Endpoint, Role, Topic
+from grader.exercise.exercise import Endpoint, Role, Topic
 from grader.recording import Ending, Received, Recording
 from grader.scenario.scenario import SECOND, START
 

@@ -9,12 +9,12 @@ from typing import Any, NoReturn
 
 from grader.checking.actions import ActionChecks
 from grader.checking.graph import GraphChecks
-from grader.checking.lateness import AT_ONCE
+from grader.checking.matching import AT_ONCE
 from grader.checking.parameters import ParameterChecks
 from grader.checking.series import SeriesChecks
 from grader.checking.services import ServiceChecks
 from grader.checking.trajectory import TrajectoryChecks
-from grader.checking.wrong import Finding, Wrong
+from grader.checking.verdict import Finding, Wrong
 from grader.recording import EndPoint, Received, Recording, Sent
 from grader.scenario.scenario import SECOND, START
 

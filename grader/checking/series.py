@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Sequence
 
 from grader.checking.comparator import TOLERANCE, equal
-from grader.checking.pattern import COMPUTER_CLOCK
+from grader.checking.matching import COMPUTER_CLOCK
 from grader.checking.recorded import Recorded, field_of, seconds
 from grader.checking.shown import shown
 from grader.recording import Received

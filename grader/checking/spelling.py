@@ -7,8 +7,7 @@ import re
 from collections.abc import Collection
 from dataclasses import replace
 
-from grader.checking.verdict import Verdict
-from grader.checking.wrong import Finding
+from grader.checking.verdict import Finding, Verdict
 
 TOPIC = re.compile(r"(?<![\w/])/\w[\w/]*")
 

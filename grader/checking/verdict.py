@@ -1,11 +1,43 @@
-"""What one check says of one submission."""
+"""What a check is, how it fails, and its verdict on one submission."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal, NoReturn, TypeVar
 
-from grader.checking.wrong import Finding
+
+@dataclass(frozen=True)
+class Finding:
+    """What is wrong, in words for the student, and in parts where it has them.
+
+    `at` is in seconds after the scenario's start, `message` counts the messages sent from 1.
+    """
+
+    text: str
+    scenario: str = ""
+    message: int | None = None
+    at: float | None = None
+    part: str = ""
+    expected: str = ""
+    got: str = ""
+
+
+class Wrong(AssertionError):
+    """Raised by a check that the student's node does not pass."""
+
+    def __init__(self, finding: Finding) -> None:
+        super().__init__(finding.text)
+        self.finding = finding
+
+
+def fail(text: str, *, expected: object = "", got: object = "", at: float | None = None) -> NoReturn:
+    """End the check: the node does not pass it. `text` tells the student why; `at` is in seconds."""
+    told = text
+    if expected != "" or got != "":
+        told += f" Expected {expected}, got {got}."
+    raise Wrong(Finding(told, at=at, expected=str(expected), got=str(got)))
+
 
 #: `error`: the check itself broke, which is never the student's fault.
 Status = Literal["passed", "failed", "blocked", "error"]
@@ -34,3 +66,50 @@ class Verdict:
     def earned(self) -> float:
         """The points it gave."""
         return self.points if self.status == "passed" else 0.0
+
+
+Test = TypeVar("Test", bound=Callable[..., None])
+
+#: Where the mark is kept on the test function.
+ATTRIBUTE = "__check__"
+
+
+@dataclass(frozen=True)
+class Mark:
+    """What `check` says about a test function. `depends` are names of other checks, `rule` is a sentence of task.md."""
+
+    points: float
+    hint: str
+    depends: tuple[str, ...]
+    misconception: str
+    rule: str = ""
+
+
+def check(
+    *,
+    points: float,
+    hint: str,
+    depends: Sequence[Callable[..., Any] | str] = (),
+    misconception: str = "",
+    rule: str = "",
+) -> Callable[[Test], Test]:
+    """Make a test function a check that gives `points`; its docstring is the check's title.
+
+    `hint` tells a student who failed it where to look. `depends` lists checks (functions of the same file, or names)
+    without which this one can't be judged: it counts as blocked, not as failed, unless all of them passed.
+    `misconception` names the usual mistake behind a failure, in two or three words. `rule` is the sentence of task.md
+    on which the check stands, word for word: `spinbook audit` wants one for each hidden check, and looks for it there.
+    """
+    names = tuple(item if isinstance(item, str) else item.__name__ for item in depends)
+
+    def mark(test: Test) -> Test:
+        setattr(test, ATTRIBUTE, Mark(points, hint, names, misconception, rule))
+        return test
+
+    return mark
+
+
+def mark_of(test: object) -> Mark | None:
+    """What `check` said about this function, if anything."""
+    mark = getattr(test, ATTRIBUTE, None)
+    return mark if isinstance(mark, Mark) else None

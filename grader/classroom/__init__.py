@@ -1,5 +1,5 @@
 """A class of students and what grading them came to."""
 
-from grader.classroom.entry import Adjustment, Entry, Skipped, Student
+from grader.grading.entry import Adjustment, Entry, Skipped, Student
 
 __all__ = ["Adjustment", "Entry", "Skipped", "Student"]

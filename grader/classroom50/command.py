@@ -8,8 +8,8 @@ from pathlib import Path
 import click
 
 from grader.exercise import Exercise, ExerciseError, load
-from grader.exercise.finding import NoExercise, find
-from grader.gradescope.bundle import NoSource, autograder_files
+from grader.exercise.loading import NoExercise, find
+from grader.gradescope.command import NoSource, autograder_files
 from grader.sandbox import Isolation
 
 #: For a repository without Classroom 50: where the folder that this command writes is a private repository.

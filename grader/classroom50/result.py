@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from datetime import datetime, timezone
 from typing import Any
 
-from grader.feedback.told import Told, told
 from grader.grading import Grade
+from grader.report.feedback import Told, told
 from grader.report.printable import printable
 
 SCHEMA = "classroom50/result/v1"

@@ -11,14 +11,14 @@ import os
 import sys
 from pathlib import Path
 
-from grader.classroom.writing import write
 from grader.classroom50.result import result, summary
-from grader.crew import Crew, HostFault
 from grader.exercise import Exercise, ExerciseError, load
-from grader.gradescope.kept import keep_beside
+from grader.files import write_durably
+from grader.gradescope.prepare import keep_beside
 from grader.gradescope.run import submission
 from grader.grading import Grade, Options, grading_of
 from grader.sandbox import Isolation, SandboxUnavailable
+from grader.workers import HostFault, WorkerPool
 
 
 def main(folder: Path, repository: Path, isolation: str = "") -> int:
@@ -32,8 +32,10 @@ def main(folder: Path, repository: Path, isolation: str = "") -> int:
     if grade.outcome == "host-error":
         return _fault(grade.message)
     text = summary(grade, exercise.title)
-    write(repository / "result.json", json.dumps(result(grade, os.environ), indent=2, ensure_ascii=False) + "\n")
-    write(repository / "release-body.md", text)
+    write_durably(
+        repository / "result.json", json.dumps(result(grade, os.environ), indent=2, ensure_ascii=False) + "\n"
+    )
+    write_durably(repository / "release-body.md", text)
     if page := os.environ.get("GITHUB_STEP_SUMMARY"):
         with Path(page).open("a", encoding="utf-8") as file:
             file.write(text)
@@ -42,9 +44,9 @@ def main(folder: Path, repository: Path, isolation: str = "") -> int:
 
 
 def _grade(exercise: Exercise, repository: Path, isolation: str) -> Grade:
-    with Crew() as crew:
+    with WorkerPool() as workers:
         options = Options(Isolation(isolation) if isolation else None)
-        return grading_of(exercise, options, crew).grade(submission(repository, exercise))
+        return grading_of(exercise, options, workers).grade(submission(repository, exercise))
 
 
 def _fault(told: str) -> int:

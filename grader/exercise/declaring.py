@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn, get_args
 
-from grader.exercise.error import ExerciseError
-from grader.exercise.interface import (
+from grader.exercise.exercise import (
     Durability,
     Elements,
     Endpoint,
+    ExerciseError,
     Parameter,
     ProgramFile,
     Reliability,
@@ -62,9 +62,9 @@ class Table:
     number: int
     entries: dict[str, Any]
 
-    def fault(self, key: str, found: str, mend: str) -> NoReturn:
+    def fault(self, key: str, found: str, fix: str) -> NoReturn:
         """Raise what is wrong with the value of `key`, with its line."""
-        raise ExerciseError(self.file, found, mend, line_of(self.file, self.kind, self.number, key))
+        raise ExerciseError(self.file, found, fix, line_of(self.file, self.kind, self.number, key))
 
     def see_keys(self) -> None:
         """Raise `ExerciseError` for a key that is not known, or one that is missing."""
@@ -116,13 +116,11 @@ class Table:
         package, _, rest = value.partition("/")
         known = prefixes.interfaces(prefixes.installed())
         if package not in known:
-            mend = (
-                f"If the course defines it: spinbook build. If Spinbook brings it: spinbook interfaces add {package}."
-            )
-            self.fault("type", f"type = {value!r}: the package {package} is not installed here", mend)
+            fix = f"If the course defines it: spinbook build. If Spinbook brings it: spinbook interfaces add {package}."
+            self.fault("type", f"type = {value!r}: the package {package} is not installed here", fix)
         if rest not in known[package]:
-            mend = "Look at its name. If the course has just defined it: spinbook build."
-            self.fault("type", f"type = {value!r}: the package {package} has no {rest}", mend)
+            fix = "Look at its name. If the course has just defined it: spinbook build."
+            self.fault("type", f"type = {value!r}: the package {package} has no {rest}", fix)
         return value
 
     def units(self) -> dict[str, str]:

@@ -2,10 +2,90 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any, Literal
 
-from grader.exercise.interface import Endpoint, Parameter, ProgramFile, Topic
+Direction = Literal["subscribe", "publish"]
+Reliability = Literal["reliable", "best_effort"]
+Durability = Literal["volatile", "transient_local"]
+
+#: What the program does with a service or an action.
+Role = Literal["service", "client", "action", "action_client"]
+
+
+@dataclass(frozen=True)
+class Qos:
+    """Quality of service of one end of a topic: keep the last `depth` messages."""
+
+    reliability: Reliability = "reliable"
+    durability: Durability = "volatile"
+    depth: int = 10
+
+
+@dataclass(frozen=True)
+class Elements:
+    """What the elements of a message's lists are `called`, such as a joint; the list `named_by` has their names."""
+
+    called: str
+    named_by: str
+
+
+@dataclass(frozen=True)
+class Topic:
+    """One topic of the student's program, seen from the program.
+
+    `name` begins with a slash, `type` is written `package/msg/Name`. `units` gives the unit of a field, such as
+    `{"velocity": "rad/s"}`. `depth`, `reliability` and `durability` are what the task asks for.
+    """
+
+    name: str
+    type: str
+    direction: Direction
+    depth: int = 10
+    units: dict[str, str] = field(default_factory=dict)
+    reliability: Reliability = "reliable"
+    durability: Durability = "volatile"
+    elements: Elements | None = None
+
+    @property
+    def qos(self) -> Qos:
+        """What the task asks for."""
+        return Qos(self.reliability, self.durability, self.depth)
+
+
+@dataclass(frozen=True)
+class Endpoint:
+    """A service or an action that the student's program serves (`role` "service", "action") or calls."""
+
+    name: str
+    type: str
+    role: Role
+    units: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of the student's node. `type` is one of rclpy's, in lower case, such as "double" or "string_array".
+
+    `range` are the lowest and the highest value that the task allows.
+    """
+
+    name: str
+    type: str
+    default: Any = None
+    unit: str = ""
+    range: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class ProgramFile:
+    """One of several programs of a submission: a file, and the node that it creates."""
+
+    file: str
+    node: str
+    class_name: str = ""
+
 
 #: What the grader's own node is called, on which the reference publishers, servers and clients are.
 REFERENCE_NODE = "reference"
@@ -91,3 +171,20 @@ class Exercise:
     def action_clients(self) -> tuple[Endpoint, ...]:
         """The actions that the program sends goals to."""
         return tuple(one for one in self.endpoints if one.role == "action_client")
+
+
+class ExerciseError(Exception):
+    """Raised before any student is graded, when an exercise can't be used as its author wrote it.
+
+    `found` says what stands in the file, `fix` what was expected and what to do. `line` counts from 1, and is
+    None where the whole file is meant.
+    """
+
+    def __init__(self, file: Path, found: str, fix: str, line: int | None = None) -> None:
+        self.file, self.line, self.found, self.fix = file, line, found, fix
+        place = f"{file}:{line}" if line is not None else f"{file}"
+        super().__init__(f"{place}: {found}\n    {fix}")
+
+    def __reduce__(self) -> tuple[type[ExerciseError], tuple[Path, str, str, int | None]]:
+        """Keep all four parts when the error crosses from one process to another."""
+        return ExerciseError, (self.file, self.found, self.fix, self.line)

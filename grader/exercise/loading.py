@@ -1,4 +1,4 @@
-"""Reads an exercise's folder."""
+"""Finds and reads an exercise's folder."""
 
 from __future__ import annotations
 
@@ -8,9 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.exercise.declaring import Table, endpoints, parameters, programs, topics
-from grader.exercise.error import ExerciseError
-from grader.exercise.exercise import REFERENCE_NODE, Exercise
-from grader.exercise.interface import ProgramFile
+from grader.exercise.exercise import REFERENCE_NODE, Exercise, ExerciseError, ProgramFile
 from interface_compiler.near import use_near
 
 if sys.version_info >= (3, 11):
@@ -55,8 +53,8 @@ def load(folder: Path | str) -> Exercise:
         reference_node=top.text("reference_node", REFERENCE_NODE),
     )
     if not exercise.topics and not exercise.endpoints and not exercise.parameters:
-        mend = "Declare each topic under [[subscribe]] or [[publish]], and services, actions and parameters likewise."
-        raise ExerciseError(file, "no topics, and nothing else of an interface", mend)
+        fix = "Declare each topic under [[subscribe]] or [[publish]], and services, actions and parameters likewise."
+        raise ExerciseError(file, "no topics, and nothing else of an interface", fix)
     return exercise
 
 
@@ -97,3 +95,24 @@ def _points(top: Table) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or value <= 0:
         top.fault("points", f"points = {value!r}", "Give the sum of all checks' points, such as points = 100.")
     return float(value)
+
+
+class NoExercise(Exception):
+    """Raised when nothing is called so; says what there is."""
+
+
+def find(name: str, start: Path) -> Path:
+    """The folder that `name` means: a path, or a name in the exercises/ of `start` or of a folder above it.
+
+    Raises `NoExercise`.
+    """
+    if Path(name, "exercise.toml").exists():
+        return Path(name)
+    known: list[str] = []
+    for course in (start, *start.parents):
+        exercises = course / "exercises"
+        if (exercises / name / "exercise.toml").exists():
+            return exercises / name
+        known += sorted(file.parent.name for file in exercises.glob("*/exercise.toml"))
+    told = f"There are: {', '.join(known)}." if known else "Start in a course's folder, the one with exercises/ in it."
+    raise NoExercise(f"There is no exercise {name!r} here. {told}")

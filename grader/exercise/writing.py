@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from grader.exercise.exercise import REFERENCE_NODE, Exercise
-from grader.exercise.interface import Endpoint, Parameter, ProgramFile, Topic
+from grader.exercise.exercise import REFERENCE_NODE, Endpoint, Exercise, Parameter, ProgramFile, Topic
 
 
 def to_toml(exercise: Exercise) -> str:

@@ -1,16 +1,117 @@
-"""The command `spinbook gradescope`."""
+"""`spinbook gradescope`: the zip to upload to Gradescope as an autograder."""
 
 from __future__ import annotations
 
+import io
+import shlex
 import sys
+import zipfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import click
 
-from grader.exercise import ExerciseError, load
-from grader.exercise.finding import NoExercise, find
-from grader.gradescope.bundle import NoSource, bundle
+from grader.exercise import Exercise, ExerciseError, load
+from grader.exercise.loading import NoExercise, find
+from grader.gradescope.installed import NotInstalled, installed_wheel, pins
+from grader.grading.reference import solution_file
 from grader.sandbox import Isolation
+from interface_compiler import activation
+from interface_compiler.building import DEFINITIONS
+
+#: Where this software's own source is: the folder with pyproject.toml.
+SOURCE = Path(__file__).parents[2]
+
+#: What of it the container needs.
+NEEDED = ("pyproject.toml", "README.md", "LICENSE", "constraints.txt", "constraints-ros.txt")
+
+PACKAGES = ("grader", "spinbook", "rmw_lockstep", "interface_compiler")
+
+#: The same content gives the same bytes: every entry has the earliest date that a zip can name.
+DATE = (1980, 1, 1, 0, 0, 0)
+
+
+class NoSource(Exception):
+    """Raised where neither a checkout nor an installed wheel tells what the container is to install."""
+
+
+def bundle(exercise: Exercise, isolation: Isolation | None = None) -> bytes:
+    """The zip's bytes, the same each time for the same content.
+
+    Of the solutions only `solution.py` is in it, and no student can read it there but by breaking out of the sandbox.
+    `isolation` is the level at which students' programs are run, None for the strongest that works in the container.
+    Raises `NoSource`, and `ExerciseError` where there is no solution.
+    """
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, (content, mode) in autograder_files(exercise, isolation).items():
+            _add(archive, name, content, mode)
+    return out.getvalue()
+
+
+def autograder_files(exercise: Exercise, isolation: Isolation | None = None) -> dict[str, tuple[bytes, int]]:
+    """Return the content and mode of each file of an autograder, by name. Raises as `bundle` does."""
+    files = {
+        name: (_script(script, exercise, isolation).encode(), 0o755)
+        for name, script in (("setup.sh", "setup.sh"), ("run_autograder", "run_autograder.sh"))
+    }
+    for name, content in (_source() if (SOURCE / "pyproject.toml").exists() else _installed()).items():
+        files[f"course/{name}"] = (content, 0o644)
+    for name, file in _files(exercise):
+        files[f"course/{name}"] = (file.read_bytes(), 0o644)
+    return files
+
+
+def _source() -> dict[str, bytes]:
+    """Return a checkout, as far as the container needs it."""
+    files = {name: (SOURCE / name).read_bytes() for name in NEEDED}
+    for package in PACKAGES:
+        for file in _within(SOURCE / package):
+            files[f"{package}/{file.relative_to(SOURCE / package)}"] = file.read_bytes()
+    return files
+
+
+def _installed() -> dict[str, bytes]:
+    """Return the wheel that is installed here, and the versions of all that it needs."""
+    try:
+        name, content = installed_wheel()
+    except NotInstalled as error:
+        raise NoSource(str(error)) from None
+    return {name: content, "pins.txt": "".join(f"{pin}\n" for pin in pins()).encode()}
+
+
+def _script(file: str, exercise: Exercise, isolation: Isolation | None) -> str:
+    text = Path(__file__).with_name(file).read_text(encoding="utf-8")
+    level = shlex.quote(isolation.value) if isolation else ""
+    return text.replace("@EXERCISE@", shlex.quote(exercise.name)).replace("@ISOLATION@", level)
+
+
+def _files(exercise: Exercise) -> Iterator[tuple[str, Path]]:
+    """The files of the course itself, with their names in the container."""
+    for file in _within(exercise.folder):
+        yield f"exercises/{exercise.name}/{file.relative_to(exercise.folder)}", file
+    yield f"solutions/{exercise.name}/solution.py", solution_file(exercise)
+    # The course's own messages, which the container compiles for its own Python.
+    course = exercise.folder.parent.parent / "course.toml"
+    if course.is_file():
+        yield course.name, course
+    for prefix in activation.active():
+        for file in _within(prefix / DEFINITIONS):
+            yield f"interfaces/{file.relative_to(prefix / DEFINITIONS)}", file
+
+
+def _within(folder: Path) -> list[Path]:
+    """The files below `folder`, without caches and hidden files."""
+    files = [file for file in folder.rglob("*") if file.is_file() and file.suffix != ".pyc"]
+    kept = [file for file in files if not any(part.startswith(".") for part in file.relative_to(folder).parts)]
+    return sorted(file for file in kept if "__pycache__" not in file.parts)
+
+
+def _add(archive: zipfile.ZipFile, name: str, content: bytes, mode: int) -> None:
+    entry = zipfile.ZipInfo(name, DATE)
+    entry.external_attr = (0o100000 | mode) << 16
+    entry.compress_type = zipfile.ZIP_DEFLATED
+    archive.writestr(entry, content)
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})

@@ -1,15 +1,20 @@
-"""Makes the container ready, when it is built: `python -m grader.gradescope.prepare EXERCISE_FOLDER [ISOLATION]`."""
+"""Prepares Gradescope's container: `python -m grader.gradescope.prepare EXERCISE_FOLDER [ISOLATION]`."""
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
-from grader.crew import Crew, HostFault
 from grader.exercise import ExerciseError, load
-from grader.gradescope.kept import keep_beside
 from grader.grading import Options, grading_of
 from grader.sandbox import Isolation, SandboxUnavailable
+from grader.workers import HostFault, WorkerPool
+
+
+def keep_beside(exercise: Path) -> None:
+    """Let this process keep it beside the course that the exercise's folder is in, unless `SPINBOOK_CACHE` is set."""
+    os.environ.setdefault("SPINBOOK_CACHE", str(exercise.resolve().parents[1] / "cache"))
 
 
 def main(folder: Path, isolation: str = "") -> None:
@@ -20,9 +25,9 @@ def main(folder: Path, isolation: str = "") -> None:
     keep_beside(folder)
     try:
         exercise = load(folder)
-        with Crew() as crew:
-            grading = grading_of(exercise, Options(Isolation(isolation) if isolation else None), crew)
-        print(f"Ready to grade {exercise.name}, isolation: {grading.spinner.isolation}.")
+        with WorkerPool() as workers:
+            grading = grading_of(exercise, Options(Isolation(isolation) if isolation else None), workers)
+        print(f"Ready to grade {exercise.name}, isolation: {grading.runner.isolation}.")
     except (SandboxUnavailable, HostFault) as error:
         print(f"The solution could not be tried while the container was built:\n{error}")
     except ExerciseError as error:

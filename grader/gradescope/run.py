@@ -15,15 +15,15 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from grader.classroom.entry import Entry, Student
-from grader.classroom.writing import write
-from grader.crew import Crew, HostFault
 from grader.exercise import Exercise, ExerciseError, load
-from grader.gradescope.kept import keep_beside
-from grader.gradescope.results import no_score, results
+from grader.files import write_durably
+from grader.gradescope.prepare import keep_beside
 from grader.grading import Options, grading_of
+from grader.grading.entry import Entry, Student
+from grader.report.gradescope import no_score, results
 from grader.sandbox import Isolation, SandboxUnavailable
 from grader.submission import Submission, read
+from grader.workers import HostFault, WorkerPool
 
 
 def main(folder: Path, root: Path, isolation: str = "") -> None:
@@ -37,14 +37,14 @@ def main(folder: Path, root: Path, isolation: str = "") -> None:
     except Exception:
         traceback.print_exc(file=sys.stdout)
         told = no_score("The autograder broke; its output says more.")
-    write(root / "results" / "results.json", json.dumps(told, indent=2, ensure_ascii=False) + "\n")
+    write_durably(root / "results" / "results.json", json.dumps(told, indent=2, ensure_ascii=False) + "\n")
 
 
 def _entry(exercise: Exercise, root: Path, isolation: str) -> Entry:
     handed_in = submission(root / "submission", exercise)
-    with Crew() as crew:
+    with WorkerPool() as workers:
         options = Options(Isolation(isolation) if isolation else None)
-        grade = grading_of(exercise, options, crew).grade(handed_in)
+        grade = grading_of(exercise, options, workers).grade(handed_in)
     if grade.outcome == "host-error":
         print(grade.message)
     student, submitted = _metadata(root / "submission_metadata.json")

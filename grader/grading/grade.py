@@ -1,12 +1,15 @@
-"""A grade: what one grading of one submission came to."""
+"""How to grade one submission, and the grade that comes of it."""
 
 from __future__ import annotations
 
+import os
+import re
 from dataclasses import dataclass, field
 from typing import Literal
 
 from grader.checking.verdict import Verdict
-from grader.recording import Recording
+from grader.recording import Ending, Recording
+from grader.sandbox import Isolation, Limits, Middleware
 
 #: What happened, of which only `host-error` is not the student's: it is no score and has to be graded again.
 Outcome = Literal["graded", "did-not-start", "crashed", "timed-out", "over-limit", "host-error"]
@@ -49,3 +52,60 @@ class Grade:
     def full_marks(self) -> bool:
         """Whether nothing is missing."""
         return self.outcome == "graded" and self.score == self.points
+
+
+@dataclass(frozen=True)
+class Options:
+    """How to grade. `isolation` None means the strongest that works here, `middleware` None lockstep if it can be had.
+
+    `seed` chooses the numbers of scenarios that have chance in them. `pace` is 1.0 for the pace of real time, None for
+    as fast as it goes.
+
+    `parallel` is how many spins run at once: more than there are cores, for much of a spin is waiting.
+    `core` is the CPU to keep the program on; None lets its spins take turns on all of them.
+    """
+
+    isolation: Isolation | None = None
+    seed: int = 1
+    pace: float | None = None
+    parallel: int = field(default_factory=lambda: max(2, min(8, 2 * len(os.sched_getaffinity(0)))))
+    limits: Limits = field(default_factory=Limits)
+    core: int | None = None
+    middleware: Middleware | None = None
+
+
+#: What the sandbox has beside Python itself, as a student would import it.
+AVAILABLE = "rclpy, the standard ROS 2 messages (std_msgs, geometry_msgs, sensor_msgs and so on) and numpy"
+
+MISSING = re.compile(r"ModuleNotFoundError: No module named '([^']+)'")
+NO_NAME = re.compile(r"ImportError: cannot import name '([^']+)' from '([^']+)'")
+
+ADVICE = (
+    (
+        re.compile(r"IndentationError|TabError"),
+        "Compare the spaces at the beginning of this line with its neighbours'.",
+    ),
+    (re.compile(r"SyntaxError: .*non-utf-8|SyntaxError: \(unicode", re.IGNORECASE), "Save the file as UTF-8."),
+    (re.compile(r"SyntaxError"), "Python can't read this line; look at the end of the line before it, too."),
+    (
+        re.compile(r"Address family not supported"),
+        "A node has no network while it is graded, and needs none: it talks over ROS 2 alone.",
+    ),
+    (re.compile(r"NameError"), "Is the name spelled as where it was made, and made before it is used?"),
+    (re.compile(r"ZeroDivisionError"), "What if two messages have the same stamp?"),
+    (re.compile(r"KeyError|IndexError"), "What if a joint is in this message and was not in the one before?"),
+    (re.compile(r"AttributeError: 'NoneType'"), "What does it hold before the first message has arrived?"),
+)
+
+
+def message_of(ending: Ending) -> str:
+    """The story of an ending, with advice where there is one; empty when all went well."""
+    story = ending.story
+    if missing := MISSING.search(story):
+        return f"{story} There is no module {missing[1]} here. There are Python's own modules, {AVAILABLE}."
+    if no_name := NO_NAME.search(story):
+        return f"{story} The module {no_name[2]} has no {no_name[1]}. Is the name spelled right?"
+    for pattern, advice in ADVICE:
+        if pattern.search(story):
+            return f"{story} {advice}"
+    return story

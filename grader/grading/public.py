@@ -10,13 +10,11 @@ import json
 from dataclasses import dataclass, replace
 from typing import Any
 
-from grader.checking.listing import Listed
-from grader.crew import Crew
-from grader.crew.jobs import ListJob
+from grader.checking.judging import Listed
 from grader.exercise import Exercise, ExerciseError
-from grader.grading.options import Options
+from grader.grading.grade import Options
 from grader.grading.reference import reference
-from grader.grading.spinning import Spinner
+from grader.grading.running import ScenarioRunner
 from grader.recording import Recording
 from grader.recording.store import from_plain, plain
 from grader.sandbox import Isolation
@@ -25,6 +23,8 @@ from grader.scenario.declared import declared
 from grader.scenario.store import NotForStudents
 from grader.scenario.store import from_plain as from_plain_scenario
 from grader.scenario.store import plain as plain_scenario
+from grader.workers import WorkerPool
+from grader.workers.jobs import ListJob
 
 #: Changes when older versions can't read the file any more. Format 1 had messages only.
 FORMAT = 2
@@ -40,20 +40,20 @@ class PublicPart:
     hidden_points: float
 
 
-def public_part(exercise: Exercise, options: Options, isolation: Isolation, crew: Crew) -> PublicPart:
+def public_part(exercise: Exercise, options: Options, isolation: Isolation, workers: WorkerPool) -> PublicPart:
     """The public part of an exercise: read in a student's copy, made from the solution where there is one.
 
-    Raises `ExerciseError` where the author, or in a student's copy whoever changed it, has something to mend.
+    Raises `ExerciseError` where the author, or in a student's copy whoever changed it, has something to fix.
     """
     if exercise.solution_folder is None:
         return _read(exercise)
-    checks: tuple[Listed, ...] = crew.do(ListJob(replace(exercise, public_only=False)))
+    checks: tuple[Listed, ...] = workers.do(ListJob(replace(exercise, public_only=False)))
     used = {name for check in checks if not check.hidden for name in check.fixtures}
     scenarios = tuple(scenario for scenario in declared(exercise, options.seed) if scenario.name in used)
     if not scenarios:
         found = "there is no check that students may read and that spins a scenario"
         raise ExerciseError(exercise.folder / "checks.py", found, "Write one: students check their own work with it.")
-    references = reference(Spinner(exercise.public(), scenarios, isolation, options, crew))
+    references = reference(ScenarioRunner(exercise.public(), scenarios, isolation, options, workers))
     hidden = [check for check in checks if check.hidden]
     return PublicPart(scenarios, references, len(hidden), sum(check.points for check in hidden))
 
@@ -78,12 +78,12 @@ def _timeless(recording: Recording) -> Recording:
 
 def _read(exercise: Exercise) -> PublicPart:
     file = exercise.public_file
-    mend = "Take it from the course's handout again."
+    fix = "Take it from the course's handout again."
     try:
         entries: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
         if entries["format"] not in (1, FORMAT):
-            mend = "Install the spinbook that came with the handout: pip install -r requirements.txt"
-            raise ExerciseError(file, f"it has the format {entries['format']}, not {FORMAT}", mend)
+            fix = "Install the spinbook that came with the handout: pip install -r requirements.txt"
+            raise ExerciseError(file, f"it has the format {entries['format']}, not {FORMAT}", fix)
         public = PublicPart(
             tuple(_scenario(scenario) for scenario in entries["scenarios"]),
             from_plain(entries["expected"]),
@@ -91,11 +91,11 @@ def _read(exercise: Exercise) -> PublicPart:
             float(entries["hidden"]["points"]),
         )
     except FileNotFoundError:
-        raise ExerciseError(file, "there is no such file", mend) from None
+        raise ExerciseError(file, "there is no such file", fix) from None
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise ExerciseError(file, f"it can't be read: {type(error).__name__}: {error}", mend) from None
+        raise ExerciseError(file, f"it can't be read: {type(error).__name__}: {error}", fix) from None
     if not public.scenarios or any(scenario.name not in public.references for scenario in public.scenarios):
-        raise ExerciseError(file, "a scenario or its recording is missing", mend)
+        raise ExerciseError(file, "a scenario or its recording is missing", fix)
     return public
 
 
@@ -119,8 +119,8 @@ def _for_students(exercise: Exercise, scenario: Scenario) -> Any:
         return plain_scenario(scenario)
     except NotForStudents as error:
         found = f"the scenario {scenario.name}, which a public check uses, runs {error} of this file"
-        mend = "Students don't get this file. Use a world or replies without code of your own, or hide the check."
-        raise ExerciseError(exercise.scenarios_file, found, mend, scenario.line or None) from None
+        fix = "Students don't get this file. Use a world or replies without code of your own, or hide the check."
+        raise ExerciseError(exercise.scenarios_file, found, fix, scenario.line or None) from None
 
 
 def _scenario(entries: dict[str, Any]) -> Scenario:

@@ -1,4 +1,4 @@
-"""The solution's recordings, against which students' are compared: made once, then kept."""
+"""The solution's recordings, made once and kept, and everything that a grade depends on besides the submission."""
 
 from __future__ import annotations
 
@@ -6,36 +6,83 @@ import contextlib
 import hashlib
 import json
 import os
+import platform
 import re
 import tempfile
+from functools import cache
+from importlib import metadata
 from pathlib import Path
 
 from grader.checking.proofreading import line_with, points_that_do_not_add_up, same_name_twice
 from grader.checking.verdict import Verdict
-from grader.crew.jobs import JudgeJob
 from grader.exercise import Exercise, ExerciseError
 from grader.exercise.starter import MarkError, starter
-from grader.grading.spinning import Spinner
-from grader.grading.versions import digest_of, versions
+from grader.grading.running import ScenarioRunner
 from grader.recording import Recording
 from grader.recording.store import from_json, to_json
+from grader.sandbox import Middleware
 from grader.submission.reading import of_source
+from grader.workers.jobs import JudgeJob
 from interface_compiler import activation
+from rmw_lockstep.library import sources
+
+GRADER = Path(__file__).parents[1]
 
 
-def reference(spinner: Spinner) -> dict[str, Recording]:
+@cache
+def versions(middleware: Middleware) -> dict[str, str]:
+    """The middleware, versions of Python, ROS and the middleware, and a digest of the grader's own source."""
+    return {
+        "python": platform.python_version(),
+        "rclpy": _version("ros-jazzy-rclpy", "rclpy"),
+        "middleware": str(middleware),
+        "rmw": _lockstep() if middleware is Middleware.LOCKSTEP else _fast_dds(),
+        "grader": digest_of(sorted(GRADER.rglob("*.py")))[:12],
+    }
+
+
+def digest_of(files: list[Path]) -> str:
+    """SHA-256 of these files' contents, in this order."""
+    total = hashlib.sha256()
+    for file in files:
+        content = file.read_bytes()
+        total.update(f"{file.name} {len(content)}\n".encode())
+        total.update(content)
+    return total.hexdigest()
+
+
+def _lockstep() -> str:
+    """A digest of the middleware, its end in C++ and its hub in Python."""
+    folder = GRADER.with_name("rmw_lockstep")
+    return digest_of([*sources(), *sorted(folder.rglob("*.py"))])[:12]
+
+
+def _fast_dds() -> str:
+    return _version("ros-rmw-fastrtps-cpp", "rmw_fastrtps_cpp")
+
+
+def _version(*names: str) -> str:
+    for name in names:
+        try:
+            return metadata.version(name)
+        except metadata.PackageNotFoundError:
+            continue
+    return "unknown"
+
+
+def reference(runner: ScenarioRunner) -> dict[str, Recording]:
     """The solution's recordings, by scenario.
 
     They are made when anything that they depend on has changed; then the exercise itself is put to the test: the
     solution must pass every check and the points must add up. Raises `ExerciseError` where they do not.
     """
-    kept = _kept_in(spinner)
+    kept = _kept_in(runner)
     try:
         return from_json(kept.read_text(encoding="utf-8"))
     except (OSError, ValueError, KeyError, TypeError):
         pass
-    recordings = _made(spinner)
-    _prove(spinner, recordings)
+    recordings = _made(runner)
+    _prove(runner, recordings)
     with contextlib.suppress(OSError):  # where nothing can be kept, it is made anew each time
         _keep(recordings, kept)
     return recordings
@@ -65,44 +112,44 @@ def solution_file(exercise: Exercise) -> Path:
     return file
 
 
-def key_of(spinner: Spinner) -> str:
+def reference_key(runner: ScenarioRunner) -> str:
     """A digest of everything that gradings by `spinner` depend on, but for the submissions."""
-    exercise = spinner.exercise
+    exercise = runner.exercise
     key = {
         "solution": digest_of([solution_file(exercise)]),
         "exercise": digest_of([exercise.folder / "exercise.toml", *exercise.check_files]),
-        "scenarios": [scenario.digest for scenario in spinner.scenarios],
-        "versions": versions(spinner.middleware),
+        "scenarios": [scenario.digest for scenario in runner.scenarios],
+        "versions": versions(runner.middleware),
         "interfaces": [prefix.name for prefix in activation.active()],
-        "pace": spinner.options.pace,
+        "pace": runner.options.pace,
     }
     return hashlib.sha256(json.dumps(key, sort_keys=True).encode()).hexdigest()
 
 
-def _kept_in(spinner: Spinner) -> Path:
-    return cache_folder() / f"{spinner.exercise.name}-{key_of(spinner)[:24]}.json"
+def _kept_in(runner: ScenarioRunner) -> Path:
+    return cache_folder() / f"{runner.exercise.name}-{reference_key(runner)[:24]}.json"
 
 
-def _made(spinner: Spinner) -> dict[str, Recording]:
-    file = solution_file(spinner.exercise)
+def _made(runner: ScenarioRunner) -> dict[str, Recording]:
+    file = solution_file(runner.exercise)
     code = file.read_bytes()
     try:
         starter(code.decode("utf-8"))
     except MarkError as error:
         raise ExerciseError(file, str(error), "Put every mark in order; the starter is made from them.") from None
-    recordings = spinner.spin(of_source("the solution", code, spinner.exercise))
+    recordings = runner.spin(of_source("the solution", code, runner.exercise))
     for recording in recordings.values():
         ending = recording.ending
         if ending.outcome != "completed":
             found = f"the solution does not come through the scenario {recording.scenario}: {ending.story}"
-            raise ExerciseError(file, found, "Mend the solution or the scenario.", ending.line)
+            raise ExerciseError(file, found, "Fix the solution or the scenario.", ending.line)
     return recordings
 
 
-def _prove(spinner: Spinner, recordings: dict[str, Recording]) -> None:
-    exercise = spinner.exercise
-    titles = {scenario.name: scenario.title for scenario in spinner.scenarios}
-    verdicts: tuple[Verdict, ...] = spinner.crew.do(JudgeJob(exercise, recordings, recordings, titles))
+def _prove(runner: ScenarioRunner, recordings: dict[str, Recording]) -> None:
+    exercise = runner.exercise
+    titles = {scenario.name: scenario.title for scenario in runner.scenarios}
+    verdicts: tuple[Verdict, ...] = runner.workers.do(JudgeJob(exercise, recordings, recordings, titles))
     for verdict in verdicts:
         file = exercise.folder / ("hidden_checks.py" if verdict.hidden else "checks.py")
         line = line_with(file, rf"def {re.escape(verdict.name)}\b")

@@ -1,4 +1,4 @@
-"""A grade for people."""
+"""A grade as text, on a terminal and in self-checks."""
 
 from __future__ import annotations
 
@@ -9,8 +9,40 @@ from rich.text import Text
 from grader.checking.verdict import Status, Verdict
 from grader.exercise import Exercise
 from grader.grading import Grade
-from grader.report import self_check
 from grader.report.printable import as_students_see_it, printable
+from grader.sandbox import Isolation, Middleware
+
+
+def points_so_far(grade: Grade) -> str:
+    """How much of what could be judged here is right: "8 of 8 public checks, 50 of 50 points"."""
+    passed = sum(verdict.status == "passed" for verdict in grade.verdicts)
+    return f"{passed} of {len(grade.verdicts)} public checks, {grade.score:g} of {grade.points:g} points"
+
+
+def hidden_checks_to_come(grade: Grade) -> str:
+    """What is judged later; empty where all checks are public."""
+    count = grade.hidden_checks
+    if not count:
+        return ""
+    return f"{count} hidden check{'s' * (count > 1)} ({grade.hidden_points:g} points) will be judged after you hand in."
+
+
+def self_check_standing(grade: Grade) -> str:
+    """That this is no grade, and how the code ran."""
+    told = "This is a self-check, not your grade."
+    if grade.isolation == Isolation.NONE.value:
+        told += " Your code ran without a sandbox, and no grade of record is made that way."
+    if grade.versions["middleware"] == Middleware.FASTDDS.value:
+        told += " It ran over Fast DDS: a node with threads or sleeps of its own may get another result each time."
+    return told
+
+
+def self_check_lines(grade: Grade) -> list[str]:
+    """All of it, a line each."""
+    return [
+        line for line in (f"{points_so_far(grade)}.", hidden_checks_to_come(grade), self_check_standing(grade)) if line
+    ]
+
 
 SIGNS: dict[Status, tuple[str, str]] = {
     "passed": ("✓", "green"),
@@ -30,7 +62,7 @@ def show(grade: Grade, exercise: Exercise, console: Console, verbose: bool = Fal
     if grade.outcome != "host-error":
         style = "bold green" if grade.full_marks else "bold"
         if grade.self_check:
-            first, *rest = self_check.lines(grade)
+            first, *rest = self_check_lines(grade)
             console.print(Text(first, style=style), *(Text(line) for line in rest), sep="\n", soft_wrap=True)
         else:
             console.print(Text(f"{grade.score:g} of {grade.points:g} points", style=style))

@@ -100,7 +100,7 @@ class Budget:
 
 
 #: What liblockstep calls its own thread, which looks at the others again and again while the process is not idle.
-KEEPER = b"(lockstep"
+SUPERVISOR = b"(lockstep"
 
 
 def ran(pids: Collection[int]) -> int | None:
@@ -110,7 +110,7 @@ def ran(pids: Collection[int]) -> int | None:
         with contextlib.suppress(OSError):  # it has just ended
             # The state follows the program's name, which may hold any character but ends with the last bracket.
             name, _, rest = (thread / "stat").read_bytes().rpartition(b") ")
-            if name.endswith(KEEPER):
+            if name.endswith(SUPERVISOR):
                 continue
             if rest[:1] in (b"R", b"D"):
                 return None

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import count
 
-from grader.exercise.interface import Qos
+from grader.exercise.exercise import Qos
 from grader.runner.clocks import Clocks
 from grader.scenario.scenario import SECOND, START
 from rmw_lockstep.hub import Hub, HubNode

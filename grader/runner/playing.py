@@ -60,7 +60,7 @@ class RunningWorld:
             try:
                 check_fields(message_class(type_name), fields, type_name)
             except Invalid as error:
-                raise AuthorFault(f"{self._world.code.name}.state(), {topic}: {error.found}. {error.mend}") from None
+                raise AuthorFault(f"{self._world.code.name}.state(), {topic}: {error.found}. {error.fix}") from None
         return state
 
     def _ask(self, act: Callable[[], object]) -> None:

@@ -68,7 +68,7 @@ def run(
     anything of the student's. A submission of several programs has `programs` in its place, by their files;
     `companions` are the author's own.
 
-    Raises `ExerciseError` where the author has something to mend; anything else raised is a fault of the machine's or
+    Raises `ExerciseError` where the author has something to fix; anything else raised is a fault of the machine's or
     of ours.
     """
     began = time.monotonic()

@@ -125,8 +125,8 @@ class Script:
         except AuthorFault as error:
             scenario = self._task.scenario
             found = f"in the scenario {scenario.name}, {error}"
-            mend = "Mend it; it runs inside the grader."
-            raise ExerciseError(self._task.exercise.scenarios_file, found, mend, scenario.line or None) from None
+            fix = "Fix it; it runs inside the grader."
+            raise ExerciseError(self._task.exercise.scenarios_file, found, fix, scenario.line or None) from None
 
     # --- what came of it
 

@@ -95,7 +95,7 @@ class ServiceServer:
             if reply.fields is not None:
                 check_fields(self._kind.Response, reply.fields, f"{self._declared.type}_Response")
         except Invalid as error:
-            raise AuthorFault(f"{answer.__name__}() for {self.name}: {error.found}. {error.mend}") from None
+            raise AuthorFault(f"{answer.__name__}() for {self.name}: {error.found}. {error.fix}") from None
         except Exception as error:
             raise AuthorFault(f"{answer.__name__}() for {self.name}: {type(error).__name__}: {error}") from None
         return reply

@@ -1,30 +1,28 @@
 """Runs a student's program where it can neither see nor harm anything: see docs/sandbox.md.
 
-nursery = Nursery([Middleware.LOCKSTEP])  # once in a worker, before the processes that grade are forked
+fork server = Fork server([Middleware.LOCKSTEP])  # once in a worker, before the processes that grade are forked
 ...
-with nursery.start(Program("node.py", {"node.py": source}, hub=socket), isolation) as student:
+with fork server.start(Program("node.py", {"node.py": source}, hub=socket), isolation) as student:
     ...
 """
 
-from .faults import SandboxError, SandboxUnavailable
-from .level import Isolation, available, choose
-from .limits import Limits
-from .middleware import Choice, Middleware, MiddlewareUnavailable, choose_middleware, to_be_compiled
-from .nursery import Nursery
-from .output import Output
-from .program import Program
-from .rig_namespace import enter
-from .student import Student
-from .warden import Exit
+from grader.sandbox.errors import SandboxError, SandboxUnavailable
+from grader.sandbox.fork_server import ForkServer
+from grader.sandbox.isolation import Isolation, available, choose
+from grader.sandbox.middleware import Choice, Middleware, MiddlewareUnavailable, choose_middleware, to_be_compiled
+from grader.sandbox.monitor import Exit, Output
+from grader.sandbox.network import enter
+from grader.sandbox.program import Limits, Program
+from grader.sandbox.student import Student
 
 __all__ = [
     "Choice",
     "Exit",
+    "ForkServer",
     "Isolation",
     "Limits",
     "Middleware",
     "MiddlewareUnavailable",
-    "Nursery",
     "Output",
     "Program",
     "SandboxError",

@@ -15,9 +15,9 @@ import subprocess
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from . import kernel, seccomp
-from .room import Room
-from .view import Step
+from grader.sandbox import seccomp, syscalls
+from grader.sandbox.filesystem import Mount
+from grader.sandbox.namespaces import Namespaces
 
 _HOLDER_BYTES = 64 * 1024 * 1024
 
@@ -27,7 +27,7 @@ def find() -> str | None:
     return shutil.which("bwrap")
 
 
-def build(plan: Sequence[Step], user_namespace: int, *, network: bool) -> Room:
+def build(plan: Sequence[Mount], user_namespace: int, *, network: bool) -> Namespaces:
     """Makes the namespaces and their root, and moves this process into them (all but the pid namespace's children).
 
     With `network` the network stays the one that this process is in; otherwise there is none, not even loopback.
@@ -73,11 +73,11 @@ def build(plan: Sequence[Step], user_namespace: int, *, network: bool) -> Room:
         _starve(holder)
     _join(init, user_namespace)
     if not network:
-        kernel.unshare(kernel.CLONE_NEWNET)  # not by bubblewrap, which brings loopback up
-    return Room(init, holders, builder=process)
+        syscalls.unshare(syscalls.CLONE_NEWNET)  # not by bubblewrap, which brings loopback up
+    return Namespaces(init, holders, builder=process)
 
 
-def _options(plan: Sequence[Step], texts: dict[str, int]) -> Iterator[str]:
+def _options(plan: Sequence[Mount], texts: dict[str, int]) -> Iterator[str]:
     for step in plan:
         if step.action == "folder":
             yield from ("--perms", "0755", "--dir", step.path)
@@ -109,9 +109,9 @@ def _starve(holder: int) -> None:
 def _join(init: int, user_namespace: int) -> None:
     """Moves this process into the namespaces of bubblewrap's first process."""
     opened = {name: os.open(f"/proc/{init}/ns/{name}", os.O_RDONLY) for name in ("ipc", "uts", "pid", "mnt")}
-    kernel.setns(user_namespace, kernel.CLONE_NEWUSER)
+    syscalls.setns(user_namespace, syscalls.CLONE_NEWUSER)
     for namespace in opened.values():
-        kernel.setns(namespace)
+        syscalls.setns(namespace)
         os.close(namespace)
     os.chdir("/")
 

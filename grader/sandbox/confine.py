@@ -7,11 +7,10 @@ import signal
 from dataclasses import dataclass
 from pathlib import Path
 
-from . import kernel, landlock, seccomp, view
-from .level import Isolation
-from .limits import Limits, apply
-from .program import Place, Program
-from .view import USER_ID
+from grader.sandbox import filesystem, landlock, seccomp, syscalls
+from grader.sandbox.filesystem import USER_ID
+from grader.sandbox.isolation import Isolation
+from grader.sandbox.program import Limits, Paths, Program, apply_limits
 
 _DESCRIPTORS = 1024
 
@@ -32,12 +31,12 @@ class Start:
     isolation: Isolation
     limits: Limits
     core: int | None
-    plan: tuple[view.Step, ...] = ()
+    plan: tuple[filesystem.Mount, ...] = ()
 
 
 def confine(
     start: Start,
-    place: Place,
+    place: Paths,
     processes_beside: int,
     output: int,
     *,
@@ -58,24 +57,24 @@ def confine(
     os.setsid()
     _take_output(output, keep_open)
     _reset_signals()
-    apply(start.limits, processes_beside=processes_beside)
+    apply_limits(start.limits, processes_beside=processes_beside)
     if start.core is not None:
         os.sched_setaffinity(0, {start.core})
     os.chdir(place.home)
     isolation = start.isolation
     if isolation is Isolation.NONE:
         return
-    hidden = (*view.own_packages(), *start.program.hidden)
+    hidden = (*filesystem.own_packages(), *start.program.hidden)
     network = start.program.hub is None
     filters = seccomp.program(network=network, no_signals=_signals_leave(isolation)) if seccomp.supported() else None
     user = USER_ID if isolation is not Isolation.LANDLOCK else Path(place.home).stat().st_uid
-    kernel.drop_bounding_capabilities()
+    syscalls.drop_bounding_capabilities()
     if os.geteuid() != user:
         os.setresgid(user, user, user)
         os.setresuid(user, user, user)
-    kernel.drop_capabilities()
-    kernel.prctl(kernel.PR_SET_NO_NEW_PRIVS, 1)
-    kernel.prctl(kernel.PR_SET_DUMPABLE, 1)  # lost with the change of user; without it /proc/self is closed
+    syscalls.drop_capabilities()
+    syscalls.prctl(syscalls.PR_SET_NO_NEW_PRIVS, 1)
+    syscalls.prctl(syscalls.PR_SET_DUMPABLE, 1)  # lost with the change of user; without it /proc/self is closed
     if isolation is Isolation.LANDLOCK:
         landlock.restrict(place, start.program.readonly, hidden, processes=not network)
     if filters is not None:

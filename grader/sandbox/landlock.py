@@ -16,9 +16,9 @@ from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
-from . import kernel, view
-from .program import Place
-from .user_namespace import dedicated_user
+from grader.sandbox import filesystem, syscalls
+from grader.sandbox.namespaces import dedicated_user
+from grader.sandbox.program import Paths
 
 _CREATE_RULESET, _ADD_RULE, _RESTRICT_SELF = 444, 445, 446
 _ASK_VERSION = 1
@@ -38,7 +38,7 @@ _FILE_ONLY = _EXECUTE | _WRITE_FILE | _READ_FILE | _TRUNCATE | _DEVICE_CONTROL
 def version() -> int:
     """The version of Landlock that the kernel speaks; 0 if it has none or it is switched off."""
     try:
-        return kernel.system_call(
+        return syscalls.system_call(
             _CREATE_RULESET, None, ctypes.c_size_t(0), ctypes.c_uint32(_ASK_VERSION), what="landlock"
         )
     except OSError:
@@ -58,13 +58,13 @@ def student_user() -> int:
     """
     if os.geteuid() != 0:
         return os.geteuid()
-    for folder in sorted({folder for path in view.interpreter() for folder in path.resolve().parents}):
+    for folder in sorted({folder for path in filesystem.interpreter() for folder in path.resolve().parents}):
         if not folder.stat().st_mode & stat.S_IXOTH:
             raise OSError(f"as root it needs a Python that other users can read, and this one lies in {folder}")
     return dedicated_user()
 
 
-def restrict(place: Place, readonly: Sequence[Path], hidden: Sequence[Path], *, processes: bool) -> None:
+def restrict(place: Paths, readonly: Sequence[Path], hidden: Sequence[Path], *, processes: bool) -> None:
     """Confines this process, and all that it starts, to reading Python and ROS 2 and writing its own folders.
 
     Needs no_new_privs.
@@ -88,10 +88,10 @@ def restrict(place: Place, readonly: Sequence[Path], hidden: Sequence[Path], *, 
         _ABSTRACT_SOCKETS_AND_SIGNALS if version() >= 6 else 0,
     )
     size = 24 if version() >= 6 else 16 if version() >= 4 else 8
-    ruleset = kernel.system_call(
+    ruleset = syscalls.system_call(
         _CREATE_RULESET, handled, ctypes.c_size_t(size), ctypes.c_uint32(0), what="landlock_create_ruleset"
     )
-    for path in (*view.system(), *view.interpreter(), *readonly, Path(place.folder)):
+    for path in (*filesystem.system(), *filesystem.interpreter(), *readonly, Path(place.folder)):
         _allow_reading(ruleset, path, [path.resolve() for path in hidden])
     if processes:
         _allow(ruleset, Path("/proc"), _READ_FILE | _READ_FOLDER)
@@ -99,7 +99,7 @@ def restrict(place: Place, readonly: Sequence[Path], hidden: Sequence[Path], *, 
         _allow(ruleset, path, (_READ_FILE | _WRITE_FILE) & files)
     for path in (Path(place.home), Path(place.temporary)):
         _allow(ruleset, path, files)
-    kernel.system_call(_RESTRICT_SELF, ctypes.c_int(ruleset), ctypes.c_uint32(0), what="landlock_restrict_self")
+    syscalls.system_call(_RESTRICT_SELF, ctypes.c_int(ruleset), ctypes.c_uint32(0), what="landlock_restrict_self")
     os.close(ruleset)
 
 
@@ -124,7 +124,7 @@ def _allow(ruleset: int, path: Path, rights: int) -> None:
         rights &= _FILE_ONLY
     # struct landlock_path_beneath_attr is packed: 8 bytes of rights, 4 of the descriptor.
     rule = rights.to_bytes(8, "little") + opened.to_bytes(4, "little")
-    kernel.system_call(
+    syscalls.system_call(
         _ADD_RULE, ctypes.c_int(ruleset), ctypes.c_int(_RULE_PATH_BENEATH), rule, ctypes.c_uint32(0), what=str(path)
     )
     os.close(opened)

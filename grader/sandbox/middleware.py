@@ -1,8 +1,11 @@
-"""Over which middleware programs under test talk, and what this machine has."""
+"""Which middleware programs under test use, which ones this machine has, and the type support they need."""
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
+import importlib
+import inspect
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,10 +13,9 @@ from enum import Enum
 from functools import cache
 from pathlib import Path
 
+from grader.sandbox.errors import SandboxUnavailable
 from rmw_lockstep.library import IDENTIFIER, Library, Unavailable, compiler, library
 from rmw_lockstep.ros import installed_ros
-
-from .faults import SandboxUnavailable
 
 
 class Middleware(str, Enum):
@@ -123,3 +125,22 @@ def connect(hub: str) -> None:
     error = ctypes.CDLL(None).lockstep_connect(os.fsencode(hub))
     if error:
         raise OSError(error, f"no connection to the hub {hub}: {os.strerror(error)}")
+
+
+def load_type_support(name: str) -> None:
+    """Imports a module of message or service types, loads their compiled support, and the middleware's for messages.
+
+    What can't be loaded is left out: it fails in the same way where it is used.
+    """
+    try:
+        module = importlib.import_module(name)
+        from rclpy.serialization import serialize_message
+    except ImportError:
+        return
+    for _, kind in inspect.getmembers(module, inspect.isclass):
+        load_own = getattr(kind, "__import_type_support__", None)
+        if load_own is not None:
+            with contextlib.suppress(Exception):
+                load_own()
+                if name.endswith(".msg"):
+                    serialize_message(kind())

@@ -1,23 +1,78 @@
-"""Makes a student's namespaces with system calls of our own, as bubblewrap would."""
+"""Makes a student's namespaces with system calls, and ends them."""
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
-from collections.abc import Sequence
+import subprocess
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
 
-from . import kernel, seccomp
-from .room import Room
-from .view import Step
+from grader.sandbox import seccomp, syscalls
+from grader.sandbox.filesystem import USER_ID, Mount
+from grader.sandbox.program import SUBMISSION
+
+
+@dataclass(frozen=True)
+class Namespaces:
+    """A pid namespace with a root of its own, as seen by the process outside that made it.
+
+    Attributes:
+        init: the first process of the pid namespace; when it dies, the kernel kills all others.
+        holders: processes of ours inside, which are not the student's.
+        builder: the bubblewrap process outside, parent of `init`; None if `init` is this process's own child.
+    """
+
+    init: int
+    holders: frozenset[int] = frozenset()
+    builder: subprocess.Popen[bytes] | None = None
+
+    def kill(self) -> None:
+        """Kills everything inside. It is dead when `bury` returns."""
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(self.init, signal.SIGKILL)
+
+    def bury(self) -> None:
+        """Returns when all is dead. Children of the caller inside have to be waited for before.
+
+        The death of a namespace's first process is told to its parent only after every other process in it is gone:
+        pid_namespaces(7).
+        """
+        if self.builder is not None:
+            self.builder.wait()
+        # bubblewrap may end without having waited for it: then it has become a child of this process.
+        with contextlib.suppress(ChildProcessError):
+            os.waitpid(self.init, 0)
+
+    def forget(self) -> None:
+        """Closes, in a fork of the process that made the room, what keeps it open."""
+        if self.builder is not None:
+            for stream in (self.builder.stdin, self.builder.stdout, self.builder.stderr):
+                if stream is not None:
+                    stream.close()
+            self.builder.returncode = 0  # not this process's child
+
+
+def write_files(files: Mapping[str, bytes]) -> None:
+    """Writes the submission's files into a read-only tmpfs at /submission. Called inside the room's mounts."""
+    size = sum(len(content) // 4096 + 1 for content in files.values()) * 4096 + 65536
+    syscalls.mount("tmpfs", SUBMISSION, "tmpfs", syscalls.MS_NOSUID | syscalls.MS_NODEV, f"mode=0755,size={size}")
+    for name, content in files.items():
+        path = Path(SUBMISSION, name)
+        path.write_bytes(content)
+        path.chmod(0o444)
+    syscalls.make_read_only(SUBMISSION)
+
 
 # Where the former root lies while the new one is built.
 _OLD = "/.old"
-_MOUNT = kernel.MS_NOSUID | kernel.MS_NODEV
+_MOUNT = syscalls.MS_NOSUID | syscalls.MS_NODEV
 
 
-def build(plan: Sequence[Step], user_namespace: int, *, network: bool) -> Room:
+def build(plan: Sequence[Mount], user_namespace: int, *, network: bool) -> Namespaces:
     """Makes the namespaces and their root, and moves this process into them (all but the pid namespace's children).
 
     With `network` the network stays the one that this process is in; otherwise there is none, not even loopback.
@@ -25,10 +80,10 @@ def build(plan: Sequence[Step], user_namespace: int, *, network: bool) -> Room:
     Raises:
         OSError: if a namespace or a mount is refused.
     """
-    kernel.setns(user_namespace, kernel.CLONE_NEWUSER)
-    flags = kernel.CLONE_NEWNS | kernel.CLONE_NEWPID | kernel.CLONE_NEWIPC | kernel.CLONE_NEWUTS
-    kernel.unshare(flags if network else flags | kernel.CLONE_NEWNET)
-    kernel.sethostname("student")
+    syscalls.setns(user_namespace, syscalls.CLONE_NEWUSER)
+    flags = syscalls.CLONE_NEWNS | syscalls.CLONE_NEWPID | syscalls.CLONE_NEWIPC | syscalls.CLONE_NEWUTS
+    syscalls.unshare(flags if network else flags | syscalls.CLONE_NEWNET)
+    syscalls.sethostname("student")
     os.chdir("/")
     told_at, told_to = os.pipe()
     init = os.fork()
@@ -40,20 +95,20 @@ def build(plan: Sequence[Step], user_namespace: int, *, network: bool) -> Room:
     if said != b"ready":
         os.waitpid(init, 0)
         raise OSError(said.decode(errors="replace") or "the first process of the namespace died")
-    return Room(init)
+    return Namespaces(init)
 
 
-def _be_init(plan: Sequence[Step], told_to: int, network: bool) -> NoReturn:
+def _be_init(plan: Sequence[Mount], told_to: int, network: bool) -> NoReturn:
     """The first process of the pid namespace: builds the root, then only buries orphans until it is killed."""
     try:
-        kernel.prctl(kernel.PR_SET_PDEATHSIG, signal.SIGKILL)
-        kernel.prctl(kernel.PR_SET_NAME, b"init")
+        syscalls.prctl(syscalls.PR_SET_PDEATHSIG, signal.SIGKILL)
+        syscalls.prctl(syscalls.PR_SET_NAME, b"init")
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGCHLD})
         build_root(plan)
-        kernel.drop_bounding_capabilities()
-        kernel.drop_capabilities()
-        kernel.prctl(kernel.PR_SET_NO_NEW_PRIVS, 1)
-        kernel.prctl(kernel.PR_SET_DUMPABLE, 0)
+        syscalls.drop_bounding_capabilities()
+        syscalls.drop_capabilities()
+        syscalls.prctl(syscalls.PR_SET_NO_NEW_PRIVS, 1)
+        syscalls.prctl(syscalls.PR_SET_DUMPABLE, 0)
         if seccomp.supported():
             seccomp.install(seccomp.program(network=network))
         os.write(told_to, b"ready")
@@ -70,39 +125,39 @@ def _be_init(plan: Sequence[Step], told_to: int, network: bool) -> NoReturn:
             pass
 
 
-def build_root(plan: Sequence[Step]) -> None:
+def build_root(plan: Sequence[Mount]) -> None:
     """Replaces the root of this mount namespace by the one that the steps describe.
 
     Raises:
         OSError: if a mount is refused.
     """
-    kernel.mount("", "/", flags=kernel.MS_REC | kernel.MS_PRIVATE)
-    kernel.mount("tmpfs", "/tmp", "tmpfs", _MOUNT, "mode=0755")
+    syscalls.mount("", "/", flags=syscalls.MS_REC | syscalls.MS_PRIVATE)
+    syscalls.mount("tmpfs", "/tmp", "tmpfs", _MOUNT, "mode=0755")
     Path("/tmp" + _OLD).mkdir()
-    kernel.pivot_root("/tmp", "/tmp" + _OLD)
+    syscalls.pivot_root("/tmp", "/tmp" + _OLD)
     os.chdir("/")
     for step in plan:
         if step.path != "/":
             _take(step)
-    kernel.unmount(_OLD)
+    syscalls.unmount(_OLD)
     Path(_OLD).rmdir()
     _seal("/")
 
 
-def _take(step: Step) -> None:
+def _take(step: Mount) -> None:
     path = Path(step.path)
     if step.action == "folder":
         path.mkdir(mode=0o755)
     elif step.action == "scratch":
         path.mkdir(exist_ok=True)
-        kernel.mount("tmpfs", step.path, "tmpfs", _MOUNT, f"mode=1777,size={step.size}")
+        syscalls.mount("tmpfs", step.path, "tmpfs", _MOUNT, f"mode=1777,size={step.size}")
     elif step.action in ("bind", "device"):
         _bind(_OLD + (step.content or step.path), path)
-        kernel.make_read_only(step.path, devices=step.action == "device")
+        syscalls.make_read_only(step.path, devices=step.action == "device")
     elif step.action == "mask" and path.is_dir():
-        kernel.mount("tmpfs", step.path, "tmpfs", _MOUNT, "mode=0755,size=64k")
+        syscalls.mount("tmpfs", step.path, "tmpfs", _MOUNT, "mode=0755,size=64k")
     elif step.action == "mask":
-        kernel.mount(_OLD + "/dev/null", step.path, flags=kernel.MS_BIND)
+        syscalls.mount(_OLD + "/dev/null", step.path, flags=syscalls.MS_BIND)
     elif step.action == "link":
         path.symlink_to(step.content)
     elif step.action == "text":
@@ -120,18 +175,86 @@ def _bind(source: str, target: Path) -> None:
         target.mkdir(exist_ok=True)
     else:
         target.touch()
-    kernel.mount(source, str(target), flags=kernel.MS_BIND | kernel.MS_REC)
+    syscalls.mount(source, str(target), flags=syscalls.MS_BIND | syscalls.MS_REC)
 
 
 def _mount_processes(target: str) -> None:
     """Mounts /proc, in which a program's processes look whether they are idle."""
     try:
-        kernel.mount("proc", target, "proc", _MOUNT | kernel.MS_NOEXEC)
+        syscalls.mount("proc", target, "proc", _MOUNT | syscalls.MS_NOEXEC)
     except PermissionError as fault:
         allow = "docker run --security-opt systempaths=unconfined"
         raise OSError(f"this container hides parts of its /proc, so none can be mounted ({allow}): {fault}") from fault
 
 
 def _seal(target: str) -> None:
-    flags = kernel.MS_REMOUNT | kernel.MS_BIND | kernel.MS_RDONLY | _MOUNT
-    kernel.mount("", target, flags=flags)
+    flags = syscalls.MS_REMOUNT | syscalls.MS_BIND | syscalls.MS_RDONLY | _MOUNT
+    syscalls.mount("", target, flags=flags)
+
+
+# Users whom systemd reserves for services without a user of their own; nobody's files belong to them.
+_FIRST, _COUNT = 61184, 4336
+
+
+_of_process: dict[int, int] = {}
+
+
+def user_namespace_of_this_process() -> int:
+    """The user namespace of all students that this process starts, one after the other; made when first asked for.
+
+    Raises:
+        OSError: if this machine allows no user namespaces.
+    """
+    if os.getpid() not in _of_process:
+        _of_process[os.getpid()] = create_user_namespace()
+    return _of_process[os.getpid()]
+
+
+def create_user_namespace() -> int:
+    """Makes a user namespace and returns a descriptor of it.
+
+    As root, a user of no other process becomes the student (the kernel does not limit the number of root's
+    processes), and root stays root inside, so that what we leave running there is out of the student's reach.
+    Otherwise the only user is the present one, under the student's number.
+
+    Raises:
+        OSError: if this machine allows no user namespaces.
+    """
+    if os.geteuid() == 0:
+        users = f"0 0 1\n{USER_ID} {dedicated_user()} 1\n"
+        groups = users
+    else:
+        users, groups = f"{USER_ID} {os.geteuid()} 1\n", f"{USER_ID} {os.getegid()} 1\n"
+    told_at, told_to = os.pipe()
+    ended_at, ended_to = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            os.close(ended_to)
+            syscalls.unshare(syscalls.CLONE_NEWUSER)
+            os.write(told_to, b"ready")
+            os.read(ended_at, 1)
+        except BaseException as fault:
+            os.write(told_to, str(fault).encode())
+        finally:
+            os._exit(0)
+    os.close(told_to)
+    os.close(ended_at)
+    try:
+        said = os.read(told_at, 4096)
+        if said != b"ready":
+            raise OSError(f"this machine allows no user namespaces: {said.decode(errors='replace')}")
+        process = Path(f"/proc/{child}")
+        (process / "setgroups").write_text("deny")
+        (process / "uid_map").write_text(users)
+        (process / "gid_map").write_text(groups)
+        return os.open(process / "ns" / "user", os.O_RDONLY | os.O_CLOEXEC)
+    finally:
+        os.close(told_at)
+        os.close(ended_to)
+        os.waitpid(child, 0)
+
+
+def dedicated_user() -> int:
+    """A user number for a student whom root starts, different from one supervisor process to the next."""
+    return _FIRST + os.getpid() % _COUNT

@@ -1,16 +1,27 @@
-"""What /proc tells about a student's processes: which there are, and what they have used.
+"""A student's processes where there are no namespaces, and what /proc says about them.
 
-Source: proc(5). Processes end while they are looked at; what has ended counts nothing.
+Source: proc(5). Processes end while they are looked at; those count nothing.
 """
 
 from __future__ import annotations
 
+import contextlib
 import os
-from dataclasses import dataclass
+import shutil
+import signal
+import tempfile
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
 import psutil
+
+from grader.sandbox.program import Paths
+
+# Source: proc(5). Processes end while they are looked at; what has ended counts nothing.
+
 
 _TICKS = os.sysconf("SC_CLK_TCK")
 _PAGE = os.sysconf("SC_PAGE_SIZE")
@@ -98,3 +109,51 @@ def buried_cpu_seconds(pid: int) -> float:
     """The CPU seconds of the children that a process has buried."""
     fields = _fields(f"/proc/{pid}/stat")
     return (int(fields[13]) + int(fields[14])) / _TICKS if fields else 0.0
+
+
+@dataclass(frozen=True)
+class ProcessTree:
+    """What `Namespaces` is with namespaces. The supervisor adopts the student's orphans (PR_SET_CHILD_SUBREAPER)."""
+
+    folder: Path
+    init: int = field(default_factory=os.getpid)
+    holders: frozenset[int] = frozenset()
+
+    def kill(self) -> None:
+        """Kills what the student has started. What it starts meanwhile is found by `bury`."""
+        alive = descendants(self.init)
+        for order in (signal.SIGSTOP, signal.SIGKILL):  # first nobody forks any more
+            for process in alive:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(process, order)
+
+    def bury(self) -> None:
+        """Returns when all is dead, and removes the folder."""
+        while descendants(self.init):
+            self.kill()
+            with contextlib.suppress(ChildProcessError):
+                while os.waitpid(-1, os.WNOHANG)[0]:
+                    pass
+            time.sleep(0.001)
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def make_paths(files: Mapping[str, bytes], owner: int | None, hub: Path | None) -> Paths:
+    """Makes a folder in the machine's temporary folder, with the submission's files and a home.
+
+    Args:
+        files: name to content.
+        owner: the user that the home is given to; None for the present one.
+        hub: the hub's socket, which the program sees where it is.
+    """
+    top = Path(tempfile.mkdtemp(prefix="spinbook-student-"))
+    top.chmod(0o755)
+    submission, home, temporary = top / "submission", top / "home", top / "tmp"
+    for folder in (submission, home, temporary):
+        folder.mkdir(mode=0o755)
+        if owner is not None and folder is not submission:
+            os.chown(folder, owner, owner)
+    for name, content in files.items():
+        (submission / name).write_bytes(content)
+        (submission / name).chmod(0o444)
+    return Paths(str(submission), str(home), str(temporary), str(hub) if hub else None)

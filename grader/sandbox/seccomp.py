@@ -16,7 +16,7 @@ import socket
 import struct
 from collections.abc import Sequence
 
-from . import kernel
+from grader.sandbox import syscalls
 
 _X86_64 = 0xC000003E
 _AARCH64 = 0xC00000B7
@@ -172,7 +172,7 @@ def install(filter_program: bytes) -> None:
         _fields_ = (("length", ctypes.c_ushort), ("filter", ctypes.c_char_p))
 
     described = _Program(len(filter_program) // 8, filter_program)
-    kernel.prctl(kernel.PR_SET_SECCOMP, _MODE_FILTER, ctypes.byref(described))
+    syscalls.prctl(syscalls.PR_SET_SECCOMP, _MODE_FILTER, ctypes.byref(described))
 
 
 def _refuse(error: int) -> Instruction:

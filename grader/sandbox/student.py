@@ -9,10 +9,9 @@ import signal
 import socket
 from types import TracebackType
 
-from .faults import SandboxError
-from .limits import Limits
-from .output import Output
-from .warden import Exit, Warden
+from grader.sandbox.errors import SandboxError
+from grader.sandbox.monitor import Exit, Monitor, Output
+from grader.sandbox.program import Limits
 
 _START_S = 30.0
 _DEATH_S = 30.0
@@ -22,10 +21,10 @@ class Student:
     """A student's program in its sandbox. Leaving the `with` block kills all of it."""
 
     def __init__(self, control: socket.socket, output: int, limits: Limits) -> None:
-        """Waits until the program has been started by the keeper at the other end of the socket.
+        """Waits until the program has been started by the supervisor at the other end of the socket.
 
         Args:
-            control: the socket to the keeper.
+            control: the socket to the supervisor.
             output: the end to read of the pipe that the program prints to.
             limits: what it may use.
 
@@ -41,31 +40,31 @@ class Student:
         if answer.get("event") != "started":
             control.close()
             os.close(output)
-            raise SandboxError(f"the sandbox could not be made: {answer.get('reason', 'the keeper died')}")
+            raise SandboxError(f"the sandbox could not be made: {answer.get('reason', 'the supervisor died')}")
         control.settimeout(None)
         self.pid: int = answer["pid"]
         """The number of the node's process, as seen from outside the sandbox."""
         self.folder: str = answer["folder"]
         """Where the submission's files lie, as the program sees them."""
-        self._warden = Warden(control, output, limits, self.pid, answer["init"], frozenset(answer["holders"]))
+        self._monitor = Monitor(control, output, limits, self.pid, answer["init"], frozenset(answer["holders"]))
 
     @property
     def exit(self) -> Exit | None:
         """How the node's process ended; None while it runs."""
-        return self._warden.exit
+        return self._monitor.exit
 
     def poll(self) -> Exit | None:
         """The same as `exit`."""
-        return self._warden.exit
+        return self._monitor.exit
 
     def wait(self, timeout_s: float) -> Exit | None:
         """Waits for the end of the node's process, at most so many seconds; None if it still runs."""
-        self._warden.ended.wait(timeout_s)
-        return self._warden.exit
+        self._monitor.ended.wait(timeout_s)
+        return self._monitor.exit
 
     def output(self) -> Output:
         """What it has printed until now."""
-        return self._warden.output()
+        return self._monitor.output()
 
     def interrupt(self) -> None:
         """Sends SIGINT to the node's process, as Ctrl-C would. Nothing if it has ended."""
@@ -74,19 +73,19 @@ class Student:
 
     def cpu_seconds(self) -> float:
         """What all its processes have used of the CPU, those that have ended included (s)."""
-        return self._warden.cpu_seconds()
+        return self._monitor.cpu_seconds()
 
     def pids(self) -> tuple[int, ...]:
         """The numbers of its processes, as seen from outside the sandbox: its first, and others found within 50 ms."""
-        return (self.pid, *self._warden.others)
+        return (self.pid, *self._monitor.others)
 
     def at_limit(self) -> bool:
         """Whether it is being ended for a limit that it has run into; looks at once, where the watch may be late."""
-        return self._warden.at_limit()
+        return self._monitor.at_limit()
 
     def processes(self) -> int:
         """How many processes it has now."""
-        return len(self._warden.members())
+        return len(self._monitor.members())
 
     def kill(self) -> Exit:
         """Kills every process of it, daemons too, and returns when all are dead. Again: the same answer.
@@ -96,10 +95,10 @@ class Student:
         """
         with contextlib.suppress(OSError):
             self._control.send(b"kill")
-        if not self._warden.dead.wait(_DEATH_S):
+        if not self._monitor.dead.wait(_DEATH_S):
             raise SandboxError(f"the student's process {self.pid} did not die within {_DEATH_S:g} s of being killed")
-        self._warden.join()
-        return self._warden.exit or Exit(None, int(signal.SIGKILL), None)
+        self._monitor.join()
+        return self._monitor.exit or Exit(None, int(signal.SIGKILL), None)
 
     def __enter__(self) -> Student:
         """Nothing: it runs already."""

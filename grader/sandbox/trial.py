@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import sys
 
-from . import landlock
-from .faults import SandboxError
-from .level import Isolation
-from .nursery import Nursery
-from .program import Program
-from .rig_namespace import enter
+from grader.sandbox import landlock
+from grader.sandbox.errors import SandboxError
+from grader.sandbox.fork_server import ForkServer
+from grader.sandbox.isolation import Isolation
+from grader.sandbox.network import enter
+from grader.sandbox.program import Program
 
 _WORD = "works"
 _PROGRAM = f"import rclpy.exceptions, sys\nprint({_WORD!r})\n"
@@ -26,7 +26,7 @@ def main(level: Isolation) -> str | None:
         enter(level)
         # Not warm: so it shows too that Python itself can be started in there.
         program = Program("trial.py", {"trial.py": _PROGRAM.encode()}, warm=False)
-        with Nursery(preload=()) as nursery, nursery.start(program, level) as student:
+        with ForkServer(preload=()) as fork_server, fork_server.start(program, level) as student:
             end = student.wait(20.0)
             said = student.output().text.strip()
     except (OSError, SandboxError) as fault:

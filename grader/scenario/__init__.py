@@ -1,6 +1,6 @@
 """Scenarios: what happens around a student's program, declared in a few lines."""
 
-from grader.exercise.interface import Qos
+from grader.exercise.exercise import Qos
 from grader.scenario.models import JointChain, Turtle
 from grader.scenario.scenario import Companion, Message, Program, Scenario
 from grader.scenario.servers import ActionServer, Server, aborts, never_ends, no_reply, rejects, reply, succeeds

@@ -28,8 +28,8 @@ def declared(exercise: Exercise, seed: int) -> tuple[Scenario, ...]:
     for scenario in found:
         if scenario.name in names or not scenario.name.isidentifier():
             told = "twice" if scenario.name in names else "no Python name"
-            mend = "Give each scenario a Python name of its own."
-            raise ExerciseError(file, f"a scenario's name is {scenario.name!r}: {told}", mend, scenario.line or None)
+            fix = "Give each scenario a Python name of its own."
+            raise ExerciseError(file, f"a scenario's name is {scenario.name!r}: {told}", fix, scenario.line or None)
         names.append(scenario.name)
     return tuple(resolved(exercise, scenario) for scenario in found)
 

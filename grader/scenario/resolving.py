@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any, NoReturn, TypeVar
 
 from grader.exercise import Exercise, ExerciseError
-from grader.exercise.interface import Endpoint
+from grader.exercise.exercise import Endpoint
 from grader.recording.recording import Fields
 from grader.recording.types import message_class
 from grader.scenario.scenario import (
@@ -72,15 +72,15 @@ class Resolver:
 
     # --- what goes wrong
 
-    def _fault(self, line: int, found: str, mend: str) -> NoReturn:
+    def _fault(self, line: int, found: str, fix: str) -> NoReturn:
         place = line or self._scenario.line
-        raise ExerciseError(self._exercise.scenarios_file, found, mend, place or None)
+        raise ExerciseError(self._exercise.scenarios_file, found, fix, place or None)
 
     def _timing(self) -> None:
         scenario = self._scenario
         if not scenario.messages and not scenario.steps and not scenario.duration:
-            mend = "Let something happen in it, or give it a duration, such as duration=5.0."
-            self._fault(0, f"the scenario {scenario.name} has no messages, no other steps and no duration", mend)
+            fix = "Let something happen in it, or give it a duration, such as duration=5.0."
+            self._fault(0, f"the scenario {scenario.name} has no messages, no other steps and no duration", fix)
         for name in ("duration", "rate"):
             value = getattr(scenario, name)
             if value is not None and (isinstance(value, bool) or not isinstance(value, (int, float)) or value < 0):
@@ -100,22 +100,22 @@ class Resolver:
         """`given` with its type, which is of this kind."""
         type_name = given.type or declared
         if not type_name:
-            mend = f"Declare it in exercise.toml under [[{table}]], or write its type after its name."
-            self._fault(given.line, f"the type of {name} is not known", mend)
+            fix = f"Declare it in exercise.toml under [[{table}]], or write its type after its name."
+            self._fault(given.line, f"the type of {name} is not known", fix)
         found = _TYPE.fullmatch(type_name)
         if not found:
-            mend = f"Write a type as {_EXAMPLES[kind]!r}."
-            self._fault(given.line, f"{type_name!r} is not the name of a {_KINDS[kind]} type", mend)
+            fix = f"Write a type as {_EXAMPLES[kind]!r}."
+            self._fault(given.line, f"{type_name!r} is not the name of a {_KINDS[kind]} type", fix)
         if found["kind"] != kind:
-            mend = f"Write a type as {_EXAMPLES[kind]!r}."
+            fix = f"Write a type as {_EXAMPLES[kind]!r}."
             article = "an" if found["kind"] == "action" else "a"
             told = f"{type_name!r} is the type of {article} {_KINDS[found['kind']]}, but {name} needs that of a "
-            self._fault(given.line, told + _KINDS[kind], mend)
+            self._fault(given.line, told + _KINDS[kind], fix)
         package, _, rest = type_name.partition("/")
         known = prefixes.interfaces(prefixes.installed())
         if rest not in known.get(package, ()):
-            mend = "Look at its name. If the course has just defined it: spinbook build."
-            self._fault(given.line, f"there is no type {type_name} here", mend)
+            fix = "Look at its name. If the course has just defined it: spinbook build."
+            self._fault(given.line, f"there is no type {type_name} here", fix)
         return replace(given, type=type_name) if not isinstance(given, (Server, ActionServer)) else given
 
     def _type_of(self, name: str, endpoints: Sequence[Endpoint]) -> str | None:
@@ -125,7 +125,7 @@ class Resolver:
         try:
             check_fields(kind, fields, type_name)
         except Invalid as error:
-            self._fault(line, f"{name}: {error.found}", error.mend)
+            self._fault(line, f"{name}: {error.found}", error.fix)
 
     # --- messages and steps
 
@@ -178,16 +178,16 @@ class Resolver:
     def _see_program(self, step: Kill | StartProgram) -> None:
         known = [one.file for one in self._exercise.programs]
         if step.program not in known:
-            mend = f"There are: {', '.join(known)}." if known else "Declare each program in exercise.toml: [[program]]."
-            self._fault(step.line, f"there is no program {step.program!r}", mend)
+            fix = f"There are: {', '.join(known)}." if known else "Declare each program in exercise.toml: [[program]]."
+            self._fault(step.line, f"there is no program {step.program!r}", fix)
 
     def _see_peer(self, step: Leave | ComeBack) -> None:
         known = [message.topic for message in self._scenario.messages]
         known += [one.service if isinstance(one, Server) else one.action for one in self._scenario.servers]
         known += [one.name for one in self._scenario.steps if isinstance(one, Subscribe)]
         if step.name not in known:
-            mend = f"There are: {', '.join(dict.fromkeys(known)) or 'none'}."
-            self._fault(step.line, f"nothing here is called {step.name!r}", mend)
+            fix = f"There are: {', '.join(dict.fromkeys(known)) or 'none'}."
+            self._fault(step.line, f"nothing here is called {step.name!r}", fix)
 
     # --- peers
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, fields
 from typing import Any, Literal, TypeAlias
 
-from grader.exercise.interface import Qos
+from grader.exercise.exercise import Qos
 from grader.recording.recording import Fields
 from grader.scenario.place import line_of_the_author
 from grader.scenario.servers import ActionServer, Server

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from grader.exercise.interface import Durability, Qos, Reliability
+from grader.exercise.exercise import Durability, Qos, Reliability
 from grader.scenario.scenario import (
     BEFORE_START,
     SECOND,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
-from grader.exercise.interface import Qos
+from grader.exercise.exercise import Qos
 from grader.scenario import scenario as steps
 from grader.scenario.code import Code
 from grader.scenario.scenario import Companion, Message, Program, Scenario

@@ -16,9 +16,9 @@ _TEXT = re.compile(r"w?string(<(?P<most>\d+)>)?")
 class Invalid(ValueError):
     """Raised for a value that does not fit; `field` is its full name, such as linear.x."""
 
-    def __init__(self, field: str, found: str, mend: str) -> None:
+    def __init__(self, field: str, found: str, fix: str) -> None:
         super().__init__(f"{field}: {found}")
-        self.field, self.found, self.mend = field, found, mend
+        self.field, self.found, self.fix = field, found, fix
 
 
 def check_fields(kind: Any, fields: Fields, name: str, at: str = "") -> None:
@@ -32,8 +32,8 @@ def check_fields(kind: Any, fields: Fields, name: str, at: str = "") -> None:
     for field, value in fields.items():
         where = f"{at}.{field}" if at else field
         if field not in known:
-            mend = f"Its fields: {', '.join(known)}." if known else "It has no fields."
-            raise Invalid(where, f"{name} has no field {field!r}", mend)
+            fix = f"Its fields: {', '.join(known)}." if known else "It has no fields."
+            raise Invalid(where, f"{name} has no field {field!r}", fix)
         _check_value(known[field], value, where, name)
 
 
@@ -57,11 +57,11 @@ def _check_value(type_name: str, value: Any, field: str, name: str) -> None:
 def _check_list(found: re.Match[str], type_name: str, value: Any, field: str, name: str) -> None:
     _expect(isinstance(value, (list, tuple)), type_name, value, field, name, "Write a list.")
     if found["size"]:
-        mend = f"Give {found['size']} values."
-        _expect(len(value) == int(found["size"]), type_name, value, field, name, mend)
+        fix = f"Give {found['size']} values."
+        _expect(len(value) == int(found["size"]), type_name, value, field, name, fix)
     if found["most"]:
-        mend = f"Give at most {found['most']} values."
-        _expect(len(value) <= int(found["most"]), type_name, value, field, name, mend)
+        fix = f"Give at most {found['most']} values."
+        _expect(len(value) <= int(found["most"]), type_name, value, field, name, fix)
     for index, one in enumerate(value):
         _check_value(found["of"] or found["array"], one, f"{field}[{index}]", name)
 
@@ -71,13 +71,13 @@ def _check_integer(type_name: str, value: Any, field: str, name: str) -> None:
     _expect(whole, type_name, value, field, name, "Write a whole number.")
     bits, signed = _INTEGERS[type_name]
     lowest, highest = (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) if signed else (0, 2**bits - 1)
-    mend = f"Give a number from {lowest} to {highest}."
-    _expect(lowest <= value <= highest, type_name, value, field, name, mend)
+    fix = f"Give a number from {lowest} to {highest}."
+    _expect(lowest <= value <= highest, type_name, value, field, name, fix)
 
 
-def _expect(fits: bool, type_name: str, value: Any, field: str, name: str, mend: str) -> None:
+def _expect(fits: bool, type_name: str, value: Any, field: str, name: str, fix: str) -> None:
     if not fits:
-        raise Invalid(field, f"{_shown(value)} is given for {field}, which is {type_name} in {name}", mend)
+        raise Invalid(field, f"{_shown(value)} is given for {field}, which is {type_name} in {name}", fix)
 
 
 def _shown(value: Any) -> str:

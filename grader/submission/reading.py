@@ -1,24 +1,140 @@
-"""Reads a submission, whatever it is. Content that is no use is the student's to hear of, and never ends the grader."""
+"""Reads a submission: a file, a notebook's cell, an upload or an installed executable."""
 
 from __future__ import annotations
 
 import contextlib
 import errno
 import hashlib
+import json
 import os
 import re
 import stat
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from grader.exercise import Exercise
 from grader.sandbox import Program
-from grader.submission.executable import find
-from grader.submission.notebook import NoCell, cell_of
 from grader.submission.parts import joined, parts
-from grader.submission.submission import Submission
 from grader.submission.upload import NoUpload, Upload, unpack
+
+
+@dataclass(frozen=True)
+class Submission:
+    """One submission, read.
+
+    `digest` is the SHA-256 of what was handed in. `program` says how it is started, and is None where it can't be;
+    then `problem` tells the student why. `source` is its text, to quote lines from. `warning` tells the instructor what
+    is odd about it, such as an upload that was changed; it costs no points.
+    """
+
+    name: str
+    digest: str
+    file_name: str
+    source: str
+    program: Program | None
+    problem: str = ""
+    warning: str = ""
+
+
+@dataclass(frozen=True)
+class Executable:
+    """An installed Python executable: its script, the folders it needs to see, and where its modules are."""
+
+    script: Path
+    folders: tuple[Path, ...]
+    python_path: str
+
+    def digest(self) -> str:
+        """SHA-256 of the script and of every Python file beside its modules."""
+        total = hashlib.sha256(self.script.read_bytes())
+        for folder in self.python_path.split(os.pathsep):
+            for file in sorted(Path(folder).rglob("*.py")):
+                total.update(file.read_bytes())
+        return total.hexdigest()
+
+
+def find(given: str) -> Executable | str:
+    """The executable that `package/executable` names, or a sentence that says why there is none."""
+    package, _, name = given.partition("/")
+    prefixes = [Path(prefix) for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
+    for prefix in prefixes:
+        script = prefix / "lib" / package / name
+        if script.is_file():
+            return _described(prefix, script)
+    looked = ", ".join(map(str, prefixes)) or "nowhere: AMENT_PREFIX_PATH is not set"
+    return (
+        f"{given}: there is no such file, and no installed package {package} with the executable {name} (looked in "
+        f"{looked}). Build the package with colcon and source install/setup.sh first."
+    )
+
+
+def _described(prefix: Path, script: Path) -> Executable:
+    modules = [folder for folder in prefix.glob("lib/python3*/site-packages") if folder.is_dir()]
+    folders = [prefix]
+    for folder in list(modules):
+        for link in folder.glob("*.egg-link"):
+            # Where `colcon build --symlink-install` left the modules in the build and source folders.
+            target = Path(link.read_text(encoding="utf-8").splitlines()[0])
+            modules.append(target)
+            folders += [target, *(entry.resolve().parent for entry in target.iterdir() if entry.is_symlink())]
+    return Executable(script, tuple(folders), os.pathsep.join(map(str, modules)))
+
+
+class NoCell(Exception):
+    """Raised when a notebook holds no cell for the exercise; tells the student why."""
+
+
+def cell_of(content: bytes, exercise: Exercise) -> str:
+    """The code of the exercise's cell, with its lines numbered as in the cell: of several the last."""
+    return cells_of(content, exercise)[-1]
+
+
+def cells_of(content: bytes, exercise: Exercise) -> list[str]:
+    """The code of every cell that is the exercise's, in their order; at least one. Lines of magic become empty ones.
+
+    Those are cells whose metadata says `spinbook.exercise`, else those with `%%node` and the exercise's name, else
+    those that define the exercise's class, else those that make its node. Raises `NoCell`.
+    """
+    try:
+        cells = json.loads(content)["cells"]
+        codes = [(_exercise(cell), _source(cell)) for cell in cells if cell.get("cell_type") == "code"]
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+        raise NoCell(f"It is no notebook that can be read: {type(error).__name__}: {error}.") from None
+    stem = exercise.file_name.removesuffix(".py")
+    magic = re.compile(rf"^%%node\s+{re.escape(stem)}(\.py)?(\s.*)?$", re.MULTILINE)
+    definition = re.compile(rf"^class\s+{re.escape(exercise.class_name)}\b", re.MULTILINE)
+    node = re.compile(rf"""(Node|__init__|create_node)\(\s*['"]{re.escape(exercise.node_name)}['"]""")
+    for found in (
+        [code for name, code in codes if name == exercise.name],
+        [code for _, code in codes if magic.search(code)],
+        [code for _, code in codes if exercise.class_name and definition.search(code)],
+        [code for _, code in codes if node.search(code)],
+    ):
+        if found:
+            return [_without_magic(code) for code in found]
+    what = f"class {exercise.class_name}" if exercise.class_name else f"node {exercise.node_name}"
+    raise NoCell(
+        f"None of the notebook's {len(codes)} code cells is the exercise's. Write the {what} in the cell that the "
+        f"chapter gives for it; it begins with %%node {stem}."
+    )
+
+
+def _exercise(cell: dict[str, Any]) -> str:
+    spinbook = cell.get("metadata", {}).get("spinbook", {})
+    name = spinbook.get("exercise", "") if isinstance(spinbook, dict) else ""
+    return name if isinstance(name, str) else ""
+
+
+def _source(cell: dict[str, Any]) -> str:
+    source = cell.get("source", "")
+    return source if isinstance(source, str) else "".join(source)
+
+
+def _without_magic(code: str) -> str:
+    return "\n".join("" if line.startswith(("%", "!")) else line for line in code.split("\n"))
+
 
 MOST_BYTES = {".py": 1_000_000, ".ipynb": 30_000_000, ".zip": 5_000_000}
 

@@ -28,8 +28,8 @@ _SPINBOOK = (
     "__init__.py",
     "problem.py",
     "ros2",
-    "runtime/__init__.py",
-    "runtime/entry.py",
+    "kernel/__init__.py",
+    "kernel/entry.py",
     "turtlesim",
     "browser",
     "graph",
@@ -37,7 +37,7 @@ _SPINBOOK = (
     "chapter/terminal.py",
 )
 #: What of the grader judges recordings; the rest starts and confines programs.
-_GRADER = ("__init__.py", "checking", "exercise", "recording", "scenario", "report", "feedback")
+_GRADER = ("__init__.py", "checking", "exercise", "recording", "scenario", "report")
 _INDEXED = ("rosidl_interfaces", "packages")
 _TEXTS = (".msg", ".srv", ".action")
 

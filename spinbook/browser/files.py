@@ -1,14 +1,41 @@
-"""The files that a site needs so that its pages can run their own nodes."""
+"""The files a site needs so that its pages can run nodes: Pyodide, the archives, the public parts of exercises."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import os
+import sys
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from grader.exercise import Exercise
+from grader.workers import WorkerPool
 from spinbook.browser.archives import check_archive, ros_archive, share_archive
-from spinbook.browser.pyodide import pyodide_files, pyodide_folder
 from spinbook.build.digest import digest
+from spinbook.handout.student_copy import exercise_files
+
+# https://pyodide.org, Mozilla Public License 2.0; from its npm package, whose digest is pinned in fetch-pyodide.sh.
+
+
+#: What a page loads of it. Its own list of packages is left out: no package is ever fetched.
+FILES = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip")
+_LOCK = "pyodide-lock.json"
+_FOLDER = Path("share", "spinbook", "pyodide")
+
+
+def pyodide_folder() -> Path | None:
+    """The folder of the package, or None where set-up could not fetch it. SPINBOOK_PYODIDE names another one."""
+    folder = Path(os.environ.get("SPINBOOK_PYODIDE") or Path(sys.prefix) / _FOLDER)
+    return folder if all((folder / name).is_file() for name in (*FILES, _LOCK)) else None
+
+
+def pyodide_files(folder: Path) -> dict[str, bytes]:
+    """The files of the package as a page gets them: name -> content."""
+    found = {name: (folder / name).read_bytes() for name in FILES}
+    lock = json.loads((folder / _LOCK).read_text(encoding="utf-8"))
+    found[_LOCK] = json.dumps({"info": lock["info"], "packages": {}}).encode()
+    return found
+
 
 #: Where they lie in the site.
 FOLDER = "run"
@@ -42,3 +69,20 @@ def _listed(files: Mapping[str, bytes]) -> bytes:
     """What there is to load, for the page: each file's size in bytes, and a version that changes with any of them."""
     version = digest(*(part for name in sorted(files) for part in (name, files[name])))[:16]
     return json.dumps({"version": version, "files": {name: len(files[name]) for name in sorted(files)}}).encode()
+
+
+#: What of a student's copy the checks need.
+_NEEDED = ("exercise.toml", "checks.py", "public.json", "task.md")
+
+
+def public_parts(exercises: Iterable[Exercise]) -> dict[str, bytes]:
+    """What a student's copy of each exercise holds, by its path in the archive of checks: nothing that is hidden.
+
+    Runs the solutions through their public scenarios, unless that was done before. Raises `ExerciseError`.
+    """
+    files: dict[str, bytes] = {}
+    with WorkerPool() as workers:
+        for exercise in exercises:
+            copy = exercise_files(exercise, workers)
+            files |= {f"exercises/{exercise.name}/{name}": copy[name] for name in _NEEDED if name in copy}
+    return files

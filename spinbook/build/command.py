@@ -16,7 +16,7 @@ from spinbook.build.execution import DEADLINE_S, Executed, Job, Progress, execut
 from spinbook.build.notebooks import Built, build_notebooks
 from spinbook.course.course import FILE, Course, find_course
 from spinbook.course.obstacles import ranked
-from spinbook.interfaces.compiled import compile_course
+from spinbook.interfaces.compiling import compile_course
 from spinbook.problem import Problem, SpinbookError
 
 #: Nodes wait more than they compute: twice the cores keep a machine busy and responsive.
@@ -100,8 +100,8 @@ def _without_match(built: list[Built], chapters: tuple[str, ...]) -> list[Proble
     for name in chapters:
         if not any(_is_chosen(item, (name,)) for item in built):
             close = difflib.get_close_matches(name, known, n=1)
-            mend = f"Did you mean `{close[0]}`?" if close else f"The chapters are: {', '.join(known)}."
-            problems.append(Problem(FILE, None, f"there is no chapter `{name}`.", mend))
+            fix = f"Did you mean `{close[0]}`?" if close else f"The chapters are: {', '.join(known)}."
+            problems.append(Problem(FILE, None, f"there is no chapter `{name}`.", fix))
     return problems
 
 

@@ -13,9 +13,9 @@ import nbformat
 from grader.exercise import load, starter
 from spinbook.build.portable import Place, portable
 from spinbook.chapter.chapter import Cell, CellKind, Chapter
+from spinbook.chapter.flavours import parser
 from spinbook.chapter.terminal import Command, CommandKind
 from spinbook.course.course import Course
-from spinbook.course.flavours import parser
 
 _SETUP = """\
 # Run this cell first: it gives the notebook its commands, such as %%node, %ros2, %plot and %stop.

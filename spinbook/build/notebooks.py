@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from grader.exercise import ExerciseError
+from grader.files import write_if_changed
 from spinbook.build.digest import code_digest, digest, files_digest
 from spinbook.build.notebook import notebook_json
-from spinbook.build.reading import surroundings
 from spinbook.chapter.read import Surroundings, forget_chapters, read_chapter
+from spinbook.chapters import surroundings
 from spinbook.course.course import Course
 from spinbook.course.obstacles import strict
 from spinbook.problem import Problem, Severity
-from spinbook.written import write_if_changed
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ def _build(course: Course, chapter: Path, notebook: Path, known: Surroundings, i
         try:
             write_if_changed(notebook, notebook_json(reading.chapter, course))
         except ExerciseError as error:
-            problems.append(Problem(chapter, None, str(error), "Mend the exercise, or take it out of the chapter."))
+            problems.append(Problem(chapter, None, str(error), "Fix the exercise, or take it out of the chapter."))
     uses = tuple(file.as_posix() for file in reading.chapter.uses) if reading.chapter else ()
     return Built(chapter, notebook, tuple(problems), fresh=True, uses=uses)
 
@@ -119,7 +119,7 @@ def _plain(problem: Problem) -> dict[str, Any]:
         "file": problem.file.as_posix(),
         "line": problem.line,
         "found": problem.found,
-        "mend": problem.mend,
+        "fix": problem.fix,
         "severity": problem.severity.value,
         "group": problem.group,
         "alone": problem.alone,
@@ -129,5 +129,5 @@ def _plain(problem: Problem) -> dict[str, Any]:
 def _problem(plain: Mapping[str, Any]) -> Problem:
     severity = Severity(plain["severity"])
     return Problem(
-        Path(plain["file"]), plain["line"], plain["found"], plain["mend"], severity, plain["group"], plain["alone"]
+        Path(plain["file"]), plain["line"], plain["found"], plain["fix"], severity, plain["group"], plain["alone"]
     )

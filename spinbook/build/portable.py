@@ -12,11 +12,11 @@ from urllib.parse import quote
 
 from markdown_it.token import Token
 
+from spinbook.chapter.attributes import container, container_name, options
 from spinbook.chapter.fence import directive, parse_info
-from spinbook.course.attributes import container, container_name, options
-from spinbook.course.files import is_elsewhere, locate, split
-from spinbook.course.flavours import parser
-from spinbook.course.links import linked
+from spinbook.chapter.files import is_elsewhere, locate, split
+from spinbook.chapter.flavours import parser
+from spinbook.chapter.links import linked
 
 _ALERT = re.compile(r"\[!(NOTE|TIP|IMPORTANT|WARNING|CAUTION)\]\s*$", re.IGNORECASE)
 #: Larger pictures stay out of the notebook, which is read and written as a whole.

@@ -22,11 +22,11 @@ from jupyter_client.manager import AsyncKernelManager
 from nbclient import NotebookClient
 from nbclient.exceptions import DeadKernelError
 
-from spinbook.graph.watch import GraphWatch
-from spinbook.runtime.environment import DOMAIN_NOTE, EXECUTING
-from spinbook.written import write_if_changed
+from grader.files import write_if_changed
+from spinbook.build.watch_graph import GraphWatch
+from spinbook.kernel.environment import DOMAIN_NOTE, EXECUTING
 
-#: How long a cancelled notebook's kernel may take to end (s); the keeper ends it otherwise.
+#: How long a cancelled notebook's kernel may take to end (s); the supervisor ends it otherwise.
 _FAREWELL_S = 5.0
 
 

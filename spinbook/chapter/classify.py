@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 
-from spinbook.chapter.definition_title import interface_path, is_someone_elses
-from spinbook.chapter.fence import ATTRIBUTES, Fence
+from spinbook.chapter.fence import ATTRIBUTES, Fence, interface_path, is_someone_elses
 from spinbook.chapter.package_file import is_package_file, unsupported_in_launch_file
 from spinbook.chapter.python_code import CodeError, PythonCode, has_magics, inspect, programs_in_magics
 from spinbook.chapter.terminal import Command, CommandKind, NotRunnable, looks_like_shell, read_commands
@@ -200,8 +199,8 @@ def _shell(fence: Fence, file: Path) -> tuple[Classified, list[Problem]]:
 def _not_run(fence: Fence, command: NotRunnable, file: Path) -> Problem:
     line = fence.first_code_line + command.line - 1
     found = f"this shell fence is shown and not run: {command.why} (`{command.text}`)."
-    mend = "Put what can run into a fence of its own, or write `static` behind the language to say that this is meant."
-    return Problem(file, line, found, mend, Severity.WARNING, group="a real shell")
+    fix = "Put what can run into a fence of its own, or write `static` behind the language to say that this is meant."
+    return Problem(file, line, found, fix, Severity.WARNING, group="a real shell")
 
 
 def _python(fence: Fence, file: Path) -> tuple[Classified, list[Problem]]:
@@ -226,9 +225,9 @@ def _python(fence: Fence, file: Path) -> tuple[Classified, list[Problem]]:
 
 def _broken(fence: Fence, error: CodeError, file: Path) -> tuple[Classified, list[Problem]]:
     line = fence.first_code_line + error.line - 1
-    mend = "Fix the code, or write `static` behind the language if it is only to be shown and not run."
+    fix = "Fix the code, or write `static` behind the language if it is only to be shown and not run."
     found = f"not Python: {error.message} (column {error.column})."
-    problem = Problem(file, line, found, mend, Severity.NOT_RUN)
+    problem = Problem(file, line, found, fix, Severity.NOT_RUN)
     sign = f"line {error.line} is not valid Python ({error.message})."
     return Classified(fence, FenceKind.STATIC, "it is not Python", sign), [problem]
 
@@ -237,8 +236,8 @@ def _magics_in_node(fence: Fence, file: Path) -> list[Problem]:
     if not has_magics(fence.code):
         return []
     found = "a node's code holds a notebook command (a line that begins with % or !)."
-    mend = "A node is a file of its own, which Python runs: put the command into another fence."
-    return [Problem(file, fence.line, found, mend, Severity.NOT_RUN)]
+    fix = "A node is a file of its own, which Python runs: put the command into another fence."
+    return [Problem(file, fence.line, found, fix, Severity.NOT_RUN)]
 
 
 def _refused(fence: Fence, code: PythonCode) -> str:
@@ -280,8 +279,8 @@ def node_name(item: Classified, told: str, file: Path) -> tuple[str, bool, list[
         name = re.sub(r"\W+", "_", stem).strip("_") or "node"
         name = name if name.isidentifier() else f"node_{name}"
         found = f"`{given}` can't be a module: `{stem}` is not a Python name. It is called `{name}` here."
-        mend = "Use letters, digits and underscores, such as joint_publisher.py."
-        return name, True, [Problem(file, item.fence.line, found, mend, Severity.WARNING)]
+        fix = "Use letters, digits and underscores, such as joint_publisher.py."
+        return name, True, [Problem(file, item.fence.line, found, fix, Severity.WARNING)]
     assert code is not None
     name = code.ros_name if code.ros_name and code.ros_name.isidentifier() else ""
     name = name or (
@@ -289,5 +288,5 @@ def node_name(item: Classified, told: str, file: Path) -> tuple[str, bool, list[
     )
     name = name or "node"
     found = f"this fence is a node without a file name; it is called `{name}`."
-    mend = f'Name its file: ```python title="{name}.py"'
-    return name, False, [Problem(file, item.fence.line, found, mend, Severity.WARNING, group="a file name")]
+    fix = f'Name its file: ```python title="{name}.py"'
+    return name, False, [Problem(file, item.fence.line, found, fix, Severity.WARNING, group="a file name")]

@@ -1,15 +1,17 @@
-"""A code fence of a chapter: its language, its attributes, its code, and where it stands.
-
-The info string is the text behind the opening backticks: a language, then attributes such as
-`title="joint_publisher.py"` (the form Docusaurus and others use) or bare words. MyST's `{code-cell} python`
-with its `:option:` lines is read as the same thing.
-"""
+"""A code fence of a chapter: language, attributes, title, code, and its line."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+
+from interface_compiler import prefixes, shipped, store
+
+# The info string is the text behind the opening backticks: a language, then attributes such as
+# `title="joint_publisher.py"` (the form Docusaurus and others use) or bare words. MyST's `{code-cell} python` with its
+# `:option:` lines is read as the same thing.
+
 
 #: Attribute -> what it means, for error messages and `docs/writing-chapters.md`.
 ATTRIBUTES = {
@@ -129,3 +131,35 @@ def make_fence(info: str, content: str, line: int) -> Fence:
     if attributes.get("caption", "").endswith(".py"):
         attributes["title"] = attributes["caption"]
     return Fence(language=language, code=content, line=line, attributes=attributes, skipped=skipped)
+
+
+_TITLE = re.compile(r"(?:(?P<package>\w+)/)?(?P<kind>msg|srv|action)/(?P<name>[\w-]+)\.(?P=kind)")
+
+
+def interface_package(package: str) -> str:
+    """The package of the interfaces that chapters define, where the nodes' package is `package`."""
+    return f"{package}_interfaces"
+
+
+def interface_path(title: str, package: str) -> str | None:
+    """The path `PACKAGE/msg/NAME.msg` that a title stands for, or None where it is something else's.
+
+    `package` is the one of a title that names none.
+
+    >>> interface_path("msg/JointLimits.msg", "my_robot_interfaces")
+    'my_robot_interfaces/msg/JointLimits.msg'
+    """
+    match = _TITLE.fullmatch(title)
+    if match is None:
+        return None
+    return f"{match['package'] or package}/{match['kind']}/{match['name']}.{match['kind']}"
+
+
+def is_someone_elses(package: str, own: str) -> bool:
+    """Whether a package is installed and no course's: a chapter only shows what is in it. `own` is this course's."""
+    if package == own:
+        return False
+    if package in (*shipped.standard(), *shipped.optional()):
+        return True
+    prefix = prefixes.prefix_of(package, prefixes.installed())
+    return prefix is not None and not store.key_of(package, prefix)

@@ -11,9 +11,9 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from interface_compiler import shipped
+from interface_compiler import prefixes, shipped
 from spinbook.chapter.python_code import PythonCode
-from spinbook.ros2 import interface_files, prefixes
+from spinbook.ros2 import interfaces as interface_files
 
 #: What a module's name is in PyPI, where the two differ.
 _DISTRIBUTIONS = {
@@ -52,7 +52,7 @@ class Missing:
 
     package: str
     found: str
-    mend: str
+    fix: str
     line: int
 
 
@@ -96,20 +96,20 @@ def _relative(module: str, line: int) -> Missing:
 
 def _not_shown(module: str, modules: frozenset[str], line: int) -> Missing:
     known = ", ".join(sorted(modules)) or "none"
-    mend = f"Show its file in a fence with a `title`. Modules that the chapters show: {known}."
-    return Missing(module.partition(".")[0], f"imports `{module}`, which no fence shows.", mend, line)
+    fix = f"Show its file in a fence with a `title`. Modules that the chapters show: {known}."
+    return Missing(module.partition(".")[0], f"imports `{module}`, which no fence shows.", fix, line)
 
 
 def _not_installed(top: str, line: int) -> Missing:
     if top in _DISTRIBUTIONS:
-        mend = f"Install it: pip install {_DISTRIBUTIONS[top]}"
+        fix = f"Install it: pip install {_DISTRIBUTIONS[top]}"
     elif close := _similar(top):
-        mend = f"Did you mean `{close}`?"
+        fix = f"Did you mean `{close}`?"
     elif top.endswith(("_msgs", "_srvs", "_interfaces", "_actions")):
-        mend = remedy(top)
+        fix = remedy(top)
     else:
-        mend = "Install it and add it to the course's dependencies, or write `static` behind the fence's language."
-    return Missing(top, f"imports `{top}`, which is not installed here.", mend, line)
+        fix = "Install it and add it to the course's dependencies, or write `static` behind the fence's language."
+    return Missing(top, f"imports `{top}`, which is not installed here.", fix, line)
 
 
 def remedy(package: str) -> str:
@@ -124,21 +124,21 @@ def _no_module(module: str, names: list[str], line: int) -> Missing:
     there = sorted(name for name in _modules_in(top) if not name.startswith(("_", f"{top}_s_")))
     close = difflib.get_close_matches(rest.partition(".")[0], there, n=1)
     elsewhere = sorted(place for place, known in _all_interfaces().items() if known & set(names))
-    mend = f"Did you mean `{top}.{close[0]}`?" if close else f"It has {', '.join(there[:8])}."
+    fix = f"Did you mean `{top}.{close[0]}`?" if close else f"It has {', '.join(there[:8])}."
     if elsewhere and names:
-        mend = f"Did you mean `from {elsewhere[0]} import {names[0]}`?"
-    return Missing(module, f"imports `{module}`, and `{top}` has no such module.", mend, line)
+        fix = f"Did you mean `from {elsewhere[0]} import {names[0]}`?"
+    return Missing(module, f"imports `{module}`, and `{top}` has no such module.", fix, line)
 
 
 def _no_interface(module: str, name: str, known: frozenset[str], line: int) -> Missing:
     close = difflib.get_close_matches(name, known, n=1)
     if close:
-        mend = f"Did you mean `{close[0]}`?"
+        fix = f"Did you mean `{close[0]}`?"
     elif elsewhere := sorted(place for place, names in _all_interfaces().items() if name in names):
-        mend = f"Did you mean `from {elsewhere[0]} import {name}`?"
+        fix = f"Did you mean `from {elsewhere[0]} import {name}`?"
     else:
-        mend = f"It has {', '.join(sorted(known)[:8])} …"
-    return Missing(f"{module}.{name}", f"`{module}` has no `{name}`.", mend, line)
+        fix = f"It has {', '.join(sorted(known)[:8])} …"
+    return Missing(f"{module}.{name}", f"`{module}` has no `{name}`.", fix, line)
 
 
 @functools.cache

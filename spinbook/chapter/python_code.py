@@ -10,7 +10,7 @@ import symtable
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from spinbook.course.node_classes import attributes_lacking, can_stand_alone, last_name, used_by_init
+from spinbook.chapter.node_classes import attributes_lacking, can_stand_alone, last_name, used_by_init
 
 #: A line that is IPython's and not Python's: `%plot …`, `!ls`, `%%time`.
 _MAGIC = re.compile(r"^(\s*)([%!].*)$")

@@ -10,19 +10,17 @@ from pathlib import Path
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
-from spinbook.chapter.cells import make_cells
-from spinbook.chapter.chapter import Chapter, StaticFence
+from spinbook.chapter.block import Block, Kind, Line
+from spinbook.chapter.blocks import read_blocks
+from spinbook.chapter.chapter import Chapter, StaticFence, make_cells
 from spinbook.chapter.classify import Classified, FenceKind, first_look, with_language
-from spinbook.chapter.definition_title import interface_package
-from spinbook.chapter.fence import Fence
+from spinbook.chapter.fence import Fence, interface_package
+from spinbook.chapter.files import is_elsewhere, locate, read_included
+from spinbook.chapter.layout import Layout, Piece
+from spinbook.chapter.own_packages import OwnPackages, own_packages, told_files
+from spinbook.chapter.programs import Programs
+from spinbook.chapter.shells import Shells
 from spinbook.chapter.source import Source, read_source
-from spinbook.course.block import Block, Kind, Line
-from spinbook.course.blocks import read_blocks
-from spinbook.course.files import is_elsewhere, locate, read_included
-from spinbook.course.layout import Layout, Piece
-from spinbook.course.own_packages import OwnPackages, own_packages, told_files
-from spinbook.course.programs import Programs
-from spinbook.course.shells import Shells
 from spinbook.problem import Problem, Severity
 
 
@@ -198,8 +196,8 @@ def _bad_seconds(item: Classified, file: Path) -> list[Problem]:
             return []
     except ValueError:
         pass
-    mend = "Write a number of seconds, above 0 and up to 600. Until then it is left out."
-    return [Problem(file, item.fence.line, f"`seconds={given}` is not a time.", mend, Severity.WARNING)]
+    fix = "Write a number of seconds, above 0 and up to 600. Until then it is left out."
+    return [Problem(file, item.fence.line, f"`seconds={given}` is not a time.", fix, Severity.WARNING)]
 
 
 def _without_seconds(fence: Fence) -> Fence:
@@ -211,15 +209,15 @@ def _references(parsed: _Parsed, surroundings: Surroundings, root: Path, file: P
         if block.title not in surroundings.exercises:
             known = ", ".join(sorted(surroundings.exercises)) or "none yet"
             found = f"there is no exercise `{block.title}`."
-            mend = f"The folder exercises/ holds: {known}."
-            yield Problem(file, block.line, found, mend, Severity.NOT_RUN)
+            fix = f"The folder exercises/ holds: {known}."
+            yield Problem(file, block.line, found, fix, Severity.NOT_RUN)
     assert parsed.source is not None
     folder = file.parent.as_posix()
     for target, line in _links(parsed.source.text):
         if not is_elsewhere(target) and "{" not in target and locate(root, folder, target) is None:
             found = f"a link leads to `{target}`, and there is no such file."
-            mend = "Write the path relative to the chapter's folder."
-            yield Problem(file, line, found, mend, Severity.WARNING, group="files that are not there")
+            fix = "Write the path relative to the chapter's folder."
+            yield Problem(file, line, found, fix, Severity.WARNING, group="files that are not there")
 
 
 def _uses(parsed: _Parsed, root: Path, file: Path) -> tuple[Path, ...]:
@@ -265,10 +263,10 @@ def _title(parsed: _Parsed, file: Path) -> tuple[str, list[Problem]]:
     heading = next((block for block in parsed.blocks if block.kind is Kind.HEADING), None)
     if heading:
         return str(given or _words(heading)), []
-    mend = "Begin it with one line such as `# Nodes and Topics`."
+    fix = "Begin it with one line such as `# Nodes and Topics`."
     named = file.stem if file.stem.lower() not in {"index", "readme"} else file.parent.name or file.stem
     title = str(given or named.replace("-", " ").replace("_", " "))
-    return title, [] if given else [Problem(file, 1, "the chapter has no heading.", mend, Severity.WARNING)]
+    return title, [] if given else [Problem(file, 1, "the chapter has no heading.", fix, Severity.WARNING)]
 
 
 def _words(heading: Block) -> str:

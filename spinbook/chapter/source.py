@@ -45,8 +45,8 @@ def read_source(file: Path, shown_as: Path) -> tuple[Source | None, list[Problem
     try:
         data = file.read_bytes()
     except OSError as error:
-        mend = "Write the chapter, or take it out of `chapters` in course.toml."
-        return None, [Problem(shown_as, None, f"the file can't be read: {error.strerror}.", mend)]
+        fix = "Write the chapter, or take it out of `chapters` in course.toml."
+        return None, [Problem(shown_as, None, f"the file can't be read: {error.strerror}.", fix)]
     if data.startswith(b"\xef\xbb\xbf"):
         data = data[3:]
         problems.append(
@@ -79,8 +79,8 @@ def read_source(file: Path, shown_as: Path) -> tuple[Source | None, list[Problem
     for number, content in enumerate(text.split("\n"), start=1):
         if control := _CONTROL.search(content):
             found = f"control character U+{ord(control.group()):04X} in column {control.start() + 1}."
-            mend = "Delete it; it can't be seen, and notebooks and browsers reject it. Here it is left out."
-            problems.append(Problem(shown_as, number, found, mend, Severity.WARNING))
+            fix = "Delete it; it can't be seen, and notebooks and browsers reject it. Here it is left out."
+            problems.append(Problem(shown_as, number, found, fix, Severity.WARNING))
     text = _LIQUID.sub(lambda match: match[1] or (f"/{match[2]}" if match[2] else ""), _CONTROL.sub("", text))
     front_matter, body, front_problems = _split_front_matter(text, shown_as)
     return Source(body, front_matter), problems + front_problems
@@ -95,8 +95,8 @@ def _split_front_matter(text: str, file: Path) -> tuple[Mapping[str, Any], str, 
     end = next((i for i, line in enumerate(lines[1:], start=1) if line.rstrip() in ends), None)
     if end is None:
         found = "the front matter that begins here never ends."
-        mend = f"Close it with a line `{fence}`."
-        return {}, "\n" + "\n".join(lines[1:]), [Problem(file, 1, found, mend, Severity.WARNING)]
+        fix = f"Close it with a line `{fence}`."
+        return {}, "\n" + "\n".join(lines[1:]), [Problem(file, 1, found, fix, Severity.WARNING)]
     body = "\n" * (end + 1) + "\n".join(lines[end + 1 :])
     if fence == "+++":
         return _toml("\n".join(lines[1:end])), body, []
@@ -106,13 +106,13 @@ def _split_front_matter(text: str, file: Path) -> tuple[Mapping[str, Any], str, 
         mark = getattr(error, "problem_mark", None)
         line = 2 + mark.line if mark else 1
         what = getattr(error, "problem", None) or "it can't be read"
-        mend = "Write it as YAML, one `key: value` a line; put a value that holds a colon in quotes."
-        problem = Problem(file, line, f"the front matter is not YAML: {what}.", mend, Severity.WARNING)
+        fix = "Write it as YAML, one `key: value` a line; put a value that holds a colon in quotes."
+        problem = Problem(file, line, f"the front matter is not YAML: {what}.", fix, Severity.WARNING)
         return _simple_lines(lines[1:end]), body, [problem]
     if not isinstance(front_matter, dict):
         found = f"the front matter is a {type(front_matter).__name__}, not `key: value` lines."
-        mend = "Write for example `title: Nodes and Topics`."
-        return {}, body, [Problem(file, 2, found, mend, Severity.WARNING)]
+        fix = "Write for example `title: Nodes and Topics`."
+        return {}, body, [Problem(file, 2, found, fix, Severity.WARNING)]
     return front_matter, body, []
 
 

@@ -10,11 +10,11 @@ import sys
 import threading
 from pathlib import Path
 
-from grader.crew import HostFault
 from grader.exercise import ExerciseError, load
+from grader.files import write_if_changed
 from grader.grading import Grade, grade_submission
 from grader.submission.reading import of_source
-from spinbook.written import write_if_changed
+from grader.workers import HostFault
 
 
 def main() -> None:

@@ -12,13 +12,12 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from rich.console import Console
 
-from grader.checking.wrong import Finding
+from grader.checking.verdict import Finding
 from grader.exercise import Exercise
-from grader.feedback import feedback_plot
-from grader.feedback.outcomes import advice
-from grader.feedback.told import Told, told
 from grader.grading import Grade
-from grader.report import self_check
+from grader.report import terminal
+from grader.report.feedback import Told, advice, told
+from grader.report.feedback_plot import feedback_plot
 from grader.report.printable import as_students_see_it, printable
 from grader.report.terminal import show
 
@@ -80,7 +79,7 @@ def as_html(grade: Grade, exercise: Exercise) -> str:
     plot = feedback_plot(grade, exercise)
     return environment.get_template("shown.html").render(
         title=exercise.title,
-        total=self_check.total(grade),
+        total=terminal.points_so_far(grade),
         full=grade.full_marks,
         message=grade.message,
         step=_first_step(grade, exercise),
@@ -91,8 +90,8 @@ def as_html(grade: Grade, exercise: Exercise) -> str:
         plot=Markup("data:image/svg+xml;base64,") + base64.b64encode(plot.encode()).decode() if plot else "",
         plot_says=_plot_says(grade),
         next_step=next_step(grade, exercise),
-        to_come=self_check.to_come(grade),
-        standing=self_check.standing(grade),
+        to_come=terminal.hidden_checks_to_come(grade),
+        standing=terminal.self_check_standing(grade),
     )
 
 

@@ -103,8 +103,8 @@ def read_course(root: Path) -> Course:
     except tomllib.TOMLDecodeError as error:
         at = re.search(r"line (\d+)", str(error))
         line = int(at.group(1)) if at else text.count("\n") + 1
-        mend = "Texts stand in quotes, lists in square brackets; see docs/writing-chapters.md."
-        raise SpinbookError(Problem(FILE, line, f"it is not TOML: {error}.", mend)) from None
+        fix = "Texts stand in quotes, lists in square brackets; see docs/writing-chapters.md."
+        raise SpinbookError(Problem(FILE, line, f"it is not TOML: {error}.", fix)) from None
     problems: list[Problem] = []
     title = _text(data, "title", problems)
     chapters = data.get("chapters")

@@ -1,1 +1,1 @@
-"""`spinbook doctor`: what works on this machine, and how to mend what does not."""
+"""`spinbook doctor`: what works on this machine, and how to fix what does not."""

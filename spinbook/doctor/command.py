@@ -1,4 +1,4 @@
-"""`spinbook doctor`: what works on this machine, and how to mend what does not."""
+"""`spinbook doctor`: what works on this machine, and how to fix what does not."""
 
 from __future__ import annotations
 
@@ -10,17 +10,15 @@ import click
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
-from spinbook.doctor.checks import CHECKS, Check
-from spinbook.doctor.diagnosis import diagnose
-from spinbook.doctor.finding import Finding
-from spinbook.doctor.table import is_able, show
+from spinbook.doctor.diagnosis import CHECKS, Check, diagnose
+from spinbook.doctor.finding import Finding, is_able, show
 
 
 @click.command()
 @click.argument("checks", nargs=-1, type=click.Choice([check.word for check in CHECKS]), metavar="[CHECK]...")
 @click.option("--json", "as_json", is_flag=True, help="Print the findings as JSON, for programs and bug reports.")
 def doctor(checks: tuple[str, ...], as_json: bool) -> None:
-    """Say what works on this machine, and how to mend what does not.
+    """Say what works on this machine, and how to fix what does not.
 
     Each CHECK really tries the thing: a message goes from one process to another, a kernel starts, colcon builds a
     package, a program runs in each sandbox. Nothing is changed. Without CHECK all are made, in a few seconds:
@@ -35,7 +33,7 @@ def doctor(checks: tuple[str, ...], as_json: bool) -> None:
     \b
       ✓  works
       !  courses are built and graded, but something is weaker or surprising
-      ✗  courses can't be built or graded until this is mended
+      ✗  courses can't be built or graded until this is fixed
 
     Exit code: 0 everything that is needed works (there may be warnings), 1 something needed does not.
     """

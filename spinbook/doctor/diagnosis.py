@@ -1,18 +1,63 @@
-"""Runs the checks beside one another, each in a process that may crash or hang without harm to the rest."""
+"""Runs the checks in parallel, each in a process that may crash or hang without harm to the others."""
 
 from __future__ import annotations
 
 import contextlib
+import dataclasses
+import importlib
 import json
+import os
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
 
 import psutil
 
-from spinbook.doctor.checks import Check
 from spinbook.doctor.finding import Finding, State, missing
+
+
+@dataclass(frozen=True)
+class Check:
+    """One thing to look at.
+
+    `module` is the one whose `examine(name)` does it. `seconds` is how long it may take.
+    `needs` are the words of earlier checks without which this one can only fail, so that a cause is told once.
+    """
+
+    word: str
+    name: str
+    module: str
+    seconds: float = 15.0
+    needs: tuple[str, ...] = ()
+
+
+#: What every node needs.
+_NODE = ("ros", "libraries", "middleware", "logs")
+
+
+CHECKS = (
+    Check("python", "Python", "spinbook.doctor.machine"),
+    Check("folder", "Folder", "spinbook.doctor.machine"),
+    Check("libraries", "Library path", "spinbook.doctor.ros"),
+    Check("ros", "ROS 2", "spinbook.doctor.ros", 30.0, ("libraries",)),
+    Check("middleware", "Middleware", "spinbook.doctor.middleware", 30.0, ("ros",)),
+    Check("logs", "Log folder", "spinbook.doctor.middleware"),
+    Check("message", "A message", "spinbook.doctor.message", 60.0, _NODE),
+    Check("environment", "ROS settings", "spinbook.doctor.ros"),
+    Check("memory", "Shared memory", "spinbook.doctor.middleware"),
+    Check("kernel", "Jupyter kernel", "spinbook.doctor.machine", 60.0),
+    Check("colcon", "colcon", "spinbook.doctor.machine", 90.0),
+    Check("compiler", "Compiler", "spinbook.doctor.machine"),
+    Check("namespaces", "Namespaces", "spinbook.doctor.sandbox"),
+    Check("sandbox", "Sandbox", "spinbook.doctor.sandbox", 150.0, _NODE),
+    Check("bubblewrap", "bubblewrap", "spinbook.doctor.sandbox"),
+    Check("lockstep", "Lockstep", "spinbook.doctor.middleware", 30.0, ("ros",)),
+    Check("ros2", "ros2, turtlesim", "spinbook.doctor.machine"),
+    Check("browser", "Browser", "spinbook.doctor.machine", 45.0),
+)
+
 
 #: They mostly wait for processes to start.
 _AT_ONCE = 4
@@ -38,7 +83,7 @@ def diagnose(checks: Sequence[Check], done: Callable[[Finding], None]) -> list[F
 
 def examine(check: Check) -> Finding:
     """Run one check, whatever happens to it."""
-    argv = [sys.executable, "-m", "spinbook.doctor.examine", check.module, check.name]
+    argv = [sys.executable, "-m", "spinbook.doctor.diagnosis", check.module, check.name]
     process = subprocess.Popen(
         argv,
         stdin=subprocess.DEVNULL,
@@ -59,7 +104,7 @@ def examine(check: Check) -> Finding:
         )
     try:
         fields = json.loads(out)
-        return Finding(fields["name"], State(fields["state"]), fields["found"], fields["mend"])
+        return Finding(fields["name"], State(fields["state"]), fields["found"], fields["fix"])
     except (ValueError, KeyError, TypeError):
         return missing(
             check.name, _how_it_ended(process.returncode, err), "See the message; docs/installing.md may help."
@@ -81,3 +126,20 @@ def _end_all(process: subprocess.Popen[str]) -> None:
                 member.kill()
     process.kill()
     process.communicate()
+
+
+# A process of its own, because what is examined may end it: rclpy does so where its middleware is not installed.
+
+
+def main(module: str, name: str) -> None:
+    """Run the module's check. What libraries print meanwhile goes to stderr, so that stdout holds the finding alone."""
+    answer = os.dup(1)
+    os.dup2(2, 1)
+    finding = importlib.import_module(module).examine(name)
+    assert isinstance(finding, Finding)
+    with os.fdopen(answer, "w") as out:
+        json.dump(dataclasses.asdict(finding), out)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -8,8 +8,8 @@ import subprocess
 import sys
 
 from spinbook.doctor.finding import Finding, missing, ok
-from spinbook.runtime import domain
-from spinbook.runtime.environment import for_domain, missing_middleware
+from spinbook.kernel import environment as domain
+from spinbook.kernel.environment import for_domain, missing_middleware
 
 _DEADLINE_S = 30.0
 
@@ -19,7 +19,7 @@ def examine(name: str) -> Finding:
     inherited = dict(os.environ)
     if missing_middleware(inherited):
         del inherited["RMW_IMPLEMENTATION"]
-    claimed = domain.claim()
+    claimed = domain.claim_domain()
     try:
         environment = inherited | for_domain(claimed.number, inherited)
         took = _send_one(environment)

@@ -1,20 +1,24 @@
-"""Which middleware (RMW) the nodes use, and whether it loads."""
+"""Checks of the middleware: which one the nodes use, shared memory, log files, and the grader's own."""
 
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
+import tempfile
+from pathlib import Path
 
+from rmw_lockstep.library import IDENTIFIER, Library, library
 from spinbook.doctor.finding import Finding, missing, ok, warning
-from spinbook.runtime.environment import missing_middleware
+from spinbook.kernel.environment import missing_middleware
 
 #: What rclpy exits with where RMW_IMPLEMENTATION can't be loaded.
 NOT_LOADED = 102
 _NAME_IT = "from rclpy.utilities import get_rmw_implementation_identifier as name; print(name())"
 
 
-def examine(name: str) -> Finding:
+def examine_middleware(name: str) -> Finding:
     """Load the middleware in a process of its own: it ends the process where it is absent."""
     wanted = os.environ.get("RMW_IMPLEMENTATION", "")
     absent = missing_middleware(os.environ)
@@ -37,3 +41,103 @@ def examine(name: str) -> Finding:
         )
     lines = trial.stderr.strip().splitlines() or [f"exit code {trial.returncode}"]
     return missing(name, f"does not load: {lines[-1]}", "Make the environment anew: make setup")
+
+
+_WEAKER = (
+    "Without it the grader uses Fast DDS and has to infer when a node is done, so a node with threads or sleeps of its "
+    "own may get another result each time."
+)
+_NAME_LOCKSTEP = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
+
+
+def examine_lockstep(name: str) -> Finding:
+    """Let rclpy load it in a process of its own, and name it."""
+    found = library()
+    if not isinstance(found, Library):
+        return warning(name, f"not there: {found.reason}", f"{_WEAKER} {found.remedy}")
+    trial = _trial(found)
+    loaded = trial.stdout.strip()
+    if loaded == IDENTIFIER:
+        return ok(name, f"{loaded}, {found.folder}")
+    lines = trial.stderr.strip().splitlines() or [f"rclpy has loaded {loaded or 'nothing'}"]
+    return warning(
+        name,
+        f"compiled, but it does not load: {lines[-1]}",
+        f"{_WEAKER} Compile it again: rm -r {found.folder}; python -m rmw_lockstep.build",
+    )
+
+
+def _trial(found: Library) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, **found.environment(os.environ)}
+    return subprocess.run(
+        [sys.executable, "-c", _NAME_LOCKSTEP], env=environment, capture_output=True, text=True, check=False
+    )
+
+
+#: Each participant of Fast DDS takes about half a MB.
+_ENOUGH = 32 * 2**20
+_NOT_NEEDED = "Notebooks and the grader don't need it; nodes in your terminals print warnings without it."
+
+
+def examine_shared_memory(name: str) -> Finding:
+    """Write there, and look at how much is free."""
+    place = Path("/dev/shm")
+    try:
+        with tempfile.TemporaryFile(dir=place) as file:
+            file.write(b"spinbook")
+    except OSError as error:
+        return warning(name, f"{place} can't be written: {error.strerror}", _NOT_NEEDED)
+    free = shutil.disk_usage(place).free
+    left = sum(1 for _ in place.glob("fastrtps_*"))
+    found = f"{place}, {free // 2**20} MB free" + (f", {left} files of Fast DDS" if left else "")
+    if free < _ENOUGH:
+        return warning(
+            name,
+            found,
+            f"{_NOT_NEEDED}\nRemove what killed nodes have left (fastdds shm clean); in a container: --shm-size 256m",
+        )
+    return ok(name, found)
+
+
+def examine_log_folder(name: str) -> Finding:
+    """Write a file where ROS 2 would: ROS_LOG_DIR, else ROS_HOME/log, else ~/.ros/log."""
+    chosen, variable = _place()
+    if chosen is None:
+        return _fallback(name, "HOME is not set")
+    existing = next(place for place in (chosen, *chosen.parents) if place.exists())
+    try:
+        with tempfile.TemporaryFile(dir=existing):
+            return ok(name, f"{chosen} ({variable})")
+    except OSError as error:
+        reason = f"{chosen} ({variable}) can't be written: {error.strerror}"
+    if variable != "HOME":
+        return missing(
+            name, reason, f"rclpy.init would fail. Set {variable} to a folder that you can write, or unset it."
+        )
+    return _fallback(name, reason)
+
+
+def _place() -> tuple[Path | None, str]:
+    if folder := os.environ.get("ROS_LOG_DIR"):
+        return Path(folder).expanduser().absolute(), "ROS_LOG_DIR"
+    if folder := os.environ.get("ROS_HOME"):
+        return Path(folder).expanduser().absolute() / "log", "ROS_HOME"
+    if folder := os.environ.get("HOME"):
+        return Path(folder).absolute() / ".ros" / "log", "HOME"
+    return None, "HOME"
+
+
+def _fallback(name: str, reason: str) -> Finding:
+    """Notebooks and `spinbook ros2` then write below the folder for temporary files, if that can be written."""
+    try:
+        with tempfile.TemporaryFile():
+            pass
+    except OSError as error:
+        return missing(
+            name, f"{reason}; nor can {tempfile.gettempdir()}: {error.strerror}", "Make one of them writable."
+        )
+    return warning(
+        name,
+        f"{reason}; Spinbook uses {tempfile.gettempdir()} instead",
+        "Your own nodes in a terminal fail at rclpy.init: export ROS_LOG_DIR=/tmp/ros-log",
+    )

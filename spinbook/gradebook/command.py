@@ -7,13 +7,12 @@ from pathlib import Path
 
 import click
 
-from grader.classroom.writing import write
+from grader.classroom.course_gradebook import course_csv, course_page, course_rows, graded_exercises
+from grader.classroom.gradebook import BYTE_ORDER_MARK
 from grader.exercise import ExerciseError, load
-from grader.gradebook.course import course_csv, course_rows, graded_exercises
-from grader.gradebook.files import BYTE_ORDER_MARK
-from grader.overview.course_page import course_page
-from spinbook.build.reading import read_all
+from grader.files import write_durably
 from spinbook.chapter.chapter import CellKind
+from spinbook.chapters import read_all
 from spinbook.course.course import Course, find_course
 
 NOTHING_GRADED = 1
@@ -45,8 +44,8 @@ def gradebook(results: Path, start: Path) -> None:
         click.echo(f"{message} {results / 'EXERCISE'}", err=True)
         sys.exit(NOTHING_GRADED)
     rows = course_rows(exercises)
-    write(results / "index.html", course_page(course.title, exercises, rows))
-    write(results / "gradebook.csv", BYTE_ORDER_MARK + course_csv(exercises, rows))
+    write_durably(results / "index.html", course_page(course.title, exercises, rows))
+    write_durably(results / "gradebook.csv", BYTE_ORDER_MARK + course_csv(exercises, rows))
     students = "1 student" if len(rows) == 1 else f"{len(rows)} students"
     click.echo(f"{students}, exercises: {', '.join(exercise.name for exercise in exercises)}.")
     click.echo(f"Open {results / 'index.html'}.")

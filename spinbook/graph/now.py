@@ -10,7 +10,7 @@ import time
 
 from spinbook.graph.model import NodeGraph
 from spinbook.graph.sight import Sight
-from spinbook.ros2.refusal import Refusal
+from spinbook.ros2.cli import CommandError
 
 
 def graph_now(seconds: float) -> NodeGraph:
@@ -28,7 +28,7 @@ def main() -> None:
     """Look once."""
     try:
         print(graph_now(float(sys.argv[1]) if len(sys.argv) > 1 else 0.0).to_json())
-    except Refusal as error:
+    except CommandError as error:
         sys.exit(error.format_message())
 
 

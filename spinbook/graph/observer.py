@@ -16,7 +16,7 @@ import sys
 import threading
 
 from spinbook.graph.sight import Sight
-from spinbook.ros2.refusal import Refusal
+from spinbook.ros2.cli import CommandError
 
 
 def _listen(words: queue.SimpleQueue[str]) -> None:
@@ -52,7 +52,7 @@ def main() -> None:
     threading.Thread(target=_listen, args=(words,), daemon=True).start()
     try:
         observe(words)
-    except Refusal as error:
+    except CommandError as error:
         sys.exit(error.format_message())
 
 

@@ -11,9 +11,8 @@ import hashlib
 from collections.abc import Iterable
 from html import escape
 
-from spinbook.graph.layout import NAME_LINE, SMALL_LINE, Layout, Line, Placed, layout
+from spinbook.graph.layout import NAME_LINE, SMALL_LINE, Drawing, Layout, Line, Placed, drawings, layout
 from spinbook.graph.model import NodeGraph
-from spinbook.graph.shapes import Drawing, drawings
 
 #: Room around a drawing, and between two (px).
 _MARGIN, _BETWEEN = 10, 28

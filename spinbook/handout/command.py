@@ -7,12 +7,12 @@ from pathlib import Path
 
 import click
 
-from grader.crew import HostFault
+from grader.files import write_if_changed
+from grader.workers import HostFault
 from interface_compiler.archive import zipped
 from spinbook.course.course import find_course
 from spinbook.handout.contents import Handout, handout
 from spinbook.problem import Problem, SpinbookError
-from spinbook.written import write_if_changed
 
 
 @click.command("handout", context_settings={"help_option_names": ["-h", "--help"]})
@@ -24,7 +24,7 @@ def command(start: Path) -> None:
     Spinbook and ROS 2. Solutions, hidden checks and their scenarios, and comments in chapters are not: every file is
     looked through for them before anything is written. The same course gives the same bytes.
 
-    Exit codes: 0 written, 1 a chapter or an exercise has to be mended first.
+    Exit codes: 0 written, 1 a chapter or an exercise has to be fixed first.
     """
     course = find_course(start)
     try:

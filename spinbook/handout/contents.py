@@ -1,4 +1,4 @@
-"""Puts a handout together. What is in it is listed here: whatever else lies in the course's folders stays there."""
+"""Puts a handout together. Its content is listed here; nothing else from the course's folders gets in."""
 
 from __future__ import annotations
 
@@ -6,23 +6,90 @@ import json
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from importlib import metadata
 from pathlib import Path
 
-from grader.crew import Crew
-from grader.crew.jobs import ListJob
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
 from grader.exercise import Exercise, ExerciseError, load
+from grader.workers import WorkerPool
+from grader.workers.jobs import ListJob
+from spinbook import __version__
 from spinbook.build.notebooks import build_notebooks
 from spinbook.course.course import Course
-from spinbook.handout.exercise import exercise_files
-from spinbook.handout.guide import Listing, guide_files
-from spinbook.handout.interface_wheels import interface_wheels
-from spinbook.handout.leaks import located
-from spinbook.handout.notebook import for_students
-from spinbook.handout.secrets import Secret, hidden_names, secrets
-from spinbook.handout.wheel import wheel
-from spinbook.interfaces.compiled import compile_course
+from spinbook.handout.leaks import Secret, hidden_names, located, secrets
+from spinbook.handout.student_copy import exercise_files, for_students
+from spinbook.handout.wheels import interface_wheels, requirement, spinbook_wheel
+from spinbook.interfaces.compiling import compile_course
 from spinbook.problem import Problem, SpinbookError
-from spinbook.update.base import base_files
+from spinbook.update.handout import base_files
+
+#: What must be the same for students as for the instructor who made the handout, so that checks come out the same.
+_PINNED = ("ros-{distro}-rclpy", "ros-{distro}-rmw-fastrtps-cpp", "ros-{distro}-common-interfaces")
+
+#: Name in the handout -> template.
+_TEMPLATES = {
+    "README.md": "README.md.j2",
+    "requirements.txt": "requirements.txt.j2",
+    "environment.yml": "environment.yml.j2",
+    ".devcontainer/devcontainer.json": "devcontainer.json.j2",
+}
+
+
+@dataclass(frozen=True)
+class Listing:
+    """An exercise as the README lists it: how many checks students may run, and how many come later."""
+
+    name: str
+    title: str
+    file: str
+    public: int
+    hidden: int
+
+
+def guide_files(
+    title: str,
+    slug: str,
+    distro: str,
+    wheel: str,
+    notebooks: list[str],
+    exercises: list[Listing],
+    interfaces: list[str],
+) -> dict[str, bytes]:
+    """README.md and the files that install, by name. `interfaces` are the names of wheels with compiled interfaces."""
+    # Plain text and JSON, no HTML.
+    environment = Environment(
+        loader=PackageLoader("spinbook.handout", "template"),
+        autoescape=False,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    values = {
+        "title": title,
+        "slug": slug,
+        "distro": distro,
+        "wheel": wheel,
+        "notebooks": notebooks,
+        "exercises": exercises,
+        "pins": _pins(distro),
+        "interfaces": [requirement(file) for file in interfaces],
+        "pythons": sorted({file.split("-")[2].replace("cp3", "3.") for file in interfaces}),
+        "version": __version__,
+    }
+    return {name: environment.get_template(template).render(values).encode() for name, template in _TEMPLATES.items()}
+
+
+def _pins(distro: str) -> list[str]:
+    """The versions of ROS 2's wheels that are installed here; none where ROS 2 is a sourced one."""
+    found = []
+    for name in (pattern.format(distro=distro) for pattern in _PINNED):
+        try:
+            found.append(f"{name}=={metadata.version(name)}")
+        except metadata.PackageNotFoundError:
+            continue
+    return found
 
 
 @dataclass(frozen=True)
@@ -45,19 +112,19 @@ def handout(course: Course) -> Handout:
     files = dict(notebooks)
     exercises = [_load(course, name) for name in sorted(_used(course, notebooks))]
     listings = []
-    with Crew() as crew:
+    with WorkerPool() as workers:
         for exercise in exercises:
             try:
-                copy = exercise_files(exercise, crew)
-                listings.append(_listing(exercise, crew))
+                copy = exercise_files(exercise, workers)
+                listings.append(_listing(exercise, workers))
             except ExerciseError as error:
-                raise SpinbookError(Problem(error.file, error.line, error.found, error.mend)) from None
+                raise SpinbookError(Problem(error.file, error.line, error.found, error.fix)) from None
             files |= {f"exercises/{exercise.name}/{name}": content for name, content in copy.items()}
     taught = "\n".join(_nodes(notebooks))
     every = [_load(course, name) for name in sorted(course.exercises)]
     known = [secret for exercise in every for secret in secrets(exercise, taught)]
     _prove(files, known + [secret for exercise in every for secret in hidden_names(exercise)])
-    name, content = wheel()
+    name, content = spinbook_wheel()
     compiled = interface_wheels(course, files.values())
     files[f"wheels/{name}"] = content
     files |= {f"wheels/{file}": data for file, data in compiled.items()}
@@ -97,18 +164,18 @@ def _load(course: Course, name: str) -> Exercise:
     try:
         return load(course.root / "exercises" / name)
     except ExerciseError as error:
-        raise SpinbookError(Problem(error.file, error.line, error.found, error.mend)) from None
+        raise SpinbookError(Problem(error.file, error.line, error.found, error.fix)) from None
 
 
-def _listing(exercise: Exercise, crew: Crew) -> Listing:
-    checks = crew.do(ListJob(exercise))
+def _listing(exercise: Exercise, workers: WorkerPool) -> Listing:
+    checks = workers.do(ListJob(exercise))
     hidden = sum(check.hidden for check in checks)
     return Listing(exercise.name, exercise.title, exercise.file_name, len(checks) - hidden, hidden)
 
 
 def _prove(files: dict[str, bytes], known: list[Secret]) -> None:
     """See to it that no secret is in any file."""
-    mend = (
+    fix = (
         "Students must not see it. Take it out of the chapter, the task or the public checks. A line of the solution "
         "that they may see belongs before # BEGIN SOLUTION. "
         "Exercises that no chapter holds count, too."
@@ -117,6 +184,6 @@ def _prove(files: dict[str, bytes], known: list[Secret]) -> None:
     problems = []
     for leak in located(files, known):
         place = f" ({leak.at})" if leak.at else ""
-        problems.append(Problem(folder / leak.file, leak.line, f"{leak.what} would be in it{place}.", mend))
+        problems.append(Problem(folder / leak.file, leak.line, f"{leak.what} would be in it{place}.", fix))
     if problems:
         raise SpinbookError(*problems)

@@ -1,8 +1,4 @@
-"""Reads what an existing book says of itself: its title, its chapters, and their order.
-
-Known are mkdocs.yml, _toc.yml (Jupyter Book), myst.yml, _quarto.yml, sidebars.js (Docusaurus), SUMMARY.md (mdBook,
-GitBook) and _sidebar.md (docsify). A folder without any of them is read file by file.
-"""
+"""Reads what an existing book says about itself: its title, its chapters and their order."""
 
 from __future__ import annotations
 
@@ -16,9 +12,77 @@ import yaml
 from markdown_it import MarkdownIt
 
 from spinbook.course.course import FILE
-from spinbook.importing.javascript import objects_in
 from spinbook.importing.pages import Pages
 from spinbook.problem import Problem, SpinbookError
+
+_TOKEN = re.compile(
+    r"""\s+|//[^\n]*|/\*.*?\*/|(?P<string>"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|`(?:\\.|[^`\\])*`)|(?P<mark>[{}\[\],:])"""
+    r"""|(?P<word>[^\s"'`{}\[\],:/]+|/)""",
+    re.DOTALL,
+)
+_OBJECT = re.compile(r"(?:=|\bexport\s+default)\s*(?=\{)")
+
+
+def objects_in(text: str) -> Iterator[Any]:
+    """The objects that a file assigns or exports."""
+    for match in _OBJECT.finditer(text):
+        tokens = list(_tokens(text[match.end() :]))
+        value, _ = _value(tokens, 0)
+        yield value
+
+
+def _tokens(text: str) -> Iterator[tuple[str, str]]:
+    depth = 0
+    for match in _TOKEN.finditer(text):
+        kind = match.lastgroup
+        if kind is None:
+            continue
+        yield kind, match[0][1:-1] if kind == "string" else match[0]
+        depth += (match[0] in "{[") - (match[0] in "}]") if kind == "mark" else 0
+        if depth == 0:
+            return
+
+
+def _value(tokens: list[tuple[str, str]], at: int) -> tuple[Any, int]:
+    """(the value that begins at a token, the place behind it). What is no literal is None."""
+    kind, text = tokens[at] if at < len(tokens) else ("mark", "}")
+    if (kind, text) == ("mark", "{"):
+        return _object(tokens, at + 1)
+    if (kind, text) == ("mark", "["):
+        return _list(tokens, at + 1)
+    if kind == "string":
+        return text, at + 1
+    words = ""
+    while at < len(tokens) and not (tokens[at][0] == "mark" and tokens[at][1] in ",}]"):
+        words += tokens[at][1]
+        at += 1
+    return {"true": True, "false": False}.get(words), at
+
+
+def _object(tokens: list[tuple[str, str]], at: int) -> tuple[dict[str, Any], int]:
+    found: dict[str, Any] = {}
+    while at < len(tokens) and tokens[at] != ("mark", "}"):
+        key, at = tokens[at][1], at + 1
+        if at < len(tokens) and tokens[at] == ("mark", ":"):
+            found[key], at = _value(tokens, at + 1)
+    return found, at + 1
+
+
+def _list(tokens: list[tuple[str, str]], at: int) -> tuple[list[Any], int]:
+    found: list[Any] = []
+    while at < len(tokens) and tokens[at] != ("mark", "]"):
+        if tokens[at] == ("mark", ","):
+            at += 1
+            continue
+        before = at
+        value, at = _value(tokens, at)
+        found.append(value)
+        at += at == before
+    return found, at + 1
+
+
+# Known are mkdocs.yml, _toc.yml (Jupyter Book), myst.yml, _quarto.yml, sidebars.js (Docusaurus), SUMMARY.md (mdBook,
+# GitBook) and _sidebar.md (docsify). A folder without any of them is read file by file.
 
 
 @dataclass(frozen=True)

@@ -1,23 +1,76 @@
-"""`spinbook import`: from an existing book to a course."""
+"""`spinbook import`: turns an existing book into a course, and reports what runs and what does not."""
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 import click
+from jinja2 import Environment, PackageLoader, select_autoescape
+from markupsafe import Markup, escape
 
+from grader.files import write_if_changed
 from spinbook.build.notebooks import Built, build_notebooks
-from spinbook.build.reading import read_all
-from spinbook.chapter.chapter import CellKind
+from spinbook.chapter.chapter import CellKind, Chapter
+from spinbook.chapters import read_all
 from spinbook.course.course import FILE, Course, read_course
-from spinbook.course.obstacles import ranked
+from spinbook.course.obstacles import by_itself, obstacles, ranked
 from spinbook.importing.book import Book, read_book
-from spinbook.importing.report import report_page
 from spinbook.problem import Problem, SpinbookError
-from spinbook.written import write_if_changed
+
+_RUNS = (CellKind.NODE, CellKind.SNIPPET, CellKind.PART, CellKind.SHELL, CellKind.INTERFACE, CellKind.FILE)
+_PLACES = 12
+
+
+def report_page(course: Course, chapters: Sequence[Chapter], problems: Sequence[Problem]) -> str:
+    """The page as HTML, complete in itself."""
+    environment = Environment(loader=PackageLoader("spinbook.importing", "."), autoescape=select_autoescape(["j2"]))
+    environment.filters["code"] = _code
+    rows = [_row(chapter, course) for chapter in chapters]
+    causes = [
+        {"words": item.in_words, "blocks": item.blocks, "places": _places(item.problems), "more": len(item.problems)}
+        for item in obstacles(problems)
+    ]
+    single = list(by_itself(problems))
+    return environment.get_template("report.html.j2").render(
+        title=course.title,
+        rows=rows,
+        causes=causes,
+        single=single,
+        places=_PLACES,
+        cells=sum(row["runs"] for row in rows),
+        static=sum(len(row["static"]) for row in rows),
+        nodes=sum(row["nodes"] for row in rows),
+        empty=sum(not row["runs"] for row in rows),
+    )
+
+
+def _code(text: str) -> Markup:
+    """Text with what is between backticks as code."""
+    parts = [escape(part) for part in text.split("`")]
+    return Markup("").join(Markup("<code>{}</code>").format(p) if i % 2 else p for i, p in enumerate(parts))
+
+
+def _row(chapter: Chapter, course: Course) -> dict[str, Any]:
+    counts = {kind: sum(cell.kind is kind for cell in chapter.cells) for kind in _RUNS}
+    notebook = course.build_folder / "notebooks" / f"{chapter.name}.ipynb"
+    return {
+        "title": chapter.title,
+        "file": chapter.file.as_posix(),
+        "notebook": os.path.relpath(notebook, course.build_folder),
+        "runs": sum(counts.values()),
+        "nodes": counts[CellKind.NODE],
+        "counts": ", ".join(f"{count} {kind.value}" for kind, count in counts.items() if count),
+        "static": [fence for fence in chapter.static_fences if fence.sign],
+    }
+
+
+def _places(problems: Sequence[Problem]) -> list[str]:
+    return [f"{problem.file.as_posix()}:{problem.line}" for problem in problems[:_PLACES]]
+
 
 _SHOWN = 6
 

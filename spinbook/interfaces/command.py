@@ -11,8 +11,7 @@ from interface_compiler import prefixes, shipped
 from interface_compiler.definition import CompileError
 from interface_compiler.wheel import install, needed, wheel
 from spinbook.course.course import find_course
-from spinbook.interfaces.collect import FOLDER, collect
-from spinbook.interfaces.compiled import compile_course
+from spinbook.interfaces.compiling import FOLDER, collect, compile_course
 from spinbook.problem import Problem, SpinbookError
 
 _course = click.option("--course", "start", type=click.Path(path_type=Path), default=".", help="The course's folder.")

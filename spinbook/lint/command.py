@@ -9,12 +9,12 @@ from pathlib import Path
 import click
 
 from grader.checking.proofreading import faults_of
-from spinbook.build.reading import read_all
 from spinbook.chapter.chapter import CellKind
 from spinbook.chapter.read import Reading
+from spinbook.chapters import read_all
 from spinbook.course.course import Course, find_course
 from spinbook.course.obstacles import ranked
-from spinbook.interfaces.collect import checked
+from spinbook.interfaces.compiling import checked
 from spinbook.problem import Problem, Severity, SpinbookError
 
 #: So many problems are read one by one; of more there is a count at the end, too.
@@ -71,7 +71,7 @@ def _exercises(course: Course) -> tuple[Problem, ...]:
     """What is wrong in the course's exercises and their solutions."""
     folders = sorted(file.parent for file in (course.root / "exercises").glob("*/exercise.toml"))
     faults = [fault for folder in folders for fault in faults_of(folder)]
-    return tuple(Problem(_near(fault.file), fault.line, fault.found, fault.mend) for fault in faults)
+    return tuple(Problem(_near(fault.file), fault.line, fault.found, fault.fix) for fault in faults)
 
 
 def _near(file: Path) -> Path:
@@ -113,6 +113,6 @@ def _plain(problem: Problem) -> dict[str, object]:
         "line": problem.line,
         "severity": problem.severity.value,
         "found": problem.found,
-        "mend": problem.mend,
+        "fix": problem.fix,
         "group": problem.group,
     }

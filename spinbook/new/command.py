@@ -8,8 +8,7 @@ import click
 
 from spinbook.course.course import find_course
 from spinbook.new.kind import BY_NAME, KINDS, Kind
-from spinbook.new.names import exercise_name, package_name, title_of, words
-from spinbook.new.writing import EXERCISE, write_course, write_exercise
+from spinbook.new.writing import EXERCISE, exercise_name, package_name, title_of, words, write_course, write_exercise
 
 _COURSE = """\
 Made the course "{title}" in {folder}. It works as it is. Go on with:

@@ -9,14 +9,13 @@ from pathlib import Path
 import click
 
 from interface_compiler.definition import Definition
-from spinbook.build.reading import read_all
 from spinbook.chapter.chapter import Cell
+from spinbook.chapters import read_all
 from spinbook.course.course import FILE, Course, Package, find_course
-from spinbook.interfaces.collect import checked
+from spinbook.interfaces.compiling import checked
 from spinbook.package.files import Module
 from spinbook.package.from_notebooks import read_notebooks
-from spinbook.package.write import write_package
-from spinbook.package.write_interfaces import write_interface_packages
+from spinbook.package.write import write_interface_packages, write_package
 from spinbook.problem import Problem, SpinbookError
 
 
@@ -106,8 +105,8 @@ def course_modules(course: Course) -> list[Module]:
                 first[cell.name] = (file, cell)
             elif known.whole != cell.whole:
                 found = f"the node `{cell.name}` also stands in {file}:{known.line}, with other code."
-                mend = "Give one of them another file name: the package can hold only one module of a name."
-                problems.append(Problem(reading.chapter.file, cell.line, found, mend))
+                fix = "Give one of them another file name: the package can hold only one module of a name."
+                problems.append(Problem(reading.chapter.file, cell.line, found, fix))
     if problems:
         raise SpinbookError(*problems)
     return [Module(name, cell.whole) for name, (_, cell) in sorted(first.items())]

@@ -1,8 +1,4 @@
-"""What an ament_python package consists of, made from its modules. Pure: text in, text out.
-
-Layout as in ROS 2's documentation of ament_python: package.xml (REP 149, format 3), setup.py with the executables
-as console_scripts, setup.cfg that puts them into lib/PACKAGE, and an empty marker for the ament index.
-"""
+"""The files of an ament_python package of nodes and an ament_cmake package of interfaces, as text."""
 
 from __future__ import annotations
 
@@ -10,9 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from xml.sax.saxutils import escape, quoteattr
 
+from interface_compiler.checks import dependencies
+from interface_compiler.definition import Definition
 from spinbook.chapter.imports import ros_packages
 from spinbook.chapter.python_code import CodeError, inspect
 from spinbook.course.course import Package
+
+# Layout as in ROS 2's documentation of ament_python: package.xml (REP 149, format 3), setup.py with the executables as
+# console_scripts, setup.cfg that puts them into lib/PACKAGE, and an empty marker for the ament index.
 
 
 @dataclass(frozen=True)
@@ -184,3 +185,67 @@ def _literal(key: str, text: str) -> str:
 
 def _setup_cfg(package: Package) -> str:
     return f"[develop]\nscript_dir=$base/lib/{package.name}\n\n[install]\ninstall_scripts=$base/lib/{package.name}\n"
+
+
+# Layout as in ROS 2's documentation, "Creating custom msg and srv files" and "Creating an action".
+
+
+def interface_package_files(course: Package, definitions: Sequence[Definition]) -> dict[str, str]:
+    """Path within the package's folder -> content, for the definitions of one package.
+
+    Maintainer, version and licence are those of the course's package of nodes.
+    """
+    name = definitions[0].package
+    # ROS adds what services and actions need by itself, action_msgs apart.
+    needed = sorted(dependencies(definitions)[name] - {"service_msgs", "unique_identifier_msgs", "action_msgs"})
+    if any(item.kind == "action" for item in definitions):
+        needed.append("action_msgs")
+    files = {item.path: item.text for item in definitions}
+    return {
+        **files,
+        "CMakeLists.txt": _cmake(name, sorted(files), needed),
+        "package.xml": _interface_package_xml(course, name, needed),
+    }
+
+
+def _cmake(name: str, paths: Sequence[str], needed: Sequence[str]) -> str:
+    find = "".join(f"find_package({package} REQUIRED)\n" for package in needed)
+    interfaces = "".join(f'  "{path}"\n' for path in paths)
+    depends = f"  DEPENDENCIES {' '.join(needed)}\n" if needed else ""
+    return (
+        "cmake_minimum_required(VERSION 3.8)\n"
+        f"project({name})\n\n"
+        "find_package(ament_cmake REQUIRED)\n"
+        "find_package(rosidl_default_generators REQUIRED)\n"
+        f"{find}\n"
+        "rosidl_generate_interfaces(${PROJECT_NAME}\n"
+        f"{interfaces}{depends})\n\n"
+        "ament_export_dependencies(rosidl_default_runtime)\n"
+        "ament_package()\n"
+    )
+
+
+def _interface_package_xml(course: Package, name: str, needed: Sequence[str]) -> str:
+    tags: Mapping[str, Sequence[str]] = {
+        "buildtool_depend": ("ament_cmake", "rosidl_default_generators"),
+        "depend": needed,
+        "exec_depend": ("rosidl_default_runtime",),
+        "member_of_group": ("rosidl_interface_packages",),
+    }
+    lines = "".join(f"  <{tag}>{value}</{tag}>\n" for tag, values in tags.items() for value in values)
+    return (
+        '<?xml version="1.0"?>\n'
+        '<?xml-model href="http://download.ros.org/schema/package_format3.xsd" '
+        'schematypens="http://www.w3.org/2001/XMLSchema"?>\n'
+        '<package format="3">\n'
+        f"  <name>{name}</name>\n"
+        f"  <version>{escape(course.version)}</version>\n"
+        f"  <description>Messages, services and actions of {escape(course.name)}</description>\n"
+        f"  <maintainer email={quoteattr(course.email)}>{escape(course.maintainer)}</maintainer>\n"
+        f"  <license>{escape(course.license)}</license>\n"
+        f"\n{lines}\n"
+        "  <export>\n"
+        "    <build_type>ament_cmake</build_type>\n"
+        "  </export>\n"
+        "</package>\n"
+    )

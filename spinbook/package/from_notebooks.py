@@ -10,10 +10,10 @@ from itertools import pairwise
 from pathlib import Path
 
 from interface_compiler.definition import Definition
-from spinbook.chapter.definition_title import interface_path
+from spinbook.chapter.fence import interface_path
+from spinbook.chapter.joining import join
 from spinbook.chapter.python_code import CodeError
 from spinbook.course.course import Package
-from spinbook.course.joining import join
 from spinbook.package.files import Module
 from spinbook.problem import Problem, SpinbookError
 

@@ -1,13 +1,14 @@
-"""Writes a package into its workspace, touching only what changed, so that colcon rebuilds only what must be."""
+"""Writes packages into a colcon workspace, changing only what changed, so that colcon rebuilds only that."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
+from grader.files import write_if_changed
+from interface_compiler.definition import KINDS, Definition, by_package, read_folder
 from spinbook.course.course import Package
-from spinbook.package.files import Module, package_files
-from spinbook.written import write_if_changed
+from spinbook.package.files import Module, interface_package_files, package_files
 
 #: What was written is remembered here, one module per line.
 _RECORD = ".spinbook-modules"
@@ -85,3 +86,28 @@ def add_file(workspace: Path, package: Package, path: str, text: str) -> Path:
     folder = package_folder(workspace, package)
     write_package(workspace, package, _written_modules(folder, package), extra={**_written_files(folder), path: text})
     return folder / path
+
+
+def write_interface_packages(workspace: Path, course: Package, definitions: Iterable[Definition]) -> list[Path]:
+    """Make each package's sources exactly these definitions; the packages' folders, sorted.
+
+    A definition that was written before and is no longer among them is removed.
+    """
+    return [_write(workspace, course, members) for members in by_package(definitions).values()]
+
+
+def _write(workspace: Path, course: Package, members: Sequence[Definition]) -> Path:
+    folder = workspace / "src" / members[0].package
+    files = interface_package_files(course, members)
+    for path, content in files.items():
+        write_if_changed(folder / path, content)
+    for kind in KINDS:
+        for file in folder.glob(f"{kind}/*.{kind}"):
+            if file.relative_to(folder).as_posix() not in files:
+                file.unlink()
+    return folder
+
+
+def written_definitions(workspace: Path) -> list[Definition]:
+    """The definitions in a workspace's packages."""
+    return read_folder(workspace / "src")[0]

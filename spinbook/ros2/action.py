@@ -8,10 +8,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from spinbook.ros2 import interfaces
-from spinbook.ros2.groups import CONTEXT, Entry, Menu, discovery_options
+from spinbook.ros2.cli import CONTEXT, CommandError, Entry, Menu, Stopped, discovery_options
 from spinbook.ros2.middleware import open_graph
-from spinbook.ros2.refusal import Refusal
-from spinbook.ros2.stopping import Stopped
 
 if TYPE_CHECKING:
     from spinbook.ros2.graph import Graph, Named
@@ -67,14 +65,14 @@ def type_(action_name: str, spin_time: float | None, use_sim_time: bool) -> None
       ros2 action type /fibonacci
     """
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        from spinbook.ros2.names import absolute, seen
+        from spinbook.ros2.graph import absolute, seen
 
         name = absolute(action_name, "action")
         graph.settle(lambda: any(found.name == name for found in _actions(graph)))
         actions = _actions(graph)
     types = [kind for found in actions if found.name == name for kind in found.types]
     if not types:
-        raise Refusal(f"Unknown action '{action_name}'", seen("Actions", (found.name for found in actions)))
+        raise CommandError(f"Unknown action '{action_name}'", seen("Actions", (found.name for found in actions)))
     for kind in types:
         click.echo(kind)
 
@@ -96,7 +94,7 @@ def info(action_name: str, show_types: bool, count: bool, spin_time: float | Non
             get_action_server_names_and_types_by_node,
         )
 
-        from spinbook.ros2.names import absolute
+        from spinbook.ros2.graph import absolute
 
         name = absolute(action_name, "action")
         graph.settle(lambda: any(found.name == name for found in _actions(graph)))
@@ -128,9 +126,9 @@ def send_goal(
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
         from rclpy.action import ActionClient
 
+        from spinbook.ros2.graph import absolute
         from spinbook.ros2.message_fields import fill, read_values
         from spinbook.ros2.message_text import to_yaml
-        from spinbook.ros2.names import absolute
 
         kind = interfaces.action_class(action_type)
         message = kind.Goal()
@@ -197,7 +195,7 @@ def _print_feedback(message: Any) -> None:
 
 
 def _wait_for_server(graph: Graph, client: Any, name: str, wanted: str) -> None:
-    """Wait without end for the server. Raises `Refusal` when it turns out to be of another type."""
+    """Wait without end for the server. Raises `CommandError` when it turns out to be of another type."""
     from rclpy.action import get_action_server_names_and_types_by_node
 
     def ready_or_never() -> bool:
@@ -205,7 +203,7 @@ def _wait_for_server(graph: Graph, client: Any, name: str, wanted: str) -> None:
             return True
         others = [kind for found in _actions(graph) if found.name == name for kind in found.types if kind != wanted]
         if others:
-            raise Refusal(f"The action '{name}' is of type {' or '.join(others)}, not {wanted}.")
+            raise CommandError(f"The action '{name}' is of type {' or '.join(others)}, not {wanted}.")
         return False
 
     graph.spin_until(ready_or_never)
@@ -216,7 +214,7 @@ def _wait_for_server(graph: Graph, client: Any, name: str, wanted: str) -> None:
 def _done(graph: Graph, future: Any, doing: str) -> Any:
     graph.spin_until(future.done)
     if future.exception() is not None:
-        raise Refusal(f"Exception while {doing}: {future.exception()!r}")
+        raise CommandError(f"Exception while {doing}: {future.exception()!r}")
     return future.result()
 
 

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from spinbook.ros2 import interface_files, interfaces, stopping
-from spinbook.ros2.groups import CONTEXT, Entry, Menu
+from spinbook.ros2 import cli, interfaces
+from spinbook.ros2 import interfaces as interface_files
+from spinbook.ros2.cli import CONTEXT, CommandError, Entry, Menu
 from spinbook.ros2.middleware import open_graph
-from spinbook.ros2.refusal import Refusal
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -57,12 +57,12 @@ def record(topics: tuple[str, ...], all_topics: bool, output: Path | None, stora
       ros2 bag record -a -o everything
     """
     if bool(topics) == all_topics:
-        raise Refusal("Invalid choice: Must specify only one option out of: topics or --all")
+        raise CommandError("Invalid choice: Must specify only one option out of: topics or --all")
     folder = output or Path(datetime.now().strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
     if folder.exists():
-        raise Refusal(f"[ERROR] [ros2bag]: Output folder '{folder}' already exists.", "Name another one: -o NAME")
+        raise CommandError(f"[ERROR] [ros2bag]: Output folder '{folder}' already exists.", "Name another one: -o NAME")
     with open_graph(use_sim_time=use_sim_time) as graph, _writer(folder) as writer:
-        from spinbook.ros2.names import absolute
+        from spinbook.ros2.graph import absolute
 
         recording = _Recording(graph, writer, {absolute(topic) for topic in topics})
         click.echo("Recording... Press Ctrl-C to stop.")
@@ -70,7 +70,7 @@ def record(topics: tuple[str, ...], all_topics: bool, output: Path | None, stora
             while True:
                 recording.look()
                 graph.spin_until(lambda: False, LOOK_AGAIN)
-        except stopping.Stopped:
+        except cli.Stopped:
             click.echo(f"{recording.count} messages in {folder}")
             raise
 
@@ -192,7 +192,7 @@ def _reader(folder: Path) -> Iterator[Any]:
         reader = rosbag2.Reader(folder)
         reader.open()
     except Exception as error:  # whatever a damaged file leads the library to
-        raise Refusal(
+        raise CommandError(
             f"'{folder}' can't be read as a bag: {error}", "Name the folder that `ros2 bag record` made."
         ) from None
     try:
@@ -205,7 +205,7 @@ def _library() -> Any:
     try:
         from rosbags import rosbag2
     except ImportError:
-        raise Refusal("Bags need the package rosbags: pip install 'spinbook[bag]'") from None
+        raise CommandError("Bags need the package rosbags: pip install 'spinbook[bag]'") from None
     return rosbag2
 
 

@@ -8,9 +8,9 @@ from typing import Any
 import click
 
 from interface_compiler.near import use_near
-from spinbook.ros2 import stopping
-from spinbook.ros2.groups import Entry, Menu
-from spinbook.ros2.real import hand_over
+from spinbook.ros2 import cli
+from spinbook.ros2.cli import Entry, Menu
+from spinbook.ros2.executables import hand_over
 
 NOUNS = {
     "action": Entry("spinbook.ros2.action:action", "List actions, send a goal to one."),
@@ -39,10 +39,10 @@ class Ros2(Menu):
         return super().parse_args(ctx, args)
 
     def invoke(self, ctx: click.Context) -> Any:
-        stopping.listen()
+        cli.listen()
         try:
             return super().invoke(ctx)
-        except stopping.Stopped as stopped:
+        except cli.Stopped as stopped:
             raise click.exceptions.Exit(stopped.exit_code) from None
 
 

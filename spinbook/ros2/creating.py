@@ -7,11 +7,10 @@ from pathlib import Path
 
 import click
 
+from grader.files import write_if_changed
 from spinbook.course.course import Package
 from spinbook.package.files import Module, package_files
-from spinbook.ros2.groups import CONTEXT
-from spinbook.ros2.refusal import Refusal
-from spinbook.written import write_if_changed
+from spinbook.ros2.cli import CONTEXT, CommandError
 
 NODE = """\
 def main():
@@ -40,17 +39,19 @@ def create(words: tuple[str, ...]) -> None:
     """
     given = _read(words)
     if given.build_type != "ament_python":
-        raise Refusal(
+        raise CommandError(
             "Only packages of Python can be made without a ROS 2 installation.",
             f"ros2 pkg create --build-type ament_python {given.package_name}",
         )
     name = given.package_name
     # REP 144's rule for package names.
     if not (name[:1].isalpha() and name.isidentifier() and name.islower() and "__" not in name):
-        raise Refusal(f"'{name}' is not a valid package name: use lower-case letters, digits and single underscores.")
+        raise CommandError(
+            f"'{name}' is not a valid package name: use lower-case letters, digits and single underscores."
+        )
     folder = Path(given.destination_directory) / name
     if folder.exists():
-        raise Refusal(
+        raise CommandError(
             f"\nAborted!\nThe directory already exists: {folder}\nEither remove the directory or choose another."
         )
     _write(folder, given)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from spinbook.ros2.groups import CONTEXT, Entry, Menu
+from spinbook.ros2.cli import CONTEXT, Entry, Menu
 
 daemon = Menu(
     name="daemon",

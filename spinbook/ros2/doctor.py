@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import click
 
-from spinbook.ros2.groups import CONTEXT
-from spinbook.ros2.refusal import Refusal
+from spinbook.ros2.cli import CONTEXT, CommandError
 
 #: The checks of `spinbook doctor` that are about ROS 2, and not about courses.
 CHECKS = ("python", "libraries", "ros", "middleware", "logs", "message", "environment", "memory")
@@ -21,7 +20,7 @@ def doctor(report: bool, include_warnings: bool) -> None:
       ros2 doctor
       ros2 doctor --report
     """
-    from spinbook.doctor.checks import CHECKS as ALL
+    from spinbook.doctor.diagnosis import CHECKS as ALL
     from spinbook.doctor.diagnosis import diagnose
     from spinbook.doctor.finding import State
 
@@ -31,9 +30,9 @@ def doctor(report: bool, include_warnings: bool) -> None:
             click.echo(f"{finding.name:<24}: {finding.found}")
     for finding in findings:
         if finding.state is not State.OK:
-            click.echo(f"UserWarning: {finding.name}: {finding.found} {finding.mend}", err=True)
+            click.echo(f"UserWarning: {finding.name}: {finding.found} {finding.fix}", err=True)
     bad = (State.MISSING, State.WARNING) if include_warnings else (State.MISSING,)
     failed = [finding.name for finding in findings if finding.state in bad]
     if failed:
-        raise Refusal(f"{len(failed)}/{len(findings)} check(s) failed", "", f"Failed modules: {' '.join(failed)}")
+        raise CommandError(f"{len(failed)}/{len(findings)} check(s) failed", "", f"Failed modules: {' '.join(failed)}")
     click.echo(f"\nAll {len(findings)} checks passed\n")

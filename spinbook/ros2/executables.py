@@ -1,15 +1,132 @@
-"""Finding what `ros2 run` starts: in ROS prefixes, in a colcon workspace near by, and what Spinbook brings itself."""
+"""Finds what `ros2 run` starts: in ROS prefixes, in colcon workspaces nearby, and in Spinbook itself."""
 
 from __future__ import annotations
 
 import os
+import shutil
 import sys
+from collections.abc import Iterator, Mapping, MutableMapping, Sequence
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
-from spinbook.ros2 import prefixes, workspace
-from spinbook.ros2.bootstrap import without_bootstrap
-from spinbook.ros2.refusal import Refusal
+from interface_compiler import prefixes
+from spinbook.ros2.cli import CommandError
+
+# The wheels' `.pth` file re-executes Python once with the wheels' libraries in LD_LIBRARY_PATH, and marks that with a
+# guard variable. Another Python that inherits the guard skips its own turn and then misses its libraries; a program of
+# a ROS installation that inherits the libraries gets the wrong ones. So neither is passed on: each program that needs
+# them sets both for itself.
+
+
+GUARD = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
+
+
+def without_bootstrap(environment: Mapping[str, str]) -> dict[str, str]:
+    """A copy of `environment` as it was before this Python's wheels changed it."""
+    clean = dict(environment)
+    if clean.pop(GUARD, None) is None:
+        return clean
+    entries = [entry for entry in clean.pop("LD_LIBRARY_PATH", "").split(os.pathsep) if entry]
+    kept = [entry for entry in entries if not _from_wheels(Path(entry))]
+    if kept:
+        clean["LD_LIBRARY_PATH"] = os.pathsep.join(kept)
+    return clean
+
+
+def _from_wheels(folder: Path) -> bool:
+    prefix = Path(sys.prefix)
+    return folder == prefix / "lib" or (folder.is_relative_to(prefix) and folder.match("ros_*.libs"))
+
+
+#: The folder that a course's packages are built in, beside its notebooks.
+COURSE_WORKSPACE = "humanoid_ws"
+
+_LAYOUT = ".colcon_install_layout"
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """A built colcon workspace: its `install` folder and the prefixes in it (one, or one a package)."""
+
+    install: Path
+    prefixes: tuple[Path, ...]
+
+    def extend(self, environment: MutableMapping[str, str]) -> None:
+        """Change `environment` as sourcing `install/setup.bash` would, as far as packages say it in .dsv files."""
+        for prefix in reversed(self.prefixes):
+            _prepend(environment, "AMENT_PREFIX_PATH", str(prefix))
+            for package in sorted((prefix / "share").glob("*/package.dsv")):
+                _apply(package, prefix, environment)
+            for site in sorted(prefix.glob(f"lib/python{sys.version_info.major}.*/site-packages")):
+                if site.parent.name == f"python{sys.version_info.major}.{sys.version_info.minor}":
+                    _append(environment, "PYTHONPATH", str(site))
+
+
+def workspaces_near(folder: Path) -> list[Workspace]:
+    """The built workspaces of `folder` and its parents, nearest first: the folder itself, then `humanoid_ws` in it."""
+    folder = folder.absolute()
+    found = (_built(place / "install") for at in (folder, *folder.parents) for place in (at, at / COURSE_WORKSPACE))
+    return [workspace for workspace in found if workspace is not None]
+
+
+def _built(install: Path) -> Workspace | None:
+    try:
+        layout = (install / _LAYOUT).read_text().strip()
+    except OSError:
+        return None
+    if layout == "merged":
+        return Workspace(install, (install,))
+    prefixes = (folder for folder in install.iterdir() if (folder / "share" / folder.name).is_dir())
+    return Workspace(install, tuple(sorted(prefixes)))
+
+
+# The .dsv format is colcon's: an operation and its arguments in a line, divided by ';'.
+# https://colcon.readthedocs.io/en/released/developer/environment.html
+
+
+def _apply(file: Path, prefix: Path, environment: MutableMapping[str, str]) -> None:
+    for operation, arguments in _operations(file):
+        if operation == "source" and arguments[0].endswith(".dsv"):
+            _apply(prefix / arguments[0], prefix, environment)
+        elif operation in ("set", "set-if-unset") and len(arguments) == 2:
+            if operation == "set" or arguments[0] not in environment:
+                environment[arguments[0]] = arguments[1]
+        elif operation.startswith("prepend-non-duplicate"):
+            for value in _existing(operation, arguments[1:], prefix):
+                _prepend(environment, arguments[0], value)
+        elif operation.startswith("append-non-duplicate"):
+            for value in _existing(operation, arguments[1:], prefix):
+                _append(environment, arguments[0], value)
+
+
+def _operations(file: Path) -> Iterator[tuple[str, list[str]]]:
+    try:
+        lines = file.read_text().splitlines()
+    except OSError:
+        return
+    for line in lines:
+        operation, *arguments = line.split(";")
+        if arguments:
+            yield operation, arguments
+
+
+def _existing(operation: str, values: list[str], prefix: Path) -> list[str]:
+    """The values as paths, relative ones below the prefix; only those that exist where the operation says so."""
+    paths = [prefix / value if value else prefix for value in values or [""]]
+    return [str(path) for path in paths if path.exists() or not operation.endswith("-if-exists")]
+
+
+def _prepend(environment: MutableMapping[str, str], name: str, value: str) -> None:
+    entries = [entry for entry in environment.get(name, "").split(os.pathsep) if entry and entry != value]
+    environment[name] = os.pathsep.join([value, *entries])
+
+
+def _append(environment: MutableMapping[str, str], name: str, value: str) -> None:
+    entries = [entry for entry in environment.get(name, "").split(os.pathsep) if entry]
+    if value not in entries:
+        environment[name] = os.pathsep.join([*entries, value])
+
 
 #: Package -> executable -> the module that is it. Used where the package has no executables: of turtlesim, set-up
 #: compiles the messages alone.
@@ -36,12 +153,12 @@ def find(package: str, executable: str, cwd: Path) -> Launch:
 
     Searched are, in this order, the prefixes of AMENT_PREFIX_PATH and of this Python, the colcon workspaces of `cwd`
     and its parents, and what Spinbook brings. A workspace's environment is made as its setup scripts would make it,
-    so it need not be sourced. Raises `Refusal` with what is there if the package or the executable is not.
+    so it need not be sourced. Raises `CommandError` with what is there if the package or the executable is not.
     """
     environment = without_bootstrap(os.environ)
     prefix = prefixes.prefix_of(package, prefixes.installed())
     if prefix is None:
-        for near in workspace.near(cwd):
+        for near in workspaces_near(cwd):
             prefix = prefixes.prefix_of(package, near.prefixes)
             if prefix is not None:
                 near.extend(environment)
@@ -51,13 +168,13 @@ def find(package: str, executable: str, cwd: Path) -> Launch:
         return Launch([str(_only(there, package, executable))], environment)
     modules = BUILT_IN.get(package)
     if modules is None:
-        raise Refusal(
+        raise CommandError(
             f"Package '{package}' not found",
             _where(cwd),
             f"Packages to run from here: {', '.join(runnable(cwd))}.",
         )
     if executable not in modules:
-        raise Refusal("No executable found", f"Executables of {package}: {', '.join(sorted(modules))}.")
+        raise CommandError("No executable found", f"Executables of {package}: {', '.join(sorted(modules))}.")
     return Launch([sys.executable, "-m", modules[executable]], environment)
 
 
@@ -77,23 +194,23 @@ def in_prefix(prefix: Path, package: str) -> list[Path]:
 
 def everywhere(cwd: Path) -> dict[str, Path]:
     """Package -> prefix of all packages that `find` would search, without those that Spinbook brings."""
-    places = [*prefixes.installed(), *(prefix for near in workspace.near(cwd) for prefix in near.prefixes)]
+    places = [*prefixes.installed(), *(prefix for near in workspaces_near(cwd) for prefix in near.prefixes)]
     return dict(sorted(prefixes.packages(places).items()))
 
 
 def runnable(cwd: Path) -> list[str]:
     """The packages of near workspaces that have an executable, and those that Spinbook brings, sorted."""
-    built = prefixes.packages(prefix for near in workspace.near(cwd) for prefix in near.prefixes)
+    built = prefixes.packages(prefix for near in workspaces_near(cwd) for prefix in near.prefixes)
     return sorted({package for package, prefix in built.items() if in_prefix(prefix, package)} | set(BUILT_IN))
 
 
 def _only(paths: list[Path], package: str, executable: str) -> Path:
     named = [path for path in paths if path.name == executable]
     if len(named) > 1:
-        raise Refusal("Multiple executables found:", *(f"- {path}" for path in named))
+        raise CommandError("Multiple executables found:", *(f"- {path}" for path in named))
     if not named:
         there = ", ".join(path.name for path in paths)
-        raise Refusal(
+        raise CommandError(
             "No executable found",
             f"Executables of {package}: {there or 'none'}.",
             "A Python package names its executables under console_scripts in setup.py; build again after a change.",
@@ -102,10 +219,62 @@ def _only(paths: list[Path], package: str, executable: str) -> Path:
 
 
 def _where(cwd: Path) -> str:
-    built = workspace.near(cwd)
+    built = workspaces_near(cwd)
     if built:
         places = ", ".join(str(near.install) for near in built)
         return f"Looked in ROS 2 itself and in {places}: is its name right, and is it built?"
     return (
         "There is no built workspace here: run `colcon build --symlink-install` in the workspace, and this from there."
     )
+
+
+#: What the script of this command has in it, in whichever environment it is installed.
+OURS = b"spinbook.ros2"
+
+#: Runs the `ros2` of this very environment where its script is not: conda's, over which pip has written ours.
+AS_MODULE = "import sys; from ros2cli.cli import main; sys.argv[0] = 'ros2'; sys.exit(main())"
+
+#: `own` here keeps this package's command even where the real one is installed.
+CHOICE = "SPINBOOK_ROS2"
+
+
+def real_ros2(arguments: Sequence[str], environment: Mapping[str, str]) -> list[str] | None:
+    """Return the command that should answer `arguments` instead of this package, without them, or None."""
+    if environment.get(CHOICE) == "own" or _ours_all_the_same(arguments):
+        return None
+    for folder in environment.get("PATH", os.defpath).split(os.pathsep):
+        path = shutil.which("ros2", path=folder)
+        if path is not None and not _is_ours(Path(path)):
+            return [path]
+    return [sys.executable, "-c", AS_MODULE] if find_spec("ros2cli") else None
+
+
+def _is_ours(script: Path) -> bool:
+    """Tell whether this `ros2` is the one that installing Spinbook writes."""
+    try:
+        with script.open("rb") as file:
+            return OURS in file.read(2000)
+    except OSError:
+        return False
+
+
+def hand_over(arguments: Sequence[str]) -> None:
+    """Become the real `ros2` if it is installed; return if not."""
+    command = real_ros2(arguments, os.environ)
+    if command is None:
+        return
+    sys.stdout.flush()
+    sys.stderr.flush()
+    # Should that `ros2` be a wrapper around this command, it must not come here a second time.
+    os.execve(command[0], [*command, *arguments], without_bootstrap(os.environ) | {CHOICE: "own"})
+
+
+def _ours_all_the_same(arguments: Sequence[str]) -> bool:
+    """Whether this runs turtlesim where turtlesim is not installed, which is our own node then."""
+    if not arguments or arguments[0] != "run":
+        return False
+    rest = list(arguments[1:])
+    while rest and rest[0].startswith("-"):
+        takes_value = rest[0] == "--prefix"
+        rest = rest[2 if takes_value else 1 :]
+    return rest[:1] == ["turtlesim"] and is_built_in("turtlesim", prefixes.prefix_of("turtlesim", prefixes.installed()))

@@ -1,8 +1,4 @@
-"""A node of ours and what it sees of the others: nodes, topics and services.
-
-Each call of the command starts its own node, so each has to let discovery finish before it answers. What finished
-means is asked of the graph, not of the clock: see `Graph.settle`.
-"""
+"""What a node of ours sees of the others: nodes, topics, services, names, and how many participants there are."""
 
 from __future__ import annotations
 
@@ -10,22 +6,67 @@ import os
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 import rclpy
 from rclpy.context import Context
+from rclpy.exceptions import InvalidServiceNameException, InvalidTopicNameException
 from rclpy.executors import SingleThreadedExecutor, TimeoutException
+from rclpy.expand_topic_name import expand_topic_name
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
+from rclpy.validate_full_topic_name import validate_full_topic_name
 
-from spinbook.ros2 import census
+from spinbook.ros2.cli import CommandError, held_back
 from spinbook.ros2.middleware import domain_id
-from spinbook.ros2.refusal import Refusal
-from spinbook.ros2.stopping import held_back
+
+# The well-known ports of RTPS 2.5, 9.6.2.3: 7400 + 250 * domain, and each participant's unicast discovery
+# port is that plus 10 plus twice the participant's number.
+_FIRST_PORT = 7400
+_PORTS_A_DOMAIN = 250
+_FIRST_UNICAST = 10
+
+
+def participants(domain: int) -> int | None:
+    """The number of participants on this host, this process's own among them; None where it can't be told.
+
+    Discovery is over when as many have been heard of. Another user's count too: they hold ports like anybody.
+    """
+    base = _FIRST_PORT + _PORTS_A_DOMAIN * domain
+    discovery = range(base + _FIRST_UNICAST, base + _PORTS_A_DOMAIN, 2)
+    try:
+        rows = Path("/proc/self/net/udp").read_text().splitlines()[1:]
+    except OSError:
+        return None
+    bound = {int(row.split()[1].rpartition(":")[2], 16) for row in rows}
+    return sum(port in bound for port in discovery) or None
+
+
+def hears_other_hosts() -> bool:
+    """Whether nodes on other hosts may be in this domain, which no port on this one tells of."""
+    if os.environ.get("ROS_LOCALHOST_ONLY") == "1":
+        return False
+    if os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper() in ("LOCALHOST", "OFF"):
+        return False
+    profile = os.environ.get("FASTRTPS_DEFAULT_PROFILES_FILE")
+    if not profile:
+        return True
+    try:
+        text = Path(profile).read_text(errors="replace")
+    except OSError:
+        return True
+    whitelist = text.partition("<interfaceWhiteList>")[2].partition("</interfaceWhiteList>")[0]
+    return "127.0.0.1" not in whitelist
+
+
+# Each call of the command starts its own node, so each has to let discovery finish before it answers. What finished
+# means is asked of the graph, not of the clock: see `Graph.settle`.
+
 
 #: Seconds between two looks at the graph, and at most between a signal and its being noticed.
 LOOK, NAP = 0.02, 0.1
@@ -86,7 +127,7 @@ class Graph:
             # Signals are ours: see stopping.py.
             rclpy.init(args=[], context=self.context, signal_handler_options=SignalHandlerOptions.NO)
         except RuntimeError as error:
-            raise Refusal(f"ROS 2 could not start: {str(error).splitlines()[0]}") from None
+            raise CommandError(f"ROS 2 could not start: {str(error).splitlines()[0]}") from None
         self.node = Node(
             node_name or f"_ros2cli_{os.getpid()}",
             context=self.context,
@@ -177,7 +218,7 @@ class Graph:
     def _shortest(self, nothing: bool) -> float:
         if nothing:
             return ABSENT
-        return OTHER_HOSTS if census.hears_other_hosts() else 0.0
+        return OTHER_HOSTS if hears_other_hosts() else 0.0
 
     def _look(self) -> tuple[Any, ...]:
         node = self.node
@@ -191,7 +232,7 @@ class Graph:
             bytes(end.endpoint_gid[:_GID_PREFIX])
             for end in self.node.get_publishers_info_by_topic(_PARTICIPANTS, no_mangle=True)
         }
-        here = census.participants(domain_id())
+        here = participants(domain_id())
         if here is not None and len(heard) < here:
             return False
         ends = [
@@ -259,3 +300,29 @@ class Graph:
                 return False
             self.spin_once()
         return True
+
+
+def absolute(name: str, what: str = "topic") -> str:
+    """The full name of a topic, service or action: `chatter` -> `/chatter`. Raises `CommandError` for no valid name."""
+    try:
+        full: str = expand_topic_name(name, "ros2", "/")
+        validate_full_topic_name(full)
+    except (InvalidTopicNameException, InvalidServiceNameException, ValueError) as error:
+        # The rest tells where in the C source of rcl it was noticed.
+        reason = str(error).split("\n")[0].partition(", at /")[0]
+        raise CommandError(
+            f"'{name}' is no name for a {what}: {reason}",
+            "A name has letters, digits and underscores, in parts divided by '/', as in /left_foot/pressure.",
+        ) from None
+    return full
+
+
+def absolute_node(name: str) -> str:
+    """The full name of a node: `joint_monitor` -> `/joint_monitor`."""
+    return name if name.startswith("/") else f"/{name}"
+
+
+def seen(what: str, names: Iterable[str]) -> str:
+    """A line that says what of a kind is there instead: `Topics seen: /a, /b`."""
+    listed = ", ".join(sorted(set(names)))
+    return f"{what} seen: {listed or 'none'}. ROS_DOMAIN_ID must be the same in every terminal and notebook."

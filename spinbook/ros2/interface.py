@@ -6,9 +6,9 @@ import sys
 
 import click
 
-from spinbook.ros2 import interface_files, interfaces
-from spinbook.ros2.groups import CONTEXT, Entry, Menu
-from spinbook.ros2.refusal import Refusal
+from spinbook.ros2 import interfaces
+from spinbook.ros2 import interfaces as interface_files
+from spinbook.ros2.cli import CONTEXT, CommandError, Entry, Menu
 
 interface = Menu(
     name="interface",
@@ -72,7 +72,7 @@ def list_(only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
       Actions:
           test_msgs/action/Fibonacci
     """
-    everything = interface_files.everything()
+    everything = interface_files.installed_interfaces()
     for kind in _kinds(only_msgs, only_srvs, only_actions):
         click.echo(f"{_TITLES[kind]}:")
         for package_name, names in everything.items():
@@ -94,7 +94,9 @@ def package(package_name: str, only_msgs: bool, only_srvs: bool, only_actions: b
     """
     names = interface_files.interfaces_of(package_name)
     if names is None:
-        raise Refusal(f"Unknown package '{package_name}'", "`ros2 interface packages` shows those that have types.")
+        raise CommandError(
+            f"Unknown package '{package_name}'", "`ros2 interface packages` shows those that have types."
+        )
     kinds = _kinds(only_msgs, only_srvs, only_actions)
     for name in names:
         if name.split("/")[0] in kinds:
@@ -112,7 +114,7 @@ def packages(only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
       ros2 interface packages -a
     """
     kinds = _kinds(only_msgs, only_srvs, only_actions)
-    for package_name, names in interface_files.everything().items():
+    for package_name, names in interface_files.installed_interfaces().items():
         if any(name.split("/")[0] in kinds for name in names):
             click.echo(package_name)
 
@@ -135,10 +137,10 @@ def proto(type_name: str, no_quotes: bool) -> None:
 
 
 def _full(type_name: str) -> str:
-    """The full name of an installed type. Raises `Refusal` for any other."""
+    """The full name of an installed type. Raises `CommandError` for any other."""
     parts = type_name.split("/")
     if len(parts) != 3 or parts[1] not in _TITLES or not all(parts):
-        raise Refusal(
+        raise CommandError(
             f"Invalid name '{type_name}'. Expected three parts separated by '/'",
             "As in sensor_msgs/msg/JointState, std_srvs/srv/Trigger or test_msgs/action/Fibonacci.",
         )

@@ -10,7 +10,7 @@ from typing import Any
 import yaml
 from rosidl_parser import definition
 
-from spinbook.ros2.refusal import Refusal
+from spinbook.ros2.cli import CommandError
 
 #: Sets a field that was given as 'now' or 'auto' to a builtin_interfaces/msg/Time.
 SetStamp = Callable[[Any], None]
@@ -19,18 +19,18 @@ _LISTED = 12
 
 
 def read_values(text: str, what: str) -> dict[str, Any]:
-    """YAML text -> a mapping. Raises `Refusal` where it is not YAML, or no mapping."""
+    """YAML text -> a mapping. Raises `CommandError` where it is not YAML, or no mapping."""
     try:
         values = yaml.safe_load(text)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         place = f" at its letter {mark.column + 1}" if mark is not None else ""
-        raise Refusal(
+        raise CommandError(
             f"The passed {what} is not YAML{place}: {getattr(error, 'problem', None) or error}",
             "Quote it for the shell, and put a blank after each colon and comma: '{linear: {x: 2.0}}'",
         ) from None
     if not isinstance(values, dict):
-        raise Refusal(
+        raise CommandError(
             "The passed value needs to be a dictionary in YAML format",
             f"Found: {text!r}. Expected FIELD: VALUE in braces, as in '{{data: hello}}', with a blank after the colon.",
         )
@@ -41,7 +41,7 @@ def fill(message: Any, values: dict[str, Any], *, stamps: bool = False) -> list[
     """Set a message's fields from plain values; fields not named keep their defaults.
 
     With `stamps`, a header given as `auto` and a time given as `now` are left for the returned setters. Raises
-    `Refusal` for a field that is not there and for a value that is not of the field's type.
+    `CommandError` for a field that is not there and for a value that is not of the field's type.
     """
     filling = _Filling(stamps)
     filling.message(message, values, "")
@@ -166,14 +166,14 @@ def _octet(value: Any, path: str) -> bytes:
     raise _wrong(path, value, "a whole number from 0 to 255 (byte)")
 
 
-def _wrong(path: str, value: Any, expected: str) -> Refusal:
-    return Refusal(
+def _wrong(path: str, value: Any, expected: str) -> CommandError:
+    return CommandError(
         f"Failed to populate field: '{path}' got {value!r}" if path else f"Failed to populate field: got {value!r}",
         f"Expected {expected}.",
     )
 
 
-def _unknown(message: Any, name: Any, path: str) -> Refusal:
+def _unknown(message: Any, name: Any, path: str) -> CommandError:
     where = f" in '{path}'" if path else ""
     lines = [
         f"Failed to populate field: '{type(message).__name__}' object has no attribute '{name}'{where}",
@@ -181,7 +181,7 @@ def _unknown(message: Any, name: Any, path: str) -> Refusal:
     ]
     if not isinstance(name, str):
         lines.append(f"YAML reads this field's name as {name!r}, not as text: quote it.")
-    return Refusal(*lines)
+    return CommandError(*lines)
 
 
 def type_name(message: Any) -> str:

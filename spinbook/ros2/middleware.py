@@ -7,8 +7,8 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from spinbook.ros2 import prefixes
-from spinbook.ros2.refusal import Refusal
+from interface_compiler import prefixes
+from spinbook.ros2.cli import CommandError
 
 if TYPE_CHECKING:
     from spinbook.ros2.graph import Graph
@@ -20,7 +20,7 @@ LARGEST_DOMAIN = 232
 def open_graph(*, node_name: str | None = None, spin_time: float | None = None, use_sim_time: bool = False) -> Graph:
     """Check the environment, then create a node of ours that looks at the graph (a context manager).
 
-    `spin_time` bounds discovery, in seconds. Raises `Refusal` for an environment that rclpy can't work in.
+    `spin_time` bounds discovery, in seconds. Raises `CommandError` for an environment that rclpy can't work in.
     """
     prepare()
     from spinbook.ros2.graph import Graph
@@ -29,7 +29,7 @@ def open_graph(*, node_name: str | None = None, spin_time: float | None = None, 
 
 
 def prepare() -> None:
-    """Raise `Refusal` for what would make rclpy fail, and give it a folder for its logs."""
+    """Raise `CommandError` for what would make rclpy fail, and give it a folder for its logs."""
     _check_installed()
     _check_rmw()
     domain_id()
@@ -37,10 +37,10 @@ def prepare() -> None:
 
 
 def domain_id() -> int:
-    """ROS_DOMAIN_ID as a number. Raises `Refusal` if it is none or out of range."""
+    """ROS_DOMAIN_ID as a number. Raises `CommandError` if it is none or out of range."""
     text = os.environ.get("ROS_DOMAIN_ID") or "0"
     if not text.isdecimal() or int(text) > LARGEST_DOMAIN:
-        raise Refusal(
+        raise CommandError(
             f"ROS_DOMAIN_ID is '{text}', expected a whole number from 0 to {LARGEST_DOMAIN}.",
             "Every terminal and notebook that should see one another needs the same number.",
         )
@@ -51,7 +51,7 @@ def _check_installed() -> None:
     import importlib.util
 
     if importlib.util.find_spec("rclpy") is None:
-        raise Refusal(
+        raise CommandError(
             "ROS 2's Python library, rclpy, is not installed for this Python.",
             "On Linux x86_64: pip install 'spinbook[ros]'",
             "Elsewhere, use a ROS 2 installation or a ros:jazzy container.",
@@ -65,7 +65,7 @@ def _check_rmw() -> None:
     here = prefixes.resources("rmw_typesupport", prefixes.installed())
     here.pop("rmw_implementation", None)
     if here and wanted not in here:
-        raise Refusal(
+        raise CommandError(
             f"RMW_IMPLEMENTATION is '{wanted}', which is not installed here.",
             f"Installed: {', '.join(here)}. Set it to one of these, or unset it: unset RMW_IMPLEMENTATION",
         )

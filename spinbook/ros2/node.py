@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from spinbook.ros2.groups import CONTEXT, Entry, Menu, discovery_options
+from spinbook.ros2.cli import CONTEXT, CommandError, Entry, Menu, discovery_options
 from spinbook.ros2.middleware import open_graph
-from spinbook.ros2.refusal import Refusal
 
 if TYPE_CHECKING:
     from spinbook.ros2.graph import Graph
@@ -66,7 +65,7 @@ def info(node_name: str, include_hidden: bool, spin_time: float | None, use_sim_
       ros2 node info /joint_command_publisher
     """
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        from spinbook.ros2.names import absolute_node, seen
+        from spinbook.ros2.graph import absolute_node, seen
 
         # The real command knows nodes by their full names alone.
         full = node_name
@@ -75,7 +74,7 @@ def info(node_name: str, include_hidden: bool, spin_time: float | None, use_sim_
         if not same:
             meant = absolute_node(node_name)
             is_there = meant != node_name and any(found.full_name == meant for found in graph.nodes())
-            raise Refusal(
+            raise CommandError(
                 f"Unable to find node '{node_name}'",
                 *([f"Its name begins with a slash: ros2 node info {meant}"] if is_there else []),
                 seen("Nodes", (found.full_name for found in graph.nodes() if not found.hidden)),

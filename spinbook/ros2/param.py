@@ -1,4 +1,4 @@
-"""`ros2 param`: list, get, set, describe, dump, load and delete, through each node's own parameter services."""
+"""`ros2 param`: list, get, set, describe, dump and delete, through each node's parameter services."""
 
 from __future__ import annotations
 
@@ -8,13 +8,107 @@ from typing import TYPE_CHECKING, Any
 import click
 import yaml
 
-from spinbook.ros2 import asking_parameters as asking
-from spinbook.ros2.groups import CONTEXT, Entry, Menu, discovery_options
+from spinbook.ros2.cli import CONTEXT, CommandError, Entry, Menu, discovery_options
 from spinbook.ros2.middleware import open_graph
-from spinbook.ros2.refusal import Refusal
 
 if TYPE_CHECKING:
     from spinbook.ros2.graph import Graph
+
+
+#: Seconds that a node's parameter services get to appear, and then to answer.
+READY, ANSWER = 5.0, 10.0
+
+# By rcl_interfaces/msg/ParameterType.
+_VALUE_FIELDS = (
+    "",
+    "bool_value",
+    "integer_value",
+    "double_value",
+    "string_value",
+    "byte_array_value",
+    "bool_array_value",
+    "integer_array_value",
+    "double_array_value",
+    "string_array_value",
+)
+
+
+def find_node(graph: Graph, node_name: str, include_hidden: bool) -> str:
+    """The full name of a running node. Raises `CommandError` with those that run if it does not."""
+    from spinbook.ros2.graph import absolute_node, seen
+
+    full = absolute_node(node_name)
+
+    def visible() -> list[str]:
+        return [node.full_name for node in graph.nodes() if include_hidden or not node.hidden]
+
+    graph.settle(lambda: full in visible())
+    if full not in visible():
+        raise CommandError("Node not found", seen("Nodes", visible()))
+    return full
+
+
+def client_of(graph: Graph, name: str) -> Any:
+    """A client of a node's parameter services that the node knows. Raises `CommandError` if it has none."""
+    from rclpy.parameter_client import AsyncParameterClient
+
+    client = AsyncParameterClient(graph.node, name)
+    if not graph.spin_until(client.services_are_ready, READY):
+        raise CommandError(
+            f"Wait for service timed out waiting for parameter services for node {name}",
+            "The node has none (start_parameter_services=False), or is ending.",
+        )
+    graph.wait_until_known(name)
+    return client
+
+
+def answer(graph: Graph, name: str, future: Any) -> Any:
+    """What a node replied. Raises `CommandError` if it is silent."""
+    if not graph.spin_until(future.done, ANSWER):
+        raise CommandError(
+            f"The node {name} did not answer within {ANSWER:.0f} s.",
+            "A node answers while it spins: it may be stuck in a callback, or never call rclpy.spin.",
+        )
+    if future.exception() is not None or future.result() is None:
+        raise CommandError(f"Exception while calling service of node '{name}': {future.exception()}")
+    return future.result()
+
+
+def parameter_value(text: str) -> Any:
+    """What was typed as a rcl_interfaces/msg/ParameterValue, of the type that YAML gives it."""
+    from rclpy.parameter import get_parameter_value
+
+    try:
+        return get_parameter_value(text)
+    except yaml.YAMLError:
+        from rcl_interfaces.msg import ParameterType, ParameterValue
+
+        # Not YAML, so a text, as the real command takes it.
+        return ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=text)
+
+
+def parameters_of_file(file: Path, node: str, *, use_wildcard: bool) -> list[Any]:
+    """What a parameter file says for a node (full name), as rcl_interfaces/msg/Parameter. Raises `CommandError`."""
+    from rclpy.parameter import parameter_dict_from_yaml_file
+
+    try:
+        found = parameter_dict_from_yaml_file(str(file), use_wildcard, target_nodes=[node])
+    except OSError as error:
+        raise CommandError(f"{file}: {error.strerror}") from None
+    except yaml.YAMLError as error:
+        raise CommandError(f"{file} is not valid YAML: {error}") from None
+    except (RuntimeError, TypeError, AttributeError, ValueError) as error:
+        raise CommandError(
+            f"{file} has no parameters for {node}: {error}",
+            f"It needs the node's name, then ros__parameters, then the parameters: {node}: {{ros__parameters: {{…}}}}",
+        ) from None
+    return list(found.values())
+
+
+def value_of(value: Any) -> Any:
+    """The value of a rcl_interfaces/msg/ParameterValue as the message has it; None if it is not set."""
+    return getattr(value, _VALUE_FIELDS[value.type]) if 0 < value.type < len(_VALUE_FIELDS) else None
+
 
 param = Menu(
     name="param",
@@ -69,13 +163,13 @@ def list_(
             graph.settle()
             names = sorted({node.full_name for node in graph.nodes() if include_hidden_nodes or not node.hidden})
         else:
-            names = [asking.find_node(graph, node_name, include_hidden_nodes)]
+            names = [find_node(graph, node_name, include_hidden_nodes)]
         for name in names:
             try:
-                client = asking.client_of(graph, name)
-                params = sorted(asking.answer(graph, name, client.list_parameters()).result.names)
+                client = client_of(graph, name)
+                params = sorted(answer(graph, name, client.list_parameters()).result.names)
                 types = _described(graph, name, client, params) if param_type else {}
-            except Refusal as refusal:
+            except CommandError as refusal:
                 if node_name is not None:
                     raise
                 refusal.show()
@@ -107,14 +201,14 @@ def get(
       Boolean value is: False
     """
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        name = asking.find_node(graph, node_name, include_hidden_nodes)
-        client = asking.client_of(graph, name)
-        values = asking.answer(graph, name, client.get_parameters([parameter_name])).values
+        name = find_node(graph, node_name, include_hidden_nodes)
+        client = client_of(graph, name)
+        values = answer(graph, name, client.get_parameters([parameter_name])).values
         if not values:
-            raise Refusal("Parameter not set", _parameters_of(graph, name, client))
+            raise CommandError("Parameter not set", _parameters_of(graph, name, client))
     kind = values[0].type
     label = _TYPES.get(kind, ("", f"Unknown parameter type '{kind}'"))[1]
-    value = _plain(asking.value_of(values[0]))
+    value = _plain(value_of(values[0]))
     if hide_type:
         click.echo(str(value))
     else:
@@ -144,12 +238,12 @@ def set_(
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
         from rcl_interfaces.msg import Parameter
 
-        name = asking.find_node(graph, node_name, include_hidden_nodes)
-        client = asking.client_of(graph, name)
-        wanted = Parameter(name=parameter_name, value=asking.parameter_value(value))
-        result = asking.answer(graph, name, client.set_parameters([wanted])).results[0]
+        name = find_node(graph, node_name, include_hidden_nodes)
+        client = client_of(graph, name)
+        wanted = Parameter(name=parameter_name, value=parameter_value(value))
+        result = answer(graph, name, client.set_parameters([wanted])).results[0]
         if not result.successful:
-            raise Refusal(_with_reason("Setting parameter failed", result.reason))
+            raise CommandError(_with_reason("Setting parameter failed", result.reason))
     click.echo(_with_reason("Set parameter successful", result.reason))
 
 
@@ -167,11 +261,11 @@ def delete(
       ros2 param delete /joint_state_monitor gain
     """
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        name = asking.find_node(graph, node_name, include_hidden_nodes)
-        client = asking.client_of(graph, name)
-        result = asking.answer(graph, name, client.delete_parameters([parameter_name])).results[0]
+        name = find_node(graph, node_name, include_hidden_nodes)
+        client = client_of(graph, name)
+        result = answer(graph, name, client.delete_parameters([parameter_name])).results[0]
         if not result.successful:
-            raise Refusal(_with_reason("Deleting parameter failed", result.reason))
+            raise CommandError(_with_reason("Deleting parameter failed", result.reason))
     click.echo(_with_reason("Deleted parameter successfully", result.reason))
 
 
@@ -193,11 +287,11 @@ def describe(
       ros2 param describe /joint_state_monitor use_sim_time
     """
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        name = asking.find_node(graph, node_name, include_hidden_nodes)
-        client = asking.client_of(graph, name)
-        descriptors = asking.answer(graph, name, client.describe_parameters(list(parameter_names))).descriptors
+        name = find_node(graph, node_name, include_hidden_nodes)
+        client = client_of(graph, name)
+        descriptors = answer(graph, name, client.describe_parameters(list(parameter_names))).descriptors
         if not descriptors:
-            raise Refusal("Parameter not set", _parameters_of(graph, name, client))
+            raise CommandError("Parameter not set", _parameters_of(graph, name, client))
     for descriptor in descriptors:
         for line in _description(descriptor):
             click.echo(line)
@@ -214,17 +308,17 @@ def dump(node_name: str, include_hidden_nodes: bool, spin_time: float | None, us
       ros2 param dump /joint_state_monitor > monitor.yaml
     """
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        name = asking.find_node(graph, node_name, include_hidden_nodes)
-        client = asking.client_of(graph, name)
-        names = sorted(asking.answer(graph, name, client.list_parameters()).result.names)
-        values = asking.answer(graph, name, client.get_parameters(names)).values if names else []
+        name = find_node(graph, node_name, include_hidden_nodes)
+        client = client_of(graph, name)
+        names = sorted(answer(graph, name, client.list_parameters()).result.names)
+        values = answer(graph, name, client.get_parameters(names)).values if names else []
     tree: dict[str, Any] = {}
     for parameter, value in zip(names, values, strict=True):
         *branches, leaf = parameter.split(".")
         branch = tree
         for step in branches:
             branch = branch.setdefault(step, {})
-        branch[leaf] = _plain(asking.value_of(value))
+        branch[leaf] = _plain(value_of(value))
     click.echo(yaml.dump({name: {"ros__parameters": tree}}, default_flow_style=False))
 
 
@@ -248,10 +342,10 @@ def load(
       ros2 param load /joint_state_monitor monitor.yaml
     """
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        name = asking.find_node(graph, node_name, include_hidden_nodes)
-        parameters = asking.parameters_of_file(parameter_file, name, use_wildcard=not no_use_wildcard)
-        client = asking.client_of(graph, name)
-        results = asking.answer(graph, name, client.set_parameters(parameters)).results
+        name = find_node(graph, node_name, include_hidden_nodes)
+        parameters = parameters_of_file(parameter_file, name, use_wildcard=not no_use_wildcard)
+        client = client_of(graph, name)
+        results = answer(graph, name, client.set_parameters(parameters)).results
     refused = []
     for parameter, result in zip(parameters, results, strict=True):
         outcome = "successful" if result.successful else "failed"
@@ -261,16 +355,16 @@ def load(
         else:
             refused.append(line)
     if refused:
-        raise Refusal(*refused)
+        raise CommandError(*refused)
 
 
 def _parameters_of(graph: Graph, name: str, client: Any) -> str:
-    names = sorted(asking.answer(graph, name, client.list_parameters()).result.names)
+    names = sorted(answer(graph, name, client.list_parameters()).result.names)
     return f"Parameters of {name}: {', '.join(names)}."
 
 
 def _described(graph: Graph, name: str, client: Any, params: list[str]) -> dict[str, str]:
-    descriptors = asking.answer(graph, name, client.describe_parameters(params)).descriptors
+    descriptors = answer(graph, name, client.describe_parameters(params)).descriptors
     return {descriptor.name: _TYPES[descriptor.type][0] for descriptor in descriptors}
 
 

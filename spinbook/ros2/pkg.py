@@ -9,8 +9,7 @@ from pathlib import Path
 import click
 
 from spinbook.ros2 import executables as search
-from spinbook.ros2.groups import CONTEXT, Entry, Menu
-from spinbook.ros2.refusal import Refusal
+from spinbook.ros2.cli import CONTEXT, CommandError, Entry, Menu
 
 pkg = Menu(
     name="pkg",
@@ -55,7 +54,7 @@ def executables(package_name: str | None, full_path: bool) -> None:
     """
     packages = search.everywhere(Path.cwd())
     if package_name is not None and package_name not in packages and package_name not in search.BUILT_IN:
-        raise Refusal(f"Package '{package_name}' not found", "`ros2 pkg list` shows those that are there.")
+        raise CommandError(f"Package '{package_name}' not found", "`ros2 pkg list` shows those that are there.")
     for name in [package_name] if package_name else sorted({*packages, *search.BUILT_IN}):
         if not search.is_built_in(name, packages.get(name)):
             for path in search.in_prefix(packages[name], name):
@@ -75,7 +74,7 @@ def prefix(package_name: str) -> None:
     """
     packages = search.everywhere(Path.cwd())
     if package_name not in packages and package_name not in search.BUILT_IN:
-        raise Refusal("Package not found", "`ros2 pkg list` shows those that are there.")
+        raise CommandError("Package not found", "`ros2 pkg list` shows those that are there.")
     click.echo(str(packages.get(package_name, sys.prefix)))
 
 
@@ -92,13 +91,13 @@ def xml(package_name: str, tag: str | None) -> None:
     prefix = search.everywhere(Path.cwd()).get(package_name)
     file = prefix / "share" / package_name / "package.xml" if prefix else None
     if file is None or not file.is_file():
-        raise Refusal(f"Package '{package_name}' not found", "`ros2 pkg list` shows those that are there.")
+        raise CommandError(f"Package '{package_name}' not found", "`ros2 pkg list` shows those that are there.")
     text = file.read_text(encoding="utf-8")
     if tag is None:
         click.echo(text.rstrip("\n"))
         return
     found = [element.text or "" for element in ElementTree.fromstring(text).iter(tag)]
     if not found:
-        raise Refusal(f"No tag '{tag}' in {file}")
+        raise CommandError(f"No tag '{tag}' in {file}")
     for value in found:
         click.echo(value.strip())

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from spinbook.ros2.refusal import Refusal
+from spinbook.ros2.cli import CommandError
 
 if TYPE_CHECKING:
     from rclpy.qos import QoSProfile
@@ -64,7 +64,7 @@ def asked(options: dict[str, Any]) -> Asked:
 
 
 def profile(asked: Asked) -> QoSProfile:
-    """The profile with the policies asked for. Raises `Refusal` for a name that is none."""
+    """The profile with the policies asked for. Raises `CommandError` for a name that is none."""
     from rclpy.duration import Duration
     from rclpy.qos import (
         DurabilityPolicy,
@@ -75,7 +75,7 @@ def profile(asked: Asked) -> QoSProfile:
     )
 
     if asked.profile.lower() not in QoSPresetProfiles.short_keys():
-        raise Refusal(
+        raise CommandError(
             f"There is no QoS profile '{asked.profile}'.", f"There is: {', '.join(QoSPresetProfiles.short_keys())}."
         )
     chosen: QoSProfile = copy.copy(QoSPresetProfiles.get_from_short_key(asked.profile))
@@ -131,5 +131,5 @@ def _common(offered: list[Any], stronger: Any, weaker: Any) -> Any:
 
 def _policy(kind: Any, name: str) -> Any:
     if name.lower() not in kind.short_keys():
-        raise Refusal(f"There is no QoS policy '{name}'.", f"There is: {', '.join(kind.short_keys())}.")
+        raise CommandError(f"There is no QoS policy '{name}'.", f"There is: {', '.join(kind.short_keys())}.")
     return kind.get_from_short_key(name)

@@ -11,8 +11,7 @@ from pathlib import Path
 
 import click
 
-from spinbook.ros2.groups import CONTEXT
-from spinbook.ros2.refusal import Refusal
+from spinbook.ros2.cli import CONTEXT, CommandError
 
 
 @click.command(context_settings={**CONTEXT, "ignore_unknown_options": True, "allow_interspersed_args": False})
@@ -33,7 +32,7 @@ def run(prefix: str | None, package_name: str, executable_name: str, arguments: 
     command = [*(shlex.split(prefix) if prefix else []), *launch.argv, *arguments]
     program = shutil.which(command[0], path=launch.env.get("PATH"))
     if program is None:
-        raise Refusal(f"'{command[0]}' can't be run: there is no such program.")
+        raise CommandError(f"'{command[0]}' can't be run: there is no such program.")
     _become(program, command, launch.env)
 
 
@@ -47,7 +46,7 @@ def _become(program: str, command: list[str], environment: dict[str, str]) -> No
     try:
         os.execve(program, command, environment)
     except OSError as error:
-        raise Refusal(
+        raise CommandError(
             f"{program} could not be started: {error.strerror}",
             "Its first line may name a Python that is gone: build the workspace again.",
         ) from None

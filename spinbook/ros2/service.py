@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from spinbook.ros2 import interfaces
-from spinbook.ros2.groups import CONTEXT, Entry, Menu, discovery_options
+from spinbook.ros2.cli import CONTEXT, CommandError, Entry, Menu, discovery_options
 from spinbook.ros2.middleware import open_graph
-from spinbook.ros2.refusal import Refusal
 
 if TYPE_CHECKING:
     from spinbook.ros2.graph import Graph, Named
@@ -124,8 +123,8 @@ def call(
       ros2 service call /stand_up std_srvs/srv/SetBool '{data: true}'
     """
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        from spinbook.ros2.graph import absolute
         from spinbook.ros2.message_fields import fill, read_values
-        from spinbook.ros2.names import absolute
 
         kind = interfaces.service_class(service_type)
         request = kind.Request()
@@ -146,14 +145,14 @@ def _ask(graph: Graph, client: Any, request: Any, period: float | None) -> None:
     future = client.call_async(request)
     graph.spin_until(future.done)
     if future.exception() is not None:
-        raise Refusal(f"Exception while calling service: {future.exception()!r}")
+        raise CommandError(f"Exception while calling service: {future.exception()!r}")
     print(f"response:\n{future.result()!r}\n", flush=True)
     if period is not None:
         graph.spin_until(lambda: False, max(0.0, start + period - time.monotonic()))
 
 
 def _wait_until_ready(graph: Graph, client: Any, name: str, wanted: str) -> None:
-    """Wait without end for the service. Raises `Refusal` when it turns out to be of another type."""
+    """Wait without end for the service. Raises `CommandError` when it turns out to be of another type."""
     if not client.service_is_ready():
         print("waiting for service to become available...", flush=True)
 
@@ -162,7 +161,7 @@ def _wait_until_ready(graph: Graph, client: Any, name: str, wanted: str) -> None
         # The client of this call is in the graph with its own type.
         others = [kind for kind in types if kind != wanted]
         if others and not client.service_is_ready() and graph.node.count_services(name):
-            raise Refusal(
+            raise CommandError(
                 f"The service '{name}' is of type {' or '.join(others)}, not {wanted}.",
                 f"ros2 service call {name} {others[0]}",
             )
@@ -181,14 +180,14 @@ def _visible(graph: Graph, include_hidden: bool) -> list[Named]:
 
 
 def _wanted(graph: Graph, service_name: str) -> Named:
-    """The service of a name. Raises `Refusal` with those that are there if it is not."""
-    from spinbook.ros2.names import absolute, seen
+    """The service of a name. Raises `CommandError` with those that are there if it is not."""
+    from spinbook.ros2.graph import absolute, seen
 
     name = absolute(service_name, "service")
     graph.settle(lambda: any(found.name == name for found in graph.services()))
     for found in graph.services():
         if found.name == name:
             return found
-    raise Refusal(
+    raise CommandError(
         f"Unknown service '{service_name}'", seen("Services", (found.name for found in _visible(graph, False)))
     )

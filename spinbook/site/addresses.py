@@ -8,8 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from html import escape
 
-from spinbook.site.names import HOME
-from spinbook.site.page import Page
+from spinbook.site.page import HOME, Page
 
 
 def address_of(site: str, page: str) -> str:

@@ -10,13 +10,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from spinbook.browser.pyodide import pyodide_folder
+from grader.files import write_if_changed
+from spinbook.browser.files import pyodide_folder
 from spinbook.build.digest import code_digest, digest, files_digest, versions
 from spinbook.course.course import FILE, Course
 from spinbook.problem import Problem
-from spinbook.site import names
+from spinbook.site import page as names
 from spinbook.site.repository import repository_of
-from spinbook.written import write_if_changed
 
 
 @dataclass(frozen=True)
@@ -39,12 +39,12 @@ _CODE = (
     "chapter",
     "build",
     "course",
-    "runtime",
+    "kernel",
     "ros2",
     "turtlesim",
     "package",
     "graph",
-    "animation",
+    "animation.py",
     "interfaces",
 )
 
@@ -62,17 +62,15 @@ def build_site(course: Course, on_page: Callable[[str], None], *, as_it_ran: boo
     """Build `build/site` from the chapters, the executed notebooks and the exercises; `on_page` hears of each page.
 
     `as_it_ran` says that the outputs may be older than the chapters. Raises SpinbookError with what an author has to
-    mend; the site of the last good build then stays as it was.
+    fix; the site of the last good build then stays as it was.
     """
     started = time.monotonic()
     record, folder = _record(course), course.build_folder / "site"
     before, key = _read(record), _key(course, as_it_ran=as_it_ran)
     # Sphinx takes a second to import: only where it is needed.
     from spinbook.site.contents import read_contents
-    from spinbook.site.leaks import prove_nothing_leaks
-    from spinbook.site.publish import publish
+    from spinbook.site.publish import prove_nothing_leaks, publish, stage
     from spinbook.site.sphinx_build import run_sphinx
-    from spinbook.site.staging import stage
 
     code = code_digest("site")
     cache = course.build_folder / ".cache" / "site"

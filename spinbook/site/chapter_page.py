@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from spinbook.chapter.chapter import Cell, CellKind, Chapter
-from spinbook.site.names import exercise_page
-from spinbook.site.picture import smaller, still_of
+from spinbook.site.drawing import smaller, still_of
+from spinbook.site.page import exercise_page
 from spinbook.site.repository import Repository
 
 _FAILS = "raises-exception"

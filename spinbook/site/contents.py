@@ -13,27 +13,22 @@ import jupytext
 import nbformat
 
 from grader.exercise import Exercise, ExerciseError, load, starter
-from spinbook.browser.exercises import public_parts
-from spinbook.browser.files import can_run, run_files
-from spinbook.build.reading import read_all
+from spinbook.browser.files import can_run, public_parts, run_files
 from spinbook.chapter.chapter import CellKind, Chapter
+from spinbook.chapters import read_all
 from spinbook.course.course import Course
-from spinbook.handout.comments import without_comments
+from spinbook.handout.student_copy import without_comments
 from spinbook.problem import Problem, Severity, SpinbookError
-from spinbook.site import names
-from spinbook.site.about_page import about_markdown
+from spinbook.site import page as names
 from spinbook.site.addresses import address_files
 from spinbook.site.chapter_page import ExerciseCard, Ran, as_text, chapter_notebook, stills
-from spinbook.site.drawing import drawing_files, drawing_html
-from spinbook.site.exercise_page import exercise_markdown
-from spinbook.site.glossary import Term, terms_of
-from spinbook.site.home_page import home_chapters, home_drawing, home_log, home_pictures
-from spinbook.site.launch import branch_files, launch_notebook, openers, requirement
-from spinbook.site.mermaid import CanNotDrawError, Picture, draw
+from spinbook.site.drawing import CanNotDrawError, Picture, draw, drawing_files, drawing_html
+from spinbook.site.exercise_page import exercise_markdown, public_checks
+from spinbook.site.home_page import about_markdown, home_chapters, home_drawing, home_log, home_pictures
 from spinbook.site.node_graph import node_graph_excerpt, node_graph_of, node_graph_section
+from spinbook.site.notebooks import branch_files, launch_notebook, openers, requirement
 from spinbook.site.page import Page
-from spinbook.site.prose import Links, rich
-from spinbook.site.public_checks import public_checks
+from spinbook.site.prose import Links, Term, rich, terms_of
 from spinbook.site.repository import Repository, repository_of
 
 DOWNLOADS = "downloads"
@@ -45,7 +40,7 @@ class Contents:
 
     `pages` are in reading order, the home page first. `pictures` are those that the text shows: path in the site ->
     content. `files` go into the site as they are, `branch` into the
-    branch of notebooks: path -> text. `origins` says for a staged page which file an author would mend, and `lines`
+    branch of notebooks: path -> text. `origins` says for a staged page which file an author would fix, and `lines`
     for a chapter's page the first line of each of its cells. `taught` is the code of the chapters' nodes, `copies` what
     the notebooks bring of the exercises: path -> content.
     """
@@ -115,7 +110,7 @@ def _copies(exercises: Mapping[str, Exercise]) -> dict[str, dict[str, bytes]]:
     try:
         return {name: public_parts([exercise]) for name, exercise in exercises.items()}
     except ExerciseError as error:
-        raise SpinbookError(Problem(error.file, error.line, error.found, error.mend)) from None
+        raise SpinbookError(Problem(error.file, error.line, error.found, error.fix)) from None
 
 
 def _chapters(course: Course) -> list[Chapter]:
@@ -134,8 +129,8 @@ def _exercises(course: Course, chapters: list[Chapter]) -> dict[str, Exercise]:
                 try:
                     found[cell.name] = load(course.root / "exercises" / cell.name)
                 except ExerciseError as error:
-                    mend = "Mend the exercise, or take it out of the chapter."
-                    raise SpinbookError(Problem(chapter.file, cell.line, str(error), mend)) from None
+                    fix = "Fix the exercise, or take it out of the chapter."
+                    raise SpinbookError(Problem(chapter.file, cell.line, str(error), fix)) from None
     return found
 
 
@@ -162,8 +157,8 @@ def _drawn(
         drawings.pictures = draw(list(drawings.codes), course.build_folder / ".cache" / "drawings")
     except CanNotDrawError as error:
         found = f"mermaid drawings are shown in words, because {error}."
-        mend = "Everything else is as it should be; build the site again when that is mended."
-        contents.problems.append(Problem(course.chapters[0], None, found, mend, Severity.WARNING))
+        fix = "Everything else is as it should be; build the site again when that is fixed."
+        contents.problems.append(Problem(course.chapters[0], None, found, fix, Severity.WARNING))
     return drawings
 
 

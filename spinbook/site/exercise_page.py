@@ -1,12 +1,43 @@
-"""The page of an exercise: the task, then the interface, the starter, how to check it, and the points."""
+"""The page of an exercise: task, interface, starter, how to check it, and the public checks with their points."""
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
 
 from grader.exercise import Exercise
-from grader.exercise.interface import Endpoint, Parameter, Topic
-from spinbook.site.public_checks import PublicCheck
+from grader.exercise.exercise import Endpoint, Parameter, Topic
+
+
+@dataclass(frozen=True)
+class PublicCheck:
+    """A check's title and its points."""
+
+    title: str
+    points: float
+
+
+def public_checks(file: Path) -> tuple[PublicCheck, ...]:
+    """The checks of an exercise's checks.py, in order. They are read, not run; () where the file can't be read."""
+    try:
+        tree = ast.parse(file.read_text(encoding="utf-8"))
+    except (OSError, SyntaxError, UnicodeDecodeError):
+        return ()
+    found = (_check(node) for node in tree.body if isinstance(node, ast.FunctionDef))
+    return tuple(check for check in found if check)
+
+
+def _check(function: ast.FunctionDef) -> PublicCheck | None:
+    for decorator in function.decorator_list:
+        if not isinstance(decorator, ast.Call) or ast.unparse(decorator.func).split(".")[-1] != "check":
+            continue
+        points = next((word.value for word in decorator.keywords if word.arg == "points"), None)
+        if isinstance(points, ast.Constant) and isinstance(points.value, (int, float)):
+            title = (ast.get_docstring(function) or function.name).split("\n\n")[0]
+            return PublicCheck(" ".join(title.split()), float(points.value))
+    return None
 
 
 def exercise_markdown(exercise: Exercise, task: str, starter: str, checks: Sequence[PublicCheck], download: str) -> str:

@@ -1,11 +1,15 @@
-"""What the home page shows: the course's own pictures and words, as its nodes made them."""
+"""The home page, and the page that says what the course was built with."""
 
 from __future__ import annotations
 
 import base64
+import datetime
 import io
+import os
+import platform
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from PIL import Image
@@ -15,12 +19,12 @@ from pygments.formatters.html import HtmlFormatter
 from grader.exercise import Exercise
 from spinbook.build.digest import digest
 from spinbook.chapter.chapter import Cell, CellKind, Chapter
+from spinbook.course.course import Course
 from spinbook.site.chapter_page import Ran, alternative, is_picture
-from spinbook.site.drawing import drawing_html
+from spinbook.site.drawing import PICTURE_FOLDER, Picture, drawing_html, smaller, still_of
 from spinbook.site.log_lexer import LogLexer
-from spinbook.site.mermaid import Picture
-from spinbook.site.names import chapter_page, exercise_page
-from spinbook.site.picture import FOLDER, smaller, still_of
+from spinbook.site.page import chapter_page, exercise_page
+from spinbook.site.repository import Repository
 
 _LOG_LINES = 6
 
@@ -106,7 +110,7 @@ def _shown(chapter: Chapter, cell: Cell, output: Mapping[str, Any], caption: str
         picture, suffix = base64.b64decode(smaller(data["image/png"])), ".png"
         width, height = Image.open(io.BytesIO(picture)).size
         size = {"width": width, "height": height}
-    path = f"{FOLDER}/{digest(picture)[:16]}{suffix}"
+    path = f"{PICTURE_FOLDER}/{digest(picture)[:16]}{suffix}"
     still = still_of(output)
     files = {path: picture} | ({still.path: still.data} if still else {})
     about = {
@@ -119,3 +123,71 @@ def _shown(chapter: Chapter, cell: Cell, output: Mapping[str, Any], caption: str
         **size,
     }
     return Shown(files, about)
+
+
+def built_on() -> str:
+    """Today, or the day that SOURCE_DATE_EPOCH names: https://reproducible-builds.org/specs/source-date-epoch/."""
+    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
+    utc = datetime.timezone.utc
+    now = datetime.datetime.fromtimestamp(int(epoch), utc) if epoch.isdigit() else datetime.datetime.now(utc)
+    return now.date().isoformat()
+
+
+def about_markdown(course: Course, repository: Repository, middleware: str) -> str:
+    """The page in MyST Markdown."""
+    return f"""\
+# About this course
+
+Every output on these pages was produced by real ROS 2 nodes while the site was built. Nothing was typed in by hand:
+when a node is wrong, its page shows it.
+
+## Versions
+
+| | |
+| --- | --- |
+| ROS 2 | {course.ros_distro.capitalize()}, rclpy {_version("ros-jazzy-rclpy", "ros-rclpy", "rclpy")} |
+| Middleware | {middleware} |
+| Python | {platform.python_version()} |
+| Spinbook | {_version("spinbook")} |
+| Built on | {built_on()} |
+| Commit | {_commit(repository)} |
+
+## Run it yourself
+
+On Linux, with Python 3.10 to 3.14:
+
+```bash
+git clone {repository.url or "THE-COURSE"}.git course
+cd course
+make course
+```
+
+`make course` installs ROS 2 from PyPI into the folder `.venv`, runs every chapter, and builds this site. You need no
+administrator's rights. Then open a notebook of `build/notebooks` in any editor.
+
+Each chapter can also be opened in a browser, with nothing to install: look under *Run* at the top of its page. Its
+first cell installs what is missing.
+
+## Reading
+
+The switch at the top changes between light and dark. The search works without a network. Each page prints well, and
+every picture says in words what it shows.
+
+Nothing on these pages is loaded from anywhere else, and nobody is counted.
+"""
+
+
+def _commit(repository: Repository) -> str:
+    if not repository.commit:
+        return "not in a repository"
+    short = f"`{repository.commit[:10]}`"
+    return f"[{short}]({repository.url}/commit/{repository.commit}), {repository.date}" if repository.url else short
+
+
+def _version(*distributions: str) -> str:
+    for name in distributions:
+        try:
+            return version(name)
+        except PackageNotFoundError:
+            continue
+    return "of a ROS installation"

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from spinbook.chapter.chapter import Chapter
 from spinbook.course.course import Course
+from spinbook.graph.layout import drawings
 from spinbook.graph.model import NodeGraph
 from spinbook.graph.picture import node_graph_svg, node_graph_svgs
-from spinbook.graph.shapes import drawings
 
 __all__ = [
     "node_graph_excerpt",

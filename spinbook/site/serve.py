@@ -27,7 +27,7 @@ def serve_site(course: Course, port: int, no_run: bool) -> None:
     argv = [sys.executable, "-m", "spinbook", "site", "--course", str(course.root), *(["--no-run"] if no_run else [])]
 
     def build() -> None:
-        # A process of its own each time: what an author has broken for one build is mended for the next.
+        # A process of its own each time: what an author has broken for one build is fixed for the next.
         subprocess.run(argv, check=False)
 
     build()

@@ -17,7 +17,7 @@ from spinbook.course.course import Course
 from spinbook.problem import Problem, Severity, SpinbookError
 from spinbook.site.contents import Contents
 from spinbook.site.extension import NAME
-from spinbook.site.names import HOME, SEARCH
+from spinbook.site.page import HOME, SEARCH
 
 _THEMES = Path(__file__).parent
 _WARNING = re.compile(r"^(?P<file>/.*?):(?:(?P<line>\d+):)? (?:WARNING|ERROR|CRITICAL): (?P<what>.*)$")
@@ -31,7 +31,7 @@ _LINES_A_CELL = 10_000
 def run_sphinx(
     contents: Contents, source: Path, cache: Path, course: Course, on_page: Callable[[str], None]
 ) -> tuple[Path, list[Problem]]:
-    """Make the pages in `cache / "html"` from the staged folder `source`. Returns that folder, and what to mend.
+    """Make the pages in `cache / "html"` from the staged folder `source`. Returns that folder, and what to fix.
 
     Pages that have not changed are not made again. Raises SpinbookError if Sphinx can't go on.
     """
@@ -56,8 +56,8 @@ def run_sphinx(
         shutil.rmtree(cache / "doctrees", ignore_errors=True)
         words = str(error).strip().splitlines()
         found = f"the pages could not be made: {words[-1] if words else type(error).__name__}"
-        mend = "Look at what was changed last." if isinstance(error, SphinxError) else "This is a fault of Spinbook's."
-        raise SpinbookError(*_problems(told.getvalue(), contents, source), Problem(source, None, found, mend)) from None
+        fix = "Look at what was changed last." if isinstance(error, SphinxError) else "This is a fault of Spinbook's."
+        raise SpinbookError(*_problems(told.getvalue(), contents, source), Problem(source, None, found, fix)) from None
     finally:
         _close_handlers()
     return output, list(_problems(told.getvalue(), contents, source))

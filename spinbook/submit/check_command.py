@@ -8,12 +8,12 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from grader.crew import HostFault
 from grader.exercise import Exercise, ExerciseError
 from grader.grading import Grade, grade_submission
 from grader.report.terminal import show
 from grader.sandbox import SandboxUnavailable
 from grader.submission import Submission
+from grader.workers import HostFault
 from spinbook.problem import Problem, SpinbookError
 from spinbook.submit.choosing import exercise_named, found, given
 
@@ -50,7 +50,7 @@ def _grade(exercise: Exercise, submission: Submission) -> Grade:
     try:
         return grade_submission(exercise.public(), submission)
     except ExerciseError as error:
-        raise SpinbookError(Problem(error.file, error.line, error.found, error.mend)) from None
+        raise SpinbookError(Problem(error.file, error.line, error.found, error.fix)) from None
     except (HostFault, SandboxUnavailable) as error:
         click.echo(f"The machine or the grader is at fault, not your code: {error}", err=True)
         sys.exit(HOST_FAULT)

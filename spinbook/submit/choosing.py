@@ -8,10 +8,10 @@ from pathlib import Path
 import click
 
 from grader.exercise import Exercise, ExerciseError, load
-from grader.exercise.finding import NoExercise, find
+from grader.exercise.loading import NoExercise, find
 from grader.submission import NoSubmission, read
 from spinbook.problem import Problem, SpinbookError
-from spinbook.submit.candidates import Candidate, candidates
+from spinbook.submit.hand_in import Candidate, candidates
 
 
 def exercise_named(name: str) -> Exercise:
@@ -21,7 +21,7 @@ def exercise_named(name: str) -> Exercise:
     except NoExercise as error:
         raise click.UsageError(str(error)) from None
     except ExerciseError as error:
-        raise SpinbookError(Problem(error.file, error.line, error.found, error.mend)) from None
+        raise SpinbookError(Problem(error.file, error.line, error.found, error.fix)) from None
 
 
 def given(file: Path, exercise: Exercise) -> Candidate:

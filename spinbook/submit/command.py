@@ -12,11 +12,18 @@ from rich.console import Console
 from grader.exercise import Exercise
 from grader.report.terminal import show
 from spinbook.problem import Problem, SpinbookError
-from spinbook.submit import student as names
-from spinbook.submit.candidates import Candidate, cells_that_differ, is_starter
+from spinbook.submit import hand_in as names
 from spinbook.submit.choosing import exercise_named, found, given
-from spinbook.submit.hand_in import HandIn, default_target, write_upload
-from spinbook.submit.self_check import SelfCheck, self_check
+from spinbook.submit.hand_in import (
+    Candidate,
+    HandIn,
+    SelfCheck,
+    cells_that_differ,
+    default_target,
+    is_starter,
+    self_check,
+    write_upload,
+)
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
@@ -88,11 +95,11 @@ def _found(exercise: Exercise, folder: Path) -> Candidate:
 
 def _student(given: str | None, folder: Path) -> str:
     if given is not None:
-        return names.keep(given, folder)
-    known = names.known(folder)
+        return names.remember_student(given, folder)
+    known = names.remembered_student(folder)
     if known is None and sys.stdin.isatty():
         asked = click.prompt("Your name or number (leave empty to hand in without)", default="", show_default=False)
-        return names.keep(asked, folder)
+        return names.remember_student(asked, folder)
     return known or ""
 
 

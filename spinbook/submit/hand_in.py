@@ -1,20 +1,122 @@
-"""Puts an upload together and writes it."""
+"""Finds the exercise in a student's folder, checks it, and writes the one file to upload."""
 
 from __future__ import annotations
 
+import contextlib
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
+from typing import Any
 
-from grader.exercise import Exercise
-from grader.grading.versions import versions
+from grader.exercise import Exercise, ExerciseError, starter
+from grader.files import write_if_changed
+from grader.grading import Grade, grade_submission
+from grader.grading.reference import versions
 from grader.sandbox import choose_middleware
+from grader.submission import Submission, read
+from grader.submission.reading import NoCell, cells_of
 from grader.submission.upload import pack
 from spinbook import __version__
-from spinbook.submit.candidates import Candidate
-from spinbook.submit.self_check import SelfCheck
-from spinbook.written import write_if_changed
+from spinbook.update.handout import BASE
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """What the student may want to hand in: the exercise's code, and the file it is from, if there is one.
+
+    `origin` tells where the code is from, in words or by the file's name.
+    """
+
+    file: Path | None
+    submission: Submission
+    origin: str
+
+
+def candidates(exercise: Exercise, folder: Path) -> list[Candidate]:
+    """The files that hold the exercise: notebooks in `folder`, and the .py of its name there or in the exercise's own.
+
+    Where there are several, those with the untouched starter don't count beside one with more in it, and two with the
+    same code count once.
+    """
+    files = [folder / exercise.file_name, *sorted(folder.glob("*.ipynb")), exercise.folder / exercise.file_name]
+    found = [Candidate(file, read(str(file), exercise), _name(file, folder)) for file in files if file.is_file()]
+    found = [candidate for candidate in found if candidate.submission.program]
+    begun = [candidate for candidate in found if not is_starter(candidate, exercise)]
+    by_code = {_bare(candidate.submission.source): candidate for candidate in reversed(begun or found)}
+    return [candidate for candidate in found if candidate in by_code.values()]
+
+
+def is_starter(candidate: Candidate, exercise: Exercise) -> bool:
+    """Whether this is the starter still, as it was handed out."""
+    return _bare(candidate.submission.source) in _starters(exercise)
+
+
+def cells_that_differ(candidate: Candidate, exercise: Exercise) -> int:
+    """How many different cells the candidate's notebook has for the exercise; 1 where the code is from elsewhere."""
+    if candidate.file is None or candidate.file.suffix != ".ipynb":
+        return 1
+    with contextlib.suppress(OSError, NoCell):
+        return len({_bare(code) for code in cells_of(candidate.file.read_bytes(), exercise)})
+    return 1
+
+
+def _name(file: Path, folder: Path) -> str:
+    return file.relative_to(folder).as_posix() if file.is_relative_to(folder) else str(file)
+
+
+def _starters(exercise: Exercise) -> set[str]:
+    """The starter as it was handed out, where that is known."""
+    handed_out = exercise.folder.parent.parent / BASE / "exercises" / exercise.name / exercise.file_name
+    found = set()
+    with contextlib.suppress(OSError, ValueError):
+        found.add(_bare(handed_out.read_text(encoding="utf-8")))
+    with contextlib.suppress(OSError, ValueError):
+        if exercise.solution_file:
+            found.add(_bare(starter(exercise.solution_file.read_text(encoding="utf-8"))))
+    return found
+
+
+def _bare(code: str) -> str:
+    """Code as it counts for a comparison: a cell ends without a line end, and begins with an emptied line of magic."""
+    return code.replace("\r\n", "\n").strip()
+
+
+@dataclass(frozen=True)
+class SelfCheck:
+    """The public part of a grade, or `why` there is none. It is never the grade of record."""
+
+    grade: Grade | None
+    why: str = ""
+
+    @property
+    def record(self) -> dict[str, Any]:
+        """As plain data, for the upload's record."""
+        if self.grade is None:
+            return {"not_run": self.why}
+        return {
+            "outcome": self.grade.outcome,
+            "score": self.grade.score,
+            "points": self.grade.points,
+            "isolation": self.grade.isolation,
+            "checks": {verdict.name: verdict.status for verdict in self.grade.verdicts},
+        }
+
+
+def self_check(exercise: Exercise, submission: Submission) -> SelfCheck:
+    """Run the public checks. Nothing that goes wrong is raised, for it must not keep anybody from handing in."""
+    try:
+        grade = grade_submission(exercise.public(), submission)
+    except KeyboardInterrupt:
+        return SelfCheck(None, "It was interrupted.")
+    except ExerciseError as error:
+        return SelfCheck(None, f"The checks can't run here: {error.found} ({error.file.name}).")
+    except Exception as error:
+        return SelfCheck(None, f"{type(error).__name__}: {error}")
+    if grade.outcome == "host-error":
+        return SelfCheck(None, grade.message)
+    return SelfCheck(replace(grade, submission=Path(grade.submission).name))
+
 
 #: A notebook larger than this (bytes) stays at home; its cell is in the upload in any case.
 LARGEST_NOTEBOOK = 2_500_000
@@ -59,3 +161,26 @@ def _now() -> datetime:
     if given.isdigit():
         return datetime.fromtimestamp(int(given), timezone.utc)
     return datetime.now(timezone.utc).replace(microsecond=0)
+
+
+FILE = Path(".spinbook") / "student"
+
+#: No name is longer; whatever is, is a mistake.
+LONGEST = 200
+
+
+def remembered_student(folder: Path) -> str | None:
+    """The name kept in `folder` or in one above it: empty where the student gave none, None where nobody asked yet."""
+    for place in (folder, *folder.parents):
+        try:
+            return (place / FILE).read_text(encoding="utf-8").strip()[:LONGEST]
+        except (OSError, UnicodeDecodeError):
+            continue
+    return None
+
+
+def remember_student(name: str, folder: Path) -> str:
+    """Keep a name in `folder`; returns it as it is kept, on one line."""
+    kept = " ".join(name.split())[:LONGEST]
+    write_if_changed(folder / FILE, kept + "\n")
+    return kept

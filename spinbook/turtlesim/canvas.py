@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
+from spinbook.turtlesim.events import Pen
 from spinbook.turtlesim.geometry import PIXELS_PER_UNIT, WINDOW_PX
-from spinbook.turtlesim.pen import Pen
 
 Place = tuple[float, float]
 

@@ -13,8 +13,7 @@ from rclpy.node import Node
 from std_srvs.srv import Empty
 
 from spinbook.turtlesim.geometry import DT, normalized
-from spinbook.turtlesim.spinning import spin_until_told
-from spinbook.turtlesim.types import Pose
+from spinbook.turtlesim.program import Pose, spin_until_told
 
 #: Side of the square (units), speeds (units/s and rad/s), and how near is near enough (units, rad; units/s, rad/s).
 SIDE, SPEED, TURN = 2.0, 1.0, 0.4

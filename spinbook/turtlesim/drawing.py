@@ -16,7 +16,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Affine2D
 
 from spinbook.turtlesim.geometry import PIXELS_PER_UNIT
-from spinbook.turtlesim.turtle_shape import turtle_shapes
+from spinbook.turtlesim.moving import turtle_shapes
 from spinbook.turtlesim.world_picture import Color, TurtlePicture, WorldPicture, caption
 
 #: The world's side on paper, and the room around it, in inches.

@@ -1,8 +1,8 @@
-"""What happens in the world, as plain values: the world returns them, the node publishes and logs them."""
+"""What happens in the turtles' world, as plain values: the world returns them, the node publishes and logs them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 
@@ -89,3 +89,20 @@ class RotationEnded:
 
 
 Event = LogLine | Spawned | Killed | PoseReport | ColorReport | RotationFeedback | RotationEnded
+
+
+@dataclass(frozen=True)
+class Pen:
+    """Colour (each part 0..255), width in pixels of the window, and whether it is lifted."""
+
+    r: int = 179
+    g: int = 184
+    b: int = 255
+    width: int = 3
+    off: bool = False
+
+    def changed(self, r: int, g: int, b: int, width: int, off: int) -> Pen:
+        """The pen after a set_pen request: lifting keeps the colour, and a width of 0 means 1."""
+        if off:
+            return replace(self, off=True)
+        return Pen(r, g, b, width or 1)

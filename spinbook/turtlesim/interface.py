@@ -1,17 +1,16 @@
-"""The turtles' topics, services and action."""
+"""The turtles' topics, services and action, and how their messages are filled."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
 from rclpy.action.server import ActionServer, CancelResponse, GoalResponse
 from rclpy.node import Node
 from rclpy.task import Future
 
-from spinbook.turtlesim import fields
 from spinbook.turtlesim.events import (
     ColorReport,
     Event,
@@ -21,7 +20,7 @@ from spinbook.turtlesim.events import (
     RotationFeedback,
     Spawned,
 )
-from spinbook.turtlesim.types import (
+from spinbook.turtlesim.program import (
     Color,
     Kill,
     Pose,
@@ -32,6 +31,45 @@ from spinbook.turtlesim.types import (
     TeleportRelative,
 )
 from spinbook.turtlesim.world import World
+
+# No message type is imported here: whatever has the fields will do.
+
+
+Message = TypeVar("Message", bound=Any)
+
+
+def fill_pose(message: Message, pose: PoseReport) -> Message:
+    """Fill a turtlesim/msg/Pose."""
+    message.x, message.y, message.theta = pose.x, pose.y, pose.theta
+    message.linear_velocity, message.angular_velocity = pose.linear_velocity, pose.angular_velocity
+    return message
+
+
+def fill_color(message: Message, color: ColorReport) -> Message:
+    """Fill a turtlesim/msg/Color."""
+    message.r, message.g, message.b = color.r, color.g, color.b
+    return message
+
+
+def spawn(world: World, request: Any) -> list[Event]:
+    """Do what x, y, theta and name, as in turtlesim/srv/Spawn, ask for."""
+    return world.spawn(request.x, request.y, request.theta, request.name)
+
+
+def set_pen(world: World, turtle: str, request: Any) -> list[Event]:
+    """Do what r, g, b, width and off, as in turtlesim/srv/SetPen, ask for."""
+    return world.set_pen(turtle, request.r, request.g, request.b, request.width, request.off)
+
+
+def teleport_absolute(world: World, turtle: str, request: Any) -> list[Event]:
+    """Do what x, y and theta, as in turtlesim/srv/TeleportAbsolute, ask for."""
+    return world.teleport_absolute(turtle, request.x, request.y, request.theta)
+
+
+def teleport_relative(world: World, turtle: str, request: Any) -> list[Event]:
+    """Do what linear and angular, as in turtlesim/srv/TeleportRelative, ask for."""
+    return world.teleport_relative(turtle, request.linear, request.angular)
+
 
 #: Depth of every queue, as in turtlesim.
 DEPTH = 7
@@ -63,9 +101,9 @@ class Interface:
         self._poses[turtle] = node.create_publisher(Pose, f"{turtle}/pose", DEPTH)
         self._colors[turtle] = node.create_publisher(Color, f"{turtle}/color_sensor", DEPTH)
         requests: list[tuple[str, type, Callable[[World, str, Any], list[Event]]]] = [
-            ("set_pen", SetPen, fields.set_pen),
-            ("teleport_absolute", TeleportAbsolute, fields.teleport_absolute),
-            ("teleport_relative", TeleportRelative, fields.teleport_relative),
+            ("set_pen", SetPen, set_pen),
+            ("teleport_absolute", TeleportAbsolute, teleport_absolute),
+            ("teleport_relative", TeleportRelative, teleport_relative),
         ]
         self._services[turtle] = [
             node.create_service(kind, f"{turtle}/{name}", partial(self._answer, act, turtle))
@@ -93,9 +131,9 @@ class Interface:
     def publish(self, event: Event) -> None:
         """Send what has happened to whoever listens."""
         if isinstance(event, PoseReport):
-            self._poses[event.turtle].publish(fields.fill_pose(Pose(), event))
+            self._poses[event.turtle].publish(fill_pose(Pose(), event))
         elif isinstance(event, ColorReport):
-            self._colors[event.turtle].publish(fields.fill_color(Color(), event))
+            self._colors[event.turtle].publish(fill_color(Color(), event))
         elif isinstance(event, RotationFeedback):
             goal, _ = self._goals[event.goal]
             goal.publish_feedback(RotateAbsolute.Feedback(remaining=event.remaining))
@@ -103,7 +141,7 @@ class Interface:
             self._end(event)
 
     def _spawn(self, request: Spawn.Request, response: Spawn.Response) -> Spawn.Response:
-        events = fields.spawn(self._world, request)
+        events = spawn(self._world, request)
         self._perform(events)
         response.name = next((event.turtle for event in events if isinstance(event, Spawned)), "")
         return response

@@ -10,8 +10,7 @@ import sys
 from geometry_msgs.msg import Twist
 from rclpy.node import Node
 
-from spinbook.turtlesim.spinning import spin_until_told
-from spinbook.turtlesim.types import Pose
+from spinbook.turtlesim.program import Pose, spin_until_told
 
 
 def make() -> Node:

@@ -1,26 +1,155 @@
-"""The turtles' world as a moving picture: an SVG of a few KB in which the turtles drive and draw their trails again.
-
-At the pace at which it was driven, then a rest, then again. In print, and for readers who prefer no motion, it is
-still: every trail drawn, the turtles where they are now.
-"""
+"""The turtles' world as an animated SVG of a few KB, in which the turtles drive and draw again."""
 
 from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from html import escape
 from itertools import groupby, pairwise
+from typing import Any
 
-from spinbook.animation.keyframes import Cycle, number, thinned
-from spinbook.animation.paper import on_paper
-from spinbook.turtlesim.geometry import PIXELS_PER_UNIT
-from spinbook.turtlesim.pen import Pen
-from spinbook.turtlesim.timeline import Timeline, timeline
-from spinbook.turtlesim.track import HEADING_TOLERANCE, PLACE_TOLERANCE, Sample
-from spinbook.turtlesim.track import thinned as thinned_track
-from spinbook.turtlesim.turtle_shape import COATS
+from matplotlib.patches import Circle, Ellipse, PathPatch, Polygon
+from matplotlib.patches import Patch as Shape
+from matplotlib.path import Path
+
+from spinbook.animation import Cycle, coord, on_paper, thinned
+from spinbook.turtlesim.events import Pen
+from spinbook.turtlesim.geometry import DT, PIXELS_PER_UNIT
+from spinbook.turtlesim.trail import HEADING_TOLERANCE, PLACE_TOLERANCE, Sample
+from spinbook.turtlesim.trail import thinned as thinned_track
 from spinbook.turtlesim.world_picture import Color, TrackPicture, TurtlePicture, WorldPicture, caption
+
+#: A wait of all turtles that is longer is shown as this long (s).
+LONGEST_WAIT_S = 0.6
+#: What would take longer than this (s) is shown so many times as fast that it does not.
+LONGEST_S = 30.0
+
+
+@dataclass(frozen=True)
+class Timeline:
+    """Spans of ticks in which something moves, and when (s) each is shown; `faster` times as fast as it was."""
+
+    spans: tuple[tuple[int, int], ...]
+    starts: tuple[float, ...]
+    faster: int
+
+    @property
+    def seconds(self) -> float:
+        """How long it all takes to show."""
+        return self.shown(self.spans[-1][1])
+
+    def shown(self, tick: int) -> float:
+        """When a tick is shown (s from the beginning)."""
+        time = 0.0
+        for (first, last), start in zip(self.spans, self.starts, strict=True):
+            if tick < first:
+                break
+            time = start + (min(tick, last) - first) * DT
+        return time / self.faster
+
+
+def timeline(tracks: Sequence[Sequence[Sample]]) -> Timeline:
+    """The timeline of these tracks, of which at least one moves."""
+    spans = _joined(sorted(span for track in tracks for span in _moving(track)))
+    starts, time = [], 0.0
+    for index, (first, last) in enumerate(spans):
+        if index:
+            time += min(LONGEST_WAIT_S, (first - spans[index - 1][1]) * DT)
+        starts.append(time)
+        time += (last - first) * DT
+    return Timeline(tuple(spans), tuple(starts), max(1, math.ceil(time / LONGEST_S)))
+
+
+def _moving(track: Sequence[Sample]) -> list[tuple[int, int]]:
+    return [(before.tick, after.tick) for before, after in pairwise(track) if not _still(before, after)]
+
+
+def _still(before: Sample, after: Sample) -> bool:
+    way = max(abs(after.x - before.x), abs(after.y - before.y))
+    return way <= PLACE_TOLERANCE and abs(after.theta - before.theta) <= HEADING_TOLERANCE
+
+
+def _joined(spans: list[tuple[int, int]]) -> list[tuple[int, int]]:
+    joined: list[tuple[int, int]] = []
+    for first, last in spans:
+        if joined and first <= joined[-1][1]:
+            joined[-1] = (joined[-1][0], max(last, joined[-1][1]))
+        else:
+            joined.append((first, last))
+    return joined
+
+
+#: Shell, its plates, skin: one set for each turtle in turn.
+COATS = (
+    ("#2c7a46", "#57b368", "#a5dc8c"),
+    ("#a8541b", "#e2914a", "#f5cf92"),
+    ("#5d3f8f", "#9474c8", "#cdb9ec"),
+    ("#9c2f4b", "#d86a81", "#f3b6c0"),
+    ("#20707c", "#4fb0b6", "#a9e0dd"),
+)
+
+
+# Half the length and half the breadth of the shell.
+_LONG, _BROAD = 0.34, 0.29
+
+
+def turtle_shapes(coat: int) -> Iterator[Shape]:
+    """The shapes from the lowest to the topmost; `coat` chooses the colours, round and round."""
+    shell, plate, skin = COATS[coat % len(COATS)]
+    yield from _limbs(skin)
+    yield from _head(skin)
+    yield Ellipse((0, 0), 2 * _LONG, 2 * _BROAD, facecolor=shell, edgecolor=_LINE, linewidth=0.9)
+    yield from _plates(plate)
+
+
+def _limbs(skin: str) -> Iterator[Shape]:
+    look: dict[str, Any] = {"facecolor": skin, "edgecolor": _LINE, "linewidth": 0.8}
+    yield Polygon([(-0.31, 0.06), (-0.5, 0.0), (-0.31, -0.06)], **look)
+    for side in (1, -1):
+        # A front flipper sweeps back from the shoulder, a hind one is short.
+        yield _flipper([(0.27, 0.12), (0.44, 0.46), (0.10, 0.66), (0.03, 0.24)], side, look)
+        yield _flipper([(-0.12, 0.20), (-0.20, 0.52), (-0.52, 0.42), (-0.30, 0.10)], side, look)
+
+
+def _flipper(corners: list[tuple[float, float]], side: int, look: dict[str, Any]) -> Shape:
+    """A leaf from the first corner to the last, bent towards the two between."""
+    (a, b, c, d) = [(x, side * y) for x, y in corners]
+    path = Path([a, b, c, d, a], [Path.MOVETO, Path.CURVE4, Path.CURVE4, Path.CURVE4, Path.CLOSEPOLY])
+    return PathPatch(path, **look)
+
+
+def _head(skin: str) -> Iterator[Shape]:
+    yield Ellipse((0.43, 0), 0.32, 0.27, gid="head", facecolor=skin, edgecolor=_LINE, linewidth=0.8)
+    for side in (1, -1):
+        yield Circle((0.485, side * 0.078), 0.046, facecolor="white", edgecolor=_LINE, linewidth=0.5)
+        yield Circle((0.5, side * 0.08), 0.024, facecolor=_LINE, linewidth=0)
+
+
+def _plates(plate: str) -> Iterator[Shape]:
+    """A hexagon in the middle of the shell and a plate beyond each of its sides."""
+    look: dict[str, Any] = {"facecolor": plate, "linewidth": 0}
+    yield Polygon(_ring(0.40, 6, 0.0), joinstyle="round", **look)
+    for n in range(6):
+        middle, half = math.radians(60 * n + 30), math.radians(24)
+        inner = [_at(0.52, middle - half), _at(0.52, middle + half)]
+        outer = [_at(0.86, middle + half * part) for part in (0.8, 0.4, 0.0, -0.4, -0.8)]
+        yield Polygon(inner + outer, joinstyle="round", **look)
+
+
+def _ring(radius: float, corners: int, first: float) -> list[tuple[float, float]]:
+    return [_at(radius, first + 2 * math.pi * n / corners) for n in range(corners)]
+
+
+def _at(radius: float, angle: float) -> tuple[float, float]:
+    """A place on the shell: 0 is its centre, 1 its rim."""
+    return (_LONG * radius * math.cos(angle), _BROAD * radius * math.sin(angle))
+
+
+# At the pace at which it was driven, then a rest, then again. In print, and for readers who prefer no motion, it is
+# still: every trail drawn, the turtles where they are now.
+
 
 #: Samples of all tracks together; more are thinned until so many are left, which costs precision.
 MOST_SAMPLES = 200
@@ -101,15 +230,15 @@ def _drawing(samples: Sequence[Sample], times: Timeline) -> list[tuple[float, st
     """A dash as long as the trail, pushed along it."""
     whole = math.ceil(_lengths(samples)[-1]) + _pen(samples).width
     drawn = list(zip((times.shown(sample.tick) for sample in samples), _lengths(samples), strict=True))
-    return [(time, f"stroke-dashoffset:{number(whole - done)}") for time, done in thinned(drawn, 1.0)]
+    return [(time, f"stroke-dashoffset:{coord(whole - done)}") for time, done in thinned(drawn, 1.0)]
 
 
 def _driving(samples: Sequence[Sample], times: Timeline, size: float) -> list[tuple[float, str]]:
     frames = []
     for sample in samples:
         x, y = _place(sample.x, sample.y, size)
-        turn = number(-math.degrees(sample.theta), 0)
-        frames.append((times.shown(sample.tick), f"transform:translate({number(x)}px,{number(y)}px)rotate({turn}deg)"))
+        turn = coord(-math.degrees(sample.theta), 0)
+        frames.append((times.shown(sample.tick), f"transform:translate({coord(x)}px,{coord(y)}px)rotate({turn}deg)"))
     return frames
 
 
@@ -121,7 +250,7 @@ def _place(x: float, y: float, size: float) -> tuple[float, float]:
 def _trail(samples: Sequence[Sample], name: str, size: float) -> str:
     pen = _pen(samples)
     dash = (
-        f' class="{name}" stroke-dasharray="{number(math.ceil(_lengths(samples)[-1]) + pen.width, 0)}"' if name else ""
+        f' class="{name}" stroke-dasharray="{coord(math.ceil(_lengths(samples)[-1]) + pen.width, 0)}"' if name else ""
     )
     return _path([(sample.x, sample.y) for sample in samples], (pen.r, pen.g, pen.b), pen.width, dash, size)
 
@@ -130,9 +259,9 @@ def _path(points: Sequence[tuple[float, float]], color: Color, width: int, more:
     """A polyline, each point told from the one before it."""
     places = [tuple(round(part, 1) for part in _place(x, y, size)) for x, y in points]
     steps = "".join(
-        f"l{number(b[0] - a[0])} {number(b[1] - a[1])}".replace(" -", "-") for a, b in pairwise(places) if a != b
+        f"l{coord(b[0] - a[0])} {coord(b[1] - a[1])}".replace(" -", "-") for a, b in pairwise(places) if a != b
     )
-    start = " ".join(map(number, places[0])) if places else "0 0"
+    start = " ".join(map(coord, places[0])) if places else "0 0"
     look = 'fill="none" stroke="#{:02x}{:02x}{:02x}" stroke-linejoin="round"'.format(*color)
     return f'<path d="M{start}{steps}" {look} stroke-width="{width}"{more}/>'
 
@@ -149,7 +278,7 @@ def _turtle(turtle: TurtlePicture, coat: int, name: str, size: float) -> str:
         for s in (1, -1)
     )
     x, y = _place(turtle.x, turtle.y, size)
-    place = f"translate({number(x)} {number(y)})rotate({number(-math.degrees(turtle.theta), 0)})"
+    place = f"translate({coord(x)} {coord(y)})rotate({coord(-math.degrees(turtle.theta), 0)})"
     moving = f' class="{name}"' if name else ""
     return (
         f'<g{moving} transform="{place}" fill="{_LINE}">'
@@ -162,7 +291,7 @@ def _turtle(turtle: TurtlePicture, coat: int, name: str, size: float) -> str:
 def _ground(world: WorldPicture, key: str) -> str:
     side = round(world.size * PIXELS_PER_UNIT)
     lines = "".join(
-        f"M0 {number(side - n * PIXELS_PER_UNIT)}H{side}M{number(n * PIXELS_PER_UNIT)} 0V{side}" for n in _marks(world)
+        f"M0 {coord(side - n * PIXELS_PER_UNIT)}H{side}M{coord(n * PIXELS_PER_UNIT)} 0V{side}" for n in _marks(world)
     )
     ground = "#{:02x}{:02x}{:02x}".format(*world.background)
     return f'<path d="M0 0H{side}V{side}H0z" fill="{ground}"/><path d="{lines}" stroke="#fff" stroke-opacity=".13"/>'
@@ -188,6 +317,6 @@ def _words(world: WorldPicture, times: Timeline, error: float) -> str:
         "at the pace at which it was driven" if times.faster == 1 else f"{times.faster} times as fast as it was driven"
     )
     return (
-        f"{caption(world)}. The way is shown within {number(error, 2)} units, {pace}, "
+        f"{caption(world)}. The way is shown within {coord(error, 2)} units, {pace}, "
         f"{times.seconds:.0f} seconds, again and again."
     )

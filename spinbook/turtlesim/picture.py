@@ -1,7 +1,4 @@
-"""Get the world from the turtlesim that runs, whichever it is, and draw it.
-
-`python -m spinbook.turtlesim.picture OUT.png|OUT.svg` does so from a command line.
-"""
+"""Gets the world from the turtlesim that runs, whichever it is, and draws it."""
 
 from __future__ import annotations
 
@@ -10,6 +7,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import rclpy
 from rclpy.context import Context
@@ -20,9 +18,64 @@ from rclpy.signals import SignalHandlerOptions
 from std_srvs.srv import Trigger
 
 from spinbook.turtlesim.drawing import save
-from spinbook.turtlesim.listening import Heard
+from spinbook.turtlesim.events import Pen
+from spinbook.turtlesim.geometry import DT, SIDE
 from spinbook.turtlesim.moving import moving_svg
-from spinbook.turtlesim.world_picture import WorldPicture
+from spinbook.turtlesim.program import Pose
+from spinbook.turtlesim.trail import Point, Track, Trail
+from spinbook.turtlesim.world_picture import BLUE, TurtlePicture, WorldPicture, strokes, tracks
+
+#: The type of a turtle's poses.
+POSE = "turtlesim/msg/Pose"
+
+
+class Heard:
+    """Listens to `topic`, one turtle's poses, from the first `look` that finds it; `node` must be spun meanwhile."""
+
+    def __init__(self, node: Node, topic: str) -> None:
+        self.topic = topic
+        self._turtle = topic.split("/")[-2]
+        self._node = node
+        self._trail = Trail()
+        self._track = Track()
+        self._last: Any = None
+        self._last_tick = -1
+        self._listening = False
+
+    def look(self) -> None:
+        """Listen as soon as somebody publishes poses."""
+        if not self._listening and POSE in self._published_types():
+            self._node.create_subscription(Pose, self.topic, self._hear, 50)
+            self._listening = True
+
+    def _published_types(self) -> list[str]:
+        return sorted({each.topic_type for each in self._node.get_publishers_info_by_topic(self.topic)})
+
+    def _hear(self, pose: Pose) -> None:
+        here: Point = (pose.x, pose.y)
+        before = here if self._last is None else (self._last.x, self._last.y)
+        if here != before:
+            self._trail.line(self._turtle, Pen(), before, here)
+        self._last = pose
+        # Poses do not tell their time; two that come together are a tick apart.
+        self._last_tick = max(self._last_tick + 1, round(time.monotonic() / DT))
+        self._track.add(self._last_tick, pose.x, pose.y, pose.theta, Pen())
+
+    def picture(self, incomplete: str) -> WorldPicture | None:
+        """The path heard so far in turtlesim's usual colours, which poses don't tell; None if nothing came."""
+        if self._last is None:
+            return None
+        turtle = TurtlePicture(self._turtle, self._last.x, self._last.y, self._last.theta, Pen())
+        trails, moved = strokes(self._trail.strokes), tracks({self._turtle: self._track})
+        return WorldPicture(SIDE, BLUE, (turtle,), trails, incomplete, moved)
+
+    def unreadable_types(self) -> list[str]:
+        """What is published on the topic and is not a turtle's pose."""
+        return [found for found in self._published_types() if found != POSE]
+
+
+# `python -m spinbook.turtlesim.picture OUT.png|OUT.svg` does so from a command line.
+
 
 #: The node's full name where nobody has put it elsewhere.
 NODE = "/turtlesim"

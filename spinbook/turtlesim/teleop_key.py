@@ -14,8 +14,7 @@ from geometry_msgs.msg import Twist
 from rclpy.action import ActionClient
 from rclpy.node import Node
 
-from spinbook.turtlesim.spinning import spin_until_told
-from spinbook.turtlesim.types import RotateAbsolute
+from spinbook.turtlesim.program import RotateAbsolute, spin_until_told
 
 HELP = """\
 Reading from keyboard

@@ -12,13 +12,13 @@ from spinbook.turtlesim.events import (
     Event,
     LogLine,
     Outcome,
+    Pen,
     PoseReport,
     RotationEnded,
     RotationFeedback,
     Severity,
 )
 from spinbook.turtlesim.geometry import COMMAND_TIMEOUT_NS, DT, SIDE, normalized, single
-from spinbook.turtlesim.pen import Pen
 from spinbook.turtlesim.trail import Trail
 
 #: A rotation has reached its goal when less than this remains, in rad.

@@ -8,8 +8,7 @@ import re
 from spinbook.turtlesim.canvas import Canvas
 from spinbook.turtlesim.events import Event, Killed, LogLine, Severity, Spawned
 from spinbook.turtlesim.geometry import CENTRE, single
-from spinbook.turtlesim.track import Track
-from spinbook.turtlesim.trail import Trail
+from spinbook.turtlesim.trail import Track, Trail
 from spinbook.turtlesim.turtle import AbsoluteTeleport, RelativeTeleport, Turtle
 
 # A turtle's name begins the names of its topics, so it must be good for one.

@@ -8,10 +8,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from spinbook.turtlesim.events import Pen
 from spinbook.turtlesim.geometry import SIDE
-from spinbook.turtlesim.pen import Pen
-from spinbook.turtlesim.track import Sample, Track, moves
-from spinbook.turtlesim.trail import Point, Stroke
+from spinbook.turtlesim.trail import Point, Sample, Stroke, Track, moves
 from spinbook.turtlesim.world import World
 
 Color = tuple[int, int, int]

@@ -9,11 +9,9 @@ from pathlib import Path
 import click
 
 from spinbook.problem import Problem, SpinbookError
-from spinbook.update.base import BASE
-from spinbook.update.carrying_out import carry_out
-from spinbook.update.handout import read_handout, refuse_another_course
+from spinbook.update.handout import BASE, read_handout, refuse_another_course
 from spinbook.update.merging import Told
-from spinbook.update.plan import Plan, plan
+from spinbook.update.plan import Plan, carry_out, plan
 
 #: Files that say what to install.
 _INSTALLS = {"requirements.txt", "environment.yml"}
@@ -58,8 +56,8 @@ def update(new_handout: Path | None, dry_run: bool) -> None:
         backup = carry_out(made, folder)
     except OSError as error:
         place = Path(error.filename) if error.filename else folder
-        mend = "Mend that, then start the same update again: nothing is lost."
-        raise SpinbookError(Problem(place, None, f"it can't be written: {error.strerror}.", mend)) from None
+        fix = "Fix that, then start the same update again: nothing is lost."
+        raise SpinbookError(Problem(place, None, f"it can't be written: {error.strerror}.", fix)) from None
     if backup:
         click.echo(f"What was there before is in {backup.relative_to(folder)}/.")
     if _INSTALLS & {place.name for place in made.writes}:

@@ -1,4 +1,4 @@
-"""Reads a handout, a folder or a zip, into memory."""
+"""Reads a handout, a folder or a zip, and what a student's folder remembers of the last one."""
 
 from __future__ import annotations
 
@@ -6,12 +6,28 @@ import re
 import stat
 import zipfile
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path, PurePosixPath
 
 from grader.submission.upload import RECORD
 from spinbook.problem import Problem, SpinbookError
-from spinbook.update.base import BASE
+
+#: Where it is, in the handout and in the student's folder.
+BASE = PurePosixPath(".spinbook/base")
+
+#: What students may want to change. Of anything else the handout's is taken.
+_REMEMBERED = {".ipynb", ".md", ".py", ".toml", ".txt", ".yml"}
+
+
+def is_remembered(place: PurePosixPath) -> bool:
+    """Whether a file of a handout, by its path in it, is remembered."""
+    return place.suffix in _REMEMBERED and place.parts[0] != ".spinbook"
+
+
+def base_files(handout: Mapping[str, bytes]) -> dict[str, bytes]:
+    """What a handout of these files, by name, needs to have in it besides, so that it can be updated one day."""
+    return {str(BASE / name): content for name, content in handout.items() if is_remembered(PurePosixPath(name))}
+
 
 MOST_FILES = 5_000
 MOST_BYTES = 500_000_000

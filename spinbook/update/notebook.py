@@ -7,8 +7,7 @@ import hashlib
 import json
 from typing import Any
 
-from spinbook.update.cells import Cell, content
-from spinbook.update.merging import Told, merged, merged_without_base
+from spinbook.update.merging import Cell, Told, content, merged, merged_without_base
 
 
 class NoNotebook(Exception):

@@ -1,13 +1,15 @@
-"""What an update will do, decided before anything is done."""
+"""What an update will do, decided before anything is done, and doing it: first a backup, then every file."""
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from datetime import datetime
 from pathlib import Path, PurePosixPath
 
-from spinbook.update.base import BASE, is_remembered
-from spinbook.update.handout import Files
+from grader.files import write_if_changed
+from spinbook.update.handout import BASE, Files, is_remembered
 from spinbook.update.merging import Told
 from spinbook.update.notebook import NoNotebook, chapter, merged_notebook, read
 
@@ -144,3 +146,36 @@ def _content(file: Path) -> bytes | None:
         return file.read_bytes()
     except OSError:
         return None
+
+
+BACKUPS = "backups"
+
+
+def carry_out(plan: Plan, folder: Path) -> Path | None:
+    """Write everything. Returns the folder with a copy of each file that is replaced, None where none is.
+
+    If it breaks off, the same update can be done again: what was handed out is remembered last. Raises `OSError`.
+    """
+    replaced = [place for place in plan.writes if (folder / place).exists()]
+    backup = _new_backup(folder) if replaced else None
+    for place in replaced:
+        assert backup
+        (backup / place).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(folder / place, backup / place)
+    for place, data in (*plan.writes.items(), *plan.base.items()):
+        write_if_changed(folder / place, data)
+    for place in plan.forgotten:
+        (folder / place).unlink(missing_ok=True)
+    return backup
+
+
+def _new_backup(folder: Path) -> Path:
+    stamp = datetime.now().strftime("%Y-%m-%d-%H%M%S")
+    number = 1
+    while True:
+        backup = folder / BACKUPS / (stamp if number == 1 else f"{stamp}-{number}")
+        try:
+            backup.mkdir(parents=True)
+            return backup
+        except FileExistsError:
+            number += 1

@@ -1,4 +1,4 @@
-"""What the audit's tests share: a small exercise, a crew, and what has been spun."""
+"""What the audit's tests share: a small exercise, a worker pool, and what has been spun."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from small_exercise import SmallExercise, written
 
 from grader.audit.audit import audit
 from grader.audit.result import Audit
-from grader.crew import Crew
 from grader.exercise import load
 from grader.grading import Options
+from grader.workers import WorkerPool
 
 
 @pytest.fixture(scope="session")
-def crew() -> Iterator[Crew]:
+def workers() -> Iterator[WorkerPool]:
     """One worker for the whole session."""
-    with Crew() as crew:
-        yield crew
+    with WorkerPool() as workers:
+        yield workers
 
 
 @pytest.fixture(scope="session")
@@ -40,10 +40,10 @@ def small(tmp_path: Path) -> SmallExercise:
 
 
 @pytest.fixture(scope="session")
-def audited(crew: Crew, cache: Path) -> Auditing:
+def audited(workers: WorkerPool, cache: Path) -> Auditing:
     """Audits a small exercise with what this session has spun already."""
 
     def run(small: SmallExercise, quick: bool = True, most: int = 0, seeds: int = 2) -> Audit:
-        return audit(load(small.folder), Options(), crew, Silence(), quick, most, seeds)
+        return audit(load(small.folder), Options(), workers, Silence(), quick, most, seeds)
 
     return run

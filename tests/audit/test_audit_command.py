@@ -29,10 +29,10 @@ def in_the_course(small: SmallExercise, cache: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.chdir(small.course)
 
 
-def test_nothing_to_mend_ends_with_0_and_is_written_as_json_and_as_a_page(small: SmallExercise) -> None:
+def test_nothing_to_fix_ends_with_0_and_is_written_as_json_and_as_a_page(small: SmallExercise) -> None:
     done = run("--quick", "--mutants", "6", "--json", "audit.json")
     assert done.exit_code == 0, done.stdout
-    assert "nothing to mend" in done.stdout
+    assert "nothing to fix" in done.stdout
     (entries,) = json.loads(Path("audit.json").read_text())["audits"]
     assert (entries["exercise"], entries["problems"]) == ("doubler", [])
     assert entries["score"] == 1
@@ -50,7 +50,7 @@ def test_a_change_that_lets_a_mistake_through_ends_with_1_and_says_which(
     text = " ".join(done.stdout.split())
     mistake = "mistakes/any_number.py (“Doubles negative numbers, too.”)"
     assert f"test_nothing_below_zero lets the mistake {mistake} through" in text
-    assert "1 thing to mend" in text
+    assert "1 thing to fix" in text
     for width, dark in ((1280, False), (390, True)):
         with opened(browser, Path("audit.html"), width=width, dark=dark) as shown:
             for group in shown.page.query_selector_all("details"):

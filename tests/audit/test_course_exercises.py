@@ -11,11 +11,11 @@ from removing import remove_check
 
 from grader.audit.audit import audit
 from grader.audit.result import Audit
-from grader.crew import Crew
 from grader.exercise import load
 from grader.grading import Options
+from grader.workers import WorkerPool
 from spinbook.course.course import find_course
-from spinbook.interfaces.compiled import compile_course
+from spinbook.interfaces.compiling import compile_course
 
 ROOT = Path(__file__).parents[2]
 
@@ -33,9 +33,9 @@ def interfaces() -> None:
     compile_course(find_course(ROOT))
 
 
-def to_mend(result: Audit) -> str:
-    """What there is to mend, as text."""
-    return "\n".join(f"{problem.found}\n    {problem.place}\n    {problem.mend}" for problem in result.problems)
+def to_fix(result: Audit) -> str:
+    """What there is to fix, as text."""
+    return "\n".join(f"{problem.found}\n    {problem.place}\n    {problem.fix}" for problem in result.problems)
 
 
 @pytest.mark.timeout(900)
@@ -43,24 +43,24 @@ def to_mend(result: Audit) -> str:
     "folder",
     [pytest.param(f, id=f.name, marks=() if f.name in ALWAYS else pytest.mark.soak) for f in EXERCISES],
 )
-def test_every_mistake_is_caught_by_the_checks_that_it_names(folder: Path, crew: Crew, cache: Path) -> None:
-    result = audit(load(folder), Options(), crew, Silence(), quick=True, most=0)
-    assert not result.problems, to_mend(result)
+def test_every_mistake_is_caught_by_the_checks_that_it_names(folder: Path, workers: WorkerPool, cache: Path) -> None:
+    result = audit(load(folder), Options(), workers, Silence(), quick=True, most=0)
+    assert not result.problems, to_fix(result)
 
 
 @pytest.mark.soak
 @pytest.mark.timeout(3600)
 @pytest.mark.parametrize("folder", EXERCISES, ids=lambda folder: folder.name)
-def test_the_whole_audit_finds_nothing_to_mend(folder: Path, crew: Crew, cache: Path) -> None:
-    result = audit(load(folder), Options(), crew, Silence())
-    assert not result.problems, to_mend(result)
+def test_the_whole_audit_finds_nothing_to_fix(folder: Path, workers: WorkerPool, cache: Path) -> None:
+    result = audit(load(folder), Options(), workers, Silence())
+    assert not result.problems, to_fix(result)
     assert result.score >= 0.95
 
 
 @pytest.mark.soak
 @pytest.mark.timeout(3600)
-def test_joint_velocity_has_enough_mutants(crew: Crew, cache: Path) -> None:
-    result = audit(load(ROOT / "exercises" / "joint_velocity"), Options(), crew, Silence())
+def test_joint_velocity_has_enough_mutants(workers: WorkerPool, cache: Path) -> None:
+    result = audit(load(ROOT / "exercises" / "joint_velocity"), Options(), workers, Silence())
     assert result.different >= 150
 
 
@@ -82,7 +82,9 @@ def test_some_joints(chapter: Run) -> None:
 
 @pytest.mark.soak
 @pytest.mark.timeout(3600)
-def test_a_weak_copy_of_joint_velocity_is_told_so_check_by_check(tmp_path: Path, crew: Crew, cache: Path) -> None:
+def test_a_weak_copy_of_joint_velocity_is_told_so_check_by_check(
+    tmp_path: Path, workers: WorkerPool, cache: Path
+) -> None:
     for folder in ("exercises", "solutions"):
         shutil.copytree(ROOT / folder / "joint_velocity", tmp_path / folder / "joint_velocity")
     folder = tmp_path / "exercises" / "joint_velocity"
@@ -90,7 +92,7 @@ def test_a_weak_copy_of_joint_velocity_is_told_so_check_by_check(tmp_path: Path,
         remove_check(folder / file, check)
     with (folder / "checks.py").open("a", encoding="utf-8") as checks:
         checks.write(CAN_NOT_FAIL)
-    told = to_mend(audit(load(folder), Options(), crew, Silence()))
+    told = to_fix(audit(load(folder), Options(), workers, Silence()))
     for check, (_, mistake) in REMOVED.items():
         assert f"the mistake mistakes/{mistake}" in told
         assert f"is to be caught by {check}: there is no such check" in told

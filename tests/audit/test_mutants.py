@@ -8,14 +8,12 @@ from pathlib import Path
 import pytest
 from small_exercise import SmallExercise
 
-from grader.audit.comparing import Difference
+from grader.audit.audit import sample
 from grader.audit.mutants import Mutant, mutants_of
-from grader.audit.plan import sample
 from grader.audit.result import MutantResult, score_of
-from grader.audit.surviving import problems_of_survivors, result_of
-from grader.audit.survivors import listed, stale
-from grader.audit.trial import Trial
-from grader.checking.wrong import Finding
+from grader.audit.survivors import listed, problems_of_survivors, result_of, stale
+from grader.audit.trial import Difference, Trial
+from grader.checking.verdict import Finding
 from grader.exercise import ExerciseError, load
 
 ROOT = Path(__file__).parents[2]

@@ -19,7 +19,7 @@ def told(result: Audit, about: str) -> list[str]:
     return [problem.found for problem in result.problems if problem.about == about]
 
 
-def test_a_sound_exercise_has_nothing_to_mend(small: SmallExercise, audited: Auditing) -> None:
+def test_a_sound_exercise_has_nothing_to_fix(small: SmallExercise, audited: Auditing) -> None:
     result = audited(small, most=6)
     assert result.problems == ()
     assert result.count("caught") >= 3
@@ -51,7 +51,7 @@ def test_a_weak_copy_is_told_so_check_by_check(small: SmallExercise, audited: Au
     assert told(result, "test_any_answer") == ["no mutant and no mistake fails test_any_answer: can it fail at all?"]
     survivors = [problem for problem in result.problems if problem.diff]
     assert survivors, "what the removed checks caught survives now"
-    assert all("Is this a right solution? Then list it" in problem.mend for problem in survivors)
+    assert all("Is this a right solution? Then list it" in problem.fix for problem in survivors)
     assert any(re.search(r"^[-+] +self\.publisher", problem.diff, re.MULTILINE) for problem in survivors)
 
 

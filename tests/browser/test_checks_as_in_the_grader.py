@@ -12,13 +12,13 @@ from typing import Any
 
 import pytest
 
-from grader.crew import Crew
 from grader.exercise import Exercise, load
 from grader.grading import Grade, grade_submission
 from grader.recording import Recording
 from grader.recording.store import from_plain
 from grader.submission import read
-from spinbook.handout.exercise import exercise_files
+from grader.workers import WorkerPool
+from spinbook.handout.student_copy import exercise_files
 
 ROOT = Path(__file__).resolve().parents[2]
 SOLUTIONS = ROOT / "solutions" / "joint_velocity"
@@ -41,8 +41,8 @@ def handed_out(tmp_path_factory: pytest.TempPathFactory) -> Exercise:
     """A student's copy of the exercise."""
     folder = tmp_path_factory.mktemp("handout") / "joint_velocity"
     folder.mkdir()
-    with Crew() as crew:
-        for name, content in exercise_files(load(ROOT / "exercises" / "joint_velocity"), crew).items():
+    with WorkerPool() as workers:
+        for name, content in exercise_files(load(ROOT / "exercises" / "joint_velocity"), workers).items():
             (folder / name).write_bytes(content)
     return load(folder).public()
 

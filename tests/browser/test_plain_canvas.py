@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from spinbook.browser.in_page.canvas import PlainCanvas
 from spinbook.turtlesim.canvas import Canvas
-from spinbook.turtlesim.pen import Pen
+from spinbook.turtlesim.events import Pen
 
 PLACES = st.tuples(st.floats(-1, 12), st.floats(-1, 12))
 PENS = st.builds(Pen, r=st.integers(0, 255), g=st.integers(0, 255), b=st.integers(0, 255), width=st.integers(1, 20))

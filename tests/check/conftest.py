@@ -8,28 +8,28 @@ from pathlib import Path
 import pytest
 from notebook_kernel import Kernel
 
-from grader.crew import Crew
 from grader.exercise import load
-from spinbook.handout.exercise import exercise_files
+from grader.workers import WorkerPool
+from spinbook.handout.student_copy import exercise_files
 
 ROOT = Path(__file__).parents[2]
 SOLUTIONS = ROOT / "solutions" / "joint_velocity"
 
 
 @pytest.fixture(scope="session")
-def crew() -> Iterator[Crew]:
+def workers() -> Iterator[WorkerPool]:
     """One worker for the whole session."""
-    with Crew() as crew:
-        yield crew
+    with WorkerPool() as workers:
+        yield workers
 
 
 @pytest.fixture(scope="session")
-def handed_out(tmp_path_factory: pytest.TempPathFactory, crew: Crew) -> Path:
+def handed_out(tmp_path_factory: pytest.TempPathFactory, workers: WorkerPool) -> Path:
     """A folder with exercises/joint_velocity as students have it."""
     folder = tmp_path_factory.mktemp("handout")
     exercise = folder / "exercises" / "joint_velocity"
     exercise.mkdir(parents=True)
-    for name, content in exercise_files(load(ROOT / "exercises" / "joint_velocity"), crew).items():
+    for name, content in exercise_files(load(ROOT / "exercises" / "joint_velocity"), workers).items():
         (exercise / name).write_bytes(content)
     return folder
 

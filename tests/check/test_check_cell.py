@@ -38,7 +38,7 @@ def test_a_cell_that_was_not_run_is_asked_for(kernel: Kernel) -> None:
     assert shown.error == "Run the cell that begins with %%node joint_velocity first. Then run this one again."
 
 
-def test_the_starter_gets_no_points_and_is_told_what_to_mend_first(kernel: Kernel) -> None:
+def test_the_starter_gets_no_points_and_is_told_what_to_fix_first(kernel: Kernel) -> None:
     text, html = texts(shown_of(kernel, starter(solution())))
 
     for told in (text, html):

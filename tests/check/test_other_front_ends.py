@@ -15,7 +15,7 @@ from notebook_kernel import Kernel
 from check.conftest import node_cell, solution
 from check.test_check_cell import texts
 from grader.exercise import starter
-from spinbook.check.notebook import JUPYTER, VS_CODE
+from spinbook.kernel.check_cell import JUPYTER, VS_CODE
 
 #: As where neither ipywidgets nor ipympl is installed.
 NO_WIDGETS = "import sys\nsys.modules['ipywidgets'] = sys.modules['ipympl'] = None"

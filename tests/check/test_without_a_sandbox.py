@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from check.conftest import ROOT, solution
-from grader.crew import Crew
 from grader.exercise import load
 from grader.grading import Options, grading, grading_of
 from grader.sandbox import Isolation, SandboxUnavailable
 from grader.submission.reading import of_source
+from grader.workers import WorkerPool
 from spinbook.check.shown import as_html, as_text
 
 
@@ -28,10 +28,10 @@ def no_sandbox(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("no_sandbox")
-def test_a_students_own_code_is_checked_and_the_check_says_so(handed_out: Path, crew: Crew) -> None:
+def test_a_students_own_code_is_checked_and_the_check_says_so(handed_out: Path, workers: WorkerPool) -> None:
     exercise = load(handed_out / "exercises" / "joint_velocity")
 
-    grade = grading_of(exercise, Options(), crew).grade(of_source("your cell", solution().encode(), exercise))
+    grade = grading_of(exercise, Options(), workers).grade(of_source("your cell", solution().encode(), exercise))
 
     assert (grade.full_marks, grade.isolation, grade.self_check) == (True, "none", True)
     for told in (as_text(grade, exercise), as_html(grade, exercise)):
@@ -39,6 +39,6 @@ def test_a_students_own_code_is_checked_and_the_check_says_so(handed_out: Path, 
 
 
 @pytest.mark.usefixtures("no_sandbox")
-def test_an_instructor_is_refused(crew: Crew) -> None:
+def test_an_instructor_is_refused(workers: WorkerPool) -> None:
     with pytest.raises(SandboxUnavailable):
-        grading_of(load(ROOT / "exercises" / "joint_velocity"), Options(), crew)
+        grading_of(load(ROOT / "exercises" / "joint_velocity"), Options(), workers)

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from grader.checking.run import Run
-from grader.checking.wrong import Finding, Wrong
+from grader.checking.verdict import Finding, Wrong
 from grader.exercise import Exercise
-from grader.exercise.interface import Endpoint, Parameter, Topic
+from grader.exercise.exercise import Endpoint, Parameter, Topic
 from grader.recording import Ending, EndPoint, Received, Recording, Sent
 from grader.scenario.scenario import SECOND, START
 

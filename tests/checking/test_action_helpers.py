@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from made_up import COUNT, EMPTY, EXERCISE, finding, ns, run, says
 
-from grader.exercise.interface import Endpoint
+from grader.exercise.exercise import Endpoint
 from grader.recording import Recording
 from grader.recording.events import Cancel, Feedback, Goal, GoalState
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from grader.checking.run import Run
-from grader.checking.wrong import Wrong
+from grader.checking.verdict import Wrong
 from grader.exercise import Exercise
-from grader.exercise.interface import Topic
+from grader.exercise.exercise import Topic
 from grader.recording import Ending, Received, Recording, Sent
 from grader.scenario.scenario import SECOND, START
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from made_up import EMPTY, ENDS, EXERCISE, ns, run, says
 
-from grader.exercise.interface import ProgramFile, Topic
+from grader.exercise.exercise import ProgramFile, Topic
 from grader.recording import Ending, Recording
 from grader.recording.events import Exit, ParameterChange, ParameterReading
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from made_up import ADD, EMPTY, ENDS, EXERCISE, finding, ns, run, says
 
-from grader.exercise.interface import Endpoint
+from grader.exercise.exercise import Endpoint
 from grader.recording import Recording
 from grader.recording.events import Call
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.intake import Intake, IntakeError, take_in
-from grader.intake.archive import MOST_FILES
+from grader.classroom.collecting import MOST_FILES, collect
+from grader.classroom.handed_in import Submissions, SubmissionsError
 
 EXERCISE = "joint_velocity"
 
@@ -30,17 +30,17 @@ def zipped(file: Path, *names: str) -> Path:
     return file
 
 
-def taken(source: Path, tmp_path: Path) -> Intake:
+def taken(source: Path, tmp_path: Path) -> Submissions:
     unpacked = tmp_path / "unpacked"
     unpacked.mkdir()
-    return take_in(source, EXERCISE, unpacked)
+    return collect(source, EXERCISE, unpacked)
 
 
-def files(intake: Intake) -> dict[str, str]:
+def files(intake: Submissions) -> dict[str, str]:
     return {one.student.id: one.file.name for one in intake.handed_in}
 
 
-def why(intake: Intake) -> dict[str, str]:
+def why(intake: Submissions) -> dict[str, str]:
     return {skipped.file: skipped.why for skipped in intake.skipped}
 
 
@@ -171,7 +171,7 @@ def test_a_table_that_names_files(tmp_path: Path) -> None:
 def test_a_mistake_in_a_table_is_told_with_its_line(tmp_path: Path, text: str, told: str) -> None:
     table = written(tmp_path / "s", "a.py") / "class.csv"
     table.write_text(text)
-    with pytest.raises(IntakeError, match=told.replace("(", r"\(")):
+    with pytest.raises(SubmissionsError, match=told.replace("(", r"\(")):
         taken(table, tmp_path)
 
 
@@ -227,7 +227,7 @@ def test_a_bomb_in_a_zip_is_cut_off_and_judged_too_large(tmp_path: Path) -> None
 
 def test_a_zip_of_too_many_files_is_refused(tmp_path: Path) -> None:
     source = zipped(tmp_path / "class.zip", *(f"{number}.py" for number in range(MOST_FILES + 1)))
-    with pytest.raises(IntakeError, match="more than"):
+    with pytest.raises(SubmissionsError, match="more than"):
         taken(source, tmp_path)
 
 
@@ -235,7 +235,7 @@ def test_a_zip_of_too_many_files_is_refused(tmp_path: Path) -> None:
 def test_what_is_no_zip_is_told(tmp_path: Path, content: bytes) -> None:
     source = tmp_path / "class.zip"
     source.write_bytes(content)
-    with pytest.raises(IntakeError, match=r"class\.zip"):
+    with pytest.raises(SubmissionsError, match=r"class\.zip"):
         taken(source, tmp_path)
 
 
@@ -261,5 +261,5 @@ def test_links_in_a_folder_are_not_followed(tmp_path: Path) -> None:
 def test_nothing_to_grade_is_told(tmp_path: Path, names: tuple[str, ...]) -> None:
     root = tmp_path / "s"
     root.mkdir()
-    with pytest.raises(IntakeError, match="There is no submission in it"):
+    with pytest.raises(SubmissionsError, match="There is no submission in it"):
         taken(written(root, *names), tmp_path)

@@ -8,7 +8,7 @@ from pathlib import Path
 import plain_grades as plain
 import pytest
 
-from grader.deadline import Adjusting, Deadline, OverridesError, deadline_of, overrides_in
+from grader.classroom.deadline import Adjusting, Deadline, OverridesError, deadline_of, overrides_in
 from grader.exercise import Exercise, ExerciseError, load
 
 DUE = datetime(2026, 11, 22, 23, 59, tzinfo=timezone.utc)

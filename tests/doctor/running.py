@@ -25,7 +25,7 @@ def doctor(*arguments: str, folder: Path | None = None, **settings: str | None) 
 
 
 def finding_of(word: str, folder: Path | None = None, **settings: str | None) -> dict[str, Any]:
-    """What one check finds with these variables: its name, state, found and mend."""
+    """What one check finds with these variables: its name, state, found and fix."""
     (finding,) = json.loads(doctor("--json", word, folder=folder, **settings).stdout)["findings"]
     assert isinstance(finding, dict)
     return finding

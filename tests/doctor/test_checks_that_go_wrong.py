@@ -8,8 +8,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from spinbook.doctor.checks import Check
-from spinbook.doctor.diagnosis import diagnose, examine
+from spinbook.doctor.diagnosis import Check, diagnose, examine
 from spinbook.doctor.finding import Finding, State
 
 _HEAD = "import os, pathlib, signal, subprocess, sys, time\nfrom spinbook.doctor.finding import missing, ok\n"
@@ -41,7 +40,7 @@ def check(folder: Path, word: str, does: str, seconds: float = 60.0, needs: tupl
 def test_a_check_that_ends_its_process_is_told(folder: Path, does: str, told: str) -> None:
     finding = examine(check(folder, "broken", does))
     assert (finding.name, finding.state, finding.found) == ("Broken", State.MISSING, told)
-    assert finding.mend
+    assert finding.fix
 
 
 def test_a_check_that_hangs_is_ended_with_all_that_it_started(folder: Path) -> None:

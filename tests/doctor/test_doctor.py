@@ -8,9 +8,8 @@ import sys
 from rich.console import Console
 from running import doctor
 
-from spinbook.doctor.checks import CHECKS
-from spinbook.doctor.finding import Finding, missing, ok, warning
-from spinbook.doctor.table import is_able, show
+from spinbook.doctor.diagnosis import CHECKS
+from spinbook.doctor.finding import Finding, is_able, missing, ok, show, warning
 
 
 def test_here_everything_that_is_needed_works() -> None:
@@ -69,7 +68,7 @@ def test_mends_stand_below_the_list_each_with_its_name() -> None:
         "✗ Three",
         "  get it",
         "",
-        "Courses can't be built or graded here until what has a ✗ is mended: 1 of 3 (1 warning).",
+        "Courses can't be built or graded here until what has a ✗ is fixed: 1 of 3 (1 warning).",
     ]
 
 

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 from running import doctor, finding_of
 
-from spinbook.doctor import python_version, sandbox
-from spinbook.doctor.ros_library import wheels_installed
-from spinbook.ros2.bootstrap import GUARD
+from spinbook.doctor import machine, sandbox
+from spinbook.doctor.ros import wheels_installed
+from spinbook.ros2.executables import GUARD
 
 with_wheels = pytest.mark.skipif(not wheels_installed(), reason="ROS 2 is a sourced one here")
 
@@ -39,7 +39,7 @@ def test_a_middleware_that_is_not_installed_is_named_and_what_needs_it_is_not_tr
     assert ros["state"] == "ok"
     assert middleware["state"] == "missing"
     assert "'rmw_nowhere_cpp', which is not installed" in middleware["found"]
-    assert "unset RMW_IMPLEMENTATION" in middleware["mend"]
+    assert "unset RMW_IMPLEMENTATION" in middleware["fix"]
     assert message["found"] == "not tried, because of: Middleware"
 
 
@@ -48,7 +48,7 @@ def test_a_guard_that_outlived_its_library_path_is_the_cause_that_is_told() -> N
     run = doctor("--json", "libraries", "ros", **{GUARD: "1", "LD_LIBRARY_PATH": None})
     libraries, ros = json.loads(run.stdout)["findings"]
     assert libraries["state"] == "missing"
-    assert f"unset {GUARD} LD_LIBRARY_PATH" in libraries["mend"]
+    assert f"unset {GUARD} LD_LIBRARY_PATH" in libraries["fix"]
     assert ros["found"] == "not tried, because of: Library path"
 
 
@@ -70,7 +70,7 @@ def test_a_sourced_ros_beside_the_wheels_is_a_fault(tmp_path: Path) -> None:
     assert finding["state"] == "missing"
     assert finding["found"].startswith("two of them")
     assert os.fspath(sourced) in finding["found"]
-    assert "make setup" in finding["mend"]
+    assert "make setup" in finding["fix"]
 
 
 def test_a_sourced_ros_that_is_too_old_is_a_fault(tmp_path: Path) -> None:
@@ -82,7 +82,7 @@ def test_a_sourced_ros_that_is_too_old_is_a_fault(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("variable", "value", "mend"),
+    ("variable", "value", "fix"),
     [
         ("ROS_DOMAIN_ID", "kitchen", "export ROS_DOMAIN_ID=0"),
         ("ROS_DOMAIN_ID", "230", "export ROS_DOMAIN_ID=0"),
@@ -91,11 +91,11 @@ def test_a_sourced_ros_that_is_too_old_is_a_fault(tmp_path: Path) -> None:
         ("ROS_DISCOVERY_SERVER", "10.0.0.1:11811", "unset ROS_DISCOVERY_SERVER"),
     ],
 )
-def test_settings_that_surprise_are_warned_of(variable: str, value: str, mend: str) -> None:
+def test_settings_that_surprise_are_warned_of(variable: str, value: str, fix: str) -> None:
     finding = finding_of("environment", **{variable: value})
     assert finding["state"] == "warning"
     assert variable in finding["found"]
-    assert mend in finding["mend"]
+    assert fix in finding["fix"]
 
 
 def test_a_log_folder_that_can_not_be_written_is_a_fault() -> None:
@@ -107,7 +107,7 @@ def test_a_log_folder_that_can_not_be_written_is_a_fault() -> None:
 def test_without_a_home_there_is_another_place_for_logs() -> None:
     finding = finding_of("logs", HOME=None, ROS_LOG_DIR=None, ROS_HOME=None)
     assert finding["state"] == "warning"
-    assert "ROS_LOG_DIR" in finding["mend"]
+    assert "ROS_LOG_DIR" in finding["fix"]
 
 
 def test_a_course_in_a_folder_with_a_space_is_a_fault(tmp_path: Path) -> None:
@@ -132,7 +132,7 @@ def test_a_missing_compiler_is_a_warning_with_what_to_install(tmp_path: Path) ->
     finding = finding_of("compiler", PATH=os.fspath(tmp_path))
     assert finding["state"] == "warning"
     assert finding["found"] == "not found: gcc, g++"
-    assert "sudo apt-get install g++" in finding["mend"]
+    assert "sudo apt-get install g++" in finding["fix"]
 
 
 def test_namespaces_that_are_not_allowed_are_a_warning_with_the_kernels_own_words(tmp_path: Path) -> None:
@@ -172,12 +172,12 @@ def test_the_strongest_sandbox_that_works_decides(
 
     levels = {level: None if level.value in working else "not allowed" for level in grader.sandbox.Isolation}
     monkeypatch.setattr(grader.sandbox, "available", lambda: levels)
-    finding = sandbox.examine("Sandbox")
+    finding = sandbox.examine_sandbox("Sandbox")
     assert finding.state.value == state
-    assert bool(finding.mend) is (state != "ok")
+    assert bool(finding.fix) is (state != "ok")
 
 
 @pytest.mark.parametrize("version", [(3, 9, 2), (3, 15, 0)])
 def test_a_python_that_is_not_supported_is_a_fault(monkeypatch: pytest.MonkeyPatch, version: tuple[int, ...]) -> None:
     monkeypatch.setattr(sys, "version_info", version)
-    assert python_version.examine("Python").state.value == "missing"
+    assert machine.examine_python("Python").state.value == "missing"

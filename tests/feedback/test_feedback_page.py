@@ -9,8 +9,9 @@ import pytest
 from graded_class import EXTRA, LATE, entry
 
 from grader.exercise import Exercise
-from grader.feedback import feedback_page, feedback_plot
 from grader.grading import Grade
+from grader.report.feedback import feedback_page
+from grader.report.feedback_plot import feedback_plot
 
 
 def text(page: str) -> str:
@@ -33,7 +34,7 @@ def test_a_failed_public_check_tells_what_was_expected_what_came_when_and_where(
     assert "Hint: (position now - position before)" in shown
 
 
-def test_what_is_blocked_says_what_to_mend_first(graded: dict[str, Grade], exercise: Exercise) -> None:
+def test_what_is_blocked_says_what_to_fix_first(graded: dict[str, Grade], exercise: Exercise) -> None:
     shown = text(page_of(graded["position_for_velocity"], exercise))
     assert "can't be judged before this is right: Each joint's velocity is its change of position" in shown
 

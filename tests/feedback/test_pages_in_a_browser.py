@@ -12,12 +12,12 @@ from graded_class import EXTRA, LATE, WHEN, entry
 from playwright.sync_api import Browser, expect
 
 from grader.classroom import Entry, Skipped, Student
+from grader.classroom.misconceptions import Signature, failures_of, grouped
+from grader.classroom.overview import overview_page
 from grader.exercise import Exercise
-from grader.feedback import feedback_page, feedback_plot
 from grader.grading import Grade
-from grader.misconception import Signature, grouped
-from grader.misconception.signature import failures_of
-from grader.overview import overview_page
+from grader.report.feedback import feedback_page
+from grader.report.feedback_plot import feedback_plot
 
 EVIL = (
     "</title></script><script>window.pwned=9</script>"

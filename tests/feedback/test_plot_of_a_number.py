@@ -7,11 +7,11 @@ from dataclasses import replace
 import plain_grades as plain
 from small_class import EXERCISE, TEMPLATE
 
-from grader.checking.wrong import Finding
+from grader.checking.verdict import Finding
 from grader.exercise import load
-from grader.feedback import feedback_plot
 from grader.recording import Ending, Recording
 from grader.recording.recording import Received, Sent
+from grader.report.feedback_plot import feedback_plot
 from grader.scenario.scenario import SECOND, START
 
 FLOAT = "std_msgs/msg/Float64"

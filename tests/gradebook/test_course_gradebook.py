@@ -10,9 +10,16 @@ import pytest
 from click.testing import CliRunner
 
 from grader.classroom import Entry, Student
-from grader.classroom.store import to_json
-from grader.gradebook.course import course_csv, course_rows, graded_exercises
-from grader.overview.course_page import column_of, course_page, feedback_of, struggles
+from grader.classroom.course_gradebook import (
+    column_of,
+    course_csv,
+    course_page,
+    course_rows,
+    feedback_of,
+    graded_exercises,
+    struggles,
+)
+from grader.report.as_json import to_json
 from spinbook.cli import spinbook
 
 ROOT = Path(__file__).parents[2]

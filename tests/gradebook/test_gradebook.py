@@ -12,8 +12,8 @@ import plain_grades as plain
 from rich.console import Console
 
 from grader.classroom import Adjustment, Entry, Student
-from grader.gradebook import write_gradebook
-from grader.marking.summary import tell_end
+from grader.classroom.class_run import show_result
+from grader.classroom.gradebook import write_gradebook
 
 LATE = Adjustment("late", -1.0, "handed in 1 h 0 min late")
 EXTRA = Adjustment("override", 3.0, "found a mistake")
@@ -136,7 +136,7 @@ def test_a_student_whom_moodle_does_not_know_has_no_identifier_and_that_is_said(
     assert found == {"Jörg Müller": "Participant 77", "Ada Lovelace": ""}
     for entries, told in (([known], ""), ([known, unknown], "not 1 of the 2 students"), ([unknown], "no student")):
         said = io.StringIO()
-        tell_end(Console(file=said, width=500), entries, [], [])
+        show_result(Console(file=said, width=500), entries, [], [])
         assert (
             (f"moodle.csv: Moodle will find {told}" in said.getvalue())
             if told

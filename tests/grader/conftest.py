@@ -1,4 +1,4 @@
-"""What the grader's tests share: the exercise, and a crew that is ready to grade it."""
+"""What the grader's tests share: the exercise, and a worker pool that is ready to grade it."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from grader.crew import Crew
 from grader.exercise import Exercise, load
 from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
+from grader.workers import WorkerPool
 
 ROOT = Path(__file__).parents[2]
 
@@ -22,18 +22,18 @@ def exercise() -> Exercise:
 
 
 @pytest.fixture(scope="session")
-def crew() -> Iterator[Crew]:
+def workers() -> Iterator[WorkerPool]:
     """One worker for the whole session."""
-    with Crew() as crew:
-        yield crew
+    with WorkerPool() as workers:
+        yield workers
 
 
 @pytest.fixture(scope="session")
-def grading(exercise: Exercise, crew: Crew, tmp_path_factory: pytest.TempPathFactory) -> Grading:
+def grading(exercise: Exercise, workers: WorkerPool, tmp_path_factory: pytest.TempPathFactory) -> Grading:
     """Ready to grade joint_velocity; the solution has been spun anew, and proved."""
     patch = pytest.MonkeyPatch()
     patch.setenv("SPINBOOK_CACHE", str(tmp_path_factory.mktemp("cache")))
     try:
-        return grading_of(exercise, Options(), crew)
+        return grading_of(exercise, Options(), workers)
     finally:
         patch.undo()

@@ -1,4 +1,4 @@
-"""What an author has to mend is told as the author's, with its file, before any student is graded."""
+"""What an author has to fix is told as the author's, with its file, before any student is graded."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from grader.crew import Crew
 from grader.exercise import ExerciseError, load
 from grader.grading import Options, grading_of
+from grader.workers import WorkerPool
 
 ROOT = Path(__file__).parents[2]
 
@@ -36,19 +36,19 @@ def change(file: Path, old: str, new: str) -> None:
     file.write_text(text.replace(old, new, 1), encoding="utf-8")
 
 
-def problem_of(course: Path, crew: Crew) -> ExerciseError:
+def problem_of(course: Path, workers: WorkerPool) -> ExerciseError:
     with pytest.raises(ExerciseError) as caught:
-        grading_of(load(course / "exercises" / "small"), Options(), crew)
+        grading_of(load(course / "exercises" / "small"), Options(), workers)
     return caught.value
 
 
-def test_unspoiled_it_is_ready(course: Path, crew: Crew) -> None:
-    assert grading_of(load(course / "exercises" / "small"), Options(), crew).references["chapter"].received
+def test_unspoiled_it_is_ready(course: Path, workers: WorkerPool) -> None:
+    assert grading_of(load(course / "exercises" / "small"), Options(), workers).references["chapter"].received
 
 
-def test_a_missing_solution(course: Path, crew: Crew) -> None:
+def test_a_missing_solution(course: Path, workers: WorkerPool) -> None:
     (course / "solutions" / "small" / "solution.py").unlink()
-    assert problem_of(course, crew).file.name == "solution.py"
+    assert problem_of(course, workers).file.name == "solution.py"
 
 
 @pytest.mark.parametrize(
@@ -75,28 +75,30 @@ def test_a_missing_solution(course: Path, crew: Crew) -> None:
          "topic"],
 )  # fmt: skip
 def test_what_is_wrong_is_told_with_its_file(
-    course: Path, crew: Crew, file: str, old: str, new: str, told: str
+    course: Path, workers: WorkerPool, file: str, old: str, new: str, told: str
 ) -> None:
     change(course / "exercises" / "small" / file, old, new)
-    problem = problem_of(course, crew)
+    problem = problem_of(course, workers)
     assert problem.file.name == file
     assert re.search(told, problem.found), problem.found
-    assert problem.mend
+    assert problem.fix
 
 
 @pytest.mark.parametrize("broken", ["def test_(:\n", "no_such_name\n", "import no_such_module\n"])
-def test_checks_that_can_not_be_imported_are_told_with_their_line(course: Path, crew: Crew, broken: str) -> None:
+def test_checks_that_can_not_be_imported_are_told_with_their_line(
+    course: Path, workers: WorkerPool, broken: str
+) -> None:
     file = course / "exercises" / "small" / "checks.py"
     lines = file.read_text(encoding="utf-8").count("\n")
     with file.open("a", encoding="utf-8") as checks:
         checks.write(broken)
-    problem = problem_of(course, crew)
+    problem = problem_of(course, workers)
     assert (problem.file, problem.line) == (file, lines + 1)
 
 
-def test_a_solution_that_crashes(course: Path, crew: Crew) -> None:
+def test_a_solution_that_crashes(course: Path, workers: WorkerPool) -> None:
     change(course / "solutions" / "small" / "solution.py", "if math.isfinite(position)", "if math.no(position)")
-    problem = problem_of(course, crew)
+    problem = problem_of(course, workers)
     assert problem.file.name == "solution.py"
     assert "AttributeError" in problem.found
     assert problem.line

@@ -9,10 +9,10 @@ import rclpy
 from rcl_interfaces.srv import GetParameters
 from rclpy.executors import SingleThreadedExecutor
 
-from grader.crew.domain import domain_for
-from grader.runner.fastdds.call import Caller, Calls
+from grader.runner.fastdds.graph import Caller, Calls
 from grader.runner.fastdds.ros import Ros
 from grader.sandbox import Isolation
+from grader.workers.jobs import domain_for
 
 REQUEST = GetParameters.Request()
 

@@ -13,15 +13,15 @@ from pathlib import Path
 
 import pytest
 
-from grader.crew import Crew
+from grader.classroom.misconceptions import signatures
 from grader.exercise import load, starter
 from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
-from grader.misconception.known import signatures
 from grader.submission import read
 from grader.submission.reading import of_source
+from grader.workers import WorkerPool
 from spinbook.course.course import find_course
-from spinbook.interfaces.compiled import compile_course
+from spinbook.interfaces.compiling import compile_course
 
 ROOT = Path(__file__).parents[2]
 
@@ -32,16 +32,18 @@ NAMES = sorted(
 
 
 @pytest.fixture(scope="module", params=NAMES)
-def graded(request: pytest.FixtureRequest, crew: Crew, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Grading]:
+def graded(
+    request: pytest.FixtureRequest, workers: WorkerPool, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Grading]:
     """Ready to grade one exercise; its solution has been run anew."""
     compile_course(find_course(ROOT))
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SPINBOOK_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield grading_of(load(ROOT / "exercises" / request.param), Options(), crew)
+        yield grading_of(load(ROOT / "exercises" / request.param), Options(), workers)
 
 
 def test_the_solution_gets_full_marks_and_the_starter_nothing(graded: Grading) -> None:
-    exercise = graded.spinner.exercise
+    exercise = graded.runner.exercise
     assert exercise.solution_file
     solution = graded.grade(read(str(exercise.solution_file), exercise))
     assert solution.full_marks, [verdict for verdict in solution.verdicts if verdict.status != "passed"]

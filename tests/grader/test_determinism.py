@@ -43,7 +43,7 @@ def recorded(grade: Grade) -> str:
 
 
 def test_beside_busy_loops_the_grade_is_the_same(grading: Grading) -> None:
-    submission = read(str(SOLUTIONS / "mistakes/joints_by_index.py"), grading.spinner.exercise)
+    submission = read(str(SOLUTIONS / "mistakes/joints_by_index.py"), grading.runner.exercise)
     alone = grading.grade(submission)
     with busy(4):
         beside = grading.grade(submission)
@@ -55,7 +55,7 @@ def test_beside_busy_loops_the_grade_is_the_same(grading: Grading) -> None:
 @pytest.mark.timeout(7200)
 @pytest.mark.parametrize("name", SUBMISSIONS)
 def test_graded_two_hundred_times_half_of_them_beside_busy_loops_it_is_the_same(grading: Grading, name: str) -> None:
-    submission = read(str(SOLUTIONS / name), grading.spinner.exercise)
+    submission = read(str(SOLUTIONS / name), grading.runner.exercise)
     first = grading.grade(submission)
     for loops in (0, 8):
         with busy(loops):
@@ -87,6 +87,6 @@ def test_however_a_node_is_made_and_spun_its_grade_is_right(grading: Grading, ch
     for old, new in change.items():
         assert old in source
         source = source.replace(old, new)
-    grade = grading.grade(of_source("test.py", source.encode(), grading.spinner.exercise))
+    grade = grading.grade(of_source("test.py", source.encode(), grading.runner.exercise))
     assert grade.full_marks, [v for v in grade.verdicts if v.status != "passed"]
     assert grade.recordings["chapter"].uses_sim_time, "it has been told to"

@@ -12,7 +12,7 @@ LOADED_BEFORE = """
 import signal, sys, threading
 from pathlib import Path
 from grader.checking.judging import load_pytest
-from grader.checking.listing import listed
+from grader.checking.judging import listed
 from grader.exercise import load
 
 def handlers():

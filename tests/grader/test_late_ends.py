@@ -17,13 +17,13 @@ CALLBACK = "    def on_joints(self, message):\n"
 
 def grade_with(grading: Grading, *changes: tuple[str, str]) -> Grade:
     """The grade of the solution with pieces of it replaced."""
-    solution = grading.spinner.exercise.solution_file
+    solution = grading.runner.exercise.solution_file
     assert solution
     source = solution.read_text(encoding="utf-8")
     for old, new in changes:
         assert source.count(old) == 1
         source = source.replace(old, new)
-    return grading.grade(of_source("test.py", source.encode(), grading.spinner.exercise))
+    return grading.grade(of_source("test.py", source.encode(), grading.runner.exercise))
 
 
 @pytest.mark.parametrize(

@@ -34,7 +34,7 @@ rclpy.spin(JointVelocity())
 
 
 def grade_of(grading: Grading, source: str) -> Grade:
-    exercise: Exercise = grading.spinner.exercise
+    exercise: Exercise = grading.runner.exercise
     return grading.grade(of_source("test.py", source.encode(), exercise))
 
 
@@ -67,7 +67,7 @@ def test_a_broken_submission_is_told_what_is_wrong(
 
 
 def test_a_crash_in_one_scenario_costs_only_its_checks(grading: Grading) -> None:
-    solution = grading.spinner.exercise.solution_file
+    solution = grading.runner.exercise.solution_file
     assert solution
     source = solution.read_text(encoding="utf-8").replace(
         "        positions = {\n",
@@ -91,7 +91,7 @@ def test_a_crash_in_one_scenario_costs_only_its_checks(grading: Grading) -> None
 def test_a_race_between_ctrl_c_and_a_shutdown_that_asks_first_costs_nothing(grading: Grading, ending: str) -> None:
     # The race itself comes once in a hundred Ctrl-C, so its error is raised each time, by shutting down twice.
     twice = "def try_shutdown():\n    rclpy.shutdown() or rclpy.shutdown()\n\n\ndef main"
-    solution = grading.spinner.exercise.solution_file
+    solution = grading.runner.exercise.solution_file
     assert solution
     source = solution.read_text(encoding="utf-8").replace("rclpy.try_shutdown()", ending)
     grade = grade_of(grading, source.replace("def main", twice, 1))

@@ -12,7 +12,7 @@ from jsonschema import Draft202012Validator
 from rich.console import Console
 
 from grader.checking import Run
-from grader.checking.wrong import Wrong
+from grader.checking.verdict import Wrong
 from grader.grading import Grade
 from grader.grading.grading import Grading
 from grader.report.as_json import as_json
@@ -35,16 +35,16 @@ HOSTILE = """
 @pytest.fixture(scope="module")
 def hostile(grading: Grading) -> Grade:
     """A node that publishes names and numbers made to break whatever shows them."""
-    solution = grading.spinner.exercise.solution_file
+    solution = grading.runner.exercise.solution_file
     assert solution
     source = solution.read_text(encoding="utf-8")
     source = source.replace("\n    def publish_velocities(self, message, positions, dt):", HOSTILE)
-    return grading.grade(of_source("\x1b[31mmine.py", source.encode(), grading.spinner.exercise))
+    return grading.grade(of_source("\x1b[31mmine.py", source.encode(), grading.runner.exercise))
 
 
 def test_the_terminal_shows_no_control_codes_of_a_students(hostile: Grade, grading: Grading) -> None:
     text = io.StringIO()
-    show(hostile, grading.spinner.exercise, Console(file=text, force_terminal=False), verbose=True)
+    show(hostile, grading.runner.exercise, Console(file=text, force_terminal=False), verbose=True)
     assert "\x1b" not in text.getvalue()
     assert "left_shoulder_pitch" in text.getvalue()
 
@@ -58,7 +58,7 @@ def test_the_json_is_json_and_as_the_schema_says(hostile: Grade) -> None:
 
 
 def test_what_a_check_expected_is_text_whatever_its_author_gives(hostile: Grade, grading: Grading) -> None:
-    run = Run(grading.spinner.exercise, hostile.recordings["chapter"], hostile.references["chapter"], "a title")
+    run = Run(grading.runner.exercise, hostile.recordings["chapter"], hostile.references["chapter"], "a title")
     with pytest.raises(Wrong) as caught:
         run.wrong(run.exchanges[1], "too few.", "left_elbow", expected=6, got=5)
     finding = caught.value.finding
@@ -68,6 +68,6 @@ def test_what_a_check_expected_is_text_whatever_its_author_gives(hostile: Grade,
 
 def test_the_plot_is_a_picture_and_the_same_each_time(hostile: Grade, grading: Grading, tmp_path: Path) -> None:
     for name in ("a.svg", "b.svg"):
-        draw(hostile, grading.spinner.exercise, tmp_path / name)
+        draw(hostile, grading.runner.exercise, tmp_path / name)
     assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
     assert ET.parse(tmp_path / "a.svg").getroot().tag.endswith("svg")

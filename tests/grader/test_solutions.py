@@ -42,7 +42,7 @@ def every(folder: str) -> list[object]:
 
 
 def test_the_solution_gets_full_marks(grading: Grading) -> None:
-    grade = grading.grade(read(str(SOLUTIONS / "solution.py"), grading.spinner.exercise))
+    grade = grading.grade(read(str(SOLUTIONS / "solution.py"), grading.runner.exercise))
     assert grade.full_marks, grade
     assert grade.score == 100
     assert grade.hold == "lockstep"
@@ -50,13 +50,13 @@ def test_the_solution_gets_full_marks(grading: Grading) -> None:
 
 @pytest.mark.parametrize("file", every("right"))
 def test_a_right_solution_in_another_style_gets_full_marks(grading: Grading, file: Path) -> None:
-    grade = grading.grade(read(str(file), grading.spinner.exercise))
+    grade = grading.grade(read(str(file), grading.runner.exercise))
     assert grade.full_marks, [v for v in grade.verdicts if v.status != "passed"]
 
 
 @pytest.mark.parametrize("file", every("mistakes"))
 def test_a_mistake_loses_exactly_the_checks_that_it_names(grading: Grading, file: Path) -> None:
-    grade = grading.grade(read(str(file), grading.spinner.exercise))
+    grade = grading.grade(read(str(file), grading.runner.exercise))
     assert grade.outcome == "graded"
     assert {v.name for v in grade.verdicts if v.status == "failed"} == caught_by(file)
     failed = [v for v in grade.verdicts if v.status == "failed"]
@@ -69,7 +69,7 @@ def test_the_usual_mistakes_are_all_there() -> None:
 
 def test_the_starter_runs_and_gets_nothing(grading: Grading) -> None:
     source = starter((SOLUTIONS / "solution.py").read_text(encoding="utf-8"))
-    grade = grading.grade(of_source("starter", source.encode(), grading.spinner.exercise))
+    grade = grading.grade(of_source("starter", source.encode(), grading.runner.exercise))
     assert grade.outcome == "graded"
     assert grade.score == 0
     assert "6 joints arrived" in grade.log

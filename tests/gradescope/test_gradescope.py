@@ -22,8 +22,8 @@ from grader.classroom import Adjustment
 from grader.classroom50.command import classroom50
 from grader.classroom50.result import result, summary
 from grader.exercise import load
-from grader.gradescope.bundle import bundle
-from grader.gradescope.results import results
+from grader.gradescope.command import bundle
+from grader.report.gradescope import results
 
 
 def test_public_checks_are_seen_at_once_and_hidden_ones_when_grades_are_published() -> None:

@@ -13,10 +13,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from playwright.sync_api import Browser
 
-from spinbook.graph.layout import broken, layout
+from spinbook.graph.layout import broken, drawings, layout
 from spinbook.graph.model import End, NodeGraph, SeenNode, Topic
 from spinbook.graph.picture import node_graph_svg
-from spinbook.graph.shapes import drawings
 from spinbook.site.node_graph import node_graph_html, read_node_graph
 
 JOINTS = "sensor_msgs/msg/JointState"

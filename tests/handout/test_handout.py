@@ -17,10 +17,8 @@ from course_folder import CourseFolder
 from grader.exercise import load
 from handout.conftest import CHAPTER, NOTE, ROOT, HandedOut, append, copy_course
 from interface_compiler.archive import zipped
-from spinbook.handout.comments import without_comments
-from spinbook.handout.leaks import leaks
-from spinbook.handout.notebook import for_students
-from spinbook.handout.secrets import Secret, hidden_names, secrets
+from spinbook.handout.leaks import Secret, hidden_names, leaks, secrets
+from spinbook.handout.student_copy import for_students, without_comments
 
 EXERCISE = ROOT / "exercises" / "joint_velocity"
 SOLUTIONS = ROOT / "solutions" / "joint_velocity"

@@ -1,4 +1,4 @@
-"""A new student, with the handout's zip: unpacks it, opens the notebook in JupyterLab, fails, mends, hands in."""
+"""A new student, with the handout's zip: unpacks it, opens the notebook in JupyterLab, fails, fixes, hands in."""
 
 from __future__ import annotations
 

@@ -12,11 +12,11 @@ from typing import Any
 import pytest
 from odd_files import ODD_FILES, OddFile
 
-from grader.crew import Crew
 from grader.exercise import load
 from grader.grading import Grade, Options, grading_of
 from grader.grading.grading import Grading
 from grader.submission import read
+from grader.workers import WorkerPool
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -42,8 +42,8 @@ def every() -> list[Any]:
 
 @pytest.fixture(scope="module")
 def grading() -> Iterator[Grading]:
-    with Crew() as crew:
-        yield grading_of(load(EXERCISE), Options(), crew)
+    with WorkerPool() as workers:
+        yield grading_of(load(EXERCISE), Options(), workers)
 
 
 def told(grade: Grade) -> str:
@@ -56,7 +56,7 @@ def told(grade: Grade) -> str:
 @pytest.mark.parametrize("name", every())
 def test_the_grade_is_the_expected_one(grading: Grading, name: str) -> None:
     expected = EXPECTED[name]
-    grade = grading.grade(read(str(HERE / "submissions" / f"{name}.py"), grading.spinner.exercise))
+    grade = grading.grade(read(str(HERE / "submissions" / f"{name}.py"), grading.runner.exercise))
     assert grade.outcome in expected["outcome"], (grade.outcome, grade.message)
     right = {"zero": grade.score == 0, "full": grade.full_marks, "less": not grade.full_marks, "any": True}
     assert right[expected["score"]], [v for v in grade.verdicts if v.status != "passed"]
@@ -77,10 +77,10 @@ def test_an_odd_file_is_graded_or_refused_without_harm(
     folder.mkdir()
     path = odd.make(folder)
     monkeypatch.chdir(folder)
-    submission = read(str(path), grading.spinner.exercise)
+    submission = read(str(path), grading.runner.exercise)
     assert "secret" not in submission.source
-    alone = replace(grading, spinner=grading.spinner.only("chapter"))
-    recordings = alone.spinner.spin(submission) if submission.program else None
+    alone = replace(grading, runner=grading.runner.only("chapter"))
+    recordings = alone.runner.spin(submission) if submission.program else None
     if recordings is None:
         assert "did-not-start" in odd.outcome
         assert submission.problem
@@ -91,6 +91,6 @@ def test_an_odd_file_is_graded_or_refused_without_harm(
 
 
 def test_afterwards_an_honest_submission_still_gets_full_marks(grading: Grading) -> None:
-    solution = grading.spinner.exercise.solution_file
+    solution = grading.runner.exercise.solution_file
     assert solution
-    assert grading.grade(read(str(solution), grading.spinner.exercise)).full_marks
+    assert grading.grade(read(str(solution), grading.runner.exercise)).full_marks

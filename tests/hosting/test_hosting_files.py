@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 import yaml
 
-from spinbook.site.launch import BRANCH
+from spinbook.site.notebooks import BRANCH
 
 ROOT = Path(__file__).parents[2]
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))

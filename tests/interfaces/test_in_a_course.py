@@ -9,7 +9,7 @@ import pytest
 from course_folder import CourseFolder
 
 from interface_compiler.wheel import wheel
-from spinbook.handout.interface_wheels import requirement
+from spinbook.handout.wheels import requirement
 
 CHAPTER = """# Limits
 

@@ -9,40 +9,40 @@ import psutil
 import pytest
 from small_class import ROOT, wait_until
 
-from grader.crew import Crew, HostFault
-from grader.crew.jobs import ListJob
 from grader.exercise import load
+from grader.workers import HostFault, WorkerPool
+from grader.workers.jobs import ListJob
 
 EXERCISE = ROOT / "exercises" / "joint_velocity"
 
 
-def workers() -> list[psutil.Process]:
+def worker_processes() -> list[psutil.Process]:
     found = psutil.Process().children()
-    return [process for process in found if "grader.crew.worker" in " ".join(process.cmdline())]
+    return [process for process in found if "grader.workers.worker" in " ".join(process.cmdline())]
 
 
-def test_a_crew_whose_worker_was_killed_gets_another(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_pool_whose_worker_was_killed_gets_another(monkeypatch: pytest.MonkeyPatch) -> None:
     job = ListJob(load(EXERCISE))
-    others = {process.pid for process in workers()}
-    with Crew() as crew:
-        before = crew.do(job)
-        [worker] = [process for process in workers() if process.pid not in others]
+    others = {process.pid for process in worker_processes()}
+    with WorkerPool() as workers:
+        before = workers.do(job)
+        [worker] = [process for process in worker_processes() if process.pid not in others]
         os.kill(worker.pid, signal.SIGKILL)
         wait_until(lambda: worker.status() == psutil.STATUS_ZOMBIE)
-        assert crew.do(job) == before
+        assert workers.do(job) == before
 
 
 def hands(worker: psutil.Process) -> list[psutil.Process]:
-    return [child for child in worker.children() if "grader.crew.worker" in " ".join(child.cmdline())]
+    return [child for child in worker.children() if "grader.workers.worker" in " ".join(child.cmdline())]
 
 
 def test_a_hand_does_its_jobs_in_one_process_and_in_another_once_that_died() -> None:
     job = ListJob(load(EXERCISE))
-    others = {process.pid for process in workers()}
-    with Crew() as crew:
-        with crew.hand() as hand:
+    others = {process.pid for process in worker_processes()}
+    with WorkerPool() as workers:
+        with workers.hand() as hand:
             before = hand.do(job)
-            [worker] = [process for process in workers() if process.pid not in others]
+            [worker] = [process for process in worker_processes() if process.pid not in others]
             [first] = hands(worker)
             assert hand.do(job) == before
             assert hands(worker) == [first]
@@ -53,8 +53,8 @@ def test_a_hand_does_its_jobs_in_one_process_and_in_another_once_that_died() -> 
         wait_until(lambda: not second.is_running() or second.status() == psutil.STATUS_ZOMBIE)
 
 
-def test_a_crew_that_was_sent_home_does_not_come_back() -> None:
-    with Crew() as crew:
+def test_a_pool_that_was_sent_home_does_not_come_back() -> None:
+    with WorkerPool() as workers:
         pass
     with pytest.raises(HostFault, match="the worker process is gone"):
-        crew.do(ListJob(load(EXERCISE)))
+        workers.do(ListJob(load(EXERCISE)))

@@ -6,21 +6,21 @@ import threading
 
 from small_class import ROOT
 
-from grader.crew import Crew, Hand
+from grader.classroom.local import LocalBackend
 from grader.exercise import load
 from grader.grading import Options, grading_of
-from grader.marking.here import Here
 from grader.submission import read
+from grader.workers import Worker, WorkerPool
 
 
-class Counting(Crew):
+class Counting(WorkerPool):
     """Knows how many threads have asked for a hand."""
 
     def __init__(self) -> None:
         super().__init__()
         self.threads: set[int] = set()
 
-    def hand(self) -> Hand:
+    def hand(self) -> Worker:
         self.threads.add(threading.get_ident())
         return super().hand()
 
@@ -30,11 +30,11 @@ def test_whoever_has_no_submission_left_helps_with_the_last_one() -> None:
     submission = read(str(ROOT / "solutions" / "joint_velocity" / "mistakes" / "degrees.py"), exercise)
     grades = []
     for jobs in (1, 4):
-        with Counting() as crew:
-            grading = grading_of(exercise, Options(), crew)
-            crew.threads.clear()
-            (marked,) = Here(grading, jobs).mark({"ada": submission})
-            assert len(crew.threads) == jobs + 1, "all of them for the spins, and one for the checks"
+        with Counting() as workers:
+            grading = grading_of(exercise, Options(), workers)
+            workers.threads.clear()
+            (marked,) = LocalBackend(grading, jobs).mark({"ada": submission})
+            assert len(workers.threads) == jobs + 1, "all of them for the spins, and one for the checks"
         grades.append(marked.grade)
     alone, helped = grades
     assert helped.outcome == alone.outcome == "graded"

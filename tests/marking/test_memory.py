@@ -8,16 +8,15 @@ from pathlib import Path
 import pytest
 from small_class import SmallClass
 
-from grader.crew import Crew
-from grader.deadline import Adjusting
+from grader.classroom.collecting import collect
+from grader.classroom.deadline import Adjusting
+from grader.classroom.local import LocalBackend
+from grader.classroom.results import ClassGrading, Results
 from grader.exercise import load
 from grader.grading import Options, grading_of
-from grader.intake import take_in
-from grader.marking.here import Here
-from grader.marking.marking import Marking
-from grader.marking.results import Results
 from grader.recording import Recording
 from grader.submission import read
+from grader.workers import WorkerPool
 
 
 def test_recordings_of_graded_students_do_not_stay_in_memory(
@@ -25,11 +24,11 @@ def test_recordings_of_graded_students_do_not_stay_in_memory(
 ) -> None:
     monkeypatch.setenv("SPINBOOK_CACHE", str(cache))
     exercise = load(small_class.exercise)
-    intake = take_in(small_class.submissions, exercise.name, tmp_path)
+    intake = collect(small_class.submissions, exercise.name, tmp_path)
     submissions = {one.student.id: read(str(one.file.path), exercise) for one in intake.handed_in}
-    with Results(small_class.folder / "results") as results, Crew() as crew:
-        grading = grading_of(exercise, Options(), crew)
-        marking = Marking(exercise, Here(grading, 2), results, Adjusting())
+    with Results(small_class.folder / "results") as results, WorkerPool() as workers:
+        grading = grading_of(exercise, Options(), workers)
+        marking = ClassGrading(exercise, LocalBackend(grading, 2), results, Adjusting())
         plan = marking.plan(intake, submissions, lambda who: True)
         before = recordings()
         graded = list(marking.run(plan, submissions))

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import plain_grades as plain
 
-from grader.checking.verdict import Verdict
-from grader.checking.wrong import Finding
+from grader.checking.verdict import Finding, Verdict
 from grader.classroom import Entry, Student
-from grader.misconception import Signature, grouped
-from grader.misconception.signature import failure_of, failures_of
+from grader.classroom.misconceptions import Signature, failure_of, failures_of, grouped
 
 
 def finding(text: str, expected: str = "0.489 rad/s", got: str = "0.978 rad/s") -> Finding:

@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from grader.crew import Crew
 from grader.exercise import load, starter
 from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
 from grader.submission import read
 from grader.submission.reading import of_source
+from grader.workers import WorkerPool
 from spinbook.new.command import new
 from spinbook.new.kind import BY_NAME, KINDS
 from spinbook.new.writing import write_course
@@ -58,26 +58,26 @@ def course(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def crew() -> Iterator[Crew]:
-    with Crew() as crew:
-        yield crew
+def workers() -> Iterator[WorkerPool]:
+    with WorkerPool() as workers:
+        yield workers
 
 
 @pytest.fixture(scope="module", params=MISTAKES)
-def grading(request: pytest.FixtureRequest, course: Path, crew: Crew) -> Grading:
+def grading(request: pytest.FixtureRequest, course: Path, workers: WorkerPool) -> Grading:
     """Ready to grade the exercise of a kind: its solution has passed every check."""
-    return grading_of(load(course / "exercises" / exercise_of(request.param)), Options(), crew)
+    return grading_of(load(course / "exercises" / exercise_of(request.param)), Options(), workers)
 
 
 def folder_of(grading: Grading) -> Path:
-    exercise = grading.spinner.exercise
+    exercise = grading.runner.exercise
     return exercise.folder.parents[1] / "solutions" / exercise.name
 
 
 def caught_and_named(grading: Grading, mistake: Path) -> tuple[set[str], set[str]]:
     """The checks that a mistake fails, and those that its docstring says it fails."""
     header = ast.get_docstring(ast.parse(mistake.read_text(encoding="utf-8"))) or ""
-    grade = grading.grade(read(str(mistake), grading.spinner.exercise))
+    grade = grading.grade(read(str(mistake), grading.runner.exercise))
     failed = {verdict.name for verdict in grade.verdicts if verdict.status == "failed"}
     return failed, set(re.findall(r"^- (test_\w+)$", header, re.MULTILINE))
 
@@ -86,8 +86,8 @@ def test_the_starter_gets_nothing_and_a_usual_mistake_loses_what_it_names(
     grading: Grading, request: pytest.FixtureRequest
 ) -> None:
     source = starter((folder_of(grading) / "solution.py").read_text(encoding="utf-8"))
-    assert grading.grade(of_source("starter", source.encode(), grading.spinner.exercise)).score == 0
-    kind = next(kind for kind in MISTAKES if exercise_of(kind) == grading.spinner.exercise.name)
+    assert grading.grade(of_source("starter", source.encode(), grading.runner.exercise)).score == 0
+    kind = next(kind for kind in MISTAKES if exercise_of(kind) == grading.runner.exercise.name)
     failed, named = caught_and_named(grading, folder_of(grading) / "mistakes" / f"{MISTAKES[kind]}.py")
     assert failed == named
 
@@ -97,7 +97,7 @@ def test_every_right_solution_gets_full_marks(grading: Grading) -> None:
     files = sorted((folder_of(grading) / "right").glob("*.py"))
     assert len(files) >= 3
     for file in files:
-        grade = grading.grade(read(str(file), grading.spinner.exercise))
+        grade = grading.grade(read(str(file), grading.runner.exercise))
         assert grade.full_marks, (file.name, [v for v in grade.verdicts if v.status != "passed"])
 
 

@@ -62,7 +62,7 @@ def test_the_exercise_has_its_names(pristine: Path) -> None:
     assert all(name in text for name in ('"gripper_force.py"', "class GripperForce(Node)", "# Gripper force"))
 
 
-def test_its_chapter_has_nothing_to_mend(course: Path) -> None:
+def test_its_chapter_has_nothing_to_fix(course: Path) -> None:
     done = run("spinbook", "lint", "--strict", cwd=course)
     assert done.returncode == 0, done.stdout
     assert "0 errors, 0 warnings" in done.stdout

@@ -6,10 +6,8 @@ import plain_grades as plain
 import pytest
 
 from grader.classroom import Student
-from grader.misconception import grouped
-from grader.overview import overview_page
-from grader.overview.distribution import distribution
-from grader.overview.rows import page_of, tallies
+from grader.classroom.misconceptions import grouped
+from grader.classroom.overview import distribution, overview_page, page_of, tallies
 
 
 def test_ten_bars_tell_how_the_points_are_spread() -> None:

@@ -13,10 +13,9 @@ import pytest
 from browser import opened
 from playwright.sync_api import Browser
 
-from spinbook.animation.keyframes import BEFORE_S
-from spinbook.runtime.plot.moving import MOST_CURVES, moving_plot
-from spinbook.runtime.plot.recording import Recording
-from spinbook.runtime.plot.scale import Scale, around
+from spinbook.animation import BEFORE_S
+from spinbook.kernel.plot.drawing import MOST_CURVES, Scale, around, moving_plot
+from spinbook.kernel.plot.quantity import Recording
 
 JOINTS = ["left_elbow", "right_elbow", "<b>&"]
 

@@ -14,12 +14,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from playwright.sync_api import Browser
 
-from spinbook.animation.keyframes import BEFORE_S, thinned
+from spinbook.animation import BEFORE_S, thinned
+from spinbook.turtlesim.events import Pen
 from spinbook.turtlesim.geometry import DT, PIXELS_PER_UNIT, SIDE, TICK_NS
-from spinbook.turtlesim.moving import MOST_SAMPLES, moving_svg
-from spinbook.turtlesim.pen import Pen
-from spinbook.turtlesim.timeline import LONGEST_S, LONGEST_WAIT_S, timeline
-from spinbook.turtlesim.track import HEADING_TOLERANCE, PLACE_TOLERANCE, Sample, Track
+from spinbook.turtlesim.moving import LONGEST_S, LONGEST_WAIT_S, MOST_SAMPLES, moving_svg, timeline
+from spinbook.turtlesim.trail import HEADING_TOLERANCE, PLACE_TOLERANCE, Sample, Track
 from spinbook.turtlesim.world import World
 from spinbook.turtlesim.world_picture import BLUE, WorldPicture, picture_of
 

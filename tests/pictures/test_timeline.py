@@ -9,8 +9,8 @@ from xml.etree import ElementTree as ET
 from browser import opened
 from playwright.sync_api import Browser
 
-from spinbook.runtime.timeline import Happenings, Lane, in_words, lanes
-from spinbook.runtime.timeline_picture import moving_timeline, still_timeline
+from spinbook.kernel.timeline import Happenings, Lane, in_words, lanes
+from spinbook.kernel.timeline_picture import moving_timeline, still_timeline
 
 Told = tuple[float, str, str]
 

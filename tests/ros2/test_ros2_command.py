@@ -15,8 +15,8 @@ from click.testing import CliRunner
 from ros2_terminal import Robot, Terminal
 
 from spinbook.cli import spinbook
+from spinbook.ros2.cli import Menu
 from spinbook.ros2.command import NOUNS, ros2
-from spinbook.ros2.groups import Menu
 
 
 def helps() -> list[list[str]]:

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 from ros2_terminal import Terminal
 
+from spinbook.ros2.cli import CommandError
 from spinbook.ros2.executables import find
-from spinbook.ros2.refusal import Refusal
 
 PROGRAM = f"""\
 #!{sys.executable}
@@ -148,7 +148,7 @@ def test_an_unknown_package_or_executable_is_refused_with_what_there_is(tmp_path
 
 
 def test_without_a_workspace_the_refusal_says_to_build(tmp_path: Path) -> None:
-    with pytest.raises(Refusal, match=r"Package 'hello_pkg' not found\n.*colcon build"):
+    with pytest.raises(CommandError, match=r"Package 'hello_pkg' not found\n.*colcon build"):
         find("hello_pkg", "hello", tmp_path)
 
 

@@ -8,31 +8,31 @@ from pathlib import Path
 import pytest
 from runner_programs import EXERCISE, RunProgram, numbers
 
-from grader.crew.environment import STUDENTS
-from grader.grading.spinning import ARGUMENTS
+from grader.grading.running import ARGUMENTS
 from grader.recording import Recording
 from grader.runner.run import run
 from grader.runner.task import Task
-from grader.sandbox import Limits, Middleware, Nursery, Program, Student, choose
+from grader.sandbox import ForkServer, Limits, Middleware, Program, Student, choose
 from grader.scenario import Scenario
+from grader.workers.pool import STUDENT_ENVIRONMENT
 from rmw_lockstep.hub import Limits as HubLimits
 
 
 @pytest.fixture(scope="session")
-def nursery() -> Iterator[Nursery]:
-    with Nursery([Middleware.LOCKSTEP]) as nursery:
-        yield nursery
+def fork_server() -> Iterator[ForkServer]:
+    with ForkServer([Middleware.LOCKSTEP]) as fork_server:
+        yield fork_server
 
 
 @pytest.fixture
-def run_program(nursery: Nursery) -> RunProgram:
+def run_program(fork_server: ForkServer) -> RunProgram:
     """Run a program's source through a scenario."""
     level = choose(None)
 
     def run_it(source: str, scenario: Scenario | None = None, limits: HubLimits | None = None) -> Recording:
         def start(hub: Path) -> Student:
-            program = Program("node.py", {"node.py": source.encode()}, ARGUMENTS, STUDENTS, hub=hub)
-            return nursery.start(program, level, Limits())
+            program = Program("node.py", {"node.py": source.encode()}, ARGUMENTS, STUDENT_ENVIRONMENT, hub=hub)
+            return fork_server.start(program, level, Limits())
 
         return run(Task(EXERCISE, scenario or numbers(), "node.py", source), start, limits)
 

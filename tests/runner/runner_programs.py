@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from grader.exercise import Exercise
-from grader.exercise.interface import Topic
+from grader.exercise.exercise import Topic
 from grader.recording import Recording
 from grader.scenario import Message, Scenario
 from grader.scenario.scenario import SECOND, START

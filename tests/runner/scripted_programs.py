@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from grader.exercise import Exercise
-from grader.exercise.interface import Endpoint, Topic
+from grader.exercise.exercise import Endpoint, Topic
 from grader.scenario import Scenario
 from grader.scenario.resolving import resolved
 

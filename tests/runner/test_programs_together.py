@@ -11,17 +11,17 @@ from typing import TypeAlias
 import pytest
 from scripted_programs import EXERCISE, program
 
-from grader.crew.environment import STUDENTS
-from grader.exercise.interface import ProgramFile
-from grader.grading.spinning import arguments
+from grader.exercise.exercise import ProgramFile
+from grader.grading.running import arguments
 from grader.recording import Recording
 from grader.runner.run import run
 from grader.runner.task import Task
-from grader.sandbox import Limits, Nursery, Student, choose
+from grader.sandbox import ForkServer, Limits, Student, choose
 from grader.sandbox import Program as Sandboxed
 from grader.scenario import Program, Scenario, at
 from grader.scenario.resolving import resolved
 from grader.scenario.scenario import SECOND, START
+from grader.workers.pool import STUDENT_ENVIRONMENT
 from interface_compiler.near import use_near
 
 PAIR = replace(EXERCISE, programs=(ProgramFile("talker.py", "talker"), ProgramFile("listener.py", "listener")))
@@ -40,7 +40,7 @@ Together: TypeAlias = Callable[..., Recording]
 
 
 @pytest.fixture
-def together(nursery: Nursery) -> Together:
+def together(fork_server: ForkServer) -> Together:
     """Run talker.py and listener.py; the talker is the author's own with `companion`."""
     use_near(Path(__file__).parent)
     level = choose(None)
@@ -51,8 +51,8 @@ def together(nursery: Nursery) -> Together:
         complete = resolved(exercise, scenario)
 
         def start(name: str, hub: Path) -> Student:
-            given = Sandboxed(name, files, arguments(complete), STUDENTS, hub=hub)
-            return nursery.start(given, level, Limits())
+            given = Sandboxed(name, files, arguments(complete), STUDENT_ENVIRONMENT, hub=hub)
+            return fork_server.start(given, level, Limits())
 
         starts = {name: partial(start, name) for name in files}
         task = Task(exercise, complete, "listener.py", LISTENER)

@@ -24,13 +24,12 @@ from scripted_programs import (
     ready,
 )
 
-from grader.crew.environment import STUDENTS
 from grader.exercise import ExerciseError
-from grader.grading.spinning import arguments
+from grader.grading.running import arguments
 from grader.recording import Call, Recording
 from grader.runner.run import run
 from grader.runner.task import Task
-from grader.sandbox import Limits, Nursery, Program, Student, choose
+from grader.sandbox import ForkServer, Limits, Program, Student, choose
 from grader.scenario import (
     ActionServer,
     JointChain,
@@ -49,6 +48,7 @@ from grader.scenario import (
     succeeds,
 )
 from grader.scenario.scenario import SECOND, START
+from grader.workers.pool import STUDENT_ENVIRONMENT
 from interface_compiler.near import use_near
 
 Scripted: TypeAlias = Callable[..., Recording]
@@ -60,7 +60,7 @@ def compiled_interfaces() -> None:
 
 
 @pytest.fixture
-def scripted(nursery: Nursery) -> Scripted:
+def scripted(fork_server: ForkServer) -> Scripted:
     """Run a program's source through a scenario, as it was written by its author."""
     level = choose(None)
 
@@ -68,8 +68,8 @@ def scripted(nursery: Nursery) -> Scripted:
         complete = ready(scenario)
 
         def start(hub: Path) -> Student:
-            given = Program("node.py", {"node.py": source.encode()}, arguments(complete), STUDENTS, hub=hub)
-            return nursery.start(given, level, Limits())
+            given = Program("node.py", {"node.py": source.encode()}, arguments(complete), STUDENT_ENVIRONMENT, hub=hub)
+            return fork_server.start(given, level, Limits())
 
         found = run(Task(EXERCISE, complete, "node.py", source), start)
         assert found.ending.outcome == "completed", found.ending.story + found.log
@@ -333,6 +333,6 @@ class Sour:
         return {"/in": {"data": 1.0 if self.time < 0.1 else 1}}
 
 
-def test_a_world_that_breaks_is_the_authors_to_mend(scripted: Scripted) -> None:
+def test_a_world_that_breaks_is_the_authors_to_fix(scripted: Scripted) -> None:
     with pytest.raises(ExerciseError, match=r"Sour.state\(\), /in: 1 \(int\) is given for data, which is double"):
         scripted(program(PUBLISHER), Scenario("s", "t", world=World(Sour), duration=0.5))

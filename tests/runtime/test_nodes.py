@@ -48,7 +48,7 @@ def test_running_a_cell_again_restarts_its_node(kernel: Kernel) -> None:
 
     assert "(restarting talker)" in shown.text
     assert "talking anew" in shown.text
-    assert sum("talker.py" in line and "keeper" not in line for line in kernel_processes(kernel)) == 1
+    assert sum("talker.py" in line and "supervisor" not in line for line in kernel_processes(kernel)) == 1
 
 
 def kernel_processes(kernel: Kernel) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from spinbook.runtime.showing import Bound, Countdown
+from spinbook.kernel.showing import Bound, Countdown
 
 
 @dataclass

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from spinbook.runtime.plot.topic_path import TopicPath, resolve
+from spinbook.kernel.plot.quantity import TopicPath, resolve
 
 TOPICS = ["/a", "/a/b", "/turtle1/cmd_vel"]
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from sandbox_rig import Rig
 
-from grader.sandbox import Exit, Isolation, Limits, Middleware, Nursery, Program, choose_middleware
+from grader.sandbox import Exit, ForkServer, Isolation, Limits, Middleware, Program, choose_middleware
 from rmw_lockstep.hub import Hub
 
 SECOND = 1_000_000_000
@@ -42,12 +42,14 @@ def run_over_hub(
     return run
 
 
-def in_the_rig(nursery: Nursery, level: Isolation, program: Program, limits: Limits | None, timeout_s: float) -> HubRun:
+def in_the_rig(
+    fork_server: ForkServer, level: Isolation, program: Program, limits: Limits | None, timeout_s: float
+) -> HubRun:
     """The same, in the rig's process."""
     folder = Path(tempfile.mkdtemp(prefix="spinbook-hub-"))
     deadline = time.monotonic() + timeout_s
     try:
-        with Hub(folder) as hub, nursery.start(replace(program, hub=hub.path), level, limits) as student:
+        with Hub(folder) as hub, fork_server.start(replace(program, hub=hub.path), level, limits) as student:
 
             def look() -> None:
                 if student.poll() is not None or time.monotonic() > deadline:

@@ -17,7 +17,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
-from grader.sandbox import Exit, Isolation, Limits, Middleware, Nursery, Program, available, enter, kernel
+from grader.sandbox import Exit, ForkServer, Isolation, Limits, Middleware, Program, available, enter, syscalls
 
 NOBODY = 65534
 
@@ -44,7 +44,7 @@ class Rig:
         theirs.close()
 
     def do(self, function: Callable[..., Any], *arguments: object) -> Any:
-        """Calls `function(nursery, level, *arguments)` in the rig and returns what it returns."""
+        """Calls `function(fork server, level, *arguments)` in the rig and returns what it returns."""
         self._connection.send((function, arguments))
         fault, result = self._connection.recv()
         if fault is not None:
@@ -85,9 +85,11 @@ class Rig:
         self._process.kill()
 
 
-def run_to_end(nursery: Nursery, level: Isolation, program: Program, limits: Limits | None, timeout_s: float) -> Run:
+def run_to_end(
+    fork_server: ForkServer, level: Isolation, program: Program, limits: Limits | None, timeout_s: float
+) -> Run:
     """Runs in the rig."""
-    with nursery.start(program, level, limits) as student:
+    with fork_server.start(program, level, limits) as student:
         end = student.wait(timeout_s)
     return Run(end, student.output().text)
 
@@ -95,7 +97,7 @@ def run_to_end(nursery: Nursery, level: Isolation, program: Program, limits: Lim
 def _serve(connection: Connection, level: Isolation, rootless: bool) -> None:
     if rootless:
         become_nobody()
-    with Nursery([Middleware.FASTDDS]) as nursery:
+    with ForkServer([Middleware.FASTDDS]) as fork_server:
         enter(level)
         while True:
             try:
@@ -103,31 +105,31 @@ def _serve(connection: Connection, level: Isolation, rootless: bool) -> None:
             except EOFError:
                 return
             try:
-                connection.send((None, function(nursery, level, *arguments)))
+                connection.send((None, function(fork_server, level, *arguments)))
             except Exception as fault:
                 connection.send((f"{type(fault).__name__}: {fault}", None))
 
 
 def become_nobody() -> None:
     """Gives up root for good. The Python in use stays readable, also where it lies in root's own home."""
-    kernel.unshare(kernel.CLONE_NEWNS)
-    kernel.mount("", "/", flags=kernel.MS_REC | kernel.MS_PRIVATE)
+    syscalls.unshare(syscalls.CLONE_NEWNS)
+    syscalls.mount("", "/", flags=syscalls.MS_REC | syscalls.MS_PRIVATE)
     needed = {Path(path).resolve() for path in (sys.prefix, sys.base_prefix)}
     closed = {parent for path in needed for parent in path.parents if not parent.stat().st_mode & 0o001}
     for folder in sorted(closed):
         inside = [path for path in needed if path.is_relative_to(folder)]
         held = {path: os.open(path, os.O_PATH) for path in inside}
-        kernel.mount("tmpfs", str(folder), "tmpfs", 0, "mode=0755")
+        syscalls.mount("tmpfs", str(folder), "tmpfs", 0, "mode=0755")
         for path, number in held.items():
             path.mkdir(parents=True)
-            kernel.mount(f"/proc/self/fd/{number}", str(path), flags=kernel.MS_BIND | kernel.MS_REC)
+            syscalls.mount(f"/proc/self/fd/{number}", str(path), flags=syscalls.MS_BIND | syscalls.MS_REC)
             os.close(number)
     home = tempfile.mkdtemp(prefix="nobody-")
     os.chown(home, NOBODY, NOBODY)
     os.setgroups([])
     os.setresgid(NOBODY, NOBODY, NOBODY)
     os.setresuid(NOBODY, NOBODY, NOBODY)
-    kernel.prctl(kernel.PR_SET_DUMPABLE, 1)  # lost with the change of user; a user who has logged in has it
+    syscalls.prctl(syscalls.PR_SET_DUMPABLE, 1)  # lost with the change of user; a user who has logged in has it
     os.environ.update(HOME=home, TMPDIR=tempfile.gettempdir())
     os.chdir("/")
 

@@ -16,7 +16,7 @@ import psutil
 import pytest
 from sandbox_rig import Rig
 
-from grader.sandbox import Exit, Isolation, Limits, Nursery, Program
+from grader.sandbox import Exit, ForkServer, Isolation, Limits, Program
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -69,7 +69,7 @@ Until = Literal["it answers", "it ends", "a while has passed"]
 DEADLINE_S = 60.0
 
 
-def spin(nursery: Nursery, level: Isolation, source: bytes, domain: int, until: Until) -> Spun:
+def spin(fork_server: ForkServer, level: Isolation, source: bytes, domain: int, until: Until) -> Spun:
     """In the rig: publishes joint commands to a submission, hears its answers, interrupts and kills it."""
     import os
 
@@ -96,7 +96,7 @@ def spin(nursery: Nursery, level: Isolation, source: bytes, domain: int, until: 
     node.create_subscription(JointState, "/joint_velocities", answers.append, quality)
     program = Program("joint_velocity.py", {"joint_velocity.py": source}, environment=ros, readonly=(PROFILE,))
     try:
-        with nursery.start(program, level, LIMITS, core=0) as student:
+        with fork_server.start(program, level, LIMITS, core=0) as student:
             deadline = time.monotonic() + (DEADLINE_S if until == "it answers" else 3.0)
             while publisher.get_subscription_count() == 0 and time.monotonic() < deadline and student.poll() is None:
                 executor.spin_once(timeout_sec=0.01)
@@ -117,7 +117,7 @@ def spin(nursery: Nursery, level: Isolation, source: bytes, domain: int, until: 
     finally:
         node.destroy_node()
         rclpy.shutdown(context=context)
-    # Of all that this rig's nursery has started only the nursery is left, once our own keeper has ended.
+    # Of all that this rig's fork server has started only the fork server is left, once our own supervisor has ended.
     deadline = time.monotonic() + 10.0
     while (left := len(psutil.Process(os.getpid()).children(recursive=True)) - 1) and time.monotonic() < deadline:
         time.sleep(0.001)

@@ -8,7 +8,7 @@ import pytest
 from sandbox_rig import Rig
 
 from grader.runner.fastdds.idle import Threads
-from grader.sandbox import Exit, Isolation, Nursery, Program
+from grader.sandbox import Exit, ForkServer, Isolation, Program
 
 PROGRAMS = {
     "says who it is": "import sys\nprint(__name__, __file__, sys.argv, sys.path[0], __spec__, __builtins__)",
@@ -80,15 +80,15 @@ def test_only_the_environment_that_was_passed_arrives(any_rig: Rig, monkeypatch:
     assert not {"PYTEST_CURRENT_TEST", "SSH_AUTH_SOCK", "PIP_CERT", "TERM", "SHELL", "PWD"} & set(eval(names))
 
 
-def test_the_nursery_is_not_to_be_seen_in_the_program(either_rig: Rig) -> None:
+def test_the_fork_server_is_not_to_be_seen_in_the_program(either_rig: Rig) -> None:
     code = "import sys\nprint([name for name in sys.modules if name.split('.')[0] in ('grader', 'spinbook')])"
 
     assert either_rig.run(code).text == "[]\n"
 
 
-def interrupt_a_spinning_node(nursery: Nursery, level: Isolation) -> tuple[Exit | None, str]:
+def interrupt_a_spinning_node(fork_server: ForkServer, level: Isolation) -> tuple[Exit | None, str]:
     code = "import time\ntry:\n    print('ready')\n    while True: time.sleep(0.01)\nfinally:\n    print('finally')\n"
-    with nursery.start(Program("n.py", {"n.py": code.encode()}), level) as student:
+    with fork_server.start(Program("n.py", {"n.py": code.encode()}), level) as student:
         while "ready" not in student.output().text:
             assert student.wait(0.001) is None
         student.interrupt()
@@ -103,9 +103,9 @@ def test_an_interrupt_is_what_ctrl_c_is(any_rig: Rig) -> None:
     assert text.rstrip().endswith("KeyboardInterrupt")
 
 
-def watch_cpu(nursery: Nursery, level: Isolation) -> tuple[bool, float, int, int]:
+def watch_cpu(fork_server: ForkServer, level: Isolation) -> tuple[bool, float, int, int]:
     busy = Program("n.py", {"n.py": b"print('ready')\nwhile True: pass"})
-    with nursery.start(busy, level, core=0) as student:
+    with fork_server.start(busy, level, core=0) as student:
         while student.cpu_seconds() < 0.3:
             assert student.wait(0.001) is None
         threads = Threads(student.pids)
@@ -127,8 +127,8 @@ def test_a_program_stays_on_its_core(confined_rig: Rig) -> None:
     assert confined_rig.do(escape_the_core) == "{0}\n"
 
 
-def escape_the_core(nursery: Nursery, level: Isolation) -> str:
+def escape_the_core(fork_server: ForkServer, level: Isolation) -> str:
     code = "import os\nos.sched_setaffinity(0, range(os.cpu_count()))\nprint(os.sched_getaffinity(0))"
-    with nursery.start(Program("n.py", {"n.py": code.encode()}), level, core=0) as student:
+    with fork_server.start(Program("n.py", {"n.py": code.encode()}), level, core=0) as student:
         student.wait(30.0)
     return student.output().text

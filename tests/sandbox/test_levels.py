@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from sandbox_rig import reason_against
 
-from grader.sandbox import Isolation, SandboxUnavailable, available, choose, level
+from grader.sandbox import Isolation, SandboxUnavailable, available, choose, isolation
 
 NOTHING_WORKS = {
     Isolation.BUBBLEWRAP: "bubblewrap (bwrap) is not installed",
@@ -23,7 +23,7 @@ NOTHING_WORKS = {
 def reasons(monkeypatch: pytest.MonkeyPatch) -> dict[Isolation, str]:
     """The reasons against each level, for a test to set: the trials themselves are tested below."""
     found: dict[Isolation, str] = {}
-    monkeypatch.setattr(level, "_reason_against", found.get)
+    monkeypatch.setattr(isolation, "_reason_against", found.get)
     return found
 
 
@@ -68,13 +68,13 @@ def test_each_level_has_really_been_tried() -> None:
 
 def test_without_bubblewrap_that_level_is_told_to_be_absent(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "/nowhere")
-    level._reason_against.cache_clear()
+    isolation._reason_against.cache_clear()
     try:
         assert "not installed" in str(available()[Isolation.BUBBLEWRAP])
         with pytest.raises(SandboxUnavailable, match="bwrap"):
             choose(Isolation.BUBBLEWRAP)
     finally:
-        level._reason_against.cache_clear()
+        isolation._reason_against.cache_clear()
 
 
 def test_where_a_machine_refuses_user_namespaces_landlock_is_what_is_left() -> None:

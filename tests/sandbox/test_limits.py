@@ -9,7 +9,7 @@ import pytest
 from sandbox_rig import Rig
 
 from grader.sandbox import Isolation, Limits
-from grader.sandbox.output import OutputBuffer
+from grader.sandbox.monitor import OutputBuffer
 
 MIB = 1024 * 1024
 SMALL = Limits(cpu_s=20.0, memory_bytes=1024 * MIB, processes=64, file_bytes=4 * MIB, output_bytes=MIB, wall_s=240.0)

@@ -10,7 +10,7 @@ import psutil
 import pytest
 from sandbox_rig import Rig, reason_against
 
-from grader.sandbox import Exit, Isolation, Nursery, Program, enter
+from grader.sandbox import Exit, ForkServer, Isolation, Program, enter
 
 DAEMON = """
 import ctypes, os, signal, sys, time
@@ -35,10 +35,10 @@ def alive(name: str) -> int:
     return sum(process.info["name"] == name for process in psutil.process_iter(["name"]))
 
 
-def start_daemons(nursery: Nursery, level: Isolation, name: str, end: str) -> tuple[Exit | None, int, int]:
+def start_daemons(fork_server: ForkServer, level: Isolation, name: str, end: str) -> tuple[Exit | None, int, int]:
     """Starts daemons that ignore every signal, and kills them; how many were there before and after."""
     code = DAEMON.format(name=name) + end
-    with nursery.start(Program("d.py", {"d.py": code.encode()}), level) as student:
+    with fork_server.start(Program("d.py", {"d.py": code.encode()}), level) as student:
         while "started" not in student.output().text or student.processes() < 3:
             time.sleep(0.001)
         before = student.processes()
@@ -76,9 +76,11 @@ print('survived')
     assert confined_rig.run("print('the rig lives')").text == "the rig lives\n"
 
 
-def start_and_stay(nursery: Nursery, level: Isolation, name: str) -> None:
+def start_and_stay(fork_server: ForkServer, level: Isolation, name: str) -> None:
     """Leaves a program with daemons running in the rig."""
-    student = nursery.start(Program("d.py", {"d.py": (DAEMON.format(name=name) + "signal.pause()").encode()}), level)
+    student = fork_server.start(
+        Program("d.py", {"d.py": (DAEMON.format(name=name) + "signal.pause()").encode()}), level
+    )
     while "started" not in student.output().text or student.processes() < 3:
         time.sleep(0.001)
     _kept.append(student)
@@ -142,7 +144,7 @@ def test_no_connection_tells_a_program_that_it_ran_before(apart_rig: Rig) -> Non
     assert apart_rig.run(NOTE).text == "nobody was here before\n"
 
 
-def enter_again(nursery: Nursery, level: Isolation) -> None:
+def enter_again(fork_server: ForkServer, level: Isolation) -> None:
     """Makes the rig ready for the next program."""
     enter(level)
 
@@ -162,12 +164,12 @@ def test_many_programs_leave_nothing(any_rig: Rig, times: int) -> None:
     assert alive(name) == 0
 
 
-def start_and_kill(nursery: Nursery, level: Isolation, name: str) -> None:
+def start_and_kill(fork_server: ForkServer, level: Isolation, name: str) -> None:
     code = f"import ctypes, time\nctypes.CDLL(None).prctl(15, {name!r}.encode(), 0, 0, 0)\ntime.sleep(60)"
-    nursery.start(Program("s.py", {"s.py": code.encode()}), level).kill()
+    fork_server.start(Program("s.py", {"s.py": code.encode()}), level).kill()
 
 
-def resources(nursery: Nursery, level: Isolation) -> tuple[int, int, int]:
+def resources(fork_server: ForkServer, level: Isolation) -> tuple[int, int, int]:
     """Open files, threads and mounts of the rig."""
     me = psutil.Process()
     return me.num_fds(), me.num_threads(), len(Path("/proc/self/mounts").read_text().splitlines())

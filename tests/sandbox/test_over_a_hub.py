@@ -12,7 +12,7 @@ import pytest
 from over_hub import needs_lockstep, run_over_hub
 from sandbox_rig import Rig
 
-from grader.sandbox import Isolation, Middleware, Nursery, Program, SandboxError, nursery
+from grader.sandbox import ForkServer, Isolation, Middleware, Program, SandboxError, fork_server
 
 pytestmark = needs_lockstep
 
@@ -127,7 +127,7 @@ def test_no_other_user_of_the_machine_reaches_the_hub(any_rig: Rig) -> None:
     assert hub == (0o600 if other_user else 0o666)
 
 
-def modes_while_it_runs(rig_nursery: Nursery, level: Isolation) -> tuple[int, int]:
+def modes_while_it_runs(rig_fork_server: ForkServer, level: Isolation) -> tuple[int, int]:
     """The modes of the hub's folder and of its socket."""
     import tempfile
 
@@ -135,7 +135,7 @@ def modes_while_it_runs(rig_nursery: Nursery, level: Isolation) -> tuple[int, in
 
     with tempfile.TemporaryDirectory() as folder, Hub(Path(folder)) as hub:
         program = Program("student.py", {"student.py": b""}, hub=hub.path)
-        with rig_nursery.start(program, level):
+        with rig_fork_server.start(program, level):
             return hub.path.parent.stat().st_mode & 0o777, hub.path.stat().st_mode & 0o777
 
 
@@ -156,17 +156,17 @@ def test_fast_dds_never_takes_its_place_unnoticed(either_rig: Rig) -> None:
     assert "has loaded the middleware rmw_fastrtps_cpp, not lockstep" in fault
 
 
-def start_with_the_wrong_middleware(rig_nursery: Nursery, level: Isolation) -> str:
+def start_with_the_wrong_middleware(rig_fork_server: ForkServer, level: Isolation) -> str:
     """What a rig is answered when the library that was to come first is not found."""
-    found = nursery.variables
-    nursery.variables = lambda middleware, of: {"RMW_IMPLEMENTATION": "rmw_lockstep_cpp"}  # type: ignore[assignment]
+    found = fork_server.variables
+    fork_server.variables = lambda middleware, of: {"RMW_IMPLEMENTATION": "rmw_lockstep_cpp"}  # type: ignore[assignment]
     try:
-        with Nursery([Middleware.LOCKSTEP]) as wrong:
+        with ForkServer([Middleware.LOCKSTEP]) as wrong:
             wrong.start(Program("student.py", {"student.py": b""}, hub=Path("/nowhere/hub")), level)
     except SandboxError as fault:
         return str(fault)
     finally:
-        nursery.variables = found
+        fork_server.variables = found
     return "it was started"
 
 

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 from sandbox_rig import Rig
 
-from grader.sandbox import Isolation, Nursery, Program
+from grader.sandbox import ForkServer, Isolation, Program
 
 ROOT = Path(__file__).parents[2]
 SECRET = "the expected velocities are 0.5"
@@ -258,7 +258,7 @@ def test_shared_memory_is_its_own(apart_rig: Rig) -> None:
 
 
 def look(
-    nursery: Nursery, level: Isolation, paths: list[str], readonly: list[str], hidden: list[str]
+    fork_server: ForkServer, level: Isolation, paths: list[str], readonly: list[str], hidden: list[str]
 ) -> list[str | None]:
     """What a program reads in files, with those shown and these hidden."""
     code = f"""
@@ -270,7 +270,7 @@ print(json.dumps([read(path) or None for path in {paths!r}]))"""
     program = Program(
         "p.py", {"p.py": code.encode()}, readonly=tuple(map(Path, readonly)), hidden=tuple(map(Path, hidden))
     )
-    with nursery.start(program, level) as student:
+    with fork_server.start(program, level) as student:
         student.wait(30.0)
     told: list[str | None] = json.loads(student.output().text)
     return told

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 from sourced_ros import sourcing
 
-from spinbook.doctor.ros_library import wheels_installed
-from spinbook.ros2.bootstrap import without_bootstrap
+from spinbook.doctor.ros import wheels_installed
+from spinbook.ros2.executables import without_bootstrap
 
 ROOT = Path(__file__).parents[2]
 

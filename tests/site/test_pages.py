@@ -16,7 +16,7 @@ import pytest
 from latex2mathml.converter import convert
 from small_course import ROOT, SmallCourse
 
-from spinbook.site.extension.maths import spaced
+from spinbook.site.extension import spaced
 
 TALK = "chapters/01-talk.html"
 EXERCISE = "exercises/joint_velocity.html"

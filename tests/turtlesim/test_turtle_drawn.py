@@ -9,9 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from spinbook.turtlesim.canvas import Canvas
-from spinbook.turtlesim.events import ColorReport
+from spinbook.turtlesim.events import ColorReport, Pen
 from spinbook.turtlesim.geometry import CENTRE, SIDE, TICK_NS
-from spinbook.turtlesim.pen import Pen
 from spinbook.turtlesim.trail import MAX_POINTS, TOLERANCE, Point, Stroke, Trail
 from spinbook.turtlesim.world import World
 

@@ -6,11 +6,10 @@ import pytest
 from turtlesim.msg import Color, Pose
 from turtlesim.srv import SetPen, Spawn, TeleportAbsolute, TeleportRelative
 
-from spinbook.turtlesim import fields
-from spinbook.turtlesim.events import ColorReport, PoseReport
+from spinbook.turtlesim import interface
+from spinbook.turtlesim.events import ColorReport, Pen, PoseReport
 from spinbook.turtlesim.geometry import TICK_NS
-from spinbook.turtlesim.pacing import Pacing
-from spinbook.turtlesim.pen import Pen
+from spinbook.turtlesim.node import Pacing
 from spinbook.turtlesim.world import World
 
 
@@ -24,19 +23,19 @@ def world() -> World:
 
 
 def test_a_pose_message_is_filled_completely() -> None:
-    pose = fields.fill_pose(Pose(), PoseReport("turtle1", 1.0, 2.0, 3.0, 4.0, 5.0))
+    pose = interface.fill_pose(Pose(), PoseReport("turtle1", 1.0, 2.0, 3.0, 4.0, 5.0))
     assert pose == Pose(x=1.0, y=2.0, theta=3.0, linear_velocity=4.0, angular_velocity=5.0)
 
 
 def test_a_color_message_is_filled_completely() -> None:
-    assert fields.fill_color(Color(), ColorReport("turtle1", 1, 2, 3)) == Color(r=1, g=2, b=3)
+    assert interface.fill_color(Color(), ColorReport("turtle1", 1, 2, 3)) == Color(r=1, g=2, b=3)
 
 
 def test_service_requests_ask_for_what_their_fields_say(world: World) -> None:
-    fields.spawn(world, Spawn.Request(x=1.0, y=2.0, theta=0.5, name="bob"))
-    fields.set_pen(world, "bob", SetPen.Request(r=1, g=2, b=3, width=4, off=0))
-    fields.teleport_absolute(world, "turtle1", TeleportAbsolute.Request(x=3.0, y=4.0, theta=0.0))
-    fields.teleport_relative(world, "turtle1", TeleportRelative.Request(linear=1.0, angular=0.0))
+    interface.spawn(world, Spawn.Request(x=1.0, y=2.0, theta=0.5, name="bob"))
+    interface.set_pen(world, "bob", SetPen.Request(r=1, g=2, b=3, width=4, off=0))
+    interface.teleport_absolute(world, "turtle1", TeleportAbsolute.Request(x=3.0, y=4.0, theta=0.0))
+    interface.teleport_relative(world, "turtle1", TeleportRelative.Request(linear=1.0, angular=0.0))
     poses = {event.turtle: event for event in world.tick(TICK_NS) if isinstance(event, PoseReport)}
     assert (poses["bob"].x, poses["bob"].y, poses["bob"].theta) == pytest.approx((1.0, 2.0, 0.5), abs=1e-6)
     assert world.turtles["bob"].pen == Pen(1, 2, 3, 4)
@@ -45,7 +44,7 @@ def test_service_requests_ask_for_what_their_fields_say(world: World) -> None:
 
 def test_a_place_that_is_not_finite_is_refused_by_the_world(world: World) -> None:
     request = Spawn.Request(x=float("inf"))
-    assert "not finite" in str(fields.spawn(world, request))
+    assert "not finite" in str(interface.spawn(world, request))
 
 
 def test_each_firing_of_the_timer_is_one_tick_however_late() -> None:

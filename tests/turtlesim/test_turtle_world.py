@@ -11,13 +11,13 @@ from spinbook.turtlesim.events import (
     Killed,
     LogLine,
     Outcome,
+    Pen,
     PoseReport,
     RotationEnded,
     RotationFeedback,
     Spawned,
 )
 from spinbook.turtlesim.geometry import TICK_NS
-from spinbook.turtlesim.pen import Pen
 from spinbook.turtlesim.world import World
 
 

@@ -13,8 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from update_notebooks import Cell, cell, cells_of, notebook, ran, texts
 
-from spinbook.update.cells import content
-from spinbook.update.merging import merged
+from spinbook.update.merging import content, merged
 from spinbook.update.notebook import NoNotebook, merged_notebook
 
 TITLE = cell("# A chapter", "title", "markdown")

@@ -14,8 +14,8 @@ from click.testing import CliRunner, Result
 from update_notebooks import Cell, cell, cells_of, notebook, ran, texts
 
 from spinbook.problem import SpinbookError
-from spinbook.update.base import BASE, base_files
 from spinbook.update.command import update
+from spinbook.update.handout import BASE, base_files
 
 TITLE = cell("# Week 3", "week-3", "markdown")
 TALKER = cell("%%node talker\nprint('talks')", "node-talker", node="talker")

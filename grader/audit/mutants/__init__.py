@@ -1,6 +1,5 @@
 """Mutants: a right program, each changed in one place, as a student might get it wrong."""
 
-from grader.audit.mutants.making import mutants_of
-from grader.audit.mutants.mutant import Mutant
+from grader.audit.mutants.making import Mutant, mutants_of
 
 __all__ = ["Mutant", "mutants_of"]

@@ -7,19 +7,37 @@ import difflib
 import hashlib
 import warnings
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from types import ModuleType
 
 import libcst as cst
 
-from grader.audit.mutants import conditions, ends, history, loops, messages, numbers, peers, statements
-from grader.audit.mutants.mutant import Mutant
+from grader.audit.mutants import conditions, end_points, history, loops, messages, numbers, peers, statements
 from grader.audit.mutants.program import Change, Program
 from grader.exercise import Exercise
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A program that differs from a right one by one change.
+
+    `id` names the change: it stays the same as long as the changed lines and the function around them do. `operator`
+    is the kind of change, `what` says it in words, `line` is where, counted from 1. `source` is the whole program,
+    `diff` the change as a unified diff.
+    """
+
+    id: str
+    operator: str
+    what: str
+    line: int
+    source: str
+    diff: str
+
 
 Operator = Callable[[cst.CSTNode, Program], Iterator[Change]]
 
 #: Each of these modules names its operators in OPERATORS.
-FAMILIES: tuple[ModuleType, ...] = (conditions, numbers, statements, loops, ends, messages, history, peers)
+FAMILIES: tuple[ModuleType, ...] = (conditions, numbers, statements, loops, end_points, messages, history, peers)
 
 
 def mutants_of(source: str, exercise: Exercise) -> tuple[Mutant, ...]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import libcst as cst
 
 from grader.audit.mutants.program import Change, Program, called, expression, only_assignment, only_call, with_body
-from grader.exercise.interface import Endpoint, Topic
+from grader.exercise.exercise import Endpoint, Topic
 
 NODE_CLOCK = "self.get_clock().now().to_msg()"
 WALL_CLOCK = "rclpy.clock.Clock().now().to_msg()"

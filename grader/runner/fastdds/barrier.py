@@ -20,10 +20,8 @@ from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters
 from type_description_interfaces.srv import GetTypeDescription
 
-from grader.runner.fastdds.budget import IdleTime, TimeBudget
-from grader.runner.fastdds.call import Caller, Calls
-from grader.runner.fastdds.graph import Graph
-from grader.runner.fastdds.watch import Watch
+from grader.runner.fastdds.budget import IdleTime, TimeBudget, Watch
+from grader.runner.fastdds.graph import Caller, Calls, Graph
 from grader.runner.stopped import Stopped
 
 Hold = Literal["parameters", "type description", "quiet"]

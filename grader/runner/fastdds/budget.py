@@ -1,11 +1,28 @@
-"""How long is waited for a student's program: in its own CPU time and in time it spends blocked, never in wall time."""
+"""Time budgets: the student's CPU time and the time it spends blocked, never wall time."""
 
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 
-from grader.runner.fastdds.watch import Watch
+from grader.runner.fastdds.idle import Receivers, Threads
 from grader.runner.stopped import Stopped
+from grader.runner.student import Student
+
+
+@dataclass(frozen=True)
+class Watch:
+    """The student's program with its threads, and the threads by which the rig hears of what it does."""
+
+    student: Student
+    threads: Threads
+    receivers: Receivers
+
+    def close(self) -> None:
+        """Look no more."""
+        self.threads.close()
+        self.receivers.close()
+
 
 #: The longest piece of time between two looks that counts: a rig that did not run itself saw nothing. Where a machine
 #: is not busy the looks come sooner than this.

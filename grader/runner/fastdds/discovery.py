@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import time
 
-from grader.exercise.interface import Topic
+from grader.exercise.exercise import Topic
 from grader.runner.fastdds.barrier import CHECK_S, LOOK_S, Barrier
-from grader.runner.fastdds.budget import IdleTime, TimeBudget
-from grader.runner.fastdds.clock import Clock
+from grader.runner.fastdds.budget import IdleTime, TimeBudget, Watch
 from grader.runner.fastdds.graph import Graph
-from grader.runner.fastdds.publishers import ReferencePublishers
-from grader.runner.fastdds.recorder import Recorder
-from grader.runner.fastdds.watch import Watch
+from grader.runner.fastdds.ros import Clock, Recorder, ReferencePublishers
 from grader.runner.stopped import Stopped
 
 #: Importing large libraries takes computing time; nothing that a node needs takes this much.

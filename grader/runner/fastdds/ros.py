@@ -1,18 +1,29 @@
-"""The rig's own part of the ROS graph: one participant, and the nodes in it.
-
-The grader's end has no executor. It publishes, calls services (see `call`) and takes what has come (see `recorder`) in
-the order that it decides on itself; waiting by executor costs more than all else.
-"""
+"""The runner's own part of the ROS graph: its participant, simulated time, reference publishers and recorder."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import rclpy
 from rclpy.context import Context
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.serialization import deserialize_message
 from rclpy.signals import SignalHandlerOptions
+from rosgraph_msgs.msg import Clock as ClockMessage
+
+from grader.exercise.exercise import Topic
+from grader.recording import Received, Sent
+from grader.runner.message import message_class, to_fields, to_message
+from grader.runner.stopped import Stopped
+from grader.scenario import Message, Scenario
+from grader.scenario.scenario import SECOND
+
+# The grader's end has no executor. It publishes, calls services (see `call`) and takes what has come (see `recorder`)
+# in the order that it decides on itself; waiting by executor costs more than all else.
+
 
 #: Compatible with whatever a student's subscription asks for.
 OFFER = QoSProfile(
@@ -69,3 +80,159 @@ class Ros:
         for node in self._nodes:
             node.destroy_node()
         self.context.try_shutdown()
+
+
+class Clock:
+    """The only clock a node under test should know: the topic /clock."""
+
+    def __init__(self, node: Any) -> None:
+        self._publisher = node.create_publisher(ClockMessage, "/clock", OFFER)
+        self.now = 0
+
+    def set(self, now: int) -> None:
+        """Make it `now` (ns)."""
+        self.now = now
+        message = ClockMessage()
+        message.clock.sec, message.clock.nanosec = divmod(now, SECOND)
+        self._publisher.publish(message)
+
+    @property
+    def heard(self) -> bool:
+        """Whether the student's node subscribes to it."""
+        return bool(self._publisher.get_subscription_count())
+
+
+class ReferencePublishers:
+    """Publishes a scenario's messages, in order, when the rig says so.
+
+    All publishers are there from the beginning, so that the student's node knows each of them before it speaks;
+    one that is replaced by another is destroyed when the other begins.
+    """
+
+    def __init__(self, node: Any, scenario: Scenario) -> None:
+        self._node = node
+        self._ready: dict[tuple[str, int], Any] = {}
+        self._speaking: dict[str, int] = {}
+        for message in scenario.messages:
+            key = (message.topic, message.publisher)
+            if key not in self._ready:
+                self._ready[key] = node.create_publisher(message_class(message.type), message.topic, OFFER)
+            self._speaking.setdefault(message.topic, message.publisher)
+        self.sent: list[Sent] = []
+
+    def publish(self, message: Message) -> None:
+        """Publish one message."""
+        former = self._speaking[message.topic]
+        if former != message.publisher:
+            self._node.destroy_publisher(self._ready.pop((message.topic, former)))
+            self._speaking[message.topic] = message.publisher
+        ros_message = to_message(message.type, message.fields)
+        publisher = self._ready[message.topic, message.publisher]
+        heard = publisher.get_subscription_count() > 0
+        publisher.publish(ros_message)
+        self.sent.append(Sent(message.at, message.topic, message.type, message.fields, heard))
+
+    @property
+    def heard(self) -> bool:
+        """Whether the student's node subscribes to every topic."""
+        return all(publisher.get_subscription_count() for publisher in self._ready.values())
+
+
+#: No exercise needs more than this from a node in one scenario.
+MOST_MESSAGES = 5_000
+MOST_BYTES = 1_000_000
+
+
+class Recorder:
+    """Subscribes to the topics that the exercise's node is to publish.
+
+    Reliably, and as best effort goes where a publisher of the student's offers no more: see `adapt`.
+    """
+
+    def __init__(self, node: Any, topics: tuple[Topic, ...], moment: Callable[[], tuple[int, int]]) -> None:
+        self._node = node
+        self._topics = topics
+        self._moment = moment
+        self.received: list[Received] = []
+        self.too_much: Stopped | None = None
+        self._modest: set[str] = set()
+        self._known: set[bytes] = set()
+        self._subscriptions = {topic.name: self._subscription(topic, ACCEPT) for topic in topics}
+
+    def _subscription(self, topic: Topic, quality: Any) -> Any:
+        # Never called back: what comes is taken when the rig says so.
+        return self._node.create_subscription(
+            message_class(topic.type), topic.name, lambda data: None, quality, raw=True
+        )
+
+    def adapt(self) -> None:
+        """Ask for less where what was asked for is not offered."""
+        for topic in self._topics:
+            offers = [info["qos_profile"]["reliability"] for info in self._publishers(topic)]
+            if topic.name not in self._modest and ReliabilityPolicy.BEST_EFFORT in offers:
+                self._node.destroy_subscription(self._subscriptions[topic.name])
+                self._subscriptions[topic.name] = self._subscription(topic, ACCEPT_ANY)
+                self._modest.add(topic.name)
+
+    def take(self) -> None:
+        """Take what has come."""
+        for topic in self._topics:
+            kind, handle = message_class(topic.type), self._subscriptions[topic.name].handle
+            while not self.too_much:
+                taken = handle.take_message(kind, True)
+                if taken is None:
+                    break
+                self._keep(topic, taken[0], kind)
+
+    def _keep(self, topic: Topic, data: bytes, kind: Any) -> None:
+        if len(data) > MOST_BYTES:
+            self.too_much = Stopped("over-limit", f"Your node published a message of {len(data):,} bytes.")
+        elif len(self.received) >= MOST_MESSAGES:
+            self.too_much = Stopped("over-limit", f"Your node published more than {MOST_MESSAGES:,} messages.")
+        else:
+            at, after = self._moment()
+            try:
+                fields = to_fields(deserialize_message(data, kind))
+            except Exception as error:  # whatever a made-up packet leads to
+                self.too_much = Stopped("over-limit", f"Your node published bytes that are no message: {error}")
+            else:
+                self.received.append(Received(at, after, topic.name, topic.type, fields))
+
+    def hear(self) -> None:
+        """Take what has come. Raises `Stopped` when it is too much."""
+        self.take()
+        if self.too_much:
+            raise self.too_much
+
+    @property
+    def hears(self) -> bool:
+        """Whether the student's node publishes every topic, in a way that reaches this recorder."""
+        return all(subscription.get_publisher_count() for subscription in self._subscriptions.values())
+
+    def new_publishers(self) -> list[Topic]:
+        """Topics that have got a publisher since this was asked the last time.
+
+        A publisher of another type counts as none: nothing of it can ever reach this recorder.
+        """
+        found = []
+        for topic in self._topics:
+            identities = {bytes(info["endpoint_gid"]) for info in self._publishers(topic)}
+            if identities - self._known:
+                found.append(topic)
+            self._known |= identities
+        return found
+
+    def hears_all(self, topic: Topic) -> bool:
+        """Whether every publisher of `topic` has found this recorder."""
+        return bool(self._subscriptions[topic.name].get_publisher_count() >= len(self._publishers(topic)))
+
+    def _publishers(self, topic: Topic) -> list[dict[str, Any]]:
+        # What the node's get_publishers_info_by_topic makes objects of, which would cost more than all that is done
+        # for a message else.
+        with self._node.handle:
+            infos = rclpy_implementation.rclpy_get_publishers_info_by_topic(self._node.handle, topic.name, False)
+        return [info for info in infos if info["topic_type"] == topic.type]
+
+    def since(self, count: int, topic: Topic) -> bool:
+        """Whether anything came on `topic` after the first `count` messages."""
+        return any(received.topic == topic.name for received in self.received[count:])

@@ -1,4 +1,4 @@
-"""Spins one student's program through one scenario, in lockstep with simulated time."""
+"""Runs one program through one scenario over Fast DDS, in step with simulated time."""
 
 from __future__ import annotations
 
@@ -6,21 +6,35 @@ import time
 from collections.abc import Callable
 
 from grader.recording import Ending, EndPoint, Recording
-from grader.runner.ending import cut_short
+from grader.runner.ending import MAY_TAKE_S, cut_short
 from grader.runner.fastdds.barrier import AFTER_CLOCK, AFTER_MESSAGES, Barrier, Gone
-from grader.runner.fastdds.clock import Clock
+from grader.runner.fastdds.budget import TimeBudget, Watch
 from grader.runner.fastdds.discovery import Discovery, wait_for_nodes, wait_for_publisher, wait_until_connected
 from grader.runner.fastdds.graph import Graph
 from grader.runner.fastdds.idle import Receivers, Threads
-from grader.runner.fastdds.interrupting import interrupted
-from grader.runner.fastdds.publishers import ReferencePublishers
-from grader.runner.fastdds.recorder import Recorder
-from grader.runner.fastdds.ros import Ros
-from grader.runner.fastdds.watch import Watch
+from grader.runner.fastdds.ros import Clock, Recorder, ReferencePublishers, Ros
 from grader.runner.stopped import Stopped
+from grader.runner.story import TRACEBACK, is_rclpys_own, last_words
 from grader.runner.student import Student
 from grader.runner.task import Task
 from grader.scenario.scenario import SECOND, START
+
+
+def interrupted(watch: Watch, file_name: str, source: str) -> Ending:
+    """Ask the program to end, as Ctrl-C does, and see how it takes it."""
+    student = watch.student
+    before = student.output().text.count(TRACEBACK)
+    student.interrupt()
+    budget = TimeBudget(watch, cpu_s=MAY_TAKE_S, blocked_s=MAY_TAKE_S)
+    while student.wait(0.02) is None:
+        budget.look()
+        if budget.blocked + budget.cpu >= MAY_TAKE_S:
+            return Ending("completed", interrupted=True, ended_in_time=False)
+    log = student.output().text
+    broke = log.count(TRACEBACK) > before and not is_rclpys_own(log, file_name, source)
+    words = last_words(log, "") if broke else None
+    return Ending("completed", interrupted=True, traceback=words.error if words else "")
+
 
 #: How far simulated time goes on after the last message, for what a node does by timer.
 AFTERWARDS = SECOND // 2

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from spinbook.turtlesim import canvas
+from spinbook.turtlesim.events import Pen
 from spinbook.turtlesim.geometry import PIXELS_PER_UNIT, WINDOW_PX
-from spinbook.turtlesim.pen import Pen
 
 _PIXEL = 3
 

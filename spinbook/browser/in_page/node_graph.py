@@ -7,9 +7,9 @@ import json
 from rcl_python import participant
 from rcl_python.graph import PUBLISHER, SUBSCRIPTION, EndpointInfo, Graph, NodeInfo
 from rcl_python.qos import first_incompatible
+from spinbook.graph.layout import drawings
 from spinbook.graph.model import End, NodeGraph, SeenNode, Topic
 from spinbook.graph.picture import in_words, node_graph_svgs
-from spinbook.graph.shapes import drawings
 
 #: Every node has these.
 _INTERNAL = ("/rosout", "/parameter_events")

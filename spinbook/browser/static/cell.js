@@ -34,7 +34,7 @@ class Cell {
 
   get program() {
     const { before = "", start } = this.about;
-    const call = start ? `\n\nfrom spinbook.runtime import entry as _entry\n_entry.start(globals(), ${JSON.stringify(start)})\n` : "";
+    const call = start ? `\n\nfrom spinbook.kernel import entry as _entry\n_entry.start(globals(), ${JSON.stringify(start)})\n` : "";
     return before + this.source + call;
   }
 

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import click
 
-from spinbook.ros2 import prefixes, workspace
-from spinbook.ros2.groups import CONTEXT
+from interface_compiler import prefixes
+from spinbook.ros2 import executables
+from spinbook.ros2.cli import CONTEXT, CommandError
 from spinbook.ros2.launch import markup_file, python_file
 from spinbook.ros2.launch.description import Context, DeclareLaunchArgument, LaunchDescription, text_of
 from spinbook.ros2.launch.processes import Plan, arguments_of
 from spinbook.ros2.launch.running import Launched
-from spinbook.ros2.refusal import Refusal
 
 #: How launch files' names end.
 SUFFIXES = (".py", ".yaml", ".yml", ".xml")
@@ -53,13 +53,13 @@ def launch(show_args: bool, package_or_file: str, words: tuple[str, ...]) -> Non
 
 
 def read(file: Path) -> LaunchDescription:
-    """What a launch file describes. Raises `Refusal`."""
+    """What a launch file describes. Raises `CommandError`."""
     return python_file.read(file) if file.suffix == ".py" else markup_file.read(file)
 
 
 def _source(cwd: Path) -> None:
     """Know the packages of the workspace here, as after `source install/setup.bash`."""
-    for near in workspace.near(cwd)[:1]:
+    for near in executables.workspaces_near(cwd)[:1]:
         near.extend(os.environ)
 
 
@@ -68,7 +68,7 @@ def _find(first: str, words: Sequence[str], cwd: Path) -> tuple[Path, list[str]]
     if not words or ":=" in words[0]:
         file = Path(first)
         if not file.is_file():
-            raise Refusal(
+            raise CommandError(
                 f"'{first}' is not a launch file. Name a package and a file in it, or the path of a file:",
                 "  ros2 launch humanoid_control humanoid.launch.py",
             )
@@ -79,20 +79,20 @@ def _find(first: str, words: Sequence[str], cwd: Path) -> tuple[Path, list[str]]
 def _in_package(package: str, name: str) -> Path:
     prefix = prefixes.prefix_of(package, prefixes.installed())
     if prefix is None:
-        raise Refusal(
+        raise CommandError(
             f"Package '{package}' not found", "Run `colcon build --symlink-install` in its workspace, and this there."
         )
     share = prefix / "share" / package
     there = sorted(path for suffix in SUFFIXES for path in share.rglob(f"*launch{suffix}"))
     found = [path for path in sorted(share.rglob(name)) if path.is_file()]
     if not found:
-        raise Refusal(
+        raise CommandError(
             f"file '{name}' was not found in the share directory of package '{package}'",
             f"Launch files there: {', '.join(path.name for path in there) or 'none'}.",
             "setup.py installs them: data_files has a line for share/PACKAGE/launch. Build again after a change of it.",
         )
     if len(found) > 1:
-        raise Refusal(f"file '{name}' was found more than once:", *(f"- {path}" for path in found))
+        raise CommandError(f"file '{name}' was found more than once:", *(f"- {path}" for path in found))
     return found[0]
 
 
@@ -101,7 +101,7 @@ def _given(words: Sequence[str]) -> dict[str, str]:
     for word in words:
         name, mark, value = word.partition(":=")
         if not mark or not name:
-            raise Refusal(f"malformed launch argument '{word}', expected format '<name>:=<value>'")
+            raise CommandError(f"malformed launch argument '{word}', expected format '<name>:=<value>'")
         given[name] = value
     return given
 
@@ -110,7 +110,7 @@ def _refuse_unknown(given: dict[str, str], declared: Sequence[DeclareLaunchArgum
     names = [argument.name for argument in declared]
     unknown = [name for name in given if name not in names]
     if unknown:
-        raise Refusal(f"the launch file has no argument '{unknown[0]}'. It has: {', '.join(names) or 'none'}.")
+        raise CommandError(f"the launch file has no argument '{unknown[0]}'. It has: {', '.join(names) or 'none'}.")
 
 
 def _show(declared: Sequence[DeclareLaunchArgument]) -> None:

@@ -10,8 +10,8 @@ from typing import Any
 
 import yaml
 
-from spinbook.ros2 import prefixes
-from spinbook.ros2.refusal import Refusal
+from interface_compiler import prefixes
+from spinbook.ros2.cli import CommandError
 
 
 @dataclass
@@ -26,7 +26,7 @@ class Substitution:
     """A text that is known only when the launch file runs."""
 
     def perform(self, context: Context) -> str:
-        """The text. Raises `Refusal` if it can't be known."""
+        """The text. Raises `CommandError` if it can't be known."""
         raise NotImplementedError
 
 
@@ -61,12 +61,12 @@ class LaunchConfiguration(Substitution):
         self.name, self.default = variable_name, default
 
     def perform(self, context: Context) -> str:
-        """The argument's value, or the default given here. Raises `Refusal` if there is neither."""
+        """The argument's value, or the default given here. Raises `CommandError` if there is neither."""
         if self.name in context.values:
             return context.values[self.name]
         if self.default is None:
             known = ", ".join(context.values) or "none"
-            raise Refusal(
+            raise CommandError(
                 f"launch configuration '{self.name}' does not exist",
                 f"Declare it before it is used: DeclareLaunchArgument('{self.name}'). Declared so far: {known}.",
             )
@@ -80,12 +80,12 @@ class EnvironmentVariable(Substitution):
         self.name, self.default = name, default_value
 
     def perform(self, context: Context) -> str:
-        """The variable's value, or the default. Raises `Refusal` if there is neither."""
+        """The variable's value, or the default. Raises `CommandError` if there is neither."""
         name = text_of(self.name, context)
         if name in os.environ:
             return os.environ[name]
         if self.default is None:
-            raise Refusal(f"environment variable '{name}' does not exist")
+            raise CommandError(f"environment variable '{name}' does not exist")
         return text_of(self.default, context)
 
 
@@ -107,15 +107,15 @@ class FindPackageShare(Substitution):
         self.package = package
 
     def perform(self, context: Context) -> str:
-        """The folder's path. Raises `Refusal` if the package is not installed."""
+        """The folder's path. Raises `CommandError` if the package is not installed."""
         return os.fspath(share_of(text_of(self.package, context)))
 
 
 def share_of(package: str) -> Path:
-    """The share folder of a package in the prefixes of this environment. Raises `Refusal`."""
+    """The share folder of a package in the prefixes of this environment. Raises `CommandError`."""
     prefix = prefixes.prefix_of(package, prefixes.installed())
     if prefix is None:
-        raise Refusal(f"package '{package}' not found", "Build its workspace, and launch from there.")
+        raise CommandError(f"package '{package}' not found", "Build its workspace, and launch from there.")
     return prefix / "share" / package
 
 
@@ -128,10 +128,10 @@ class IfCondition:
         self.expression = predicate_expression
 
     def holds(self, context: Context) -> bool:
-        """Whether it holds now. Raises `Refusal` for a text that is neither true nor false."""
+        """Whether it holds now. Raises `CommandError` for a text that is neither true nor false."""
         text = text_of(self.expression, context)
         if text.strip().lower() not in {"true", "1", "false", "0"}:
-            raise Refusal(f"a condition must be true, false, 1 or 0, and not '{text}'")
+            raise CommandError(f"a condition must be true, false, 1 or 0, and not '{text}'")
         return (text.strip().lower() in {"true", "1"}) is self.holds_for
 
 
@@ -148,7 +148,7 @@ class ParameterValue:
         self.value, self.value_type = value, value_type
 
     def evaluate(self, context: Context) -> Any:
-        """The value, converted to its type if one is given. Raises `Refusal` if it can't be."""
+        """The value, converted to its type if one is given. Raises `CommandError` if it can't be."""
         if self.value_type is None:
             return parameter_of(self.value, context)
         read = yaml.safe_load(text_of(self.value, context)) if self.value_type is not str else None
@@ -160,7 +160,9 @@ class ParameterValue:
                 return self.value_type(read)
             except (TypeError, ValueError):
                 pass
-        raise Refusal(f"'{text}' can't be a parameter of type {getattr(self.value_type, '__name__', self.value_type)}")
+        raise CommandError(
+            f"'{text}' can't be a parameter of type {getattr(self.value_type, '__name__', self.value_type)}"
+        )
 
 
 def parameter_of(value: Any, context: Context) -> Any:

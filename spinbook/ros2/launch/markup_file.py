@@ -11,9 +11,9 @@ from xml.etree import ElementTree
 
 import yaml
 
+from spinbook.ros2.cli import CommandError
 from spinbook.ros2.launch import description as known
 from spinbook.ros2.launch.description import LaunchDescription
-from spinbook.ros2.refusal import Refusal
 
 _SUBSTITUTION = re.compile(r"\$\((?P<name>[\w-]+)(?:\s+(?P<word>[^\s()]+))?(?:\s+(?P<more>[^()]*))?\)")
 #: Attributes that each element may have.
@@ -39,21 +39,21 @@ class Element:
 
 
 def read(file: Path) -> LaunchDescription:
-    """What a YAML or XML launch file describes. Raises `Refusal` with what is wrong and where."""
+    """What a YAML or XML launch file describes. Raises `CommandError` with what is wrong and where."""
     try:
         text = file.read_text(encoding="utf-8")
         elements = list(_from_xml(text) if file.suffix == ".xml" else _from_yaml(text))
         return LaunchDescription([_entity(element) for element in elements])
     except (yaml.YAMLError, ElementTree.ParseError) as error:
-        raise Refusal(f"{file}: {error}") from None
-    except Refusal as refusal:
-        raise Refusal(f"{file}: {refusal.message}") from None
+        raise CommandError(f"{file}: {error}") from None
+    except CommandError as refusal:
+        raise CommandError(f"{file}: {refusal.message}") from None
 
 
 def _from_xml(text: str) -> Iterator[Element]:
     root = ElementTree.fromstring(text)
     if root.tag != "launch":
-        raise Refusal(f"the outermost element is <{root.tag}>, and should be <launch>.")
+        raise CommandError(f"the outermost element is <{root.tag}>, and should be <launch>.")
     yield from map(_xml_element, root)
 
 
@@ -64,14 +64,14 @@ def _xml_element(item: ElementTree.Element) -> Element:
 def _from_yaml(text: str) -> Iterator[Element]:
     root = yaml.safe_load(text)
     if not isinstance(root, dict) or not isinstance(root.get("launch"), list):
-        raise Refusal("a YAML launch file begins with `launch:`, and below it a list: `- node:` and so on.")
+        raise CommandError("a YAML launch file begins with `launch:`, and below it a list: `- node:` and so on.")
     for item in root["launch"]:
         yield from _yaml_elements(item)
 
 
 def _yaml_elements(item: Any) -> Iterator[Element]:
     if not isinstance(item, dict):
-        raise Refusal(f"`{item}` is no element. Write `- node:` and its attributes below.")
+        raise CommandError(f"`{item}` is no element. Write `- node:` and its attributes below.")
     for kind, inside in item.items():
         yield _yaml_element(str(kind), inside)
 
@@ -80,7 +80,7 @@ def _yaml_element(kind: str, inside: Any) -> Element:
     if kind == "group":
         return Element(kind, children=[child for item in inside or () for child in _yaml_elements(item)])
     if not isinstance(inside, dict):
-        raise Refusal(f"`{kind}` needs its attributes below it, such as `pkg: humanoid_control`.")
+        raise CommandError(f"`{kind}` needs its attributes below it, such as `pkg: humanoid_control`.")
     element = Element(kind)
     for name, value in inside.items():
         if isinstance(value, list) and name in {"param", "remap"}:
@@ -108,16 +108,16 @@ def _entity(element: Element) -> Any:
 def _check(element: Element) -> None:
     if element.kind not in _ATTRIBUTES:
         there = ", ".join(kind for kind in _ATTRIBUTES if kind not in {"param", "remap"})
-        raise Refusal(f"the element `{element.kind}` is not supported here. There is: {there}.")
+        raise CommandError(f"the element `{element.kind}` is not supported here. There is: {there}.")
     unknown = sorted(set(element.attributes) - _ATTRIBUTES[element.kind])
     if unknown:
         there = ", ".join(sorted(_ATTRIBUTES[element.kind]))
-        raise Refusal(f"`{unknown[0]}` of `{element.kind}` is not supported here. There is: {there}.")
+        raise CommandError(f"`{unknown[0]}` of `{element.kind}` is not supported here. There is: {there}.")
 
 
 def _needed(element: Element, name: str) -> Any:
     if name not in element.attributes:
-        raise Refusal(f"`{element.kind}` has no `{name}`.")
+        raise CommandError(f"`{element.kind}` has no `{name}`.")
     return element.attributes[name]
 
 
@@ -177,4 +177,6 @@ def _substitution(match: re.Match[str]) -> known.Substitution:
         return known.FindPackageShare(word)
     if name == "env" and word:
         return known.EnvironmentVariable(word, default_value=more)
-    raise Refusal(f"`{match[0]}` is not supported here. There is: $(var NAME), $(find-pkg-share PACKAGE), $(env NAME).")
+    raise CommandError(
+        f"`{match[0]}` is not supported here. There is: $(var NAME), $(find-pkg-share PACKAGE), $(env NAME)."
+    )

@@ -11,10 +11,10 @@ from typing import Any
 
 import yaml
 
+from spinbook.ros2.cli import CommandError
 from spinbook.ros2.executables import find
 from spinbook.ros2.launch import description as known
 from spinbook.ros2.launch.description import Context, parameter_of, text_of
-from spinbook.ros2.refusal import Refusal
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Plan:
         return cls(folder, cwd, itertools.count(1))
 
     def steps(self, entities: Sequence[Any], context: Context) -> Iterator[ProcessToStart | str]:
-        """Processes to start, and lines to log, in order. Raises `Refusal`."""
+        """Processes to start, and lines to log, in order. Raises `CommandError`."""
         for entity in entities:
             condition = getattr(entity, "condition", None)
             if condition is not None and not condition.holds(context):
@@ -57,7 +57,7 @@ class Plan:
             elif isinstance(entity, known.DeclareLaunchArgument):
                 _declare(entity, context)
             else:
-                raise Refusal(f"a launch description can't hold a {type(entity).__name__}: {entity!r}")
+                raise CommandError(f"a launch description can't hold a {type(entity).__name__}: {entity!r}")
 
     def _process(self, node: known.Node, context: Context) -> ProcessToStart:
         package, executable = text_of(node.package, context), text_of(node.executable, context)
@@ -79,7 +79,7 @@ class Plan:
         if not isinstance(given, Mapping):
             path = Path(text_of(given, context))
             if not path.is_file():
-                raise Refusal(f"the parameter file {path} does not exist.")
+                raise CommandError(f"the parameter file {path} does not exist.")
             return os.fspath(path)
         values = {text_of(key, context): parameter_of(value, context) for key, value in given.items()}
         node = f"{namespace or ''}/{name}" if name else "/**"
@@ -98,11 +98,11 @@ def _declare(argument: known.DeclareLaunchArgument, context: Context) -> None:
     if argument.name not in context.values:
         if argument.default_value is None:
             told = f" ({argument.description})" if argument.description else ""
-            raise Refusal(f"the launch argument '{argument.name}'{told} is missing: give {argument.name}:=VALUE.")
+            raise CommandError(f"the launch argument '{argument.name}'{told} is missing: give {argument.name}:=VALUE.")
         context.values[argument.name] = text_of(argument.default_value, context)
     value = context.values[argument.name]
     if argument.choices is not None and value not in argument.choices:
-        raise Refusal(f"{argument.name}:={value} is not one of: {', '.join(argument.choices)}.")
+        raise CommandError(f"{argument.name}:={value} is not one of: {', '.join(argument.choices)}.")
 
 
 def arguments_of(entities: Sequence[Any]) -> Iterator[known.DeclareLaunchArgument]:

@@ -10,9 +10,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from spinbook.ros2.cli import CommandError
 from spinbook.ros2.launch import description as known
 from spinbook.ros2.launch.description import LaunchDescription
-from spinbook.ros2.refusal import Refusal
 
 #: The modules of ROS 2's launch API and what of each there is here.
 MODULES: dict[str, dict[str, Any]] = {
@@ -44,28 +44,30 @@ class _Module(ModuleType):
         if name.startswith("__"):
             raise AttributeError(name)
         there = ", ".join(sorted(MODULES[self.__name__])) or "nothing"
-        raise Refusal(f"`{name}` of {self.__name__} is not supported here. It has: {there}.", _ELSEWHERE)
+        raise CommandError(f"`{name}` of {self.__name__} is not supported here. It has: {there}.", _ELSEWHERE)
 
 
 def read(file: Path) -> LaunchDescription:
-    """What `generate_launch_description()` of a file returns. Raises `Refusal` with the file's line."""
+    """What `generate_launch_description()` of a file returns. Raises `CommandError` with the file's line."""
     variables: dict[str, Any] = {"__name__": "launch_file", "__file__": str(file)}
     with _modules():
         try:
             exec(compile(file.read_text(encoding="utf-8"), str(file), "exec"), variables)
             found = variables["generate_launch_description"]()
-        except Refusal as refusal:
-            raise Refusal(f"{file}{_line(refusal, file)}: {refusal.message}") from None
+        except CommandError as refusal:
+            raise CommandError(f"{file}{_line(refusal, file)}: {refusal.message}") from None
         except KeyError as error:
             if error.args != ("generate_launch_description",):
-                raise Refusal(f"{file}{_line(error, file)}: {_told(error)}") from None
-            raise Refusal(f"{file} has no function generate_launch_description().") from None
+                raise CommandError(f"{file}{_line(error, file)}: {_told(error)}") from None
+            raise CommandError(f"{file} has no function generate_launch_description().") from None
         except SyntaxError as error:
-            raise Refusal(f"{file}:{error.lineno}: not valid Python: {error.msg}") from None
+            raise CommandError(f"{file}:{error.lineno}: not valid Python: {error.msg}") from None
         except Exception as error:
-            raise Refusal(f"{file}{_line(error, file)}: {_told(error)}") from None
+            raise CommandError(f"{file}{_line(error, file)}: {_told(error)}") from None
     if not isinstance(found, LaunchDescription):
-        raise Refusal(f"{file}: generate_launch_description() returned {type(found).__name__}, no LaunchDescription.")
+        raise CommandError(
+            f"{file}: generate_launch_description() returned {type(found).__name__}, no LaunchDescription."
+        )
     return found
 
 

@@ -14,8 +14,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from types import FrameType
 
+from spinbook.ros2.cli import CommandError
 from spinbook.ros2.launch.processes import ProcessToStart
-from spinbook.ros2.refusal import Refusal
 
 #: How long nodes may take to end after SIGINT, and then after SIGTERM, before they are killed (s): as in ROS 2.
 GRACE = (5.0, 5.0)
@@ -68,7 +68,7 @@ class Launched:
                 start_new_session=True,
             )
         except OSError as error:
-            raise Refusal(f"{step.argv[0]} could not be started: {error.strerror}") from None
+            raise CommandError(f"{step.argv[0]} could not be started: {error.strerror}") from None
         running = _Running(step.name, process, threading.Thread(target=lambda: self._read(running), daemon=True))
         self._running.append(running)
         self._say("INFO", step.name, f"process started with pid [{process.pid}]")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from spinbook.ros2.groups import Entry, Menu
+from spinbook.ros2.cli import Entry, Menu
 
 topic = Menu(
     name="topic",

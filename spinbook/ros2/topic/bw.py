@@ -6,7 +6,7 @@ import time
 
 import click
 
-from spinbook.ros2.groups import CONTEXT, discovery_options
+from spinbook.ros2.cli import CONTEXT, discovery_options
 from spinbook.ros2.middleware import open_graph
 from spinbook.ros2.topic.statistics import Bandwidth
 
@@ -31,8 +31,8 @@ def bw(topic_name: str, window: int, spin_time: float | None, use_sim_time: bool
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
         from rclpy.qos import qos_profile_sensor_data
 
-        from spinbook.ros2.names import absolute
-        from spinbook.ros2.topic.subscribing import wait_for_type
+        from spinbook.ros2.graph import absolute
+        from spinbook.ros2.topic.selection import wait_for_type
 
         name = absolute(topic_name)
         message = wait_for_type(graph, name)

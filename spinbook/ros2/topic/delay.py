@@ -6,9 +6,8 @@ from typing import Any
 
 import click
 
-from spinbook.ros2.groups import CONTEXT, discovery_options
+from spinbook.ros2.cli import CONTEXT, CommandError, discovery_options
 from spinbook.ros2.middleware import open_graph
-from spinbook.ros2.refusal import Refusal
 from spinbook.ros2.topic.statistics import Delay
 
 WINDOW = 10000
@@ -32,14 +31,14 @@ def delay(topic_name: str, window: int, spin_time: float | None, use_sim_time: b
         from rclpy.qos import qos_profile_sensor_data
         from rclpy.time import Time
 
+        from spinbook.ros2.graph import absolute
         from spinbook.ros2.message_fields import field_names, type_name
-        from spinbook.ros2.names import absolute
-        from spinbook.ros2.topic.subscribing import wait_for_type
+        from spinbook.ros2.topic.selection import wait_for_type
 
         name = absolute(topic_name)
         message = wait_for_type(graph, name)
         if "header" not in message.get_fields_and_field_types():
-            raise Refusal(
+            raise CommandError(
                 "msg does not have header",
                 f"Fields of {type_name(message)}: {field_names(message)}. The delay is taken from header.stamp.",
             )

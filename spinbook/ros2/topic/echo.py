@@ -10,7 +10,7 @@ import click
 import yaml
 
 from spinbook.ros2 import interfaces, qos
-from spinbook.ros2.groups import CONTEXT, discovery_options
+from spinbook.ros2.cli import CONTEXT, discovery_options
 from spinbook.ros2.middleware import open_graph
 from spinbook.ros2.topic.selection import check_path, field, field_path, filter_option
 
@@ -58,8 +58,8 @@ def echo(topic_name: str, message_type: str | None, **options: Any) -> None:
     """
     asked = qos.asked(options)
     with open_graph(spin_time=options.pop("spin_time"), use_sim_time=options.pop("use_sim_time")) as graph:
-        from spinbook.ros2.names import absolute
-        from spinbook.ros2.topic.subscribing import type_or_refusal
+        from spinbook.ros2.graph import absolute
+        from spinbook.ros2.topic.selection import type_or_refusal
 
         name = absolute(topic_name)
         path = field_path(options["field"])

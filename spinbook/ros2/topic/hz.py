@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from spinbook.ros2.groups import CONTEXT, discovery_options
+from spinbook.ros2.cli import CONTEXT, discovery_options
 from spinbook.ros2.middleware import open_graph
 from spinbook.ros2.topic.selection import Filter, filter_option
 from spinbook.ros2.topic.statistics import Rate
@@ -43,8 +43,8 @@ def hz(
         from rclpy.clock import Clock, ClockType
         from rclpy.qos import qos_profile_sensor_data
 
-        from spinbook.ros2.names import absolute
-        from spinbook.ros2.topic.subscribing import wait_for_type
+        from spinbook.ros2.graph import absolute
+        from spinbook.ros2.topic.selection import wait_for_type
 
         name = absolute(topic_name)
         message = wait_for_type(graph, name)

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from spinbook.ros2 import interfaces, qos
-from spinbook.ros2.groups import CONTEXT, discovery_options
+from spinbook.ros2.cli import CONTEXT, CommandError, discovery_options
 from spinbook.ros2.middleware import open_graph
-from spinbook.ros2.refusal import Refusal
 
 if TYPE_CHECKING:
     from spinbook.ros2.graph import Graph
@@ -62,13 +61,13 @@ def pub(topic_name: str, message_type: str, values: str, **options: Any) -> None
     `header: auto` stamps each message with the time at which it is published; `now` does so for a single time.
     """
     if options["once"] and options["times"]:
-        raise Refusal("Cannot pass both -1 and -t <times>")
+        raise CommandError("Cannot pass both -1 and -t <times>")
     profile = qos.asked(options)
     with open_graph(
         node_name=options["node_name"], spin_time=options["spin_time"], use_sim_time=options["use_sim_time"]
     ) as graph:
+        from spinbook.ros2.graph import absolute
         from spinbook.ros2.message_fields import fill, read_values
-        from spinbook.ros2.names import absolute
 
         kind = interfaces.message_class(message_type)
         message = kind()
@@ -95,7 +94,7 @@ def _wait_for_subscriptions(graph: Graph, publisher: Any, count: int, most: floa
         if graph.spin_until(lambda: publisher.get_subscription_count() >= count, patience):
             return
         if left is not None and left <= PATIENCE:
-            raise Refusal(
+            raise CommandError(
                 f"Timed out waiting for subscribers: Expected {count} subscribers but only got "
                 f"{publisher.get_subscription_count()} subscribers",
                 "A subscription of another type or of an incompatible QoS does not match: see ros2 topic info -v.",

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import click
 
-from spinbook.ros2.groups import CONTEXT, discovery_options
+from spinbook.ros2.cli import CONTEXT, CommandError, discovery_options
 from spinbook.ros2.middleware import open_graph
-from spinbook.ros2.refusal import Refusal
 
 
 @click.command(name="type", context_settings=CONTEXT)
@@ -20,12 +19,14 @@ def type_(topic_name: str, spin_time: float | None, use_sim_time: bool) -> None:
       sensor_msgs/msg/JointState
     """
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        from spinbook.ros2.names import absolute, seen
+        from spinbook.ros2.graph import absolute, seen
 
         name = absolute(topic_name)
         graph.settle(lambda: bool(graph.topic_types(name)))
         types = graph.topic_types(name)
         if not types:
-            raise Refusal(f"Unknown topic '{topic_name}'", seen("Topics", (topic.name for topic in graph.topics())))
+            raise CommandError(
+                f"Unknown topic '{topic_name}'", seen("Topics", (topic.name for topic in graph.topics()))
+            )
     for kind in types:
         click.echo(kind)

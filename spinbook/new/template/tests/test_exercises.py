@@ -9,36 +9,36 @@ from pathlib import Path
 
 import pytest
 
-from grader.crew import Crew
 from grader.exercise import load, starter
 from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
 from grader.submission import read
 from grader.submission.reading import of_source
+from grader.workers import WorkerPool
 
 COURSE = Path(__file__).parents[1]
 EXERCISES = sorted(file.parent.name for file in (COURSE / "exercises").glob("*/exercise.toml"))
 
 
 @pytest.fixture(scope="module")
-def crew() -> Iterator[Crew]:
-    with Crew() as crew:
-        yield crew
+def workers() -> Iterator[WorkerPool]:
+    with WorkerPool() as workers:
+        yield workers
 
 
 @pytest.fixture(scope="module", params=EXERCISES)
-def grading(request: pytest.FixtureRequest, crew: Crew) -> Grading:
+def grading(request: pytest.FixtureRequest, workers: WorkerPool) -> Grading:
     """Ready to grade one exercise; the solution has passed every check."""
-    return grading_of(load(COURSE / "exercises" / request.param), Options(), crew)
+    return grading_of(load(COURSE / "exercises" / request.param), Options(), workers)
 
 
 def files(grading: Grading, pattern: str) -> list[Path]:
-    return sorted((COURSE / "solutions" / grading.spinner.exercise.name).glob(pattern))
+    return sorted((COURSE / "solutions" / grading.runner.exercise.name).glob(pattern))
 
 
 def test_every_right_solution_gets_full_marks(grading: Grading) -> None:
     for file in [*files(grading, "solution.py"), *files(grading, "right/*.py")]:
-        grade = grading.grade(read(str(file), grading.spinner.exercise))
+        grade = grading.grade(read(str(file), grading.runner.exercise))
         assert grade.full_marks, (file.name, [v for v in grade.verdicts if v.status != "passed"])
 
 
@@ -48,12 +48,12 @@ def test_every_mistake_loses_exactly_the_checks_that_it_names(grading: Grading) 
     for file in mistakes:
         header = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
         named = set(re.findall(r"^- (test_\w+)$", header, re.MULTILINE))
-        grade = grading.grade(read(str(file), grading.spinner.exercise))
+        grade = grading.grade(read(str(file), grading.runner.exercise))
         assert {v.name for v in grade.verdicts if v.status == "failed"} == named, file.name
 
 
 def test_the_starter_runs_and_gets_nothing(grading: Grading) -> None:
     [solution] = files(grading, "solution.py")
     source = starter(solution.read_text(encoding="utf-8"))
-    grade = grading.grade(of_source("starter", source.encode(), grading.spinner.exercise))
+    grade = grading.grade(of_source("starter", source.encode(), grading.runner.exercise))
     assert (grade.outcome, grade.score) == ("graded", 0), grade.message

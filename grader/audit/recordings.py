@@ -1,0 +1,104 @@
+"""Keeps what programs published, so that after a change to a check no program has to run again."""
+
+from __future__ import annotations
+
+import contextlib
+import gzip
+import hashlib
+import json
+import os
+import tempfile
+import threading
+import time
+from functools import cache
+from pathlib import Path
+
+from grader.grading.grading import Grading
+from grader.grading.reference import GRADER, cache_folder, digest_of, versions
+from grader.recording import Recording
+from grader.recording.store import from_json, to_json
+from grader.sandbox import Middleware
+from grader.scenario import Scenario
+from grader.submission import Submission
+
+#: The parts of the grader that decide what a recording holds.
+SPINNING = ("workers", "exercise", "recording", "runner", "sandbox", "scenario", "submission")
+SPINNING_FILES = ("grading/spinning.py", "loopback.xml")
+
+#: What nobody has asked for since is thrown away.
+KEPT_DAYS = 30
+
+#: A program that logs more than this is spun each time.
+LONGEST_LOG = 20_000
+
+
+class Stopped(Exception):
+    """Raised in place of a recording when the audit is to end at once."""
+
+
+class Spins:
+    """The kept recordings of one exercise's programs. Once `stopped` is set, no more are made."""
+
+    def __init__(self, grading: Grading) -> None:
+        self.stopped = threading.Event()
+        self._grading = grading
+        self._folder = audit_folder(grading.runner.exercise.name)
+
+    def spin(self, submission: Submission, scenario: Scenario, turn: int) -> Recording:
+        """The recording of a program in one scenario, kept or made now; `turn` chooses the core that it runs on.
+
+        Raises `HostFault` where the machine or we are at fault, `Stopped` when no more are to be made.
+        """
+        runner = self._grading.runner
+        made_by = (str(runner.isolation), engine(runner.middleware))
+        exercise = runner.exercise
+        interface = (exercise.topics, exercise.endpoints, exercise.parameters, exercise.programs, exercise.node_name)
+        key = (submission.digest, scenario.digest, interface, exercise.reference_node, *made_by)
+        file = self._folder / f"{hashlib.sha256(repr(key).encode()).hexdigest()[:32]}.spin.gz"
+        try:
+            kept = from_json(gzip.decompress(file.read_bytes()).decode())[scenario.name]
+            file.touch()
+            return kept
+        except (OSError, EOFError, ValueError, KeyError, TypeError):
+            pass
+        recording: Recording | None = runner.workers.do(runner.job(submission, scenario, turn), self.stopped)
+        if recording is None:
+            raise Stopped
+        if len(recording.log) <= LONGEST_LOG:
+            keep(file, gzip.compress(to_json({scenario.name: recording}).encode(), 5))
+        return recording
+
+
+def audit_folder(exercise: str) -> Path:
+    """Where an exercise's audits keep what they know."""
+    return cache_folder().parent / "audit" / exercise
+
+
+def keep(file: Path, content: bytes) -> None:
+    """Write a file as a whole. Where nothing can be kept, it is made anew each time."""
+    with contextlib.suppress(OSError):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=file.parent, delete=False) as temporary:
+            temporary.write(content)
+        Path(temporary.name).replace(file)
+
+
+def tidy(exercise: str) -> None:
+    """Throw away what has not been asked for in a long time."""
+    oldest = time.time() - KEPT_DAYS * 24 * 3600
+    with contextlib.suppress(OSError):
+        for entry in os.scandir(audit_folder(exercise)):
+            if entry.stat().st_mtime < oldest:
+                Path(entry.path).unlink(missing_ok=True)
+
+
+@cache
+def engine(middleware: Middleware, also: tuple[str, ...] = ()) -> str:
+    """A digest of all of ours that decides what a recording holds, and the versions of Python, ROS and the middleware.
+
+    `also` names further files and folders, by their paths below grader/.
+    """
+    named = [GRADER / name for name in (*SPINNING_FILES, *SPINNING, *also)]
+    files = [file for path in named for file in (sorted(path.rglob("*.py")) if path.is_dir() else [path])]
+    others = {name: version for name, version in versions(middleware).items() if name != "grader"}
+    return f"{digest_of(files)} {json.dumps(others, sort_keys=True)}"

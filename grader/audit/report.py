@@ -1,0 +1,210 @@
+"""Shows an audit: on a terminal, as JSON and as a page."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.padding import Padding
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+from rich.syntax import Syntax
+from rich.table import Table
+from rich.text import Text
+
+from grader.audit.result import Audit, Fate, MutantResult, Problem
+from grader.audit.shadow import Shadow
+from grader.report.pages import render
+from grader.report.printable import printable
+
+
+def show(audit: Audit, console: Console) -> None:
+    """Print what there is to fix, then what each check is worth and the score."""
+    console.print(Text(printable(f"{audit.title} ({audit.exercise})"), style="bold"))
+    _show_programs(audit, console)
+    for problem in audit.problems:
+        _show_problem(problem, console)
+    if not audit.quick:
+        console.print(_checks(audit))
+    _show_score(audit, console)
+
+
+def show_shadow(shadow: Shadow, console: Console) -> None:
+    """Print each verdict on which the two middlewares disagree."""
+    console.print(Text(printable(f"{shadow.title} ({shadow.exercise})"), style="bold"))
+    for one in shadow.differing:
+        console.print(Text.assemble((" ≠ ", "yellow"), printable(f"{one.program}, {one.check}")), soft_wrap=True)
+        lines = (f"lockstep  {one.lockstep}", f"fastdds   {one.fast_dds}", one.reason or "no reason is known")
+        for line in lines:
+            console.print(Padding(Text(printable(line), style="dim"), (0, 0, 0, 3)))
+    verdicts = shadow.equal + len(shadow.differing)
+    told = f"{shadow.programs} programs over both middlewares: {len(shadow.differing)} of {verdicts} verdicts differ"
+    console.print(Text(f"{told} ({shadow.seconds:.0f} s)", style="yellow" if shadow.differing else "bold green"))
+
+
+def _show_programs(audit: Audit, console: Console) -> None:
+    counts = {kind: sum(p.kind == kind for p in audit.programs) for kind in ("solution", "right", "mistake", "nothing")}
+    tried = f"tried: {counts['solution'] + counts['right']} right solutions"
+    if audit.seeds:
+        tried += f" (with {audit.seeds} seeds)"
+    tried += f", {counts['mistake']} mistakes, {counts['nothing']} that do nothing, {len(audit.mutants)} mutants"
+    console.print(Text(tried + (", a sample" if audit.sampled else ""), style="dim"))
+
+
+def _show_problem(problem: Problem, console: Console) -> None:
+    console.print(Text.assemble((" ✗ ", "red"), printable(problem.found)), soft_wrap=True)
+    console.print(Padding(Text(printable(_short(problem.place)), style="dim"), (0, 0, 0, 3)))
+    if problem.diff:
+        console.print(Padding(Syntax(problem.diff, "diff", background_color="default", word_wrap=True), (0, 0, 0, 3)))
+    if problem.evidence:
+        console.print(Padding(Text(printable(problem.evidence)), (0, 0, 0, 3)))
+    console.print(Padding(Text(printable(problem.fix), style="cyan"), (0, 0, 0, 3)))
+
+
+def _short(place: str) -> str:
+    """The place from the folder in which the command was given."""
+    here = f"{Path.cwd()}/"
+    return place.removeprefix(here)
+
+
+def _checks(audit: Audit) -> Table:
+    table = Table(box=None, pad_edge=False, header_style="dim", padding=(0, 1))
+    table.add_column("check", overflow="fold")
+    for name in ("points", "mutants", "score", "alone", "mistakes", "seconds"):
+        table.add_column(name, justify="right")
+    for check in audit.checks:
+        table.add_row(
+            check.name,
+            f"{check.points:g}",
+            str(check.kills),
+            f"{check.score:.0%}",
+            str(check.alone),
+            str(len(check.mistakes)),
+            f"{check.spinning_s + check.judging_s:.2f}",
+        )
+    return table
+
+
+def _show_score(audit: Audit, console: Console) -> None:
+    told = f"{audit.count('caught')} of {audit.different} mutants that differ are caught"
+    told += f" ({audit.score:.1%}); {audit.count('equivalent')} more do not differ from the solution"
+    if audit.count("listed"):
+        told += f"; {audit.count('listed')} are listed as survivors"
+    console.print(Text(told, style="bold"))
+    many = len(audit.problems)
+    verdict = "nothing to fix" if not many else f"{many} thing{'s' if many > 1 else ''} to fix"
+    console.print(Text(verdict, style="bold red" if many else "bold green"))
+    console.print(Text(f"{audit.seconds:.0f} s; {audit.made} tried, {audit.kept} known from before", style="dim"))
+
+
+class Bar:
+    """A bar on a terminal; elsewhere, such as in a log, a line for each tenth."""
+
+    def __init__(self, console: Console, bar: Progress) -> None:
+        self._console, self._bar = console, bar
+        self._task: TaskID | None = None
+        self._exercise = ""
+        self._done, self._total = 0, 0
+
+    def begin(self, exercise: str, total: int) -> None:
+        """There are `total` things to try."""
+        self._exercise, self._done, self._total = exercise, 0, total
+        if self._console.is_terminal:
+            self._task = self._bar.add_task(exercise, total=total)
+
+    def done(self) -> None:
+        """One of them is tried."""
+        self._done += 1
+        if self._task is not None:
+            self._bar.update(self._task, advance=1)
+        elif self._done * 10 // self._total > (self._done - 1) * 10 // self._total:
+            self._console.print(f"{self._exercise}: {self._done} of {self._total}")
+
+
+@contextmanager
+def on(console: Console) -> Iterator[Bar]:
+    """A bar on this console, which is gone again afterwards."""
+    columns = (
+        TextColumn("{task.description:<40.40}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        yield Bar(console, bar)
+
+
+def write_json(audits: list[Audit], faults: list[Problem], file: Path) -> None:
+    """Write everything the audits found, and the `faults` for which an exercise could not be audited."""
+    entries = {
+        "audits": [_entries(audit) for audit in audits],
+        "faults": [dataclasses.asdict(fault) for fault in faults],
+    }
+    write(file, json.dumps(entries, indent=2, ensure_ascii=False) + "\n")
+
+
+def _entries(audit: Audit) -> dict[str, Any]:
+    entries = dataclasses.asdict(audit)
+    for mutant in entries["mutants"]:
+        del mutant["mutant"]["source"]
+    counts = {fate: audit.count(fate) for fate in ("caught", "equivalent", "listed", "survived")}
+    return {**entries, "score": audit.score, "different": audit.different, **counts}
+
+
+def write(file: Path, text: str) -> None:
+    """Write a file as a whole, or not at all."""
+    with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=file.absolute().parent, delete=False) as temporary:
+        temporary.write(text)
+    os.chmod(temporary.name, 0o644)  # noqa: PTH101 - a temporary file is its owner's only
+    Path(temporary.name).replace(file)
+
+
+#: Fate -> what it is called, and the page's colour for it.
+FATES: dict[Fate, tuple[str, str]] = {
+    "survived": ("not caught", "bad"),
+    "listed": ("not caught, with a reason", "wait"),
+    "caught": ("caught", "good"),
+    "equivalent": ("no difference", ""),
+}
+
+
+def write_html(audits: list[Audit], faults: list[Problem], file: Path) -> None:
+    """Write a page about these audits, and the `faults` for which an exercise could not be audited.
+
+    It is one file, needs no network and runs no script.
+    """
+    here = f"{Path.cwd()}/"
+    write(
+        file,
+        render(
+            "audit/audit.html",
+            audits=audits,
+            faults=faults,
+            fates=FATES,
+            mutants={audit.exercise: _by_operator(audit) for audit in audits},
+            most={audit.exercise: max([check.kills for check in audit.checks] or [1]) or 1 for audit in audits},
+            short=lambda place: place.removeprefix(here),
+            lines=_lines,
+        ),
+    )
+
+
+def _by_operator(audit: Audit) -> list[tuple[str, list[MutantResult]]]:
+    """The mutants, those first that no check catches, each kind together."""
+    order = list(FATES)
+    groups: dict[str, list[MutantResult]] = {}
+    for result in sorted(audit.mutants, key=lambda result: (result.mutant.operator, order.index(result.fate))):
+        groups.setdefault(result.mutant.operator, []).append(result)
+    return list(groups.items())
+
+
+def _lines(diff: str) -> list[tuple[str, str]]:
+    """A diff's lines, without its header, each with what it is: `added`, `removed` or nothing."""
+    kinds = {"+": "added", "-": "removed"}
+    return [(line, kinds.get(line[:1], "")) for line in diff.splitlines()[2:]]

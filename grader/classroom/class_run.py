@@ -1,0 +1,296 @@
+"""Grades a class, from the folder of submissions to the gradebook, and shows how far it is."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from types import FrameType, TracebackType
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.prompt import Confirm
+from rich.text import Text
+
+from grader.classroom import Entry, Skipped
+from grader.classroom.collecting import collect
+from grader.classroom.deadline import Adjusting, Deadline, deadline_of, overrides_in
+from grader.classroom.gradebook import gradebook, unknown_to_moodle, write_gradebook
+from grader.classroom.handed_in import HandedIn, Question, Submissions, SubmissionsError
+from grader.classroom.local import LocalBackend, at_once
+from grader.classroom.misconceptions import Signature, failures_of, grouped, signatures
+from grader.classroom.overview import overview_page
+from grader.classroom.publishing import publish
+from grader.classroom.rejudging import rejudge
+from grader.classroom.request import Backend, ClassRequest, host_error
+from grader.classroom.results import ClassGrading, Plan, Results, not_written
+from grader.exercise import Exercise
+from grader.files import write_durably
+from grader.grading import Grade, grading_of
+from grader.grading.grading import Grading
+from grader.report.printable import printable
+from grader.submission import Submission, read
+from grader.workers import WorkerPool
+
+#: How many files that were skipped for one reason are named; the overview page names all.
+MOST_NAMED = 5
+
+
+def show_submissions(console: Console, kind: str, count: int, skipped: Sequence[Skipped]) -> None:
+    """Say as what the submissions were read, and what was left out of them."""
+    _say(console, f"{count} submissions in {kind}.")
+    reasons: dict[str, list[str]] = {}
+    for one in skipped:
+        reasons.setdefault(one.why, []).append(one.file)
+    for why, files in reasons.items():
+        more = f" and {len(files) - MOST_NAMED} more" if len(files) > MOST_NAMED else ""
+        _say(console, f"skipped, {why}: {', '.join(files[:MOST_NAMED])}{more}", "yellow")
+
+
+def show_result(
+    console: Console, entries: Sequence[Entry], faults: Sequence[Entry], questions: Sequence[Question]
+) -> None:
+    """Say what the class came to, and what is left to do for the instructor."""
+    finals = sorted(entry.final for entry in entries if entry.final is not None)
+    if finals:
+        points = entries[0].grade.points
+        middle = (finals[(len(finals) - 1) // 2] + finals[len(finals) // 2]) / 2
+        full = sum(final >= points for final in finals)
+        _say(console, f"{len(finals)} grades: median {middle:g} of {points:g} points, {full} with full marks.", "bold")
+    if entries and (unknown := unknown_to_moodle(entries)):
+        who = "no student" if unknown == len(entries) else f"not {unknown} of the {len(entries)} students"
+        _say(
+            console,
+            f"moodle.csv: Moodle will find {who}, for lack of an Identifier. If you use Moodle, grade its own "
+            "download, or a CSV file with the column Identifier.",
+            "dim",
+        )
+    for question in questions:
+        _say(console, f"not graded: {question} Keep one of them, or name it in a CSV file.", "yellow")
+    for entry in faults:
+        _say(
+            console,
+            f"not graded, a fault of ours or the machine's: {entry.student.id}: {entry.grade.message}",
+            "red",
+        )
+    if faults:
+        _say(console, "The same command tries them again.", "red")
+
+
+def _say(console: Console, text: str, style: str = "") -> None:
+    console.print(Text(printable(text), style=style), soft_wrap=True)
+
+
+def difference(before: Grade, after: Grade) -> str:
+    """In words, beginning with the two scores: which checks went up, and which down. Empty where nothing changed."""
+    old = {verdict.name: verdict for verdict in before.verdicts}
+    new = {verdict.name: verdict for verdict in after.verdicts}
+    up, down = [], []
+    for name in [*new, *(name for name in old if name not in new)]:
+        earned = [found.earned if found else 0.0 for found in (old.get(name), new.get(name))]
+        if earned[1] > earned[0]:
+            up.append(f"{name} (+{earned[1] - earned[0]:g})")
+        elif earned[1] < earned[0]:
+            down.append(f"{name} (-{earned[0] - earned[1]:g})")
+    told = [f"up: {', '.join(up)}"] if up else []
+    told += [f"down: {', '.join(down)}"] if down else []
+    if before.outcome != after.outcome:
+        told.append(f"{before.outcome}, now {after.outcome}")
+    if not told and before.score == after.score:
+        return ""
+    return "; ".join([f"{before.score:g} -> {after.score:g} points", *told])
+
+
+class ProgressDisplay:
+    """Tells of each entry as it is done. Use it as a context manager."""
+
+    def __init__(self, console: Console, total: int) -> None:
+        self._console, self._total, self._done = console, total, 0
+        self._bar = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            TextColumn("left"),
+            TimeRemainingColumn(compact=True),
+            console=console,
+            disable=not console.is_terminal,
+            transient=True,
+        )
+        self._task = self._bar.add_task("grading", total=total)
+
+    def done(self, entry: Entry, changed: str) -> None:
+        """One more is done; `changed` tells what a former grade was, where there was another one."""
+        self._done += 1
+        self._bar.update(self._task, advance=1)
+        if self._console.is_terminal and not changed:
+            return
+        grade = entry.grade
+        what = f"{grade.score:g} of {grade.points:g} points" if grade.outcome != "host-error" else "not graded"
+        told = f"{self._done}/{self._total} {entry.student.id}: {changed or what}"
+        if grade.outcome not in ("graded", "host-error") and not changed:
+            told += f" ({grade.outcome})"
+        self._console.print(Text(printable(told)), soft_wrap=True)
+
+    def __enter__(self) -> ProgressDisplay:
+        self._bar.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._bar.stop()
+
+
+#: Exit codes, beside click's 2 for usage and a shell's 130 for Ctrl-C.
+DONE, QUESTIONS, FAULTS, STOPPED = 0, 1, 3, 130
+
+
+def grade_class(exercise: Exercise, order: ClassRequest, console: Console) -> int:
+    """Grade a class, and say how it went; returns the exit code.
+
+    Raises `SubmissionsError` where there is nothing to grade, `OverridesError` for a mistake in the overrides, `Busy`
+    when another run is at work on the same results, and what `grading_of` raises.
+    """
+    with tempfile.TemporaryDirectory(prefix="spinbook-class-") as unpacked, _ended_by_signals():
+        intake = collect(order.source, exercise.name, Path(unpacked))
+        show_submissions(console, intake.kind, len(intake.handed_in), intake.skipped)
+        adjusting = _adjusting(exercise, order, {one.student.id for one in intake.handed_in})
+        submissions, unreadable = _read(intake, exercise)
+        intake = replace(intake, handed_in=tuple(one for one in intake.handed_in if one.student.id in submissions))
+        with Results(order.out) as results, WorkerPool(order.options.middleware) as workers:
+            grading = grading_of(exercise, order.options, workers)
+            with _backend(grading, order) as markers:
+                marking = ClassGrading(exercise, markers, results, adjusting, grading)
+                if order.rejudge:
+                    rejudge(marking, grading, intake, submissions, console, partial(_may_replace, order, console))
+                    marking.take_in(intake)
+                    return _finish(marking, grading, intake, console, adjusting.deadline, order.publish)
+                plan = marking.plan(intake, submissions, lambda who: "*" in order.regrade or who in order.regrade)
+                for one, error in unreadable:
+                    marking.give_up(Entry(one.student, one.file.name, _unread(grading, one)), f"reading it: {error}")
+                try:
+                    _grade(marking, plan, submissions, console)
+                    return _finish(marking, grading, intake, console, adjusting.deadline, order.publish)
+                except KeyboardInterrupt:
+                    kept, wanted = len(marking.entries), len(intake.handed_in)
+                    told = f"Stopped. {kept} of {wanted} are graded and kept; the same command goes on from there."
+                    console.print(told)
+                    return STOPPED
+
+
+def _adjusting(exercise: Exercise, order: ClassRequest, students: set[str]) -> Adjusting:
+    overrides = overrides_in(order.overrides, students) if order.overrides else {}
+    for student in order.regrade:
+        if student not in (*students, "*"):
+            raise SubmissionsError(f"--regrade {student}: nobody is called so who handed something in.")
+    return Adjusting(deadline_of(exercise), overrides)
+
+
+def _grade(marking: ClassGrading, plan: Plan, submissions: Mapping[str, Submission], console: Console) -> None:
+    if plan.unchanged:
+        console.print(f"{len(plan.unchanged)} unchanged since they were graded.")
+    if not plan.to_grade:
+        return
+    with ProgressDisplay(console, len(plan.to_grade)) as progress:
+        for entry in marking.run(plan, submissions):
+            former = plan.former.get(entry.student.id)
+            progress.done(entry, difference(former.grade, entry.grade) if former else "")
+
+
+def _may_replace(order: ClassRequest, console: Console, count: int) -> bool:
+    """Ask the instructor, where there is a terminal to ask in."""
+    if order.replace or not sys.stdin.isatty():
+        if not order.replace:
+            console.print("To replace them: the same command with --yes.")
+        return order.replace
+    return Confirm.ask(f"Replace {count} grades?", console=console, default=False)
+
+
+def _finish(
+    marking: ClassGrading,
+    grading: Grading,
+    intake: Submissions,
+    console: Console,
+    deadline: Deadline | None,
+    publishes: bool,
+) -> int:
+    every = [_writable(entry, marking, deadline) for _, entry in sorted(marking.entries.items())]
+    faults = [entry for entry in every if entry.final is None]
+    entries = [entry for entry in every if entry.final is not None]
+    folder = marking.results.folder
+    write_gradebook(folder, marking.exercise, entries, deadline.due if deadline else None)
+    asked = [Skipped(", ".join(question.files), str(question)) for question in intake.questions]
+    misconceptions = grouped(entries, _signatures(grading, entries, console))
+    skipped = [*asked, *intake.skipped]
+    write_durably(folder / "index.html", overview_page(marking.exercise, entries, skipped, faults, misconceptions))
+    others = marking.results.others({entry.student.id for entry in every})
+    if others:
+        console.print(f"of an earlier run, left as they are: {', '.join(others)}", style="yellow")
+    show_result(console, entries, faults, intake.questions)
+    if publishes:
+        console.print(f"One zip per student: {publish(folder, entries)}", soft_wrap=True, markup=False)
+    console.print(f"Open {folder / 'index.html'}.", soft_wrap=True, markup=False)
+    return FAULTS if faults else QUESTIONS if intake.questions else DONE
+
+
+def _read(intake: Submissions, exercise: Exercise) -> tuple[dict[str, Submission], list[tuple[HandedIn, str]]]:
+    """Read the submissions, by student. A file that breaks its reader is listed apart, and stops nobody else's."""
+    submissions, unreadable = {}, []
+    for one in intake.handed_in:
+        try:
+            submissions[one.student.id] = read(str(one.file.path), exercise)
+        except Exception as error:
+            unreadable.append((one, f"{type(error).__name__}: {error}"))
+    return submissions, unreadable
+
+
+def _unread(grading: Grading, one: HandedIn) -> Grade:
+    nothing = Submission(one.file.name, "", grading.runner.exercise.file_name, "", None)
+    return host_error(grading.runner, nothing, "it could not be read")
+
+
+def _writable(entry: Entry, marking: ClassGrading, deadline: Deadline | None) -> Entry:
+    """Return the entry, as a `host-error` if the gradebook's files can't hold it: they must not fail for the class."""
+    try:
+        gradebook(marking.results.folder, marking.exercise, [entry], deadline.due if deadline else None)
+    except Exception as error:
+        return marking.give_up(entry, not_written(error))
+    return entry
+
+
+def _signatures(grading: Grading, entries: Sequence[Entry], console: Console) -> tuple[Signature, ...]:
+    if all(entry.grade.full_marks or entry.grade.outcome != "graded" for entry in entries):
+        return ()
+    with console.status("finding out how the usual mistakes fail"):
+        return signatures(grading, [failures_of(entry.grade).keys() for entry in entries])
+
+
+@contextlib.contextmanager
+def _backend(grading: Grading, order: ClassRequest) -> Iterator[Backend]:
+    if order.scheduler:
+        from grader.classroom.dask import dask_backend
+
+        with dask_backend(grading, order.scheduler) as workers:
+            yield workers
+    else:
+        yield LocalBackend(grading, order.jobs or at_once(grading.runner.middleware))
+
+
+@contextlib.contextmanager
+def _ended_by_signals() -> Iterator[None]:
+    """SIGTERM, which a machine sends that shuts down, ends a run as cleanly as Ctrl-C."""
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    former = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, former)

@@ -1,0 +1,213 @@
+"""Finds out who handed in what: in a folder, a zip, a learning platform's download, or by a CSV file."""
+
+from __future__ import annotations
+
+import os
+import stat
+import zipfile
+import zlib
+from collections.abc import Iterator
+from datetime import datetime, timezone
+from pathlib import Path, PurePosixPath
+
+from grader.classroom import Skipped, Student
+from grader.classroom.handed_in import (
+    SUFFIXES,
+    File,
+    HandedIn,
+    Question,
+    Sorted,
+    Submissions,
+    SubmissionsError,
+    moment,
+    student_id,
+    table_rows,
+)
+from grader.classroom.platforms import by_assignment, by_participant, by_user
+from grader.submission.reading import MOST_BYTES
+
+#: Made by operating systems, editors and Python, never by a student.
+NOISE = {"__MACOSX", "__pycache__", "Thumbs.db", "desktop.ini"}
+WHY_NOISE = "made by a program, not handed in"
+
+
+def is_noise(name: str) -> bool:
+    """Whether a file or folder of this name is of no interest."""
+    return name in NOISE or name.startswith(".")
+
+
+def walk(root: Path) -> Iterator[File | Skipped]:
+    """Every file below `root`, in order of names; symbolic links are not followed."""
+    for folder, folders, names in os.walk(root):
+        inside = Path(folder).relative_to(root)
+        for name in sorted([*folders, *names]):
+            if is_noise(name):
+                yield Skipped((inside / name).as_posix(), WHY_NOISE)
+        folders[:] = sorted(name for name in folders if not is_noise(name))
+        for name in sorted(names):
+            if not is_noise(name):
+                path = Path(folder, name)
+                yield File((inside / name).as_posix(), path, date_of(path), "the file's date")
+
+
+def date_of(path: Path) -> datetime | None:
+    """Return the file's date; an archive can give a file one that no calendar has."""
+    try:
+        return datetime.fromtimestamp(path.lstat().st_mtime, timezone.utc)
+    except (OSError, ValueError, OverflowError):
+        return None
+
+
+def by_student(files: list[File]) -> Sorted:
+    """STUDENT.py, or a folder a student with a file in it."""
+    found = []
+    for file in files:
+        top = file.parts[0]
+        name = top if len(file.parts) > 1 else top.rpartition(".")[0] or top
+        found.append((Student(student_id(name), name if name != student_id(name) else ""), file))
+    return Sorted("a folder with a file or a folder a student", tuple(found))
+
+
+NEEDED = ("file", "student")
+KNOWN = (*NEEDED, "name", "email", "submitted")
+
+
+def by_row(table: Path) -> Sorted:
+    """The files that the rows name, found from the CSV file's folder. Raises `SubmissionsError` for a row with a
+    mistake.
+
+    Columns beyond those known are kept for each student, as their learning platform's.
+    """
+    found, skipped = [], []
+    for number, row in table_rows(table, NEEDED):
+        if not row["student"] or not row["file"]:
+            raise SubmissionsError(
+                f"{table}:{number}: file = {row['file']!r}, student = {row['student']!r}. Give both."
+            )
+        path = table.parent / row["file"]
+        if not path.is_file() and not path.is_symlink():
+            skipped.append(Skipped(row["file"], f"line {number} names it, but there is no such file"))
+            continue
+        if row.get("submitted"):
+            date, told_by = moment(row["submitted"]), "the CSV file"
+            if date is None:
+                given = row["submitted"]
+                raise SubmissionsError(f"{table}:{number}: submitted = {given!r}. Write it as 2026-11-22 23:59.")
+        else:
+            date, told_by = date_of(path), "the file's date"
+        lms = {column: value for column, value in row.items() if column not in KNOWN}
+        student = Student(student_id(row["student"]), row.get("name", ""), row.get("email", ""), lms)
+        found.append((student, File(row["file"], path, date, told_by)))
+    return Sorted(f"the files that {table.name} names", tuple(found), tuple(skipped))
+
+
+#: A thousand students with as many files as they like.
+MOST_FILES = 20_000
+MOST_BYTES_IN_ALL = 2_000_000_000
+
+#: A little more than a submission may have: reading it says what is wrong with a larger one.
+MOST_BYTES_OF_ONE = max(MOST_BYTES.values()) + 1
+
+BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError, OSError, ValueError)
+
+
+def unpacked(archive: Path, into: Path) -> Iterator[File | Skipped]:
+    """The files in `archive` that can be submissions, written into the folder `into` under numbers.
+
+    Raises `SubmissionsError` when it is no zip, or holds more than any class hands in.
+    """
+    try:
+        opened = zipfile.ZipFile(archive)
+    except BROKEN as error:
+        raise SubmissionsError(
+            f"{archive}: it is no zip that can be read: {error}. Was the download cut off?"
+        ) from None
+    with opened:
+        entries = [entry for entry in opened.infolist() if not entry.is_dir()]
+        if len(entries) > MOST_FILES:
+            raise SubmissionsError(f"{archive}: it holds {len(entries):,} files, more than {MOST_FILES:,}.")
+        left = MOST_BYTES_IN_ALL
+        for number, entry in enumerate(sorted(entries, key=lambda entry: entry.filename)):
+            name = _name(entry)
+            why = _why_not(entry, name)
+            if why:
+                yield Skipped(name, why)
+                continue
+            path = into / f"{number:05}{PurePosixPath(name).suffix}"
+            try:
+                with opened.open(entry) as packed:
+                    content = packed.read(min(MOST_BYTES_OF_ONE, left + 1))
+            except BROKEN as error:
+                yield Skipped(name, f"it can't be read: {error}")
+                continue
+            left -= len(content)
+            if left < 0:
+                raise SubmissionsError(f"{archive}: unpacked, it is larger than {MOST_BYTES_IN_ALL // 10**9} GB.")
+            path.write_bytes(content)
+            yield File(name, path, _date(entry), "the zip file")
+
+
+def _name(entry: zipfile.ZipInfo) -> str:
+    parts = PurePosixPath(entry.filename.replace("\\", "/")).parts
+    return "/".join(part for part in parts if part not in ("/", "..")) or "nameless"
+
+
+def _why_not(entry: zipfile.ZipInfo, name: str) -> str:
+    """Why an entry is left out, or nothing."""
+    if any(is_noise(part) for part in name.split("/")):
+        return WHY_NOISE
+    if stat.S_ISLNK(entry.external_attr >> 16):
+        return "a symbolic link, not a file"
+    if entry.flag_bits & 1:
+        return "it is encrypted"
+    # nbgrader's time stamps are no submissions, but they tell when one was handed in.
+    return "" if name.endswith((*SUFFIXES, "/timestamp.txt")) else f"not one of {', '.join(SUFFIXES)}"
+
+
+def _date(entry: zipfile.ZipInfo) -> datetime | None:
+    """A zip tells the local time of whoever made it, without a zone: taken as this machine's."""
+    try:
+        return datetime(*entry.date_time).astimezone()
+    except (ValueError, OverflowError, OSError):
+        return None
+
+
+def collect(source: Path, exercise: str, unpack_into: Path) -> Submissions:
+    """What the class handed in, from a folder, a zip or a CSV file; as which of them it reads is seen from the names.
+
+    A zip's files are written into the folder `unpack_into`, which has to be empty. Raises `SubmissionsError` where
+    there is nothing to grade at all.
+    """
+    if not source.exists():
+        raise SubmissionsError(f"{source}: there is no such file or folder.")
+    if source.suffix == ".csv":
+        return _chosen(by_row(source), ())
+    found = list(walk(source) if source.is_dir() else unpacked(source, unpack_into))
+    files = [file for file in found if isinstance(file, File)]
+    left_out = tuple(skipped for skipped in found if isinstance(skipped, Skipped))
+    root = source.resolve().name.removesuffix(".zip")
+    return _chosen(
+        by_participant(files) or by_assignment(files, root, exercise) or by_user(files) or by_student(files), left_out
+    )
+
+
+def _chosen(files: Sorted, left_out: tuple[Skipped, ...]) -> Submissions:
+    """One file a student; where there are several, it is a question and never a guess."""
+    skipped = [*left_out, *files.skipped]
+    candidates: dict[str, tuple[Student, list[File]]] = {}
+    for student, file in files.files:
+        if file.can_be_graded:
+            candidates.setdefault(student.id, (student, []))[1].append(file)
+        else:
+            skipped.append(Skipped(file.name, f"not one of {', '.join(SUFFIXES)}"))
+    handed_in, questions = [], []
+    for _, (student, theirs) in sorted(candidates.items()):
+        if len(theirs) == 1:
+            handed_in.append(HandedIn(student, theirs[0]))
+        else:
+            questions.append(Question(student, tuple(file.name for file in theirs)))
+    if not candidates:
+        kinds = ", ".join(SUFFIXES)
+        told = "".join(f"\n  {skip.file}: {skip.why}" for skip in skipped[:10])
+        raise SubmissionsError(f"There is no submission in it: no file that ends with one of {kinds}.{told}")
+    return Submissions(files.kind, tuple(handed_in), tuple(sorted(skipped, key=lambda s: s.file)), tuple(questions))

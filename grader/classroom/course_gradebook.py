@@ -1,0 +1,181 @@
+"""The gradebook of a course, as a table and as a page: a row per student, a column per exercise."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from urllib.parse import quote
+
+from grader.classroom.gradebook import Cell, csv_text
+from grader.classroom.overview import OUTCOMES, Distribution, Tally, distribution, tallies
+from grader.grading.entry import Entry, Student
+from grader.report.as_json import from_json
+from grader.report.pages import render
+
+
+@dataclass(frozen=True)
+class GradedExercise:
+    """One exercise that a class was graded for: `entries` by the student's id, `points` is full marks."""
+
+    name: str
+    title: str
+    points: float
+    entries: Mapping[str, Entry]
+
+
+@dataclass(frozen=True)
+class CourseRow:
+    """One student in all exercises: `entries` has one per exercise, None where nothing was handed in.
+
+    `earned` and `of` are points so far. One without a submission counts as 0 of its points; one that could not be
+    graded counts neither way.
+    """
+
+    student: Student
+    entries: tuple[Entry | None, ...]
+    earned: float
+    of: float
+
+    @property
+    def percent(self) -> float:
+        """Points so far, in percent of those there were."""
+        return 100 * self.earned / self.of if self.of else 0.0
+
+
+def graded_exercises(
+    results: Path, order: Sequence[str] = (), titles: Mapping[str, str] | None = None
+) -> tuple[GradedExercise, ...]:
+    """Every exercise that has grades in `results/EXERCISE/STUDENT/grade.json`.
+
+    First those of `order`, in that order, then all others by name. A grade that can't be read is left out, as `spinbook
+    grade` grades it again.
+    """
+    names = {file.parents[1].name for file in results.glob("*/*/grade.json")}
+    ordered = [*(name for name in order if name in names), *sorted(names - set(order))]
+    found = [_graded_exercise(results / name, (titles or {}).get(name, name)) for name in ordered]
+    return tuple(exercise for exercise in found if exercise.entries)
+
+
+def _graded_exercise(folder: Path, title: str) -> GradedExercise:
+    read = [_entry(file) for file in sorted(folder.glob("*/grade.json"))]
+    entries = {entry.student.id: entry for entry in read if entry}
+    points = max((entry.grade.points for entry in entries.values()), default=0.0)
+    return GradedExercise(folder.name, title, points, entries)
+
+
+def _entry(file: Path) -> Entry | None:
+    try:
+        return from_json(file.read_text(encoding="utf-8"))[0]
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return None
+
+
+def course_rows(exercises: Sequence[GradedExercise]) -> tuple[CourseRow, ...]:
+    """A row per student who handed in anything, by name."""
+    students: dict[str, Student] = {}
+    for exercise in exercises:
+        for who, entry in exercise.entries.items():
+            if who not in students or not students[who].name:
+                students[who] = entry.student
+    rows = [_row(student, exercises) for student in students.values()]
+    return tuple(sorted(rows, key=lambda row: (row.student.name or row.student.id).casefold()))
+
+
+def _row(student: Student, exercises: Sequence[GradedExercise]) -> CourseRow:
+    entries = tuple(exercise.entries.get(student.id) for exercise in exercises)
+    counted = [
+        (entry.final if entry and entry.final is not None else 0.0, exercise.points)
+        for exercise, entry in zip(exercises, entries, strict=True)
+        if entry is None or entry.final is not None
+    ]
+    return CourseRow(student, entries, sum(got for got, _ in counted), sum(most for _, most in counted))
+
+
+def course_csv(exercises: Sequence[GradedExercise], rows: Sequence[CourseRow]) -> str:
+    """The gradebook as CSV: student, name, email, a column per exercise, points so far, of how many, percent."""
+    header = ["student", "name", "email", *(exercise.name for exercise in exercises), "points so far", "of", "percent"]
+    table: list[list[Cell]] = []
+    for row in rows:
+        points: list[Cell] = [entry.final if entry else None for entry in row.entries]
+        student = row.student
+        table.append([student.id, student.name, student.email, *points, row.earned, row.of, round(row.percent, 1)])
+    return csv_text(header, table)
+
+
+#: How many checks are shown that the class struggles with.
+MOST_SHOWN = 10
+
+
+@dataclass(frozen=True)
+class Column:
+    """One exercise: how many handed in, how they did on average, and how many have full marks."""
+
+    exercise: GradedExercise
+    page: str
+    handed_in: int
+    mean: float
+    full: int
+
+
+@dataclass(frozen=True)
+class Struggle:
+    """A check that many students fail, and the exercise that it belongs to."""
+
+    column: Column
+    tally: Tally
+
+
+def course_page(title: str, exercises: Sequence[GradedExercise], rows: Sequence[CourseRow]) -> str:
+    """The page `results/index.html` of a course, one HTML file.
+
+    Its links lead to `EXERCISE/index.html` and `EXERCISE/STUDENT/feedback.html` next to it.
+    """
+    columns = [column_of(exercise) for exercise in exercises]
+    return render(
+        "classroom/course.html",
+        script=_script(),
+        title=title,
+        columns=columns,
+        rows=rows,
+        most=sum(exercise.points for exercise in exercises),
+        distribution=points_so_far(exercises, rows),
+        struggles=struggles(columns),
+        outcomes=OUTCOMES,
+        feedback_of=feedback_of,
+    )
+
+
+def column_of(exercise: GradedExercise) -> Column:
+    """What the page says of one exercise."""
+    finals = [entry.final for entry in exercise.entries.values() if entry.final is not None]
+    return Column(
+        exercise=exercise,
+        page=f"{quote(exercise.name, safe='')}/index.html",
+        handed_in=len(exercise.entries),
+        mean=sum(finals) / len(finals) if finals else 0.0,
+        full=sum(final >= exercise.points for final in finals),
+    )
+
+
+def points_so_far(exercises: Sequence[GradedExercise], rows: Sequence[CourseRow]) -> Distribution | None:
+    """How the class's points so far are spread."""
+    most = sum(exercise.points for exercise in exercises)
+    return distribution([row.earned for row in rows], most) if most else None
+
+
+def struggles(columns: Sequence[Column]) -> tuple[Struggle, ...]:
+    """The checks of all exercises that the largest part of those who were graded fail, worst first."""
+    found = [Struggle(column, tally) for column in columns for tally in tallies(list(column.exercise.entries.values()))]
+    return tuple(sorted(found, key=lambda one: -one.tally.share)[:MOST_SHOWN])
+
+
+def feedback_of(exercise: GradedExercise, row: CourseRow) -> str:
+    """Where a student's page for an exercise is, as seen from the course's."""
+    return f"{quote(exercise.name, safe='')}/{quote(row.student.id, safe='')}/feedback.html"
+
+
+@cache
+def _script() -> str:
+    return (Path(__file__).parent / "sort.js").read_text(encoding="utf-8")

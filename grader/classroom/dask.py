@@ -1,0 +1,192 @@
+"""Grades submissions on a Dask cluster: what is sent, and what a worker does with it."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import tempfile
+import threading
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.classroom.local import own_core, picture
+from grader.classroom.request import Graded, NoCluster, host_error
+from grader.classroom.results import grade_key
+from grader.exercise import Exercise, load
+from grader.grading import Options, grading_of
+from grader.grading.grading import Grading
+from grader.grading.reference import versions
+from grader.sandbox import Middleware, choose_middleware
+from grader.submission import Submission
+from grader.workers import WorkerPool
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+
+@dataclass(frozen=True)
+class ExerciseFiles:
+    """The files that grading needs, by their paths below a course's folder."""
+
+    exercise: str
+    files: dict[str, bytes]
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of all of it."""
+        total = hashlib.sha256(self.exercise.encode())
+        for name, content in sorted(self.files.items()):
+            total.update(f"{name} {len(content)}\n".encode())
+            total.update(content)
+        return total.hexdigest()
+
+    def unpack(self, into: Path) -> Path:
+        """Write the files into the folder `into`; returns the exercise's folder."""
+        for name, content in self.files.items():
+            file = into / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(content)
+        return into / "exercises" / self.exercise
+
+
+def pack_exercise(exercise: Exercise) -> ExerciseFiles:
+    """The exercise's folder, and of its solutions the author's own."""
+    name = exercise.name
+    found = [file for file in sorted(exercise.folder.rglob("*")) if file.is_file() and "__pycache__" not in file.parts]
+    files = {f"exercises/{name}/{file.relative_to(exercise.folder).as_posix()}": file.read_bytes() for file in found}
+    if exercise.solution_file:
+        files[f"solutions/{name}/solution.py"] = exercise.solution_file.read_bytes()
+    return ExerciseFiles(name, files)
+
+
+@dataclass(frozen=True)
+class PreparedGrading:
+    """One exercise, ready to be graded in this process for as long as that lives. `holds` is closed after it."""
+
+    grading: Grading
+    key: str
+    holds: contextlib.ExitStack
+
+
+_ready: dict[str, PreparedGrading] = {}
+_lock = threading.Lock()
+
+
+def describe_worker(middleware: Middleware) -> dict[str, str]:
+    """What grades depend on here, besides the exercise. Raises `MiddlewareUnavailable`."""
+    return versions(choose_middleware(middleware).middleware)
+
+
+def grade_on_worker(parcel: ExerciseFiles, options: Options, key: str, who: str, submission: Submission) -> Graded:
+    """One submission's grade, without recordings, and the picture of it.
+
+    `key` is that of whoever asks: where grades would depend on something else here, there is none, and it is told.
+    """
+    bench = _prepared_grading(parcel, options)
+    runner = bench.grading.runner
+    if bench.key != key:
+        told = f"a worker of the cluster grades otherwise than this machine: {versions(runner.middleware)}"
+        return Graded(who, host_error(runner, submission, told), None)
+    with own_core() as core:
+        runner = replace(runner, options=replace(options, parallel=1, core=core))
+        grade = replace(bench.grading, runner=runner).grade(submission)
+    return Graded(who, replace(grade, recordings={}, references={}), picture(grade, runner.exercise))
+
+
+def _prepared_grading(parcel: ExerciseFiles, options: Options) -> PreparedGrading:
+    """Made ready by whichever task comes first, for all that follow; only the newest exercise is kept."""
+    name = f"{parcel.digest} {options}"
+    with _lock:
+        if name not in _ready:
+            while _ready:
+                _ready.popitem()[1].holds.close()
+            with contextlib.ExitStack() as holds:
+                folder = holds.enter_context(tempfile.TemporaryDirectory(prefix="spinbook-exercise-"))
+                workers = holds.enter_context(WorkerPool(options.middleware))
+                grading = grading_of(load(parcel.unpack(Path(folder))), options, workers)
+                _ready[name] = PreparedGrading(grading, grade_key(grading), holds.pop_all())
+        return _ready[name]
+
+
+# Each worker has the same version of this software and of ROS 2, and gets the exercise with the first task. What
+# `dask.distributed` does with tasks of a worker that has died is in
+# https://distributed.dask.org/en/stable/resilience.html.
+
+
+#: How long a scheduler has to answer, and then how long there may be no worker, in seconds.
+SCHEDULER_S, WORKER_S = 10.0, 60.0
+
+
+@dataclass(frozen=True)
+class DaskBackend:
+    """The workers of one scheduler. Each takes as many submissions at once as it has threads."""
+
+    grading: Grading
+    client: Client
+
+    @property
+    def key(self) -> str:
+        """See `Backend`."""
+        return grade_key(self.grading)
+
+    def mark(self, submissions: Mapping[str, Submission]) -> Iterator[Graded]:
+        """See `Backend`. A worker that dies costs another try; after four deaths it is a fault of ours."""
+        from distributed import as_completed
+
+        if not submissions:
+            return
+        runner = self.grading.runner
+        parcel = pack_exercise(runner.exercise)
+        asked = {
+            self.client.submit(grade_on_worker, parcel, runner.options, self.key, who, submission, pure=False): who
+            for who, submission in submissions.items()
+        }
+        try:
+            for future in as_completed(list(asked), loop=self.client.loop):
+                who = asked[future]
+                error = future.exception()
+                if error is None:
+                    yield future.result()
+                else:
+                    told = f"the cluster could not grade it: {type(error).__name__}: {error}"
+                    grade = host_error(runner, submissions[who], told)
+                    yield Graded(who, grade, None)
+        finally:
+            self.client.cancel(list(asked))
+
+
+@contextlib.contextmanager
+def dask_backend(grading: Grading, address: str) -> Iterator[DaskBackend]:
+    """The cluster whose scheduler is at `address`, such as tcp://10.0.0.5:8786, with a worker at least.
+
+    Raises `NoCluster` where there is none, or where a worker's versions are not this machine's.
+    """
+    try:
+        from distributed import Client
+    except ImportError:
+        raise NoCluster("Dask is not installed here: pip install 'spinbook[cluster]'") from None
+    try:
+        client = Client(address, timeout=SCHEDULER_S, set_as_default=False)
+    except (OSError, ValueError, TimeoutError) as error:
+        told = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise NoCluster(f"--scheduler {address}: nobody answers there as a Dask scheduler does: {told}") from None
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=WORKER_S)
+        except TimeoutError:
+            raise NoCluster(f"--scheduler {address}: it has no worker. Start some: dask worker {address}") from None
+        middleware = grading.runner.middleware
+        _same_versions(versions(middleware), client.run(describe_worker, middleware, on_error="return"))
+        yield DaskBackend(grading, client)
+
+
+def _same_versions(ours: Mapping[str, str], told: Mapping[str, object]) -> None:
+    for worker, theirs in sorted(told.items()):
+        if not isinstance(theirs, dict):
+            raise NoCluster(f"The worker {worker} can't grade: {type(theirs).__name__}: {theirs}")
+        if differs := [
+            f"{name} {theirs.get(name)}, here {ours[name]}" for name in ours if theirs.get(name) != ours[name]
+        ]:
+            raise NoCluster(f"The worker {worker} would grade otherwise: {'; '.join(differs)}. Install the same there.")

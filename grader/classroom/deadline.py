@@ -1,0 +1,216 @@
+"""Deadlines: the table `[deadline]` of exercise.toml, exceptions per student, and what a score counts after them."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import date, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+from grader.classroom import Adjustment, Entry
+from grader.classroom.handed_in import SubmissionsError, moment, table_rows
+from grader.exercise import Exercise, ExerciseError
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+UNITS = {
+    "minute": timedelta(minutes=1),
+    "hour": timedelta(hours=1),
+    "day": timedelta(days=1),
+    "week": timedelta(weeks=1),
+}
+LENGTH = re.compile(r"(\d+) *(minute|hour|day|week)s?")
+RULE = re.compile(r"(\d+(?:\.\d+)?) *% +(?:an?|per) +(minute|hour|day|week)(?: +up +to +(\d+(?:\.\d+)?) *%)?")
+
+KEYS = ("due", "grace", "penalty", "closes")
+
+
+@dataclass(frozen=True)
+class Deadline:
+    """When work is due and what lateness costs.
+
+    Work that comes within `grace` after `due` is on time. Later work loses `percent` of its score for each `unit` that
+    has begun since `due`, at most `at_most` percent; after `closes` it loses everything.
+    """
+
+    due: datetime
+    grace: timedelta = timedelta()
+    percent: float = 0.0
+    unit: timedelta = UNITS["day"]
+    at_most: float = 100.0
+    closes: datetime | None = None
+
+    def lost(self, submitted: datetime, due: datetime | None = None) -> float:
+        """How many percent of its score work loses that was handed in then; `due` is a later due date of one student's.
+
+        A student's own due date moves the closing, too, where it lies before.
+        """
+        due = due or self.due
+        if self.closes and submitted > max(self.closes, due):
+            return 100.0
+        if submitted <= due + self.grace:
+            return 0.0
+        begun = -((due - submitted) // self.unit)
+        return min(self.at_most, self.percent * begun)
+
+
+def deadline_of(exercise: Exercise) -> Deadline | None:
+    """What exercise.toml says of it; None where it says nothing. Raises `ExerciseError` where that is not clear."""
+    file = exercise.folder / "exercise.toml"
+    entries = tomllib.loads(file.read_text(encoding="utf-8")).get("deadline")
+    if entries is None:
+        return None
+    if not isinstance(entries, dict):
+        raise ExerciseError(
+            file, f"deadline = {entries!r}", "Write a table, [deadline], with due = 2026-11-22T23:59:00."
+        )
+    for key in entries:
+        if key not in KEYS:
+            raise ExerciseError(file, f"[deadline] has {key!r}", f"It may have {', '.join(KEYS)}.")
+    if "due" not in entries:
+        raise ExerciseError(file, "[deadline] has no due", "Write due = 2026-11-22T23:59:00+01:00.")
+    percent, unit, at_most = _rule(entries.get("penalty", "0 % a day"), file)
+    return Deadline(
+        due=_moment(entries["due"], "due", file),
+        grace=_length(entries.get("grace", "0 minutes"), file),
+        percent=percent,
+        unit=unit,
+        at_most=at_most,
+        closes=_moment(entries["closes"], "closes", file) if "closes" in entries else None,
+    )
+
+
+def _moment(value: Any, key: str, file: Path) -> datetime:
+    if isinstance(value, datetime):
+        return value if value.tzinfo else value.astimezone()
+    if isinstance(value, date):
+        return datetime(value.year, value.month, value.day, 23, 59, 59).astimezone()
+    raise ExerciseError(file, f"{key} = {value!r}", f"Write a time without quotes, {key} = 2026-11-22T23:59:00+01:00.")
+
+
+def _length(value: Any, file: Path) -> timedelta:
+    match = LENGTH.fullmatch(value.strip()) if isinstance(value, str) else None
+    if not match:
+        raise ExerciseError(file, f"grace = {value!r}", "Write a number and a unit, such as grace = '15 minutes'.")
+    return int(match[1]) * UNITS[match[2]]
+
+
+def _rule(value: Any, file: Path) -> tuple[float, timedelta, float]:
+    match = RULE.fullmatch(value.strip()) if isinstance(value, str) else None
+    if not match or float(match[1]) > 100 or float(match[3] or 0) > 100:
+        raise ExerciseError(file, f"penalty = {value!r}", "Write it so: penalty = '10 % a day up to 50 %'.")
+    return float(match[1]), UNITS[match[2]], float(match[3] or 100)
+
+
+NUMBER = re.compile(r"[+-]?\d+(\.\d+)?")
+
+
+class OverridesError(Exception):
+    """Raised for a row with a mistake; tells the instructor which."""
+
+
+@dataclass(frozen=True)
+class Override:
+    """One row: `points` that count in place of the score, or `added` to it; or another `due` date."""
+
+    student: str
+    reason: str
+    points: float | None = None
+    added: float | None = None
+    due: datetime | None = None
+
+
+def overrides_in(file: Path, students: set[str]) -> dict[str, tuple[Override, ...]]:
+    """The rows by student, each of whom must be one of `students`.
+
+    Columns: student, reason, and points or due. `85` are the points that count; `+5` and `-5` are added to the score.
+    Raises `OverridesError`.
+    """
+    found: dict[str, tuple[Override, ...]] = {}
+    try:
+        for number, row in table_rows(file, ("student", "reason")):
+            override = _override(row, f"{file}:{number}", students)
+            found[override.student] = (*found.get(override.student, ()), override)
+    except SubmissionsError as error:
+        raise OverridesError(str(error)) from None
+    return found
+
+
+def _override(row: dict[str, str], place: str, students: set[str]) -> Override:
+    student, points, due = row["student"], row.get("points", ""), row.get("due", "")
+    if student not in students:
+        raise OverridesError(f"{place}: nobody is called {student!r}. Write the name of a folder in the results.")
+    if not row["reason"]:
+        raise OverridesError(f"{place}: there is no reason. Write it down; the student will read it.")
+    if bool(points) == bool(due):
+        raise OverridesError(f"{place}: points = {points!r}, due = {due!r}. Give one of the two.")
+    if due:
+        date = moment(due)
+        if date is None:
+            raise OverridesError(f"{place}: due = {due!r}. Write it as 2026-11-22 23:59.")
+        return Override(student, row["reason"], due=date)
+    if not NUMBER.fullmatch(points):
+        raise OverridesError(f"{place}: points = {points!r}. Write 85 for what counts, +5 or -5 for what is added.")
+    if points[0] in "+-":
+        return Override(student, row["reason"], added=float(points))
+    return Override(student, row["reason"], points=float(points))
+
+
+@dataclass(frozen=True)
+class Adjusting:
+    """The deadline and the instructor's overrides, applied to entries."""
+
+    deadline: Deadline | None = None
+    overrides: Mapping[str, tuple[Override, ...]] = field(default_factory=dict)
+
+    def __call__(self, entry: Entry) -> tuple[Adjustment, ...]:
+        """What is added to or taken from this entry's score, with reasons. Its own adjustments don't count.
+
+        Lateness is that of the hand-in, whenever it is graded. Points that the instructor sets are what counts, late
+        or not; of several rows for one student the last that sets points, or a due date, holds.
+        """
+        theirs = self.overrides.get(entry.student.id, ())
+        fixed = [override for override in theirs if override.points is not None]
+        if fixed:
+            last = fixed[-1]
+            assert last.points is not None
+            return (Adjustment("override", last.points - entry.grade.score, last.reason),)
+        extended = [override for override in theirs if override.due]
+        made = [Adjustment("override", 0.0, f"due {told(one.due)}: {one.reason}") for one in extended[-1:] if one.due]
+        if late := self._late(entry, extended[-1].due if extended else None):
+            made.append(late)
+        made += [Adjustment("override", one.added, one.reason) for one in theirs if one.added is not None]
+        return tuple(made)
+
+    def _late(self, entry: Entry, due: datetime | None) -> Adjustment | None:
+        if not self.deadline or not entry.submitted or entry.grade.outcome == "host-error":
+            return None
+        percent = self.deadline.lost(entry.submitted, due)
+        if not percent:
+            return None
+        behind = entry.submitted - (due or self.deadline.due)
+        reason = (
+            f"handed in {length(behind)} late, by {entry.submitted_from}: {percent:g} % of {entry.grade.score:g} points"
+        )
+        return Adjustment("late", -round(entry.grade.score * percent / 100, 6), reason)
+
+
+def told(moment: datetime | None) -> str:
+    """A time for people, with its zone."""
+    return moment.strftime("%Y-%m-%d %H:%M %z") if moment else ""
+
+
+def length(time: timedelta) -> str:
+    """`2 days 3 h`, `3 h 20 min` or `5 min`; a minute that has begun counts."""
+    minutes = -(-time // timedelta(minutes=1))
+    days, minutes = divmod(minutes, 24 * 60)
+    hours, minutes = divmod(minutes, 60)
+    if days:
+        return f"{days} day{'s' if days > 1 else ''} {hours} h"
+    return f"{hours} h {minutes} min" if hours else f"{minutes} min"

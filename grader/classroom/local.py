@@ -1,0 +1,138 @@
+"""Grades many submissions on this machine."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import queue
+import tempfile
+import threading
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from grader.classroom.request import Graded, host_error
+from grader.classroom.results import grade_key
+from grader.exercise import Exercise, ExerciseError
+from grader.grading import Grade
+from grader.grading.grading import Grading
+from grader.grading.running import WorkStealing
+from grader.report.feedback_plot import feedback_plot
+from grader.sandbox import Middleware
+from grader.submission import Submission
+
+
+def picture(grade: Grade, exercise: Exercise) -> str | None:
+    """What the node published over what the solution did, as SVG; None where there is nothing to draw."""
+    try:
+        return feedback_plot(grade, exercise)
+    except Exception:  # of data that a student chose; a page without a picture is better than no page
+        return None
+
+
+#: How many submissions to grade at once on each core: grader and program wait for one another, and over Fast DDS both
+#: wait for the network most of the time.
+PER_CORE = {Middleware.LOCKSTEP: 2, Middleware.FASTDDS: 4}
+
+
+def at_once(middleware: Middleware) -> int:
+    """How many submissions to grade at once on this machine."""
+    return PER_CORE[middleware] * len(os.sched_getaffinity(0))
+
+
+@dataclass(frozen=True)
+class LocalBackend:
+    """One worker pool on this machine. Each submission goes through its scenarios one after the other, on one core.
+
+    Once no submission waits any more, whoever is done helps with the scenarios of those under way.
+    """
+
+    grading: Grading
+    jobs: int
+
+    @property
+    def key(self) -> str:
+        """See `Backend`."""
+        return grade_key(self.grading)
+
+    def mark(self, submissions: Mapping[str, Submission]) -> Iterator[Graded]:
+        """See `Backend`."""
+        waiting: queue.SimpleQueue[tuple[str, Submission]] = queue.SimpleQueue()
+        done: queue.SimpleQueue[Graded | BaseException] = queue.SimpleQueue()
+        for item in submissions.items():
+            waiting.put(item)
+        given_up, helping = threading.Event(), WorkStealing()
+        threads = [
+            threading.Thread(target=self._work, args=(number, waiting, done, given_up, helping), daemon=True)
+            for number in range(self.jobs if submissions else 0)
+        ]
+        for thread in threads:
+            thread.start()
+        try:
+            for _ in submissions:
+                marked = done.get()
+                if isinstance(marked, BaseException):
+                    raise marked
+                yield marked
+        finally:
+            given_up.set()
+            helping.close()
+        for thread in threads:  # nothing is under way any more, if this is reached
+            thread.join()
+
+    def _work(
+        self,
+        number: int,
+        waiting: queue.SimpleQueue[tuple[str, Submission]],
+        done: queue.SimpleQueue[Graded | BaseException],
+        given_up: threading.Event,
+        helping: WorkStealing,
+    ) -> None:
+        cores = sorted(os.sched_getaffinity(0))
+        core = cores[number % len(cores)]
+        options = replace(self.grading.runner.options, parallel=1, core=core)
+        grading = replace(self.grading, runner=replace(self.grading.runner, options=options, helping=helping))
+        while not given_up.is_set():
+            try:
+                who, submission = waiting.get_nowait()
+            except queue.Empty:
+                helping.help(core)
+                return
+            try:
+                done.put(_marked(who, grading, submission))
+            except BaseException as stopped:  # the exercise's author's, or the run's end
+                done.put(stopped)
+                return
+
+
+def _marked(who: str, grading: Grading, submission: Submission) -> Graded:
+    """Grade one submission. A fault in the grader is this student's `host-error`, and stops nobody else's grading."""
+    try:
+        grade = grading.grade(submission)
+    except ExerciseError:
+        raise
+    except Exception as error:
+        return Graded(who, host_error(grading.runner, submission, f"{type(error).__name__}: {error}"), None)
+    return Graded(who, grade, picture(grade, grading.runner.exercise))
+
+
+@contextlib.contextmanager
+def own_core() -> Iterator[int]:
+    """A CPU to keep a program on. It is that of the first number that nobody on this machine holds: 0, 1, 2 …"""
+    folder = Path(tempfile.gettempdir()) / f"spinbook-cores-{os.getuid()}"
+    folder.mkdir(mode=0o700, exist_ok=True)
+    cores = sorted(os.sched_getaffinity(0))
+    for number in range(1024):
+        lock = os.open(folder / str(number), os.O_CREAT | os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW, 0o600)
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            os.close(lock)
+            continue
+        try:
+            yield cores[number % len(cores)]
+        finally:
+            os.close(lock)
+        return
+    yield cores[0]

@@ -1,0 +1,191 @@
+"""A class at a glance: the instructor's page."""
+
+from __future__ import annotations
+
+import statistics
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from urllib.parse import quote
+
+from grader.checking.verdict import Verdict
+from grader.classroom.misconceptions import Misconceptions
+from grader.exercise import Exercise
+from grader.grading.entry import Entry, Skipped
+from grader.report.as_json import STUDENTS
+from grader.report.pages import points, render
+
+OUTCOMES = {
+    "graded": "",
+    "did-not-start": "did not start",
+    "crashed": "crashed",
+    "timed-out": "hung",
+    "over-limit": "over a limit",
+    "host-error": "not graded",
+}
+
+
+@dataclass(frozen=True)
+class Row:
+    """One student's row."""
+
+    entry: Entry
+    name: str
+    page: str
+    outcome: str
+    failed: tuple[Verdict, ...]
+    blocked: int
+    mistakes: tuple[str, ...]
+
+    @property
+    def adjusted(self) -> float:
+        """All adjustments together, in points."""
+        return sum(adjustment.points for adjustment in self.entry.adjustments)
+
+
+@dataclass(frozen=True)
+class Tally:
+    """One check: how many students fail it, and for how many it can't be judged, in numbers and in percent."""
+
+    verdict: Verdict
+    failed: int
+    blocked: int
+    share: float
+
+
+def page_of(entry: Entry) -> str:
+    """Where a student's page lies, as seen from the instructor's."""
+    return f"{STUDENTS}/{quote(entry.student.id, safe='')}/feedback.html"
+
+
+def row(entry: Entry, misconceptions: Misconceptions) -> Row:
+    """What the page tells of `entry`."""
+    verdicts = entry.grade.verdicts
+    return Row(
+        entry=entry,
+        name=entry.student.name or entry.student.id,
+        page=page_of(entry),
+        outcome=OUTCOMES[entry.grade.outcome],
+        failed=tuple(verdict for verdict in verdicts if verdict.status == "failed"),
+        blocked=sum(verdict.status == "blocked" for verdict in verdicts),
+        mistakes=tuple(signature.sentence for signature in misconceptions.of(entry)),
+    )
+
+
+def tallies(entries: Sequence[Entry]) -> tuple[Tally, ...]:
+    """The checks that students fail, most failed first; of those who did not come through nothing is counted."""
+    graded = [entry.grade for entry in entries if entry.grade.outcome == "graded"]
+    checks = {verdict.name: verdict for grade in graded for verdict in grade.verdicts}
+    counted = []
+    for name, check in checks.items():
+        statuses = [verdict.status for grade in graded for verdict in grade.verdicts if verdict.name == name]
+        failed, blocked = statuses.count("failed"), statuses.count("blocked")
+        counted.append(Tally(check, failed, blocked, round(100 * failed / len(graded), 1)))
+    return tuple(
+        sorted((tally for tally in counted if tally.failed), key=lambda tally: (-tally.failed, -tally.blocked))
+    )
+
+
+BINS = 10
+
+#: In units of the picture.
+WIDTH, HEIGHT, TOP, BOTTOM, GAP = 640.0, 200.0, 24.0, 26.0, 6.0
+
+
+@dataclass(frozen=True)
+class Bar:
+    """One bar of the histogram: how many students got from `low` to `high` points, and where it is drawn."""
+
+    low: float
+    high: float
+    count: int
+    x: float
+    y: float
+    width: float
+    height: float
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """What may be said of the points of a class."""
+
+    count: int
+    mean: float
+    median: float
+    full: int
+    bars: tuple[Bar, ...]
+    said: str
+
+
+def distribution(scores: Sequence[float], most: float) -> Distribution | None:
+    """The distribution of `scores`, of which `most` is full marks; None of an empty class.
+
+    Ten bins of one width; the last holds full marks, and whoever has more.
+    """
+    if not scores:
+        return None
+    counts = [0] * BINS
+    for score in scores:
+        counts[min(BINS - 1, int(BINS * score / most))] += 1
+    bars = tuple(_bar(i, count, max(counts), most) for i, count in enumerate(counts))
+    told = [f"{bar.count} from {points(bar.low)} to {points(bar.high)}" for bar in bars if bar.count]
+    return Distribution(
+        count=len(scores),
+        mean=statistics.fmean(scores),
+        median=statistics.median(scores),
+        full=sum(score >= most for score in scores),
+        bars=bars,
+        said=f"Histogram of {len(scores)} students' points: " + ", ".join(told) + ".",
+    )
+
+
+def _bar(i: int, count: int, highest: int, most: float) -> Bar:
+    width = WIDTH / BINS
+    height = (HEIGHT - TOP - BOTTOM) * count / highest
+    y = HEIGHT - BOTTOM - height
+    return Bar(
+        i * most / BINS, (i + 1) * most / BINS, count, i * width + GAP / 2, round(y, 1), width - GAP, round(height, 1)
+    )
+
+
+def overview_page(
+    exercise: Exercise,
+    entries: Sequence[Entry],
+    skipped: Sequence[Skipped],
+    faults: Sequence[Entry],
+    misconceptions: Misconceptions,
+) -> str:
+    """The page `results/index.html`: how the class did, a row a student, which checks and mistakes cost most.
+
+    `entries` have a score; `faults` are those that have none, by a fault of ours. Each row opens
+    `students/STUDENT/feedback.html` beside the page. The page is one HTML file; its one script sorts the table,
+    which is in order without it, too.
+    """
+    faulty = [*faults, *(entry for entry in entries if entry.final is None and entry not in faults)]
+    scored = [entry for entry in entries if entry.final is not None]
+    rows = [row(entry, misconceptions) for entry in scored]
+    rows.sort(key=lambda row: (row.name.casefold(), row.entry.student.id))
+    broken = Counter(OUTCOMES[entry.grade.outcome] for entry in scored if entry.grade.outcome != "graded")
+    scores = [entry.final for entry in scored if entry.final is not None]
+    return render(
+        "classroom/overview.html",
+        script=_script(),
+        exercise=exercise,
+        rows=rows,
+        distribution=distribution(scores, scored[0].grade.points) if scored else None,
+        most=scored[0].grade.points if scored else exercise.points,
+        tallies=tallies(scored),
+        misconceptions=misconceptions,
+        broken=broken,
+        skipped=skipped,
+        faults=faulty,
+        page_of=page_of,
+        several=sum(len(misconceptions.of(entry)) > 1 for entry in scored),
+    )
+
+
+@cache
+def _script() -> str:
+    return (Path(__file__).parent / "sort.js").read_text(encoding="utf-8")

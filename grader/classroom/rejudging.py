@@ -1,0 +1,73 @@
+"""Judges stored recordings with changed checks: no program is run again, and nothing is replaced unasked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+from rich.console import Console
+from rich.text import Text
+
+from grader.classroom.class_run import difference
+from grader.classroom.handed_in import HandedIn, Submissions
+from grader.classroom.local import picture
+from grader.classroom.request import Graded
+from grader.classroom.results import ClassGrading, recordings_key
+from grader.grading.grading import Grading
+from grader.report.printable import printable
+from grader.submission import Submission
+
+
+@dataclass(frozen=True)
+class Rejudged:
+    """A student's new grade, and in words what is different."""
+
+    handed_in: HandedIn
+    marked: Graded
+    changed: str
+
+
+def rejudge(
+    marking: ClassGrading,
+    grading: Grading,
+    intake: Submissions,
+    submissions: Mapping[str, Submission],
+    console: Console,
+    may_replace: Callable[[int], bool],
+) -> None:
+    """Judge every student's stored recordings, print what is different, and replace grades if `may_replace` says so.
+
+    `may_replace` gets the number of grades that are different. Without recordings, or with recordings of another
+    submission, scenario or version, a student's grade stays as it is, and that is said.
+    """
+    found, missing = [], []
+    for one in intake.handed_in:
+        who = one.student.id
+        kept = marking.results.entry(who)
+        recordings = marking.results.recordings(who, recordings_key(grading, submissions[who]))
+        if kept is None or recordings is None:
+            missing.append(who)
+            continue
+        grade = grading.judge(submissions[who], recordings)
+        marked = Graded(who, replace(grade, seconds=kept[0].grade.seconds), picture(grade, marking.exercise))
+        found.append(Rejudged(one, marked, difference(kept[0].grade, grade)))
+    _tell(console, found, missing)
+    changed = sum(bool(one.changed) for one in found)
+    replaced = bool(changed) and may_replace(changed)
+    for new in found:
+        if replaced or not new.changed:
+            marking.keep(new.handed_in, new.marked, submissions[new.marked.who])
+    if changed and not replaced:
+        console.print("Nothing was replaced.")
+
+
+def _tell(console: Console, found: list[Rejudged], missing: list[str]) -> None:
+    for one in found:
+        if one.changed:
+            console.print(Text(printable(f"{one.marked.who}: {one.changed}")), soft_wrap=True)
+    same = sum(not one.changed for one in found)
+    console.print(f"{len(found)} judged again from their recordings, {same} with the same result.")
+    if missing:
+        names = ", ".join(missing)
+        told = f"no recordings that fit, so grade them without --rejudge: {names}"
+        console.print(Text(printable(told), style="yellow"), soft_wrap=True)

@@ -1,0 +1,81 @@
+"""What an instructor asks for, and what comes back for each submission."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from grader.grading import Grade, Options
+from grader.grading.reference import versions
+from grader.grading.running import ScenarioRunner
+from grader.submission import Submission
+
+
+@dataclass(frozen=True)
+class ClassRequest:
+    """A class to grade: where the submissions are, where the results go, and how.
+
+    `jobs` is how many submissions are graded at once, None for as many as suit
+    this machine. `regrade` names students whose submissions are graded again
+    though nothing has changed, `*` all of them. `overrides` is a CSV file, `scheduler` a Dask scheduler's address.
+    `rejudge` asks for new verdicts on stored recordings, and `replace` for keeping them unasked. `publish` asks for one
+    zip per student.
+    """
+
+    source: Path
+    out: Path
+    options: Options
+    jobs: int | None = None
+    regrade: tuple[str, ...] = ()
+    overrides: Path | None = None
+    scheduler: str = ""
+    rejudge: bool = False
+    replace: bool = False
+    publish: bool = False
+
+
+@dataclass(frozen=True)
+class Graded:
+    """One submission's grade, and the picture of it; `who` is the key under which it was given to be graded."""
+
+    who: str
+    grade: Grade
+    plot: str | None
+
+
+class NoCluster(Exception):
+    """Raised when the cluster can't be used; tells the instructor why."""
+
+
+class Backend(Protocol):
+    """Grades submissions side by side."""
+
+    @property
+    def key(self) -> str:
+        """The same as long as everything is that a grade depends on, beside the submission."""
+
+    def mark(self, submissions: Mapping[str, Submission]) -> Iterator[Graded]:
+        """The grade of each submission, in the order in which they are done.
+
+        A fault of ours or a machine's is a grade with the outcome `host-error`; nothing is raised for one submission.
+        When the iterator is closed, what is under way is given up.
+        """
+
+
+def host_error(runner: ScenarioRunner, submission: Submission, told: str) -> Grade:
+    """The grade without a score; `told` is for the instructor."""
+    return Grade(
+        exercise=runner.exercise.name,
+        submission=submission.name,
+        digest=submission.digest,
+        outcome="host-error",
+        message=f"This is not your fault: {told}",
+        score=0.0,
+        points=runner.exercise.points,
+        verdicts=(),
+        isolation=str(runner.isolation),
+        seed=runner.options.seed,
+        versions=versions(runner.middleware),
+    )

@@ -1,0 +1,300 @@
+"""The results of a class: what has to be graded again, what has not, and the folder that keeps them."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import gzip
+import hashlib
+import json
+import os
+import zlib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from grader.classroom import Adjustment, Entry
+from grader.classroom.handed_in import HandedIn, Submissions
+from grader.classroom.request import Backend, Graded
+from grader.exercise import Exercise
+from grader.files import write_bytes, write_durably
+from grader.grading.grading import Grading
+from grader.grading.reference import digest_of, versions
+from grader.recording import Recording
+from grader.recording.store import from_json as recordings_from_json
+from grader.recording.store import to_json as recordings_to_json
+from grader.report.as_json import STUDENTS, folder_of, from_json, to_json
+from grader.report.feedback import feedback_page
+from grader.submission import Submission
+
+#: In a student's folder: what was recorded, as JSON below a line with the key of what it depends on.
+RECORDINGS = "recordings.json.gz"
+
+
+class Busy(Exception):
+    """Raised when another grading is writing into the same folder."""
+
+
+class Results:
+    """One folder of results. Use it as a context manager: nobody else writes into it meanwhile."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._lock = -1
+
+    def entry(self, student: str) -> tuple[Entry, str] | None:
+        """What is kept of a student, and the key of the grade; None where nothing is, or nothing that can be read."""
+        try:
+            return from_json((folder_of(self.folder, student) / "grade.json").read_text(encoding="utf-8"))
+        except (OSError, ValueError, KeyError, TypeError, AttributeError):
+            return None
+
+    def plot(self, student: str) -> str | None:
+        """The picture that is kept of a student's run."""
+        try:
+            return (folder_of(self.folder, student) / "plot.svg").read_text(encoding="utf-8")
+        except (OSError, ValueError):
+            return None
+
+    def recordings(self, student: str, key: str) -> dict[str, Recording] | None:
+        """What is kept of a student's run, by scenario; None where nothing is kept under this key."""
+        try:
+            content = (folder_of(self.folder, student) / RECORDINGS).read_bytes()
+            first, _, text = gzip.decompress(content).decode().partition("\n")
+            return recordings_from_json(text) if first == key else None
+        except (OSError, EOFError, zlib.error, ValueError, KeyError, TypeError):
+            return None
+
+    def keep_recordings(self, student: str, key: str, recordings: dict[str, Recording]) -> None:
+        """Keep what was recorded of a student's run, so that changed checks can judge it."""
+        content = gzip.compress(f"{key}\n{recordings_to_json(recordings)}".encode(), mtime=0)
+        write_bytes(folder_of(self.folder, student) / RECORDINGS, content)
+
+    def write(self, entry: Entry, key: str, page: str, plot: str | None) -> None:
+        """Keep a student's entry. Whenever this is broken off, what is there is whole, or is made again."""
+        folder = folder_of(self.folder, entry.student.id)
+        text = to_json(entry, key)
+        try:
+            if (folder / "grade.json").read_text(encoding="utf-8") != text:
+                # What it vouches for is about to change.
+                (folder / "grade.json").unlink()
+        except (OSError, ValueError):
+            pass
+        write_durably(folder / "feedback.html", page)
+        if plot is not None:
+            write_durably(folder / "plot.svg", plot)
+        else:
+            (folder / "plot.svg").unlink(missing_ok=True)
+        write_durably(folder / "grade.json", text)
+
+    def forget(self, student: str) -> None:
+        """Take away what vouches for a student's results, so that the next run grades the submission again."""
+        with contextlib.suppress(OSError):
+            (folder_of(self.folder, student) / "grade.json").unlink(missing_ok=True)
+
+    def others(self, students: set[str]) -> tuple[str, ...]:
+        """Whose results are here beside those of `students`."""
+        return tuple(
+            sorted(
+                file.parent.name
+                for file in self.folder.glob(f"{STUDENTS}/*/grade.json")
+                if file.parent.name not in students
+            )
+        )
+
+    def __enter__(self) -> Results:
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self._lock = os.open(self.folder / ".lock", os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, 0o644)
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            os.close(self._lock)
+            raise Busy(f"{self.folder}: another grading is at work in this folder. Wait for its end.") from None
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        os.close(self._lock)
+
+
+def grade_key(grading: Grading) -> str:
+    """The same for two gradings if they give every submission the same grade, as far as can be known beforehand.
+
+    Of the exercise's text that is what grades and pages tell of it; of the machine, the versions of Python and ROS and
+    the level of isolation.
+    """
+    runner = grading.runner
+    exercise = runner.exercise
+    files: list[Path] = [exercise.folder / "task.md", *exercise.check_files]
+    if exercise.solution_file:
+        files.append(exercise.solution_file)
+    depends = {
+        # The exercise as it was read: a due date, which is not in it, can be changed after grading.
+        "exercise": repr(replace(exercise, folder=Path(), solution_folder=None)),
+        "files": digest_of([file for file in files if file.exists()]),
+        **_of_a_run(grading),
+    }
+    return _digest(depends)
+
+
+def recordings_key(grading: Grading, submission: Submission) -> str:
+    """The same as long as a submission's recordings would be, whatever the checks are."""
+    return submission_key(_digest(_of_a_run(grading)), submission.digest)
+
+
+def _of_a_run(grading: Grading) -> dict[str, Any]:
+    """What a recording depends on, besides the submission."""
+    runner = grading.runner
+    return {
+        "scenarios": [scenario.digest for scenario in runner.scenarios],
+        "versions": versions(runner.middleware),
+        "seed": runner.options.seed,
+        "pace": runner.options.pace,
+        "limits": asdict(runner.options.limits),
+        "isolation": str(runner.isolation),
+    }
+
+
+def _digest(depends: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(depends, sort_keys=True).encode()).hexdigest()
+
+
+def submission_key(key: str, digest: str) -> str:
+    """The key of one submission's grade."""
+    return hashlib.sha256(f"{key} {digest}".encode()).hexdigest()
+
+
+#: What late work and the instructor's own wishes make of a score.
+Adjust = Callable[[Entry], tuple[Adjustment, ...]]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a run is going to do. `former` are the entries of an earlier run, by student."""
+
+    to_grade: tuple[HandedIn, ...]
+    unchanged: tuple[Entry, ...]
+    former: Mapping[str, Entry]
+
+
+@dataclass
+class ClassGrading:
+    """One class, graded into one folder of results by `markers`."""
+
+    exercise: Exercise
+    markers: Backend
+    results: Results
+    adjust: Adjust
+    grading: Grading | None = None
+    """Set where recordings are to be kept."""
+    entries: dict[str, Entry] = field(default_factory=dict)
+
+    def plan(self, intake: Submissions, submissions: Mapping[str, Submission], regrade: Callable[[str], bool]) -> Plan:
+        """What has to be graded: what has no grade yet, what has changed, and what `regrade` asks for.
+
+        `submissions` are those of `intake`, read, by student.
+        """
+        to_grade, unchanged, former = [], [], {}
+        for handed_in in intake.handed_in:
+            who = handed_in.student.id
+            kept = self.results.entry(who)
+            if kept:
+                former[who] = kept[0]
+            if kept and kept[1] == self._key(submissions[who]) and not regrade(who):
+                unchanged.append(self._still(handed_in, kept[0], kept[1]))
+            else:
+                to_grade.append(handed_in)
+        return Plan(tuple(to_grade), tuple(unchanged), former)
+
+    def take_in(self, intake: Submissions) -> None:
+        """Take the entries that are kept of these students, where no other is known, as they are."""
+        for one in intake.handed_in:
+            kept = self.results.entry(one.student.id)
+            if kept and one.student.id not in self.entries:
+                self.entries[one.student.id] = kept[0]
+
+    def run(self, plan: Plan, submissions: Mapping[str, Submission]) -> Iterator[Entry]:
+        """Grade what has to be, and give each entry once it is kept.
+
+        Where a machine or we were at fault, it is tried once more after all others; if that is in vain, the
+        entry tells of it, has no score, and is graded again by the next run.
+        """
+        handed_in = {one.student.id: one for one in plan.to_grade}
+        again: list[str] = []
+        for marked in self.markers.mark({who: submissions[who] for who in handed_in}):
+            if marked.grade.outcome == "host-error":
+                again.append(marked.who)
+            else:
+                yield self._kept(handed_in[marked.who], marked, submissions[marked.who])
+        for marked in self.markers.mark({who: submissions[who] for who in sorted(again)}):
+            yield self._kept(handed_in[marked.who], marked, submissions[marked.who])
+
+    def _kept(self, handed_in: HandedIn, marked: Graded, submission: Submission) -> Entry:
+        """Keep a grade; one whose page or files can't be written is a `host-error`, and stops nobody else's."""
+        try:
+            return self.keep(handed_in, marked, submission)
+        except Exception as error:
+            return self.give_up(Entry(handed_in.student, handed_in.file.name, marked.grade), not_written(error))
+
+    def give_up(self, entry: Entry, what: str) -> Entry:
+        """Turn an entry into a `host-error` that says `what` happened; the next run tries it again."""
+        message = f"This is not your fault: {what}"
+        grade = replace(
+            entry.grade, outcome="host-error", message=message, score=0.0, verdicts=(), recordings={}, references={}
+        )
+        self.entries[entry.student.id] = entry = replace(entry, grade=grade, adjustments=(), submitted=None)
+        self.results.forget(entry.student.id)
+        return entry
+
+    def keep(self, handed_in: HandedIn, marked: Graded, submission: Submission) -> Entry:
+        """Write a grade with its page into the student's folder."""
+        # Who grades may see the file under another name.
+        grade = replace(marked.grade, submission=handed_in.file.name)
+        entry = self._entry(handed_in, Entry(handed_in.student, handed_in.file.name, grade))
+        key = "" if grade.outcome == "host-error" else self._key(submission)
+        if grade.recordings and self.grading:
+            recorded = recordings_key(self.grading, submission)
+            self.results.keep_recordings(entry.student.id, recorded, grade.recordings)
+        self.results.write(entry, key, feedback_page(entry, self.exercise, marked.plot), marked.plot)
+        # What was recorded is in the page now; kept for a whole class, it would fill the memory.
+        self.entries[entry.student.id] = entry = replace(entry, grade=replace(grade, recordings={}, references={}))
+        return entry
+
+    def _still(self, handed_in: HandedIn, kept: Entry, key: str) -> Entry:
+        try:
+            return self._unchanged(handed_in, kept, key)
+        except Exception as error:
+            return self.give_up(Entry(handed_in.student, handed_in.file.name, kept.grade), not_written(error))
+
+    def _unchanged(self, handed_in: HandedIn, kept: Entry, key: str) -> Entry:
+        """The entry of a submission that needs no grading: who handed it in and when may have changed all the same."""
+        entry = self._entry(handed_in, kept)
+        plot = self.results.plot(entry.student.id)
+        self.results.write(entry, key, feedback_page(entry, self.exercise, plot), plot)
+        return entry
+
+    def _entry(self, handed_in: HandedIn, of: Entry) -> Entry:
+        file = handed_in.file
+        entry = replace(
+            of,
+            student=handed_in.student,
+            file=file.name,
+            grade=replace(of.grade, submission=file.name),
+            submitted=file.submitted,
+            submitted_from=file.submitted_from if file.submitted else "",
+            adjustments=(),
+        )
+        entry = replace(entry, adjustments=self.adjust(entry))
+        self.entries[entry.student.id] = entry
+        return entry
+
+    def _key(self, submission: Submission) -> str:
+        return submission_key(self.markers.key, f"{submission.digest} {submission.warning}")
+
+
+def not_written(error: Exception) -> str:
+    """Say that a student's results could not be written."""
+    return f"the results could not be written: {type(error).__name__}: {error}"

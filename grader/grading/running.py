@@ -1,0 +1,242 @@
+"""Runs one program through all scenarios: several at once, and with help from workers that have nothing else to do."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import threading
+from collections import deque
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from grader.exercise import Exercise
+from grader.grading.grade import Options
+from grader.recording import Ending, Recording
+from grader.sandbox import Isolation, Middleware, MiddlewareUnavailable, Program, choose_middleware
+from grader.scenario import Companion, Scenario
+from grader.submission import Submission
+from grader.workers import WorkerPool
+from grader.workers.jobs import RunJob
+from grader.workers.pool import FAST_DDS_ENVIRONMENT, PROFILE, STUDENT_ENVIRONMENT
+
+
+class TaskQueue:
+    """Some spins that may be done in any order and at the same time. Any thread may call anything here."""
+
+    def __init__(self, jobs: Sequence[RunJob], workers: WorkerPool) -> None:
+        """The first of `jobs` is the first to be begun."""
+        self._workers = workers
+        self._waiting = deque(jobs)
+        self._recordings: dict[str, Future[Recording]] = {job.scenario.name: Future() for job in jobs}
+        self._given_up = threading.Event()
+
+    @property
+    def left(self) -> int:
+        """How many nobody has begun yet."""
+        return len(self._waiting)
+
+    def work(self, core: int | None = None) -> None:
+        """Do one spin after another, in one process, until nobody has to begin any more.
+
+        `core` is the CPU to keep the program on, None for the one that each job names. What goes wrong with a spin is
+        raised where its recording is asked for.
+        """
+        with self._workers.hand() as hand:
+            while job := self._next():
+                recording = self._recordings[job.scenario.name]
+                try:
+                    recording.set_result(hand.do(job if core is None else replace(job, core=core), self._given_up))
+                except BaseException as fault:
+                    recording.set_exception(fault)
+
+    def _next(self) -> RunJob | None:
+        try:
+            return self._waiting.popleft()
+        except IndexError:
+            return None
+
+    def recording(self, scenario: str) -> Recording:
+        """The recording of a scenario, which is waited for. Raises `HostFault` when it can't be had."""
+        return self._recordings[scenario].result()
+
+    def give_up(self) -> None:
+        """Begin no more, and end those under way."""
+        self._waiting.clear()
+        self._given_up.set()
+
+
+class WorkStealing:
+    """Where help is offered and found. Any thread may call anything here."""
+
+    def __init__(self) -> None:
+        self._changed = threading.Condition()
+        self._under_way: list[TaskQueue] = []
+        self._closed = False
+
+    @contextlib.contextmanager
+    def wanted(self, spins: TaskQueue) -> Iterator[None]:
+        """For as long as this lasts, others may help with these spins."""
+        with self._changed:
+            self._under_way.append(spins)
+            self._changed.notify_all()
+        try:
+            yield
+        finally:
+            with self._changed:
+                self._under_way.remove(spins)
+
+    def help(self, core: int | None) -> None:
+        """Help where the most spins wait, with the program on CPU `core`; returns once this is closed."""
+        while self._help_with_one(core):
+            pass
+
+    def _help_with_one(self, core: int | None) -> bool:
+        spins = self._neediest()
+        if spins:
+            spins.work(core)
+        return spins is not None
+
+    def _neediest(self) -> TaskQueue | None:
+        with self._changed:
+            self._changed.wait_for(lambda: self._closed or any(spins.left for spins in self._under_way))
+            return None if self._closed else max(self._under_way, key=lambda spins: spins.left)
+
+    def close(self) -> None:
+        """Nobody has to help any more."""
+        with self._changed:
+            self._closed = True
+            self._changed.notify_all()
+
+
+#: How every program is started.
+ARGUMENTS = ("--ros-args", "-p", "use_sim_time:=true")
+
+#: What a submission may publish in all scenarios together (bytes), of which each gets an equal part, but not less than
+#: this. As Python's objects, in the memory of the grader, it takes about ten times as much.
+MOST_BYTES, LEAST_BYTES = 24_000_000, 1_000_000
+
+
+@dataclass(frozen=True)
+class ScenarioRunner:
+    """Spins submissions of one exercise through its scenarios, at one level of isolation."""
+
+    exercise: Exercise
+    scenarios: tuple[Scenario, ...]
+    isolation: Isolation
+    options: Options
+    workers: WorkerPool
+    helping: WorkStealing = field(default_factory=WorkStealing, compare=False)
+    """Through which others may help, beside the `options.parallel` hands that there are for each submission."""
+
+    @property
+    def middleware(self) -> Middleware:
+        """Over which programs talk. Raises `MiddlewareUnavailable` where the one that is asked for can't be had."""
+        middleware = choose_middleware(self.options.middleware).middleware
+        beyond = next((one for one in self.scenarios if not one.is_filter), None)
+        if middleware is Middleware.FASTDDS and beyond:
+            told = (
+                f"The scenario {beyond.name} does more than publish messages, which the middleware 'fastdds' can't do."
+            )
+            raise MiddlewareUnavailable(f"{told} Grade this exercise with --middleware lockstep.")
+        return middleware
+
+    def spin(self, submission: Submission) -> dict[str, Recording]:
+        """The recording of each scenario. Raises `HostFault` when one can't be had.
+
+        The first scenario decides whether the program works at all; if it does not, nothing else is spun, and every
+        recording ends as that one does.
+        """
+        jobs = [self.job(submission, scenario, i) for i, scenario in enumerate(self.scenarios)]
+        # The longest first, so that none is left over at the end; the very first is needed at once.
+        spins = TaskQueue((jobs[0], *sorted(jobs[1:], key=lambda job: -job.scenario.size)), self.workers)
+        with ThreadPoolExecutor(self.options.parallel) as pool, self.helping.wanted(spins):
+            for _ in range(self.options.parallel):
+                pool.submit(spins.work)
+            try:
+                first = spins.recording(self.scenarios[0].name)
+                if first.ending.outcome != "completed":
+                    return {scenario.name: _likewise(first, scenario) for scenario in self.scenarios}
+                self.workers.prepare_to_judge()
+                return {scenario.name: spins.recording(scenario.name) for scenario in self.scenarios}
+            finally:
+                spins.give_up()
+
+    def only(self, scenario: str) -> ScenarioRunner:
+        """The same, with one scenario alone."""
+        return replace(self, scenarios=tuple(s for s in self.scenarios if s.name == scenario))
+
+    def job(self, submission: Submission, scenario: Scenario, number: int) -> RunJob:
+        """The spin of a program through one scenario; `number` chooses the core that it is kept on, turn by turn."""
+        assert submission.program
+        fast_dds = self.middleware is Middleware.FASTDDS
+        program = replace(
+            submission.program,
+            arguments=arguments(scenario),
+            environment={
+                **STUDENT_ENVIRONMENT,
+                **(FAST_DDS_ENVIRONMENT if fast_dds else {}),
+                **submission.program.environment,
+            },
+            readonly=(*((PROFILE,) if fast_dds else ()), *submission.program.readonly),
+            hidden=(self.exercise.folder, *([self.exercise.solution_folder] if self.exercise.solution_folder else [])),
+        )
+        own = {one.file: one.arguments for one in scenario.programs}
+        programs = tuple(
+            replace(program, main=one.file, arguments=(*own.get(one.file, ()), *program.arguments))
+            for one in self.exercise.programs
+        )
+        cores = sorted(os.sched_getaffinity(0))
+        return RunJob(
+            exercise=self.exercise,
+            scenario=scenario,
+            program=program,
+            isolation=self.isolation,
+            middleware=self.middleware,
+            limits=self.options.limits,
+            source=submission.source,
+            file_name=submission.file_name,
+            core=cores[number % len(cores)] if self.options.core is None else self.options.core,
+            pace=self.options.pace,
+            data_bytes=max(LEAST_BYTES, MOST_BYTES // len(self.scenarios)),
+            programs=programs,
+            companions=tuple(_companion(one) for one in scenario.companions),
+        )
+
+
+def _likewise(first: Recording, scenario: Scenario) -> Recording:
+    if first.scenario == scenario.name:
+        return first
+    return Recording(
+        scenario.name, (), (), first.nodes, (), "none", False, Ending(first.ending.outcome, first.ending.story)
+    )
+
+
+def _companion(one: Companion) -> Program:
+    return Program(one.file, {one.file: one.text.encode()}, (*one.arguments, *ARGUMENTS), STUDENT_ENVIRONMENT)
+
+
+def arguments(scenario: Scenario) -> tuple[str, ...]:
+    """What follows the program's name on its command line in a scenario."""
+    found = [*scenario.arguments, *ARGUMENTS]
+    for name, value in scenario.parameters.items():
+        found += ["-p", f"{name}:={_yaml(value)}"]
+    for name, to in scenario.remappings.items():
+        found += ["-r", f"{name}:={to}"]
+    if scenario.namespace:
+        found += ["-r", f"__ns:={scenario.namespace}"]
+    return tuple(found)
+
+
+def _yaml(value: Any) -> str:
+    """A parameter's value on a command line, such as `2.0`, `true` or `["a", "b"]`."""
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(_yaml(one) for one in value)}]"
+    if isinstance(value, float):
+        text = repr(value)
+        special = {"nan": ".nan", "inf": ".inf", "-inf": "-.inf"}
+        # A number with an exponent needs a point to be one in YAML 1.1.
+        return special.get(text, text if "." in text or "e" not in text else text.replace("e", ".0e"))
+    return json.dumps(value)

@@ -1,0 +1,208 @@
+"""One student's feedback page: outcomes, findings and the end of the log."""
+
+from __future__ import annotations
+
+import base64
+import re
+from dataclasses import dataclass
+from html import unescape
+
+from grader.checking.verdict import Finding, Status, Verdict
+from grader.exercise import Exercise
+from grader.grading import Grade
+from grader.grading.entry import Adjustment, Entry
+from grader.grading.grade import Outcome
+from grader.report.pages import render
+from grader.report.printable import as_students_see_it, printable
+
+# Of a public check everything. Of a hidden one its title, its points, whether it was passed, and its hint, which its
+# author wrote for students; never its name, its scenario, or a number that was expected: those would give it away.
+
+
+#: A status as a sign and as a word. `error` is our fault, and then there is no score.
+SIGNS: dict[Status, tuple[str, str]] = {
+    "passed": ("✓", "passed"),
+    "failed": ("✗", "failed"),
+    "blocked": ("–", "can't be judged yet"),
+    "error": ("!", "not judged"),
+}
+
+
+@dataclass(frozen=True)
+class Told:
+    """One check as a student sees it; hidden ones without `finding`. `needs` are titles of checks to fix first."""
+
+    title: str
+    status: Status
+    sign: str
+    word: str
+    earned: float
+    points: float
+    hidden: bool
+    finding: Finding | None
+    hint: str
+    needs: tuple[str, ...]
+
+    @property
+    def text(self) -> str:
+        """The same in a few lines of plain text, without title and points."""
+        lines = [self.finding.text] if self.finding else []
+        if self.needs:
+            lines.append("Can't be judged before this is right: " + " ".join(self.needs))
+        if self.hint:
+            lines.append(f"Hint: {self.hint}")
+        return "\n".join(lines)
+
+
+def told(grade: Grade) -> tuple[Told, ...]:
+    """Every check of `grade`, in order, with what a student may know of it."""
+    titles = {verdict.name: verdict.title for verdict in grade.verdicts}
+    return tuple(_told(verdict, grade, titles) for verdict in grade.verdicts)
+
+
+def _told(verdict: Verdict, grade: Grade, titles: dict[str, str]) -> Told:
+    # Where the first scenario broke off, that is the story; each check would repeat it.
+    telling = grade.outcome == "graded"
+    sign, word = SIGNS[verdict.status]
+    failed = verdict.status == "failed" and telling
+    return Told(
+        title=verdict.title,
+        status=verdict.status,
+        sign=sign,
+        word=word,
+        earned=verdict.earned,
+        points=verdict.points,
+        hidden=verdict.hidden,
+        finding=verdict.finding if failed and not verdict.hidden else None,
+        hint=verdict.hint if failed else "",
+        needs=tuple(titles.get(name, name) for name in verdict.blocked_by) if telling else (),
+    )
+
+
+@dataclass(frozen=True)
+class Advice:
+    """A headline, what it means in a sentence, and steps to take."""
+
+    headline: str
+    meaning: str
+    steps: tuple[str, ...]
+
+
+HEADLINES: dict[Outcome, tuple[str, str]] = {
+    "graded": ("", ""),
+    "did-not-start": (
+        "Your program did not start",
+        "It ended before there was a node, so no check could be passed.",
+    ),
+    "crashed": (
+        "Your program crashed",
+        "It started well and ended by itself in the very first scenario, so no check could be passed.",
+    ),
+    "timed-out": (
+        "Your node stopped answering",
+        "It was started, but hung in the very first scenario, so no check could be passed. A busy machine is not the "
+        "reason: only your node's own time counts.",
+    ),
+    "over-limit": (
+        "Your program used more than it may",
+        "It was ended in the very first scenario, so no check could be passed.",
+    ),
+    "host-error": (
+        "This could not be graded, and that is not your fault",
+        "The machine or the grader was at fault. This is no score, and it costs you nothing.",
+    ),
+}
+
+
+def advice(grade: Grade, exercise: Exercise) -> Advice | None:
+    """What to tell about an outcome that is no plain grade; None for that."""
+    headline, meaning = HEADLINES[grade.outcome]
+    if not headline:
+        return None
+    line = f" Look at line {grade.line} first." if grade.line else ""
+    printed = " What your program printed stands below." if grade.log.strip() else ""
+    again = f"Run it yourself: python3 {exercise.file_name}"
+    steps: dict[Outcome, tuple[str, ...]] = {
+        "did-not-start": (f"Read the message above.{line}{printed}", f"{again}. It must start without an error."),
+        "crashed": (f"Read the message above.{line}{printed}", f"{again}, with the chapter's publisher beside it."),
+        "timed-out": (
+            "Look for a loop without an end, for a sleep in a callback, and for a missing rclpy.spin(node).",
+            f"{again}, with the chapter's publisher beside it. It must answer each message at once.",
+        ),
+        "over-limit": (
+            "Look for what is made over and over: messages, lists that grow, files, threads, processes.",
+            f"{again}, and watch it with top.",
+        ),
+        "host-error": ("There is nothing for you to do: it will be graded again.",),
+    }
+    return Advice(headline, meaning, steps[grade.outcome])
+
+
+LINES, LONGEST_LINE = 40, 400
+
+#: Colours and other orders to a terminal (ECMA-48): they say nothing on a page.
+ORDERS = re.compile(r"\x1b(\[[0-?]*[ -/]*[@-~]|\][^\x07\x1b]*(\x07|\x1b\\)?|[ -~])")
+
+
+def tail(log: str) -> tuple[str, int]:
+    """The last 40 lines of `log`, each of 400 characters at most, and how many lines before them are left out."""
+    lines = [line.rstrip() for line in log.rstrip().split("\n")]
+    kept = [_readable(line[: 10 * LONGEST_LINE]) for line in lines[-LINES:]]
+    return "\n".join(kept), len(lines) - len(kept)
+
+
+def _readable(line: str) -> str:
+    return printable(as_students_see_it(ORDERS.sub("", line)), LONGEST_LINE)
+
+
+KINDS: dict[str, str] = {"late": "Late", "override": "Changed by your instructor", "extra": "Extra credit"}
+
+
+def feedback_page(entry: Entry, exercise: Exercise, plot_svg: str | None) -> str:
+    """The page that tells one student the score, every check, and what to do next, as one HTML file.
+
+    It needs no network and runs no script. `plot_svg` is what `feedback_plot` drew, or None for a page without a plot.
+    Of hidden checks it tells no more than `grader.report.feedback` allows. Everything that a student can choose (names,
+    messages, output) is shown as text and nothing else.
+    """
+    grade = entry.grade
+    checks = told(grade)
+    log, left_out = tail(grade.log)
+    return render(
+        "report/feedback.html",
+        entry=entry,
+        student=entry.student.name or entry.student.id,
+        exercise=exercise,
+        grade=grade,
+        advice=advice(grade, exercise),
+        public=[check for check in checks if not check.hidden],
+        hidden=[check for check in checks if check.hidden],
+        first=next((check for check in checks if check.status == "failed" and (check.finding or check.hint)), None),
+        adjustments=[(_kind(adjustment), adjustment) for adjustment in entry.adjustments],
+        plot=_picture(plot_svg) if plot_svg else "",
+        plot_says=_description(plot_svg) if plot_svg else "",
+        log=log,
+        left_out=left_out,
+        passed=sum(check.status == "passed" for check in checks),
+        count=len(checks),
+        share=_share(entry),
+    )
+
+
+def _kind(adjustment: Adjustment) -> str:
+    return KINDS.get(adjustment.kind, adjustment.kind)
+
+
+def _share(entry: Entry) -> float:
+    return 0.0 if not entry.final or not entry.grade.points else min(100.0, 100 * entry.final / entry.grade.points)
+
+
+def _picture(svg: str) -> str:
+    """As an image an SVG can neither run anything nor load anything, whatever is in it."""
+    return "data:image/svg+xml;base64," + base64.b64encode(svg.encode("utf-8", "replace")).decode()
+
+
+def _description(svg: str) -> str:
+    """What the picture says of itself in <desc>."""
+    found = re.search(r"<desc[^>]*>([^<]*)</desc>", svg)
+    return unescape(found[1]).strip() if found else "Your node's output drawn over the solution's."

@@ -1,0 +1,95 @@
+"""Renders the grader's pages: each one file that needs no network and runs no script but our own."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from datetime import datetime
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
+from markupsafe import Markup
+
+from grader.report.printable import printable
+
+GRADER = Path(__file__).parents[1]
+
+#: Of one text no more is shown: a student can publish a name of a megabyte.
+LONGEST_TEXT = 4000
+
+
+def render(page: str, script: str = "", **values: Any) -> str:
+    """The page that the template `page` (a path below grader/) makes of `values`.
+
+    Every text is escaped, loses its control and direction-changing characters, and is cut after 4000 characters. The
+    page has the shared style sheet and `script` in it, and forbids the browser everything else: other scripts and
+    styles, every request, forms.
+    """
+    style = _style()
+    policy = {
+        "default-src": "'none'",
+        "style-src": _allowed(style),
+        "script-src": _allowed(script) if script else "'none'",
+        "img-src": "data:",
+        "base-uri": "'none'",
+        "form-action": "'none'",
+    }
+    return template(page).render(
+        **values,
+        style=Markup(style),
+        script=Markup(script),
+        policy="; ".join(f"{name} {value}" for name, value in policy.items()),
+    )
+
+
+def template(name: str) -> Template:
+    """A template by its path below grader/. Whatever it shows is escaped and harmless."""
+    return _environment().get_template(name)
+
+
+@cache
+def _environment() -> Environment:
+    environment = Environment(
+        loader=FileSystemLoader(GRADER),
+        autoescape=True,
+        undefined=StrictUndefined,
+        finalize=_harmless,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["points"] = points
+    environment.filters["moment"] = moment
+    return environment
+
+
+def _harmless(value: Any) -> Any:
+    if isinstance(value, str) and not isinstance(value, Markup):
+        return printable(value, LONGEST_TEXT)
+    return value
+
+
+@cache
+def _style() -> str:
+    return (GRADER / "pages" / "style.css").read_text(encoding="utf-8")
+
+
+def _allowed(text: str) -> str:
+    """What a content security policy calls this very text (CSP level 2, hash sources)."""
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+def points(value: float) -> str:
+    """Points without needless digits: 81, 80.5, 33.33."""
+    return f"{round(value, 2):.2f}".rstrip("0").rstrip(".")
+
+
+def moment(value: datetime | None) -> str:
+    """A point in time for people, in its own time zone: 21 Nov 2026, 23:59 +01:00."""
+    if value is None:
+        return ""
+    months = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
+    zone = value.strftime("%z")
+    shown = f"{value.day} {months[value.month - 1]} {value.year}, {value:%H:%M}"
+    return f"{shown} {'UTC' if zone == '+0000' else f'{zone[:3]}:{zone[3:]}'}" if zone else shown

@@ -1,0 +1,233 @@
+"""What a sandbox shows of the file system: the mounts that build its root."""
+
+from __future__ import annotations
+
+import os
+import stat
+import sys
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from pathlib import Path
+from typing import Literal
+
+from grader.sandbox.middleware import library_folder
+from grader.sandbox.program import HUB, SUBMISSION, Paths, Program
+from interface_compiler import activation
+
+HOME = "/home/student"
+USER_ID = 1000
+
+_PARTS = ("bin", "sbin", "lib", "lib32", "lib64", "libx32", "libexec", "share", "pyvenv.cfg")
+_DEVICES = ("null", "zero", "full", "random", "urandom")
+_ETC = ("ld.so.cache", "alternatives", "localtime", "timezone")
+_TEXTS = {
+    "/etc/passwd": f"student:x:{USER_ID}:{USER_ID}:student:{HOME}:/bin/sh\n",
+    "/etc/group": f"student:x:{USER_ID}:\n",
+    "/etc/hosts": "127.0.0.1 localhost\n",
+    "/etc/nsswitch.conf": "passwd: files\ngroup: files\nhosts: files\n",
+}
+
+Action = Literal["folder", "scratch", "bind", "mask", "device", "link", "text", "processes", "seal"]
+
+
+@dataclass(frozen=True)
+class Mount:
+    """One step of building the root.
+
+    - folder: an empty folder
+    - scratch: a tmpfs of `size` bytes that anybody may write to
+    - bind: the file or folder at `path` outside, or at `content` if that is given, read-only
+    - mask: the file or folder at `path`, which a bind has shown, becomes empty
+    - device: the device at `path` outside
+    - link: a symbolic link to `content`
+    - text: a file that contains `content`
+    - processes: /proc
+    - seal: what has been mounted at `path` becomes read-only
+    """
+
+    action: Action
+    path: str
+    content: str = ""
+    size: int = 0
+
+
+@lru_cache(maxsize=8)
+def mounts(readonly: tuple[Path, ...], hidden: tuple[Path, ...], scratch_bytes: int) -> tuple[Mount, ...]:
+    """The steps that build a root, in order.
+
+    Args:
+        readonly: what is shown beside Python and ROS 2.
+        hidden: what is not, although it lies in something that is.
+        scratch_bytes: the size of each of the places to write to.
+    """
+    shown = list(_without_nested([*interpreter(), *readonly]))
+    plan = _MountPlan()
+    for place in ("/tmp", HOME):
+        plan.add("scratch", place, size=scratch_bytes)
+    plan.add("folder", SUBMISSION)
+    plan.add("folder", "/dev")
+    for device in _DEVICES:
+        plan.add("device", f"/dev/{device}")
+    plan.add("scratch", "/dev/shm", size=scratch_bytes)
+    for name, target in {"fd": "", "stdin": "/0", "stdout": "/1", "stderr": "/2"}.items():
+        plan.add("link", f"/dev/{name}", f"/proc/self/fd{target}")
+    plan.add("processes", "/proc")
+    everything = (*system(), *shown)
+    links = [path for path in everything if path.is_symlink() and _is_inside(path, set(everything) - {path})]
+    bound = [path for path in everything if path not in links]
+    for path in bound:
+        plan.add("bind", str(path))
+    for path in links:
+        plan.add("link", str(path), str(path.readlink()))
+    for path_of_text, text in _TEXTS.items():
+        plan.add("text", path_of_text, text)
+    masks = sorted(set(_masks((*own_packages(), *hidden), bound)))
+    for mask in masks:
+        plan.add("mask", str(mask))
+    for path in readonly:
+        if _is_inside(path, masks):  # asked for by name, in a folder that is hidden otherwise
+            plan.add("bind", str(path))
+    for mask in masks:
+        if mask.is_dir():
+            plan.add("seal", str(mask))
+    plan.add("seal", "/")
+    return tuple(plan.steps)
+
+
+def with_hub(plan: tuple[Mount, ...], hub: Path) -> tuple[Mount, ...]:
+    """The steps that also show the hub's socket: always in the same place, wherever it is outside."""
+    made = {"/", *(step.path for step in plan)}
+    folders = (Mount("folder", str(folder)) for folder in reversed(Path(HUB).parents) if str(folder) not in made)
+    *others, seal = plan
+    return (*others, *folders, Mount("bind", HUB, str(hub)), seal)
+
+
+class _MountPlan:
+    """Collects steps, each after those that make the folders which it lies in."""
+
+    def __init__(self) -> None:
+        self.steps: list[Mount] = []
+        self._made: set[str] = {"/"}
+        self._bound: set[str] = set()
+
+    def add(self, action: Action, path: str, content: str = "", size: int = 0) -> None:
+        for parent in map(str, reversed(Path(path).parents)):
+            if parent in self._bound:
+                break
+            if parent not in self._made:
+                self._made.add(parent)
+                self.steps.append(Mount("folder", parent))
+        if action == "bind":
+            self._bound.add(path)
+        self._made.add(path)
+        self.steps.append(Mount(action, path, content, size))
+
+
+def environment(program: Program, place: Paths) -> dict[str, str]:
+    """The whole environment of a program: what Python and ROS 2 need, its private folders, and what it was given."""
+    needed = {name: os.environ[name] for name in (*RUNTIME_VARIABLES, "LD_PRELOAD") if name in os.environ}
+    hub = {"RMW_LOCKSTEP_SOCKET": place.hub} if place.hub else {}
+    return {
+        **needed,
+        **hub,
+        "PATH": f"{sys.prefix}/bin:/usr/local/bin:/usr/bin:/bin",
+        "HOME": place.home,
+        "TMPDIR": place.temporary,
+        "PYTHONUNBUFFERED": "1",
+        "ROS_LOG_DIR": f"{place.home}/log",
+        "USER": "student",
+        "LOGNAME": "student",
+        **program.environment,
+    }
+
+
+# What Python and ROS 2 themselves need of the environment. Nothing else of it reaches a sandbox.
+RUNTIME_VARIABLES = (
+    "PATH",
+    "LANG",
+    "LD_LIBRARY_PATH",
+    "_ROS_WHEELS_BOOTSTRAP_COMPLETE",
+    "PYTHONPATH",
+    "PYTHONHASHSEED",
+    "PYTHONDONTWRITEBYTECODE",
+    "OPENBLAS_NUM_THREADS",
+    "MALLOC_ARENA_MAX",
+    "AMENT_PREFIX_PATH",
+    "RMW_IMPLEMENTATION",
+    "ROS_DISTRO",
+    "ROS_VERSION",
+    "ROS_PYTHON_VERSION",
+    "CONDA_PREFIX",
+)
+
+
+def ros_prefixes() -> tuple[Path, ...]:
+    """Where a ROS 2 that was sourced is installed (/opt/ros/…): none when it came from PyPI into this environment.
+
+    An instructor's own workspace, sourced on top of it, is not part of it.
+    """
+    prefixes = [Path(path) for path in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if path]
+    return tuple(path for path in prefixes if path.is_relative_to("/opt/ros") and path.is_dir())
+
+
+@cache
+def system() -> tuple[Path, ...]:
+    """The system's libraries and programs, and its symlinks such as /lib -> usr/lib."""
+    top = [Path("/", name) for name in ("bin", "sbin", "lib", "lib32", "lib64", "libx32")]
+    user = [Path(folder, name) for folder in ("/usr", "/usr/local") for name in _PARTS]
+    etc = [Path("/etc", name) for name in _ETC]
+    return tuple(path for path in (*top, *user, *etc) if path.exists() and _readable_kind(path))
+
+
+@cache
+def interpreter() -> tuple[Path, ...]:
+    """The folders of this Python, of the one its environment was made from, of ROS 2, and of a course's interfaces."""
+    prefixes: dict[Path, None] = {}
+    for prefix in (sys.prefix, sys.exec_prefix, sys.base_prefix, sys.base_exec_prefix):
+        prefixes[Path(prefix)] = None
+        prefixes[Path(prefix).resolve()] = None
+    prefixes[Path(sys.executable).resolve().parents[1]] = None
+    found = [prefix / part for prefix in prefixes for part in _PARTS if prefix != Path("/usr")]
+    library = filter(None, (library_folder(),))
+    return tuple(path for path in (*found, *ros_prefixes(), *library, *activation.active()) if path.exists())
+
+
+def own_packages() -> tuple[Path, ...]:
+    """This package and Spinbook's others: installed, they lie among the libraries that a sandbox shows."""
+    grader = Path(__file__).resolve().parents[1]
+    return (grader, *(grader.with_name(name) for name in ("spinbook", "rmw_lockstep")))
+
+
+def _masks(hidden: Iterable[Path], shown: Iterable[Path]) -> Iterator[Path]:
+    """Where hidden files and folders would be seen: under each name by which a shown folder has them."""
+    to_hide = [path.resolve() for path in hidden if path.exists()]
+    for source in shown:
+        real = _real(source)
+        for path in to_hide:
+            if path.is_relative_to(real):
+                yield source / path.relative_to(real)
+
+
+def _is_inside(path: Path, folders: Iterable[Path]) -> bool:
+    real = path.resolve()
+    return any(real.is_relative_to(_real(folder)) for folder in folders)
+
+
+@cache
+def _real(folder: Path) -> Path:
+    """Where a folder of an installation really lies: none moves while a grader runs."""
+    return folder.resolve()
+
+
+def _without_nested(paths: Iterable[Path]) -> Iterator[Path]:
+    """Without what lies inside another one and is therefore shown anyway."""
+    ordered = sorted(set(paths), key=lambda path: len(path.parts))
+    for at, path in enumerate(ordered):
+        if not any(path.is_relative_to(earlier) and not path.is_symlink() for earlier in ordered[:at]):
+            yield path
+
+
+def _readable_kind(path: Path) -> bool:
+    mode = path.stat().st_mode
+    return stat.S_ISDIR(mode) or stat.S_ISREG(mode)

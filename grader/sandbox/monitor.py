@@ -1,0 +1,259 @@
+"""Watches a running student's program: reads its output, counts what it uses, and kills it at its limits."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import select
+import signal
+import socket
+import threading
+import time
+from dataclasses import dataclass
+
+from grader.sandbox import processes
+from grader.sandbox.program import Limits
+
+HEAD_BYTES = 64 * 1024
+TAIL_BYTES = 64 * 1024
+
+
+@dataclass(frozen=True)
+class Output:
+    """What a program printed on standard output and error, in the order in which it came.
+
+    Attributes:
+        data: the bytes kept: all, or the first and the last 64 KiB.
+        dropped: how many bytes between the two were not kept.
+    """
+
+    data: bytes
+    dropped: int
+
+    @property
+    def text(self) -> str:
+        """The output as text, with a line that tells how much is missing where it is missing."""
+        if not self.dropped:
+            return self.data.decode(errors="replace")
+        head, tail = self.data[:HEAD_BYTES], self.data[HEAD_BYTES:]
+        gap = f"\n[... {self.dropped} bytes of output are not shown ...]\n"
+        return head.decode(errors="replace") + gap + tail.decode(errors="replace")
+
+
+class OutputBuffer:
+    """Takes pieces of output as they come and holds at most 128 KiB of them."""
+
+    def __init__(self) -> None:
+        self._head = bytearray()
+        self._tail = bytearray()
+        self.total = 0
+        """All bytes that came."""
+
+    def add(self, piece: bytes) -> None:
+        """Appends a piece."""
+        self.total += len(piece)
+        room = HEAD_BYTES - len(self._head)
+        self._head += piece[:room]
+        self._tail += piece[room:]
+        del self._tail[:-TAIL_BYTES]
+
+    def output(self) -> Output:
+        """What has been kept until now."""
+        data = bytes(self._head + self._tail)
+        return Output(data, self.total - len(data))
+
+
+_TICK_S = 0.05
+_PIECE = 1 << 18
+
+
+@dataclass(frozen=True)
+class Exit:
+    """How a program ended.
+
+    Attributes:
+        code: the exit code; None if a signal ended it.
+        signal: the signal's number; None if it exited by itself.
+        limit: the limit that it ran into: cpu, memory, processes, file-size, output, wall; else None.
+    """
+
+    code: int | None
+    signal: int | None
+    limit: str | None
+
+
+# What Python's last line says when the kernel has refused more. A program that prints it without need only tells on
+# itself: it gets no points by it.
+_LAST_WORDS = {
+    "MemoryError": "memory",
+    "std::bad_alloc": "memory",
+    "Cannot allocate memory": "memory",
+    "BlockingIOError: [Errno 11] Resource temporarily unavailable": "processes",
+    "can't start new thread": "processes",
+    "File too large": "file-size",
+    "No space left on device": "file-size",
+}
+
+
+class Monitor:
+    """A thread in the rig for one student."""
+
+    def __init__(
+        self, control: socket.socket, output: int, limits: Limits, pid: int, init: int, holders: frozenset[int]
+    ) -> None:
+        """Begins to watch.
+
+        Args:
+            control: the socket to the supervisor, which is listened to from now on.
+            output: the end to read of the pipe that the program prints to.
+            limits: what kills the program.
+            pid: the program's first process.
+            init: the process that adopts its orphans.
+            holders: children of `init` that are not the program's.
+        """
+        self.ended = threading.Event()
+        """Set when the first process has ended."""
+        self.dead = threading.Event()
+        """Set when all processes are dead."""
+        self.exit: Exit | None = None
+        self.others: frozenset[int] = frozenset()
+        """The further processes, as last seen."""
+        self._control, self._pipe, self._limits = control, output, limits
+        self._pid, self._init, self._holders = pid, init, holders
+        self._buffer = OutputBuffer()
+        self._lock = threading.Lock()
+        self._limit: str | None = None
+        self._buried_cpu_s = 0.0
+        self._since_s = time.monotonic()
+        self._thread = threading.Thread(target=self._watch, name="monitor", daemon=True)
+        self._thread.start()
+
+    def output(self) -> Output:
+        """What has been printed until now."""
+        with self._lock:
+            return self._buffer.output()
+
+    def members(self) -> set[int]:
+        """The program's processes."""
+        if self.dead.is_set():
+            return set()
+        found = processes.descendants(self._init) | processes.descendants(self._pid)
+        return (found | ({self._pid} if self.exit is None else set())) - self._holders
+
+    def cpu_seconds(self) -> float:
+        """CPU seconds of all processes, those buried included."""
+        alive = (self._pid, *self.others) if self.exit is None else self.others
+        orphans = processes.buried_cpu_seconds(self._init) if self._init != self._pid else 0.0
+        return self._buried_cpu_s + orphans + sum(processes.usage(pid).cpu_s for pid in alive)
+
+    def at_limit(self) -> bool:
+        """Whether the program is killed, or has been, for a limit; counts what it uses now."""
+        self._look()
+        return self._limit is not None
+
+    def join(self) -> None:
+        """Waits for the end of the watch."""
+        self._thread.join()
+
+    def _watch(self) -> None:
+        poll = select.poll()
+        poll.register(self._control, select.POLLIN)
+        poll.register(self._pipe, select.POLLIN)
+        next_look_s = 0.0
+        while not self.dead.is_set():
+            ready = dict(poll.poll(_TICK_S * 1000))
+            if self._pipe in ready and not self._drain():
+                poll.unregister(self._pipe)
+            if self._control.fileno() in ready:
+                self._hear()
+            if time.monotonic() >= next_look_s:
+                self._look()
+                next_look_s = time.monotonic() + _TICK_S
+        self._drain_what_is_there()
+        os.close(self._pipe)
+        self._control.close()
+
+    def _drain(self) -> bool:
+        """Reads a piece of the output; False at its end."""
+        piece = os.read(self._pipe, _PIECE)
+        with self._lock:
+            self._buffer.add(piece)
+        if self._buffer.total > self._limits.output_bytes:
+            self._kill("output")
+        return bool(piece)
+
+    def _drain_what_is_there(self) -> None:
+        """Reads what the pipe holds now, and no more: somebody may still be writing."""
+        for _ in range(8):
+            if not select.select([self._pipe], [], [], 0)[0] or not self._drain():
+                return
+
+    def _hear(self) -> None:
+        with contextlib.suppress(OSError):
+            message = self._control.recv(4096)
+            if message:
+                said = json.loads(message)
+                if said["event"] == "exited":
+                    self._buried_cpu_s = said["cpu_s"]
+                    self._end(said["status"])
+                elif said["event"] == "dead":
+                    self._finish()
+                return
+        # The supervisor is gone. With namespaces the kernel has killed all; without, we kill what we last saw.
+        for pid in (self._pid, *self.others):
+            with contextlib.suppress(OSError):
+                os.kill(pid, signal.SIGKILL)
+        self._finish()
+
+    def _end(self, status: int) -> None:
+        self._drain_what_is_there()
+        if os.WIFSIGNALED(status):
+            code, number = None, os.WTERMSIG(status)
+        else:
+            code, number = os.WEXITSTATUS(status), None
+        self.exit = Exit(code, number, self._limit or self._limit_of(code, number))
+        self.ended.set()
+
+    def _finish(self) -> None:
+        if self.exit is None:
+            self._end(signal.SIGKILL)
+        self.dead.set()
+
+    def _limit_of(self, code: int | None, number: int | None) -> str | None:
+        """The limit that the kernel itself has kept, told by the signal or by the program's last line."""
+        if number == signal.SIGXCPU:
+            return "cpu"
+        if number == signal.SIGXFSZ:
+            return "file-size"
+        if code != 0:
+            lines = self.output().data[-2000:].decode(errors="replace").strip().splitlines()
+            for words, limit in _LAST_WORDS.items():
+                if lines and words in lines[-1]:
+                    return limit
+        return None
+
+    def _look(self) -> None:
+        """Counts what the program uses, and kills it if it is too much."""
+        members = self.members()
+        self.others = frozenset(members - {self._pid})
+        used = [processes.usage(pid) for pid in members]
+        if time.monotonic() - self._since_s > self._limits.wall_s:
+            self._kill("wall")
+        elif sum(one.threads for one in used) >= self._limits.processes:
+            self._kill("processes")
+        elif sum(one.resident_bytes for one in used) > self._limits.memory_bytes and self._memory_is_too_much(members):
+            self._kill("memory")
+        elif self.cpu_seconds() > self._limits.cpu_s:
+            self._kill("cpu")
+
+    def _memory_is_too_much(self, members: set[int]) -> bool:
+        """Counts again, what forks share only once: slow, so not before the first count is too high."""
+        exact = [processes.proportional_bytes(pid) for pid in members]
+        return sum(exact) > self._limits.memory_bytes or not any(exact)
+
+    def _kill(self, limit: str) -> None:
+        if self._limit is None and self.exit is None:
+            self._limit = limit
+        with contextlib.suppress(OSError):
+            self._control.send(b"kill")

@@ -1,0 +1,189 @@
+"""The trusted process next to each student: makes the sandbox, starts the program, reports its end, kills it all."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import select
+import signal
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NoReturn
+
+from grader.sandbox import bubblewrap, filesystem, landlock, namespaces, processes, syscalls
+from grader.sandbox import program as limits
+from grader.sandbox.confine import Start, confine
+from grader.sandbox.isolation import Isolation
+from grader.sandbox.program import HUB, SUBMISSION, Paths, Program
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a freshly made student process is to run."""
+
+    program: Program
+    place: Paths
+
+
+def supervise(start: Start, control: int, output: int, rig_namespaces: Sequence[int]) -> Request:
+    """Starts a student and stays with it until it is dead. Returns only in the student itself; the supervisor exits.
+
+    Args:
+        start: what to start.
+        control: the socket to the rig.
+        output: where the student's standard output and error go.
+        rig_namespaces: the user namespace that the rig has made for its students, and for those without a hub its own
+            user and network namespace; empty for the levels without.
+    """
+    reported = False
+    try:
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        syscalls.prctl(syscalls.PR_SET_CHILD_SUBREAPER, 1)  # what the student or bubblewrap orphans is buried here
+        os.chdir("/")
+        beside = _tasks_beside(start)
+        users, *rig = rig_namespaces or (-1,)
+        for namespace in rig:
+            _join(namespace)
+        if start.program.hub:
+            _admit_student_alone(start.program.hub, _owner(start.isolation))
+        house, place = _build(start, users)
+        child = _fork_student(start, place, house, beside, output)
+        if isinstance(child, Request):
+            return child
+        os.close(output)
+        started = {"event": "started", "pid": child, "folder": place.folder}
+        _tell(control, started | {"init": house.init, "holders": sorted(house.holders)})
+        reported = True
+        _watch(control, child, house)
+        _tell(control, {"event": "dead"})
+    except BaseException as fault:
+        if not reported:
+            kind = "" if isinstance(fault, OSError) else f"{type(fault).__name__}: "
+            _tell(control, {"event": "failed", "reason": f"{kind}{fault}"})
+    os._exit(0)
+
+
+def refuse(control: int, reason: str) -> NoReturn:
+    """Answers a rig that no student can be started, and exits."""
+    _tell(control, {"event": "failed", "reason": reason})
+    os._exit(0)
+
+
+def _build(start: Start, users: int) -> tuple[namespaces.Namespaces | processes.ProcessTree, Paths]:
+    program = start.program
+    if start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
+        builder = bubblewrap if start.isolation is Isolation.BUBBLEWRAP else namespaces
+        house = builder.build(start.plan, users, network=not program.hub)
+        namespaces.write_files(program.files)
+        return house, Paths(SUBMISSION, filesystem.HOME, "/tmp", HUB if program.hub else None)
+    owner = _owner(start.isolation)
+    place = processes.make_paths(program.files, owner, program.hub)
+    return processes.ProcessTree(Path(place.folder).parent), place
+
+
+def _admit_student_alone(hub: Path, owner: int | None) -> None:
+    """Lets the student use the hub's socket, and no other user of this machine.
+
+    With namespaces it gets the socket alone, without the folder. Without, and as root, it is another user.
+    """
+    other_user = owner is not None and owner != os.geteuid()
+    hub.parent.chmod(0o711 if other_user else 0o700)
+    hub.chmod(0o600 if other_user else 0o666)
+    if other_user:
+        os.chown(hub, owner or 0, -1)
+
+
+def _fork_student(
+    start: Start, place: Paths, house: namespaces.Namespaces | processes.ProcessTree, beside: int, output: int
+) -> int | Request:
+    """Forks the student. Returns its pid here, and there, once it has been confined, what it is to run."""
+    fault_at, fault_to = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            if isinstance(house, namespaces.Namespaces):
+                house.forget()
+            confine(start, place, beside, output, keep_open=fault_to)
+        except BaseException as fault:
+            os.write(fault_to, str(fault).encode() or repr(fault).encode())
+            os._exit(1)
+        os.close(fault_to)
+        return Request(start.program, place)
+    os.close(fault_to)
+    with os.fdopen(fault_at, "rb") as stream:
+        fault_told = stream.read()
+    if fault_told:
+        house.kill()
+        os.waitpid(child, 0)
+        house.bury()
+        raise OSError(fault_told.decode(errors="replace"))
+    return child
+
+
+def _watch(control: int, child: int, house: namespaces.Namespaces | processes.ProcessTree) -> None:
+    """Until told to kill: passes on interrupts, and reports the end of the student's first process."""
+    ended = os.pidfd_open(child)
+    poll = select.poll()
+    poll.register(control, select.POLLIN)
+    poll.register(ended, select.POLLIN)
+    alive = True
+    while True:
+        ready = dict(poll.poll())
+        if ended in ready:
+            poll.unregister(ended)
+            alive = False
+            _report_end(control, child)
+        if control in ready:
+            order = _hear(control)
+            if order == b"interrupt":
+                if alive:
+                    os.kill(child, signal.SIGINT)
+                continue
+            house.kill()
+            if alive:
+                _report_end(control, child)
+            house.bury()
+            return
+
+
+def _report_end(control: int, child: int) -> None:
+    _, status, usage = os.wait4(child, 0)
+    _tell(control, {"event": "exited", "status": status, "cpu_s": usage.ru_utime + usage.ru_stime})
+
+
+def _hear(control: int) -> bytes:
+    try:
+        return os.read(control, 64)
+    except OSError:
+        return b""
+
+
+def _tell(control: int, message: dict[str, object]) -> None:
+    with contextlib.suppress(OSError):  # the rig is gone: its end is noticed when listening
+        os.write(control, json.dumps(message).encode())
+
+
+def _join(namespace: int) -> None:
+    """Enters a namespace of the rig's, unless this process is in it already."""
+    for name in ("user", "net"):
+        mine = Path(f"/proc/self/ns/{name}").stat()
+        if (mine.st_dev, mine.st_ino) == (os.fstat(namespace).st_dev, os.fstat(namespace).st_ino):
+            return
+    syscalls.setns(namespace)
+
+
+def _tasks_beside(start: Start) -> int:
+    """The processes of the same user that RLIMIT_NPROC will count beside the student's."""
+    apart = start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES)
+    if apart and (os.geteuid() == 0 or limits.counts_for_each_user_namespace()):
+        return 4  # this process and those that hold the namespace open
+    # The user's other processes come and go, so this is only the wall behind the rig, which counts the student's own.
+    user = landlock.student_user() if start.isolation is Isolation.LANDLOCK else os.getuid()
+    return limits.tasks_of_user(user) + 3 * start.limits.processes
+
+
+def _owner(isolation: Isolation) -> int | None:
+    """Whom the folders of a program belong to that runs without namespaces."""
+    return landlock.student_user() if isolation is Isolation.LANDLOCK else None

@@ -1,0 +1,204 @@
+"""The fork server's process: imports rclpy once, then forks a supervisor and a student for each request."""
+
+from __future__ import annotations
+
+import atexit
+import builtins
+import contextlib
+import gc
+import importlib
+import importlib.machinery
+import io
+import os
+import pickle
+import signal
+import socket
+import sys
+import types
+import warnings
+from pathlib import Path
+from typing import NoReturn
+
+from grader.sandbox import filesystem, middleware
+from grader.sandbox import middleware as type_support
+from grader.sandbox.middleware import Middleware, choosable
+from grader.sandbox.program import Paths, Program
+from grader.sandbox.supervisor import Request, refuse, supervise
+
+
+def fork() -> int:
+    """The same as `os.fork`, without what Python warns of from 3.12 on where a process has several threads.
+
+    Those beside Python's own are LTTng's: ROS 2's tracing starts two when rclpy is imported. They wait for a tracing
+    daemon (lttng-ust(3), "LTTNG_UST_REGISTER_TIMEOUT"), and a child has no use for them.
+    """
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "This process .* is multi-threaded", DeprecationWarning)
+        return os.fork()
+
+
+#: How many cores a program is told of. It runs on one, but rclpy's MultiThreadedExecutor takes this for its number of
+#: threads, and with one thread a program would be stuck here that works on every other machine.
+CORES_SHOWN = 4
+
+
+def run_program(program: Program, place: Paths) -> None:
+    """Runs a program as `__main__` in this process; returns or raises SystemExit as the program does.
+
+    Its first act is to connect to the hub, if it has one. So a program that ended without a connection has done nothing
+    of the student's: that is a fault of the machine's or ours.
+
+    An uncaught exception prints its traceback, beginning with the student's own lines, and exits with 1; an uncaught
+    KeyboardInterrupt ends the process by SIGINT. Threads, atexit and the rest of the end are the interpreter's own.
+    """
+    path = str(Path(place.folder, program.main))
+    variables = filesystem.environment(program, place)
+    os.environ.clear()
+    os.environ.update(variables)
+    if not program.warm:
+        os.execv(sys.executable, [sys.executable, path, *program.arguments])
+    if place.hub:
+        middleware.connect(place.hub)
+    module = _prepare_main(path, program.arguments)
+    os.sched_getaffinity = lambda pid: set(range(CORES_SHOWN))
+    try:
+        exec(compile(Path(path).read_bytes(), path, "exec", dont_inherit=True), module.__dict__)
+    except SystemExit:
+        raise
+    except BaseException as fault:
+        _die_of(fault)
+
+
+def _prepare_main(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
+    """Makes this interpreter look as if it had been started with the file."""
+    sys.argv = [path, *arguments]
+    sys.orig_argv = [sys.executable, *sys.argv]
+    sys.path[0] = str(Path(path).parent)
+    imported = [entry for entry in os.environ.get("PYTHONPATH", "").split(os.pathsep) if entry]
+    sys.path[1:1] = [entry for entry in imported if entry not in sys.path]
+    sys.path_importer_cache.clear()
+    for name, number, mode in (("stdin", 0, "r"), ("stdout", 1, "w"), ("stderr", 2, "w")):
+        errors = "surrogateescape" if mode == "r" else "backslashreplace"
+        binary = io.FileIO(number, mode, closefd=False)
+        buffered = io.BufferedReader(binary) if mode == "r" else io.BufferedWriter(binary)
+        # By the line, as on a terminal, so that what was printed is there when the program is killed.
+        stream = io.TextIOWrapper(buffered, "utf-8", errors, line_buffering=True)
+        setattr(sys, name, stream)
+        setattr(sys, f"__{name}__", stream)
+    module = types.ModuleType("__main__")
+    module.__file__ = path
+    module.__loader__ = importlib.machinery.SourceFileLoader("__main__", path)
+    module.__dict__["__builtins__"] = builtins
+    module.__dict__["__cached__"] = None
+    atexit.register(_die_of_interrupt)  # the first to be registered is the last to be called
+    _ours.append(sys.modules["__main__"])
+    sys.modules["__main__"] = module
+    for name in [name for name in sys.modules if name.partition(".")[0] in ("grader", "rmw_lockstep")]:
+        _ours.append(sys.modules.pop(name))
+    return module
+
+
+# The modules whose code is still running below the student's: without a reference they would be torn down.
+_ours: list[types.ModuleType] = []
+# Not empty when an uncaught KeyboardInterrupt ends the program.
+_interrupted: list[bool] = []
+
+
+def _die_of(fault: BaseException) -> NoReturn:
+    """Prints an exception as an interpreter does that ends with it, without the lines of this file."""
+    trace = fault.__traceback__.tb_next if fault.__traceback__ is not None else None
+    _interrupted.extend([True] if isinstance(fault, KeyboardInterrupt) else [])
+    sys.excepthook(type(fault), fault.with_traceback(trace), trace)
+    sys.exit(1)
+
+
+def _die_of_interrupt() -> None:
+    if not _interrupted:
+        return
+    sys.stdout.flush()
+    sys.stderr.flush()
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    os.kill(os.getpid(), signal.SIGINT)
+
+
+# python -m grader.sandbox.zygote DESCRIPTOR MIDDLEWARE MODULE…
+
+
+_MOST_DESCRIPTORS = 8
+_USED_BY_MOST_NODES = (
+    "rcl_interfaces",
+    "rosgraph_msgs",
+    "builtin_interfaces",
+    "std_msgs",
+    "geometry_msgs",
+    "sensor_msgs",
+)
+
+
+def main(arguments: list[str]) -> None:
+    """Serves until the last user of the socket is gone. Returns only as a student whose program has come to its end."""
+    requests, middleware, modules = int(arguments[0]), Middleware(arguments[1]), arguments[2:]
+    os.chdir("/")
+    fault = _load(modules, middleware)
+    filesystem.system()  # found once, not in every fork
+    filesystem.interpreter()
+    gc.collect()
+    gc.freeze()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # supervisors need no burial
+    job = serve(requests, fault)
+    if job is not None:
+        run_program(job.program, job.place)
+
+
+def serve(requests: int, fault: str | None) -> Request | None:
+    """Forks a supervisor for each request. Returns what to run in each student, and None at the end of all requests.
+
+    With a `fault` nothing is started: it is the answer to each request.
+    """
+    listening = socket.socket(fileno=requests)
+    while True:
+        message, passed, _, _ = socket.recv_fds(listening, 64, _MOST_DESCRIPTORS)
+        if not message:
+            return None
+        if fork() == 0:
+            listening.detach()
+            os.close(requests)
+            request, control, output, *namespaces = passed
+            with os.fdopen(request, "rb") as stream:
+                start = pickle.load(stream)
+            if fault:
+                refuse(control, fault)
+            return supervise(start, control, output, namespaces)
+        for number in passed:
+            os.close(number)
+
+
+def _load(modules: list[str], middleware: Middleware) -> str | None:
+    """Imports modules, and says what is wrong if rclpy has loaded another middleware than it was started for."""
+    wanted = os.environ.pop("RMW_IMPLEMENTATION", None)
+    if wanted and choosable():
+        os.environ["RMW_IMPLEMENTATION"] = wanted
+    for name in modules:
+        _import(name)
+    if wanted:
+        os.environ["RMW_IMPLEMENTATION"] = wanted
+    if "rclpy" not in sys.modules:
+        return None
+    loaded = sys.modules["rclpy"].get_rmw_implementation_identifier()
+    if middleware.is_named(loaded):
+        return None
+    return f"rclpy has loaded the middleware {loaded}, not {middleware}. Run spinbook doctor: it says what is installed"
+
+
+def _import(name: str) -> None:
+    """Imports a module and, if most nodes use its message types, loads their compiled support."""
+    if name.split(".")[0] in _USED_BY_MOST_NODES:
+        type_support.load_type_support(name)
+    else:
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

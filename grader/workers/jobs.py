@@ -1,0 +1,143 @@
+"""What a worker can be asked to do, and the ROS domain that it uses for it."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from pathlib import Path
+from typing import Any, Protocol
+
+from grader.exercise import Exercise
+from grader.recording import Recording
+from grader.runner.task import Task
+from grader.sandbox import ForkServer, Isolation, Limits, Middleware, Program, Student, enter
+from grader.scenario import Scenario
+
+#: Inside network namespaces of its own a rig is alone in every domain.
+ALONE = 42
+
+#: Domains whose UDP ports lie above those that Linux gives to programs which ask for none in particular
+#: (7400 + 250 x domain > 60999), and which no ROS user takes by hand.
+SHARED = range(215, 233)
+
+
+@cache
+def domain_for(isolation: Isolation) -> int:
+    """The domain for this process; it stays this process's own until it ends. Raises OSError when none is left."""
+    if isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
+        return ALONE
+    folder = Path(tempfile.gettempdir()) / f"spinbook-domains-{os.getuid()}"
+    folder.mkdir(mode=0o700, exist_ok=True)
+    for domain in SHARED:
+        # Never closed: the lock goes with the process.
+        lock = os.open(folder / str(domain), os.O_CREAT | os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW, 0o600)
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            os.close(lock)
+        else:
+            return domain
+    raise OSError("all ROS domains for rigs are in use by other gradings on this machine")
+
+
+class Job(Protocol):
+    """Something to do in a process of the worker pool's. `ready` is to be called once threads are allowed."""
+
+    def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Any:
+        """Do it."""
+
+
+@dataclass(frozen=True)
+class RunJob:
+    """Spin a program through one scenario. `core` is the CPU to keep the student's program on."""
+
+    exercise: Exercise
+    scenario: Scenario
+    program: Program
+    isolation: Isolation
+    middleware: Middleware
+    limits: Limits
+    source: str
+    file_name: str
+    core: int | None = None
+    pace: float | None = None
+    data_bytes: int = 8_000_000
+    """What the program may publish in all messages together, over lockstep."""
+    programs: tuple[Program, ...] = ()
+    """The programs of a submission of several, in place of `program`."""
+    companions: tuple[Program, ...] = ()
+    """The author's own."""
+
+    def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Recording:
+        """The recording of the spin."""
+        by = {Middleware.LOCKSTEP: self._over_lockstep, Middleware.FASTDDS: self._over_fast_dds}
+        return by[self.middleware](fork_server, ready)
+
+    @property
+    def _task(self) -> Task:
+        return Task(self.exercise, self.scenario, self.file_name, self.source, self.pace)
+
+    def _over_lockstep(self, fork_server: ForkServer, ready: Callable[[], None]) -> Recording:
+        from grader.runner.run import run
+        from rmw_lockstep.hub import Limits as HubLimits
+
+        def start(program: Program, hub: Path) -> Student:
+            return fork_server.start(replace(program, hub=hub), self.isolation, self.limits, self.core)
+
+        ready()
+        return run(
+            self._task,
+            partial(start, self.program),
+            HubLimits(data_bytes=self.data_bytes),
+            {program.main: partial(start, program) for program in self.programs},
+            [partial(start, program) for program in self.companions],
+        )
+
+    def _over_fast_dds(self, fork_server: ForkServer, ready: Callable[[], None]) -> Recording:
+        pass
+        from grader.runner.fastdds.run import run
+
+        fork_server.prepare(self.middleware)  # before, so that it stays outside of what is entered now
+        enter(self.isolation)
+        ready()
+        domain = domain_for(self.isolation)
+        program = replace(self.program, environment={**self.program.environment, "ROS_DOMAIN_ID": str(domain)})
+        return run(
+            replace(self._task, domain=domain),
+            lambda: fork_server.start(program, self.isolation, self.limits, self.core),
+        )
+
+
+@dataclass(frozen=True)
+class JudgeJob:
+    """Run the exercise's checks on recordings."""
+
+    exercise: Exercise
+    recordings: dict[str, Recording]
+    references: dict[str, Recording]
+    titles: dict[str, str]
+
+    def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Any:
+        """The verdicts."""
+        from grader.checking.judging import judge
+
+        ready()
+        return judge(self.exercise, self.recordings, self.references, self.titles)
+
+
+@dataclass(frozen=True)
+class ListJob:
+    """List the exercise's checks."""
+
+    exercise: Exercise
+
+    def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Any:
+        """The checks, as `Listed`."""
+        from grader.checking.judging import listed
+
+        ready()
+        return listed(self.exercise)

@@ -1,0 +1,209 @@
+"""The worker pool: a worker process that forks one process per job, and hands it one job after another."""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing.connection
+import os
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from grader.sandbox import Middleware, choose_middleware
+
+if TYPE_CHECKING:
+    from grader.workers.jobs import Job
+
+    Connection: TypeAlias = multiprocessing.connection.Connection[Any, Any]
+
+
+#: No job takes this long: the student's limits end far below it.
+LONGEST_S = 600.0
+
+#: How often a job is tried when the machine or we are at fault.
+TRIES = 3
+
+
+class HostFault(Exception):
+    """Raised when a job came to nothing by a fault of the machine's or ours, several times over."""
+
+
+class Worker:
+    """One process of a worker pool's, made when it is first needed; use it as a context manager, and from one thread.
+
+    What the process has made ready for one job it has ready for the next: a rig its namespaces, and all that is
+    copied from the worker when it is first touched. So a hand is for jobs that may share a process: the spins of one
+    submission, not those of two.
+    """
+
+    def __init__(self, process: Callable[[], Connection]) -> None:
+        """`process` connects to a new process; it raises OSError where there is none to be had."""
+        self._new = process
+        self._process: Connection | None = None
+
+    def do(self, job: Job, cancelled: threading.Event | None = None) -> Any:
+        """What `job` returns. An `ExerciseError` of the job's is raised here as it is, anything else as `HostFault`.
+
+        Returns None when `cancelled` was set meanwhile; the job's process then ends.
+        """
+        faults: list[str] = []
+        for _ in range(TRIES):
+            kind, result = self._once(job, cancelled or threading.Event())
+            if kind == "result":
+                return result
+            self.close()  # nobody knows what the fault has left behind
+            if kind == "author":
+                raise result
+            faults.append(str(result))
+        raise HostFault(faults[-1])
+
+    def _once(self, job: Job, cancelled: threading.Event) -> tuple[str, Any]:
+        try:
+            self._process = process = self._process or self._new()
+        except OSError as error:
+            return "host", f"the worker process is gone: {error}"
+        try:
+            process.send(job)
+            waited = 0.0
+            while not process.poll(0.1):
+                waited += 0.1
+                if cancelled.is_set():
+                    self.close()
+                    return "result", None
+                if waited > LONGEST_S:
+                    return "host", f"no result after {LONGEST_S:g} s"
+            answer: tuple[str, Any] = process.recv()
+            return answer
+        except (EOFError, OSError):
+            return "host", "the process that did the work died"
+
+    def close(self) -> None:
+        """End the process, and with it the job that it may be doing."""
+        if self._process is not None:
+            with contextlib.suppress(OSError):
+                self._process.close()
+        self._process = None
+
+    def __enter__(self) -> Worker:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+PROFILE = Path(__file__).parents[1] / "loopback.xml"
+
+#: For every process that takes part in a spin over Fast DDS. The ROS domain comes on top.
+FAST_DDS_ENVIRONMENT = {
+    "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILE),
+    "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
+}
+
+#: For the worker and its rigs. A second RMW or a ROS_STATIC_PEERS of the user's would part rig and student.
+WORKER_ENVIRONMENT = {
+    **FAST_DDS_ENVIRONMENT,
+    "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp",
+    "ROS_STATIC_PEERS": "",
+    "PYTHONHASHSEED": "0",
+    "OPENBLAS_NUM_THREADS": "1",
+}
+
+#: For students' programs. No time stamps in the log, so that two runs log the same.
+STUDENT_ENVIRONMENT = {
+    "RCUTILS_CONSOLE_OUTPUT_FORMAT": "[{severity}] [{name}]: {message}",
+    "RCUTILS_COLORIZED_OUTPUT": "0",
+}
+
+
+PREPARE_TO_JUDGE, PROCESS = b"p", b"j"
+
+
+class WorkerPool:
+    """A worker process that forks the processes which do jobs, and is started again should it die.
+
+    Any thread may call `do` and `hand`; use it as a context manager.
+    """
+
+    def __init__(self, *middlewares: Middleware | None) -> None:
+        """Starts the worker, ready for programs of these middlewares; None is the one that is used without a wish.
+
+        Raises:
+            MiddlewareUnavailable: if one of them can't be had on this machine.
+        """
+        chosen = {choose_middleware(one).middleware for one in middlewares or (None,)}
+        self._middlewares = sorted(one.value for one in chosen)
+        self._lock = threading.Lock()
+        self._closed = False
+        self._start()
+
+    def _start(self) -> None:
+        self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._worker = subprocess.Popen(
+            [sys.executable, "-m", "grader.workers.worker", str(theirs.fileno()), *self._middlewares],
+            pass_fds=[theirs.fileno()],
+            stdin=subprocess.DEVNULL,
+            start_new_session=True,
+            env={**os.environ, **WORKER_ENVIRONMENT},
+        )
+        theirs.close()
+
+    def do(self, job: Job, cancelled: threading.Event | None = None) -> Any:
+        """What `job` returns, done in a process of its own; see `Hand.do`."""
+        with self.hand() as hand:
+            return hand.do(job, cancelled)
+
+    def hand(self) -> Worker:
+        """A process that does one job after another."""
+        return Worker(self._process)
+
+    def prepare_to_judge(self) -> None:
+        """Let the worker import what judging needs, while spins are still running."""
+        with self._lock, contextlib.suppress(OSError):  # a worker that died is started again with the next job
+            self._control.send(PREPARE_TO_JUDGE)
+
+    def _process(self) -> Connection:
+        """A connection to a new process that does jobs. Raises OSError where there is none to be had."""
+        ours, theirs = socket.socketpair()
+        try:
+            self._hand_over(theirs.fileno())
+        except OSError:
+            ours.close()
+            raise
+        finally:
+            theirs.close()
+        return multiprocessing.connection.Connection(ours.detach())
+
+    def _hand_over(self, descriptor: int) -> None:
+        """Ask the worker for a process more; where it has died, as by the kernel for want of memory, start another."""
+        with self._lock:
+            try:
+                socket.send_fds(self._control, [PROCESS], [descriptor])
+            except OSError:
+                if self._closed:
+                    raise
+                self._control.close()
+                self._worker.kill()
+                self._worker.wait()
+                self._start()
+                socket.send_fds(self._control, [PROCESS], [descriptor])
+
+    def close(self) -> None:
+        """End the worker, and with it every job and every student's program."""
+        self._closed = True
+        self._control.close()
+        self._worker.wait()
+
+    def __enter__(self) -> WorkerPool:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()

@@ -1,0 +1,137 @@
+"""The worker process: has rclpy in memory and forks the processes for jobs."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import gc
+import multiprocessing.connection
+import os
+import queue
+import signal
+import socket
+import sys
+import threading
+import traceback
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from grader.exercise import ExerciseError
+from grader.sandbox import ForkServer, Middleware, filesystem, middleware
+from grader.sandbox.zygote import fork
+from grader.workers.pool import PREPARE_TO_JUDGE, PROCESS, PROFILE
+from interface_compiler import activation
+
+if TYPE_CHECKING:
+    from grader.workers.jobs import Job
+    from grader.workers.pool import Connection
+
+
+#: Whose compiled support the rig uses in every spin; loading it takes half as long as a short scenario.
+PACKAGES = (
+    *("rcl_interfaces.msg", "rcl_interfaces.srv", "type_description_interfaces.srv", "builtin_interfaces.msg"),
+    *("rosgraph_msgs.msg", "std_msgs.msg", "sensor_msgs.msg", "geometry_msgs.msg"),
+)
+
+
+def preload() -> None:
+    """Load message types, look at the file system, and leave the memory as it is shared best with forks."""
+    for package in (*PACKAGES, *(f"{name}.msg" for name in activation.active_packages())):
+        middleware.load_type_support(package)
+    filesystem.mounts((PROFILE,), (), 0)
+    _share()
+
+
+@functools.cache
+def preload_judging() -> None:
+    """The same for what judging needs besides."""
+    from grader.checking.judging import load_pytest
+
+    load_pytest()
+    _share()
+
+
+def _share() -> None:
+    # Collected later, in each fork, it would be copied there.
+    gc.collect()
+    gc.freeze()
+
+
+# python -m grader.workers.worker DESCRIPTOR MIDDLEWARE…
+
+
+def main() -> None:
+    """Serve jobs until the other end of the control socket is closed."""
+    control = socket.socket(fileno=int(sys.argv[1]))
+    with ForkServer([Middleware(name) for name in sys.argv[2:]]) as fork_server:
+        pass
+
+        preload()
+        working: set[int] = set()
+        while True:
+            command, descriptors, _, _ = socket.recv_fds(control, 16, 1)
+            _reap(working)
+            if not command:
+                break
+            if command == PREPARE_TO_JUDGE:
+                preload_judging()
+            elif command == PROCESS:
+                pid = fork()
+                if pid == 0:
+                    control.close()
+                    _work(descriptors[0], fork_server)
+                os.close(descriptors[0])
+                working.add(pid)
+        for pid in working:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
+            with contextlib.suppress(ChildProcessError):
+                os.waitpid(pid, 0)
+
+
+def _reap(working: set[int]) -> None:
+    for pid in list(working):
+        if os.waitpid(pid, os.WNOHANG)[0]:
+            working.discard(pid)
+
+
+def _work(descriptor: int, fork_server: ForkServer) -> NoReturn:
+    """One job after another in this process, which ends with the first that fails, or once nobody wants any more."""
+    connection = multiprocessing.connection.Connection(descriptor)
+    jobs: queue.SimpleQueue[Job] = queue.SimpleQueue()
+    # Whoever wanted the result may lose interest in it: then the other end is closed, and the job ends at once.
+    listener = threading.Thread(target=_listen, args=(connection, jobs), daemon=True)
+
+    def ready() -> None:
+        if not listener.ident:
+            listener.start()
+
+    with contextlib.suppress(EOFError, OSError):
+        jobs.put(connection.recv())
+        while True:
+            kind, result = _answer(jobs.get(), fork_server, ready)
+            ready()
+            connection.send((kind, result))
+            if kind != "result":
+                break
+    os._exit(0)
+
+
+def _answer(job: Job, fork_server: ForkServer, ready: Callable[[], None]) -> tuple[str, Any]:
+    try:
+        return "result", job.run(fork_server, ready)
+    except ExerciseError as error:
+        return "author", error
+    except BaseException:
+        return "host", traceback.format_exc()
+
+
+def _listen(connection: Connection, jobs: queue.SimpleQueue[Job]) -> None:
+    with contextlib.suppress(EOFError, OSError):
+        while True:
+            jobs.put(connection.recv())
+    os._exit(1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,90 @@
+"""Moving pictures as SVG and CSS, without script; in print, and for readers who prefer no motion, the last frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from html import escape
+
+#: An animation begins and ends with a rest (s), so that the eye finds the start and sees the whole.
+BEFORE_S, AFTER_S = 0.4, 2.6
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """`moving_s` seconds of motion between two rests, again and again.
+
+    `key` begins every class and animation: several pictures may stand in one page.
+    """
+
+    key: str
+    moving_s: float
+
+    @property
+    def whole_s(self) -> float:
+        """The cycle with its rests (s)."""
+        return BEFORE_S + self.moving_s + AFTER_S
+
+    def keyframes(self, name: str, frames: Iterable[tuple[float, str]]) -> str:
+        """CSS that lets the class `key` + `name` go through declarations at times (s of the motion), in order.
+
+        Between two of them CSS goes steadily; before the first and after the last it rests.
+        """
+        at = {self._percent(seconds): declaration for seconds, declaration in frames}
+        first, last = next(iter(at.values())), list(at.values())[-1]
+        at = {"0": first, **at, "100": last}
+        steps = "".join(f"{percent}%{{{declaration}}}" for percent, declaration in at.items())
+        name = f"{self.key}{name}"
+        return f"@keyframes {name}{{{steps}}}.{name}{{animation:{name} {self.whole_s:.2f}s linear infinite}}"
+
+    def _percent(self, seconds: float) -> str:
+        return coord(100 * (BEFORE_S + seconds) / self.whole_s, 2)
+
+    def style(self, *rules: str) -> str:
+        """A style element in which the rules hold only on a screen, for readers who do not mind motion."""
+        return f"<style>@media screen and (prefers-reduced-motion:no-preference){{{''.join(rules)}}}</style>"
+
+
+def coord(value: float, digits: int = 1) -> str:
+    """A number in as few characters as say it to so many digits after the point."""
+    text = f"{value:.{digits}f}".rstrip("0").rstrip(".") if digits else f"{value:.0f}"
+    return "0" if text in ("-0", "") else text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
+
+
+def thinned(points: Sequence[tuple[float, float]], tolerance: float) -> list[tuple[float, float]]:
+    """Some of these (time, value) points, in order of time, between which a steady change passes within `tolerance`.
+
+    Douglas and Peucker's way (1973), on the value at the same time.
+    """
+    if len(points) < 3:
+        return list(points)
+    kept = {0, len(points) - 1}
+    pieces = [(0, len(points) - 1)]
+    while pieces:
+        start, end = pieces.pop()
+        (t0, v0), (t1, v1) = points[start], points[end]
+        slope = (v1 - v0) / (t1 - t0) if t1 > t0 else 0.0
+        off = [abs(v0 + slope * (t - t0) - v) for t, v in points[start + 1 : end]]
+        if off and max(off) > tolerance:
+            middle = start + 1 + off.index(max(off))
+            kept.add(middle)
+            pieces += [(start, middle), (middle, end)]
+    return [points[index] for index in sorted(kept)]
+
+
+FONT = "system-ui,-apple-system,'Segoe UI',Roboto,'DejaVu Sans',sans-serif"
+_COLOURS = (
+    "<style>.{key}i{{fill:#24292f}}.{key}p{{fill:#fff}}"
+    "@media(prefers-color-scheme:dark){{.{key}i{{fill:#e6edf3}}.{key}p{{fill:#161b22}}}}</style>"
+)
+
+
+def on_paper(content: str, width: int, height: int, key: str, title: str, words: str) -> str:
+    """An SVG document, `width` by `height` px. What has the class `key` + "i" is in ink; `words` describe it all."""
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" '
+        f'role="img" aria-labelledby="{key}t {key}d" font-family="{FONT}">'
+        f'<title id="{key}t">{escape(title)}</title><desc id="{key}d">{escape(words)}</desc>'
+        f"{_COLOURS.format(key=key)}"
+        f'<rect class="{key}p" width="{width}" height="{height}" rx="6" fill="#fff"/>{content}</svg>'
+    )

@@ -1,1 +1,0 @@
-"""Moving pictures as SVG, moved by CSS alone: no script; in print and for still readers, the last picture."""

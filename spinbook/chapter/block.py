@@ -1,0 +1,148 @@
+"""A block of a chapter: text, a fence, or a container of other blocks, and which blocks belong together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from enum import Enum
+
+from spinbook.chapter import attributes
+from spinbook.chapter.fence import Fence, make_fence
+
+
+class Kind(Enum):
+    """What a block is. Those from ADMONITION on hold blocks."""
+
+    TEXT = "text"
+    HEADING = "heading"
+    FENCE = "fence"
+    EXERCISE = "exercise"
+    DROPPED = "dropped"
+    ADMONITION = "admonition"
+    TAB = "tab"
+    DETAILS = "details"
+    LIST = "list"
+    ITEM = "item"
+    QUOTE = "quote"
+    GROUP = "group"
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of the chapter, without the indentation of what holds it. `number` counts from 1 in the chapter."""
+
+    text: str
+    number: int
+
+
+@dataclass(frozen=True)
+class Block:
+    """One block. `lines` are as the author wrote them; `title` and `style` say what an admonition or a tab is called.
+
+    `new` are the lines that stand for it where the author's would not be understood; None: the author's will do.
+    """
+
+    kind: Kind
+    lines: tuple[Line, ...]
+    children: tuple[Block, ...] = ()
+    title: str = ""
+    style: str = ""
+    fence: Fence | None = None
+    closed: bool = True
+    new: tuple[Line, ...] | None = None
+    offset: int = 0
+    """How far the text of a list's item is indented."""
+
+    @property
+    def line(self) -> int:
+        """The chapter's line on which it begins."""
+        return self.lines[0].number if self.lines else 1
+
+    def walk(self) -> Iterator[Block]:
+        """This block and all that it holds, in order."""
+        yield self
+        for child in self.children:
+            yield from child.walk()
+
+
+def unquoted(line: Line) -> Line:
+    """A line of a quotation without its mark."""
+    text = line.text.lstrip()
+    if not text.startswith(">"):
+        return Line(text, line.number)
+    return Line(text[1:].removeprefix(" "), line.number)
+
+
+def as_fence(fence: Fence, lines: tuple[Line, ...]) -> tuple[Line, ...]:
+    """The lines of a plain fence in place of these."""
+    number = lines[0].number
+    title = f' title="{fence.title}"' if fence.title else ""
+    code = [Line(text, number) for text in fence.code.rstrip("\n").split("\n")]
+    mark = "````" if "```" in fence.code else "```"
+    return (Line(f"{mark}{fence.language}{title}", number), *code, Line(mark, lines[-1].number))
+
+
+def merged_callouts(found: list[Block]) -> list[Block]:
+    """Kramdown's `{: .note }` before or behind a paragraph or quotation makes it an admonition."""
+    out: list[Block] = []
+    style = ""
+    for block in found:
+        if block.kind is Kind.DROPPED and block.style in attributes.STYLES:
+            if out and out[-1].kind in {Kind.TEXT, Kind.QUOTE} and out[-1].lines[-1].text.strip():
+                out[-1] = _called_out(out[-1], block.style)
+            else:
+                style = block.style
+            continue
+        if style and block.kind in {Kind.TEXT, Kind.QUOTE} and any(line.text.strip() for line in block.lines):
+            block, style = _called_out(block, style), ""
+        out.append(block)
+    return out
+
+
+def _called_out(block: Block, style: str) -> Block:
+    quoted = block.lines[0].text.lstrip().startswith(">")
+    lines = tuple(unquoted(line) for line in block.lines) if quoted else block.lines
+    return Block(Kind.ADMONITION, block.lines, (Block(Kind.TEXT, lines),), style=style)
+
+
+def paired(found: list[Block]) -> tuple[Block, ...]:
+    """Opening and closing tags become one block that holds what is between them."""
+    stack: list[tuple[Block | None, list[Block]]] = [(None, [])]
+    for block in found:
+        if block.kind is Kind.DROPPED and block.style == "open" and block.title in attributes.PAIRED:
+            stack.append((block, []))
+        elif block.kind is Kind.DROPPED and block.style == "close" and block.title in attributes.PAIRED:
+            if any(opened and opened.title == block.title for opened, _ in stack):
+                while True:
+                    opened, inner = stack.pop()
+                    assert opened is not None
+                    closing = block if opened.title == block.title else None
+                    stack[-1][1].append(_pair(opened, inner, closing))
+                    if closing:
+                        break
+        else:
+            stack[-1][1].append(block)
+    while len(stack) > 1:
+        # A tag that is never closed: what follows stays.
+        opened, inner = stack.pop()
+        assert opened is not None
+        stack[-1][1].extend([replace(opened, style="", title="", new=None), *inner])
+    return tuple(stack[0][1])
+
+
+def _pair(opened: Block, inner: list[Block], closing: Block | None) -> Block:
+    given = attributes.pairs(opened.new[0].text if opened.new else "")
+    words = opened.new[0].text if opened.new else ""
+    kind, style, title = attributes.paired(opened.title, given, words)
+    summary = next((block for block in inner if block.style == "summary"), None)
+    if summary and summary.new:
+        title = summary.new[0].text
+    lines = (*opened.lines, *(line for block in inner for line in block.lines), *(closing.lines if closing else ()))
+    inner = [block for block in inner if block is not summary]
+    if opened.title == "highlight":
+        code = "".join(f"{line.text}\n" for block in inner for line in block.lines)
+        fence = make_fence(words.split(" ")[0] or "text", code, opened.line)
+        return Block(Kind.FENCE, lines, fence=fence, new=as_fence(fence, lines))
+    if opened.title == "details" and summary is None and "title" not in given:
+        title = "Details"
+    return Block(Kind(kind), lines, tuple(inner), title, style)

@@ -1,0 +1,285 @@
+"""A chapter as a tree of blocks: text, fences, and what holds other blocks, whatever book tool it was written for.
+
+Each level of the tree is read by itself, with the indentation of what holds it taken off; lines keep their numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+from markdown_it.token import Token
+
+from spinbook.chapter import attributes
+from spinbook.chapter.block import Block, Kind, Line, as_fence, merged_callouts, paired, unquoted
+from spinbook.chapter.fence import Fence, directive, make_fence
+from spinbook.chapter.flavours import parser
+
+#: Reads a file that a chapter includes: its text, or None if there is no such file.
+Include = Callable[[str], str | None]
+_DEEPEST = 12
+
+
+@dataclass
+class _Reader:
+    include: Include
+    depth: int = 0
+    tokens: list[Token] = field(default_factory=list)
+
+    def blocks(self, lines: Sequence[Line]) -> tuple[Block, ...]:
+        if self.depth > _DEEPEST:
+            return (Block(Kind.TEXT, tuple(lines)),)
+        tokens = parser().parse("\n".join(line.text for line in lines))
+        found: list[Block] = []
+        at = 0
+        for token in tokens:
+            if token.level or token.map is None or token.nesting < 0 or token.map[0] < at:
+                continue
+            start, end = token.map
+            if start > at:
+                found.append(Block(Kind.TEXT, tuple(lines[at:start])))
+            if token.type == "container_any_open" and end < len(lines) and set(lines[end].text.strip()) == {":"}:
+                end += 1
+            at = min(max(end, start + 1), len(lines))
+            found.extend(self._block(token, tokens, tuple(lines[start:at])))
+        if at < len(lines):
+            found.append(Block(Kind.TEXT, tuple(lines[at:])))
+        return paired(merged_callouts(found))
+
+    def inside(self, lines: Sequence[Line]) -> tuple[Block, ...]:
+        return _Reader(self.include, self.depth + 1).blocks(lines)
+
+    def _block(self, token: Token, tokens: list[Token], lines: tuple[Line, ...]) -> list[Block]:
+        read = getattr(self, f"_{token.type}", None)
+        return read(token, lines) if read else [Block(Kind.TEXT, lines)]
+
+    def _heading_open(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        return [Block(Kind.HEADING, lines)]
+
+    def _html_block(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        name = attributes.exercise(token.content)
+        if not name:
+            return [Block(Kind.TEXT, lines)]
+        rest = [Block(Kind.TEXT, lines[1:])] if len(lines) > 1 else []
+        return [Block(Kind.EXERCISE, lines[:1], title=name), *rest]
+
+    def _fence(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        closed = _is_closed(token, lines)
+        name, argument = directive(token.info)
+        body = [Line(text, lines[0].number + 1 + i) for i, text in enumerate(token.content.split("\n")[:-1])]
+        if name:
+            closed = closed or len(lines) == 1
+            return self._directive(name, argument, lines, body, closed)
+        fence = self._included(make_fence(token.info, token.content, lines[0].number))
+        expanded = fence.code != token.content and "".join(f"{line.text}\n" for line in body) != fence.code
+        new = as_fence(fence, lines) if expanded and not fence.skipped else None
+        return [Block(Kind.FENCE, lines, fence=fence, closed=closed, new=new)]
+
+    def _included(self, fence: Fence) -> Fence:
+        if "8<--" not in fence.code:
+            return fence
+        out: list[str] = []
+        for text in fence.code.split("\n"):
+            name = attributes.snippet(text)
+            content = self.include(name) if name else None
+            out += [text] if content is None else content.rstrip("\n").split("\n")
+        return replace(fence, code="\n".join(out))
+
+    def _directive(
+        self, name: str, argument: str, lines: tuple[Line, ...], body: list[Line], closed: bool
+    ) -> list[Block]:
+        """A directive of MyST."""
+        options, skipped = attributes.options([line.text for line in body])
+        while skipped < len(body) and not body[skipped].text.strip():
+            skipped += 1
+        inner = body[skipped:]
+        if name in attributes.CODE:
+            info = f"{argument} " + " ".join(f'{key}="{value}"' for key, value in options.items())
+            fence = make_fence(f"{{code-cell}} {info}", "".join(f"{x.text}\n" for x in inner), lines[0].number)
+            fence = self._included(replace(fence, skipped=skipped))
+            return [Block(Kind.FENCE, lines, fence=fence, closed=closed, new=as_fence(fence, lines))]
+        if name == "literalinclude":
+            return [self._literal(argument, options, lines)]
+        if name == "include":
+            text = self.include(argument)
+            included = [Line(t, lines[0].number) for t in (text or "").split("\n")]
+            return list(self.inside(included)) if text else [Block(Kind.DROPPED, lines)]
+        if name in {"image", "figure"}:
+            new = [Line(attributes.image(argument, options), lines[0].number), Line("", lines[0].number), *inner]
+            return [Block(Kind.TEXT, lines, new=tuple(new))]
+        if name in attributes.UNSEEN:
+            return [Block(Kind.DROPPED, lines)]
+        if name == "mermaid":
+            return [
+                Block(
+                    Kind.FENCE,
+                    lines,
+                    fence=make_fence("mermaid", "".join(f"{x.text}\n" for x in inner), 1),
+                    closed=closed,
+                    new=(Line("```mermaid", lines[0].number), *inner, Line("```", lines[-1].number)),
+                )
+            ]
+        if name == "math":
+            number = lines[0].number
+            return [Block(Kind.TEXT, lines, new=(Line("$$", number), *inner, Line("$$", lines[-1].number)))]
+        kind, style, title = attributes.container(name, argument)
+        if kind is None:
+            return [Block(Kind.FENCE, lines, fence=make_fence(name, "".join(f"{x.text}\n" for x in inner), 1))]
+        if style and not title and argument:
+            inner = [Line(argument, lines[0].number), Line("", lines[0].number), *inner]
+        return [Block(Kind(kind), lines, self.inside(inner), title, style)]
+
+    def _literal(self, argument: str, options: dict[str, str], lines: tuple[Line, ...]) -> Block:
+        text = self.include(argument)
+        if text is None:
+            return Block(Kind.FENCE, lines, fence=make_fence("text", "", lines[0].number))
+        language = options.get("language", "python" if argument.endswith(".py") else "text")
+        title = f' title="{argument.rsplit("/", 1)[-1]}"' if argument.endswith(".py") else ""
+        fence = make_fence(language + title, text.rstrip("\n") + "\n", lines[0].number)
+        return Block(Kind.FENCE, lines, fence=fence, new=as_fence(fence, lines))
+
+    def _snippet(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        text = self.include(token.info)
+        if text is None:
+            return [Block(Kind.TEXT, lines)]
+        return [
+            replace(block, new=block.new or block.lines) if block.kind is Kind.TEXT else block
+            for block in self.inside([Line(t, lines[0].number) for t in text.split("\n")])
+        ]
+
+    def _container_any_open(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        name, argument = attributes.container_name(token.info)
+        ends = set(lines[-1].text.strip()) == {":"} and len(lines) > 1
+        inner = list(lines[1:-1] if ends else lines[1:])
+        options, skipped = attributes.options([line.text for line in inner])
+        if name in attributes.CODE or name in {"image", "figure", "literalinclude", "include", "math", "mermaid"}:
+            return self._directive(name, argument, lines, inner, ends)
+        if name in attributes.UNSEEN:
+            return [Block(Kind.DROPPED, lines)]
+        is_myst = token.info.strip().startswith("{") and not token.info.strip().startswith("{.")
+        kind, style, title = attributes.container(name, argument, colon=not is_myst)
+        title = title or options.get("title", "")
+        if style and not title and argument and is_myst:
+            inner[:skipped] = [Line(argument, lines[0].number), Line("", lines[0].number)]
+            skipped = 0
+        return [Block(Kind(kind or "group"), lines, self.inside(inner[skipped:]), title, style)]
+
+    def _admonition_open(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        style, title = attributes.admonition(token.info)
+        indent = len(lines[0].text) - len(lines[0].text.lstrip()) + 4
+        kind = Kind.DETAILS if lines[0].text.lstrip().startswith("?") else Kind.ADMONITION
+        return [Block(kind, lines, self.inside(_dedented(lines[1:], indent)), title, style)]
+
+    def _tab(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        return [Block(Kind.TAB, lines, self.inside(_dedented(lines[1:], 4)), token.info)]
+
+    def _callout(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        inner = (Line(token.info, lines[0].number),)
+        return [Block(Kind.ADMONITION, lines, (Block(Kind.TEXT, inner),), style=token.tag)]
+
+    def _jsx(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        return [Block(Kind.TEXT, lines, new=(Line(token.content, lines[0].number),))]
+
+    def _kramdown(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        return [Block(Kind.DROPPED, lines, style=attributes.kramdown_style(token.info))]
+
+    def _dropped(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        return [Block(Kind.DROPPED, lines)]
+
+    def _marked(self, token: Token, lines: tuple[Line, ...], mark: str, name: str) -> list[Block]:
+        return [Block(Kind.DROPPED, lines, title=name, style=mark, new=(Line(token.info, lines[0].number),))]
+
+    def _liquid(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        if token.tag == "include":
+            given = attributes.pairs(token.info)
+            source = given.get("image_path") or given.get("src") or given.get("url") or given.get("file")
+            if source:
+                new = (Line(attributes.image(source, given), lines[0].number),)
+                return [Block(Kind.TEXT, lines, new=new)]
+            return [Block(Kind.DROPPED, lines)]
+        if token.tag.startswith("end"):
+            return self._marked(token, lines, "close", token.tag[3:])
+        return self._marked(token, lines, "open", token.tag)
+
+    def _tag_open(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        if token.content:
+            token.info = f'title="{attributes.plain(token.content)}"'
+        return self._marked(token, lines, "open", token.tag)
+
+    def _tag_close(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        return self._marked(token, lines, "close", token.tag)
+
+    def _tag_self(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        if token.tag == "summary":
+            return [
+                Block(
+                    Kind.DROPPED,
+                    lines,
+                    title="summary",
+                    style="summary",
+                    new=(Line(attributes.plain(token.content), 1),),
+                )
+            ]
+        if token.content:
+            inner = token.content.rpartition("</")[0].strip()
+            return [Block(Kind.TEXT, lines, new=(Line(inner, lines[0].number),))]
+        return [Block(Kind.DROPPED, lines, new=_words(token, lines))]
+
+    def _blockquote_open(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        if not any("```" in line.text or "~~~" in line.text for line in lines):
+            return [Block(Kind.TEXT, lines)]
+        return [Block(Kind.QUOTE, lines, self.inside([unquoted(line) for line in lines]))]
+
+    def _bullet_list_open(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        if not any(
+            mark in line.text for line in lines for mark in ("```", "~~~", "!!!", "???", ":::", "===", "{%", "8<--")
+        ):
+            return [Block(Kind.TEXT, lines)]
+        items = self._items(lines)
+        return [Block(Kind.LIST, lines, items)] if items else [Block(Kind.TEXT, lines)]
+
+    _ordered_list_open = _bullet_list_open
+
+    def _items(self, lines: tuple[Line, ...]) -> tuple[Block, ...]:
+        found = []
+        for token in parser().parse("\n".join(line.text for line in lines)):
+            if token.type != "list_item_open" or token.level != 1 or token.map is None:
+                continue
+            own = lines[token.map[0] : token.map[1]]
+            offset = _offset(own[0].text, len(token.info) + len(token.markup))
+            first = Line(own[0].text[offset:], own[0].number)
+            inner = self.inside([first, *_dedented(own[1:], offset)])
+            found.append(Block(Kind.ITEM, own, inner, title=token.info, style=token.markup, offset=offset))
+        return tuple(found)
+
+
+def read_blocks(text: str, include: Include) -> tuple[Block, ...]:
+    """The blocks of a chapter's text."""
+    lines = [Line(content, number) for number, content in enumerate(text.split("\n"), start=1)]
+    return _Reader(include).blocks(lines)
+
+
+def _offset(text: str, marker: int) -> int:
+    """How far an item's text is indented, by CommonMark's rule: up to four spaces may follow the marker."""
+    start = len(text) - len(text.lstrip()) + marker
+    spaces = len(text[start:]) - len(text[start:].lstrip(" "))
+    return start + (spaces if 1 <= spaces <= 4 else 1)
+
+
+def _dedented(lines: Sequence[Line], indent: int) -> list[Line]:
+    out = []
+    for line in lines:
+        text = line.text.expandtabs(4) if line.text[:indent].count("\t") else line.text
+        strip = min(indent, len(text) - len(text.lstrip(" ")))
+        out.append(Line(text[strip:], line.number))
+    return out
+
+
+def _is_closed(token: Token, lines: tuple[Line, ...]) -> bool:
+    last = lines[-1].text.strip() if len(lines) > 1 else ""
+    return set(last) == {token.markup[0]} and len(last) >= len(token.markup)
+
+
+def _words(token: Token, lines: tuple[Line, ...]) -> tuple[Line, ...]:
+    """What an MDX component without content shows: the words among its properties."""
+    return tuple(Line(text, lines[0].number) for text in attributes.words_of(token.tag, token.info))

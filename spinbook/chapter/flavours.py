@@ -1,0 +1,211 @@
+"""The Markdown that books are written in: CommonMark, and the blocks that other book tools add to it.
+
+Each addition is a block rule of markdown-it, so fences and code in a line are never mistaken for one:
+
+- containers `:::note[Title]`, `::: tip`, `:::{warning}` (Docusaurus, VitePress, MyST, Quarto): mdit-py-plugins
+- `!!! note "Title"`, `??? tip` (MkDocs): mdit-py-plugins, and tabs `=== "Title"` (pymdownx.tabbed)
+- tags of MDX on lines of their own, `<Tabs>`, `<TabItem label="Python">`, and `import …`, `export …`, `{/* … */}`
+- `{% tab %}`, `{% hint %}` (Jekyll, GitBook), kramdown's `{: .note }`, docsify's `!> text`, MyST's `(label)=`
+- `--8<-- "file.py"` (pymdownx.snippets)
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Callable
+
+from markdown_it import MarkdownIt
+from markdown_it.ruler import RuleOptionsType
+from markdown_it.rules_block import StateBlock
+from mdit_py_plugins.admon import admon_plugin
+from mdit_py_plugins.container import container_plugin
+
+from spinbook.chapter import attributes
+
+Rule = Callable[[StateBlock, int, int, bool], bool]
+
+#: What such a line may end: a paragraph, a quotation, a list.
+_ALT: RuleOptionsType = {"alt": ["paragraph", "reference", "blockquote", "list"]}
+_FENCE = ("```", "~~~")
+_LIQUID = re.compile(r"\{%-?\s*(\w+)\s*(.*?)\s*-?%\}$")
+_KRAMDOWN = re.compile(r"\{:\s*(.*?)\s*\}$")
+_SNIPPET = re.compile(r"-+8<-+\s+[\"'](.+?)[\"']$")
+_LABEL = re.compile(r"\([\w:.-]+\)=$")
+_ESM = re.compile(
+    r"""import\s+(?:[\w*{][\w\s{},*]*\s+from\s+)?["'][^"']+["'];?$|export\s+(?:const|default|function|let)\b"""
+)
+_TAG = re.compile(r"<(/?)([A-Z][\w.]*|details|summary)\b")
+
+
+@functools.cache
+def parser() -> MarkdownIt:
+    """The parser of blocks. Text in a line is left as it is: `inline` tokens have no children."""
+    md = MarkdownIt("commonmark").enable("table")
+    md.core.ruler.enableOnly(["normalize", "block"])
+    md.use(admon_plugin)
+    md.use(container_plugin, "any", validate=lambda params, *_: bool(params.strip()))
+    md.block.ruler.before("container_any", "spinbook_line", _line, _ALT)
+    md.block.ruler.before("container_any", "spinbook_tab", _tab, _ALT)
+    md.block.ruler.before("html_block", "spinbook_tag", _tag, _ALT)
+    md.block.ruler.before("html_block", "spinbook_jsx", _jsx, _ALT)
+    md.block.ruler.at("html_block", _html_before_fence(md), _ALT)
+    return md
+
+
+def _text(state: StateBlock, line: int) -> str:
+    return state.src[state.bMarks[line] + state.tShift[line] : state.eMarks[line]].strip()
+
+
+def _is_code(state: StateBlock, line: int) -> bool:
+    return state.is_code_block(line)
+
+
+def _push(
+    state: StateBlock, kind: str, start: int, end: int, name: str = "", info: str = "", content: str = ""
+) -> None:
+    token = state.push(kind, "", 0)
+    token.map = [start, end]
+    token.tag, token.info, token.content = name, info, content
+    state.line = end
+
+
+def _line(state: StateBlock, start: int, end: int, silent: bool) -> bool:
+    """A line of its own that says something to a book tool."""
+    text = _text(state, start)
+    if not text or text[0] not in "{!?(-ie" or _is_code(state, start):
+        return False
+    kind, name, info = _told(text)
+    if not kind:
+        return False
+    # Prose may begin with such words; only a paragraph's first line says it to the tool.
+    if silent:
+        return kind != "dropped"
+    stop = start + 1
+    if kind == "dropped":
+        while stop < end and text[0] in "{e" and not _complete(text) and _text(state, stop):
+            text += _text(state, stop)
+            stop += 1
+    _push(state, kind, start, stop, name, info)
+    return True
+
+
+def _told(text: str) -> tuple[str, str, str]:
+    """(kind, name, rest) of such a line; ("", "", "") for any other."""
+    if match := _LIQUID.match(text):
+        return "liquid", match[1], match[2]
+    if match := _KRAMDOWN.match(text):
+        return "kramdown", "", match[1]
+    if match := _SNIPPET.match(text):
+        return "snippet", "", match[1]
+    if text.startswith(("!> ", "?> ")):
+        return "callout", "warning" if text[0] == "!" else "tip", text[3:]
+    if text.startswith("{/*") or _LABEL.match(text) or _ESM.match(text):
+        return "dropped", "", ""
+    return "", "", ""
+
+
+def _complete(text: str) -> bool:
+    if text.startswith("{/*"):
+        return "*/}" in text
+    return all(text.count(a) <= text.count(b) for a, b in ("{}", "()", "[]"))
+
+
+def _tab(state: StateBlock, start: int, end: int, silent: bool) -> bool:
+    """`=== "Title"`, and what is indented by four below it."""
+    text = _text(state, start)
+    if not text.startswith("=== ") or _is_code(state, start):
+        return False
+    if silent:
+        return True
+    indent = state.sCount[start] + 4
+    stop = start + 1
+    while stop < end and (state.isEmpty(stop) or state.sCount[stop] >= indent):
+        stop += 1
+    while stop > start + 1 and state.isEmpty(stop - 1):
+        stop -= 1
+    _push(state, "tab", start, stop, info=text[4:].strip(" !+").strip("\"'"))
+    return True
+
+
+def _tag(state: StateBlock, start: int, end: int, silent: bool) -> bool:
+    """An opening or closing tag of MDX, or of `<details>`, which may go on over several lines."""
+    if state.src[state.bMarks[start] + state.tShift[start] : state.bMarks[start] + state.tShift[start] + 1] != "<":
+        return False
+    text = _text(state, start)
+    match = _TAG.match(text)
+    if match is None or _is_code(state, start):
+        return False
+    stop = start + 1
+    while (close := _tag_end(text)) < 0 and stop < min(end, start + 200):
+        text += "\n" + _text(state, stop)
+        stop += 1
+    rest = text[close:].strip()
+    is_summary = match[2] == "details" and rest.startswith("<summary") and rest.endswith("</summary>")
+    if close < 0 or (rest and not is_summary and not _same_line(text, match[2])):
+        return False
+    if silent:
+        return True
+    opening = text[:close].rstrip(">")
+    closed = opening.endswith("/") or (rest and not is_summary)
+    kind = "tag_close" if match[1] else "tag_self" if closed else "tag_open"
+    _push(state, kind, start, stop, match[2], opening[match.end() :].strip(" /\n"), text[close:])
+    return True
+
+
+def _jsx(state: StateBlock, start: int, end: int, silent: bool) -> bool:
+    """A tag of HTML with properties as MDX writes them: `<img src={require('./a.png').default} style={{…}} />`."""
+    text = _text(state, start)
+    if not re.match(r"<[a-z]", text) or _is_code(state, start):
+        return False
+    stop = start + 1
+    while (close := _tag_end(text)) < 0 and stop < min(end, start + 20):
+        text += " " + _text(state, stop)
+        stop += 1
+    if close < 0 or "={" not in text[:close]:
+        return False
+    if not silent:
+        _push(state, "jsx", start, stop, content=attributes.as_html(text[:close]) + text[close:])
+    return True
+
+
+def _same_line(text: str, name: str) -> bool:
+    return text.endswith(f"</{name}>") and text.count(f"<{name}") == 1
+
+
+def _tag_end(text: str) -> int:
+    """The index behind a tag's `>`, braces and quotation marks respected; -1 if it does not end."""
+    depth, quote = 0, ""
+    for index, letter in enumerate(text):
+        if quote:
+            quote = "" if letter == quote else quote
+        elif letter in "\"'`":
+            quote = letter
+        elif letter in "{}":
+            depth += 1 if letter == "{" else -1
+        elif letter == ">" and depth <= 0:
+            return index + 1
+    return -1
+
+
+def _html_before_fence(md: MarkdownIt) -> Rule:
+    """CommonMark's HTML block, cut where a fence begins inside it: no tool but CommonMark swallows that."""
+    html_block = next(rule.fn for rule in md.block.ruler.__rules__ if rule.name == "html_block")
+
+    def cut(state: StateBlock, start: int, end: int, silent: bool) -> bool:
+        if not html_block(state, start, end, silent):
+            return False
+        if silent:
+            return True
+        token = state.tokens[-1]
+        if token.content.lstrip().lower().startswith(("<pre", "<script", "<style", "<!--", "<textarea")):
+            return True
+        for line in range(start + 1, state.line):
+            if _text(state, line).startswith(_FENCE):
+                token.map = [start, line]
+                token.content = state.getLines(start, line, state.blkIndent, True)
+                state.line = line
+                break
+        return True
+
+    return cut

@@ -1,0 +1,256 @@
+"""Makes a whole program of a piece of one: the imports that everybody leaves out, and what earlier pieces define.
+
+The same code joins when a chapter is read (is the piece complete then?) and when its cell runs (with what the cells
+above hold now).
+"""
+
+from __future__ import annotations
+
+import ast
+import functools
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from interface_compiler import prefixes
+from spinbook.chapter.python_code import CodeError, inspect
+from spinbook.ros2 import interfaces
+
+#: Module -> the names that ROS 2's own tutorials import from it.
+_USUAL = {
+    "rclpy.node": ("Node",),
+    "rclpy.qos": [
+        *("QoSProfile", "QoSReliabilityPolicy", "QoSDurabilityPolicy", "QoSHistoryPolicy", "ReliabilityPolicy"),
+        *("DurabilityPolicy", "HistoryPolicy", "LivelinessPolicy"),
+        *("qos_profile_sensor_data", "qos_profile_system_default"),
+    ],
+    "rclpy.executors": ("MultiThreadedExecutor", "SingleThreadedExecutor", "ExternalShutdownException"),
+    "rclpy.callback_groups": ("ReentrantCallbackGroup", "MutuallyExclusiveCallbackGroup"),
+    "rclpy.action": ("ActionServer", "ActionClient", "GoalResponse", "CancelResponse"),
+    "rclpy.parameter": ("Parameter",),
+    "rclpy.duration": ("Duration",),
+    "rclpy.lifecycle": ("LifecycleNode", "TransitionCallbackReturn", "State"),
+    "rcl_interfaces.msg": ("ParameterDescriptor", "SetParametersResult", "FloatingPointRange", "IntegerRange"),
+    "typing": ("List", "Dict", "Optional", "Any", "Tuple", "Callable", "Union"),
+    "dataclasses": ("dataclass",),
+    "enum": ("Enum",),
+    "threading": ("Thread", "Lock"),
+    "datetime": ("datetime",),
+    "collections": ("deque", "defaultdict"),
+    "pathlib": ("Path",),
+}
+_MODULES = frozenset(
+    {"rclpy", "math", "time", "sys", "os", "random", "json", "threading", "re", "queue", "asyncio", "subprocess"}
+    | {"logging", "numpy"}
+)
+_ALIASES = {"np": "numpy", "plt": "matplotlib.pyplot"}
+#: Where several packages have a message of one name, the first of these is meant.
+_PREFERRED = ("std_msgs", "geometry_msgs", "sensor_msgs", "nav_msgs", "example_interfaces", "std_srvs", "turtlesim")
+
+
+@dataclass(frozen=True)
+class Joined:
+    """A program made whole. `before` is what was put above its code, `used` which pieces it needs, by number.
+
+    `missing` are the names that nothing binds -> line of the code.
+    """
+
+    code: str
+    before: str = ""
+    used: tuple[int, ...] = ()
+    missing: Mapping[str, int] | None = None
+    amends: str = ""
+    """The class of an earlier piece to which the code only adds methods."""
+
+    @property
+    def whole(self) -> str:
+        """The program as it runs."""
+        return self.before + self.code
+
+
+@dataclass(frozen=True)
+class _Piece:
+    """What a piece of Python binds at its top level: name -> the numbers of the statements that bind it."""
+
+    source: str
+    statements: tuple[ast.stmt, ...]
+    bound: Mapping[str, tuple[int, ...]]
+    blocks: bool
+
+    def text(self, number: int) -> str:
+        """The lines of a statement."""
+        statement = self.statements[number]
+        decorators = getattr(statement, "decorator_list", [])
+        first = min([statement.lineno, *(item.lineno for item in decorators)])
+        return "\n".join(self.source.split("\n")[first - 1 : statement.end_lineno])
+
+
+def join(code: str, pieces: Sequence[str]) -> Joined:
+    """Put above `code` what it needs of earlier `pieces`, in their order, and the usual imports.
+
+    Raises CodeError where `code` is not Python.
+    """
+    needs = dict(inspect(code).needs)
+    amended, base = _amended(code, pieces)
+    missing: dict[str, int] = {}
+    taken: dict[int, set[int]] = {}
+    imports: dict[str, None] = {}
+    todo, seen = [*needs, *filter(None, [amended])], set(needs)
+    while todo:
+        name = todo.pop(0)
+        found = _binding(name, pieces)
+        usual = usual_import(name)
+        if found is None or (usual and _is_import(found, pieces, name)):
+            if usual:
+                imports[usual] = None
+            else:
+                missing[name] = needs.get(name, 1)
+            continue
+        number, statements = found
+        new = statements - taken.get(number, set())
+        taken.setdefault(number, set()).update(new)
+        text = "\n".join(_piece(pieces[number]).text(i) for i in sorted(new))
+        more = [n for n in _needs_of(text) if n not in seen]
+        seen.update(more)
+        todo += more
+    before = _above(imports, taken, pieces)
+    if amended:
+        # The class below then goes on from the one above.
+        before += f"{base} = {amended}\n\n\n"
+    if code.lstrip().startswith("from __future__") and before:
+        return Joined(code, missing=needs)
+    return Joined(code, before, tuple(sorted(taken)), missing, amended)
+
+
+def _amended(code: str, pieces: Sequence[str]) -> tuple[str, str]:
+    """(class, its base) of a class in `code` that only adds methods to that of an earlier piece; else ("", "")."""
+    facts = inspect(code)
+    for item in ast.parse(code).body if facts.lacking else ():
+        if not isinstance(item, ast.ClassDef) or item.name not in facts.node_classes:
+            continue
+        found = _binding(item.name, pieces)
+        methods = {inner.name for inner in item.body if isinstance(inner, ast.FunctionDef)}
+        if found and "__init__" not in methods and isinstance(item.bases[0], ast.Name):
+            text = "\n".join(_piece(pieces[found[0]]).text(i) for i in found[1])
+            if all(name in text for name in facts.lacking):
+                return item.name, item.bases[0].id
+    return "", ""
+
+
+def _above(imports: Iterable[str], taken: Mapping[int, set[int]], pieces: Sequence[str]) -> str:
+    """The imports and statements that come above the code, imports first."""
+    first, then = list(imports), list[str]()
+    for number in sorted(taken):
+        piece = _piece(pieces[number])
+        for i in sorted(taken[number]):
+            is_import = isinstance(piece.statements[i], ast.Import | ast.ImportFrom)
+            (first if is_import else then).append(piece.text(i))
+    lines = [*dict.fromkeys(first), *(["", ""] if first and then else []), *then]
+    return "\n".join(lines) + "\n\n\n" if lines else ""
+
+
+def _binding(name: str, pieces: Sequence[str]) -> tuple[int, set[int]] | None:
+    """The last piece that binds a name, and the statements of it that are needed."""
+    for number in range(len(pieces) - 1, -1, -1):
+        piece = _piece(pieces[number])
+        if name not in piece.bound:
+            continue
+        statements = piece.bound[name]
+        kinds = {type(piece.statements[i]) for i in statements}
+        if kinds <= {ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef}:
+            return number, {statements[-1]}
+        if all(_is_plain(piece.statements[i]) for i in statements):
+            return number, set(statements)
+        if piece.blocks:
+            continue
+        # A script that goes on: all that it did so far.
+        return number, {i for i, s in enumerate(piece.statements) if not _is_guard(s)}
+    return None
+
+
+def _is_import(found: tuple[int, set[int]], pieces: Sequence[str], name: str) -> bool:
+    piece = _piece(pieces[found[0]])
+    return all(isinstance(piece.statements[i], ast.Import | ast.ImportFrom) for i in found[1]) and (
+        usual_import(name) in [piece.text(i) for i in found[1]]
+    )
+
+
+def _is_plain(statement: ast.stmt) -> bool:
+    """Whether a statement only gives a name to a value, and calls nothing that has an effect."""
+    if not isinstance(statement, ast.Assign | ast.AnnAssign) or statement.value is None:
+        return False
+    calls = [item for item in ast.walk(statement.value) if isinstance(item, ast.Call)]
+    return all(ast.unparse(call.func)[:1].isupper() for call in calls)
+
+
+def _is_guard(statement: ast.stmt) -> bool:
+    return isinstance(statement, ast.If) and "__main__" in ast.dump(statement.test)
+
+
+@functools.lru_cache(maxsize=512)
+def _piece(source: str) -> _Piece:
+    """What a piece binds; nothing, if it is no Python by itself."""
+    try:
+        facts = inspect(source)
+        statements = tuple(ast.parse(source).body)
+    except (CodeError, SyntaxError, ValueError):
+        return _Piece(source, (), {}, blocks=True)
+    if facts.fragment:
+        return _Piece(source, (), {}, blocks=True)
+    bound: dict[str, list[int]] = {}
+    for number, statement in enumerate(statements):
+        for name in _bound_by(statement):
+            bound.setdefault(name, []).append(number)
+    blocks = facts.loops or (facts.spins and any(_spins(s) for s in statements)) or facts.calls_main
+    return _Piece(source, statements, {name: tuple(at) for name, at in bound.items()}, blocks)
+
+
+def _spins(statement: ast.stmt) -> bool:
+    if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        return False
+    calls = [item for item in ast.walk(statement) if isinstance(item, ast.Call)]
+    return any(isinstance(call.func, ast.Attribute) and call.func.attr == "spin" for call in calls)
+
+
+def _bound_by(statement: ast.stmt) -> Iterable[str]:
+    if _is_guard(statement):
+        return ()
+    if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        return (statement.name,)
+    if isinstance(statement, ast.Import | ast.ImportFrom):
+        return tuple(alias.asname or alias.name.partition(".")[0] for alias in statement.names)
+    return tuple(
+        item.id for item in ast.walk(statement) if isinstance(item, ast.Name) and isinstance(item.ctx, ast.Store)
+    )
+
+
+def _needs_of(text: str) -> Iterable[str]:
+    try:
+        return inspect(text).needs
+    except CodeError:
+        return ()
+
+
+@functools.cache
+def usual_import(name: str) -> str:
+    """The import that binds a name which ROS 2's tutorials use without a word; "" for any other."""
+    if name in _MODULES:
+        return f"import {name}"
+    if name in _ALIASES:
+        return f"import {_ALIASES[name]} as {name}"
+    for module, names in _USUAL.items():
+        if name in names:
+            return f"from {module} import {name}"
+    module = _interfaces().get(name, "")
+    return f"from {module} import {name}" if module else ""
+
+
+@functools.cache
+def _interfaces() -> Mapping[str, str]:
+    """Message, service or action -> the module that has it, of the packages that are here."""
+    found: dict[str, str] = {}
+    there = prefixes.packages(prefixes.installed())
+    for package in sorted(set(_PREFERRED) & set(there), key=_PREFERRED.index):
+        for interface in interfaces.interfaces_of(package) or []:
+            kind, _, name = interface.partition("/")
+            found.setdefault(name, f"{package}.{kind}")
+    return found

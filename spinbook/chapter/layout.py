@@ -1,0 +1,217 @@
+"""Puts a chapter's blocks in a row: what runs comes to the left margin, the rest in Markdown that every tool reads.
+
+Admonitions become MyST's `:::{note}`, tabs and folded text `<details>`, and whatever holds a cell is cut around it.
+Text that needs no change stays as it is, to the byte.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+from spinbook.chapter.attributes import STYLES
+from spinbook.chapter.block import Block, Kind, Line
+
+_CHANGED = frozenset({Kind.ADMONITION, Kind.TAB, Kind.DETAILS, Kind.GROUP, Kind.DROPPED})
+_RESHAPED = frozenset({Kind.ADMONITION, Kind.TAB, Kind.GROUP})
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A line of prose, or a block that becomes a cell. `heading` says that a section begins with this line."""
+
+    line: Line | None = None
+    block: Block | None = None
+    heading: bool = False
+
+    @property
+    def is_blank(self) -> bool:
+        """Whether it is an empty line."""
+        return self.line is not None and not self.line.text.strip()
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How blocks are laid out. `runs` says which fences become cells, `sign` what stands below one that does not."""
+
+    runs: Callable[[Block], bool]
+    sign: Callable[[Block], str]
+
+    def pieces(self, blocks: Sequence[Block]) -> list[Piece]:
+        """The chapter's pieces, in order."""
+        out: list[Piece] = []
+        for block in blocks:
+            if block.kind is Kind.HEADING:
+                first, *rest = block.lines
+                out += [Piece(first, heading=True), *_lines(rest)]
+            else:
+                out += self._block(block, 0)
+        return out
+
+    def _becomes_cell(self, block: Block) -> bool:
+        return block.kind in {Kind.EXERCISE, Kind.FENCE} and self.runs(block)
+
+    def _holds_cell(self, block: Block) -> bool:
+        return any(self._becomes_cell(inner) for inner in block.walk())
+
+    def _is_changed(self, block: Block) -> bool:
+        return any(
+            inner.new is not None
+            or inner.kind in _RESHAPED
+            or inner.kind is Kind.DROPPED
+            or (inner.kind is Kind.DETAILS and not inner.lines[0].text.lstrip().startswith("<"))
+            or (inner.kind is Kind.FENCE and bool(self.sign(inner)))
+            for inner in block.walk()
+        )
+
+    def _block(self, block: Block, depth: int) -> list[Piece]:
+        if self._becomes_cell(block):
+            return [Piece(block=block)]
+        if not self._is_changed(block) and not self._holds_cell(block):
+            return _lines(block.lines)
+        shown = {
+            Kind.FENCE: self._fence,
+            Kind.ADMONITION: self._admonition,
+            Kind.TAB: self._tab,
+            Kind.DETAILS: self._details,
+            Kind.LIST: self._list,
+            Kind.QUOTE: self._quote,
+            Kind.GROUP: self._group,
+        }.get(block.kind)
+        if shown:
+            return shown(block, depth)
+        if block.kind is Kind.DROPPED:
+            return _lines(block.new or ()) if not block.style else []
+        return _lines(block.lines if block.new is None else block.new)
+
+    def _children(self, blocks: Iterable[Block], depth: int) -> list[Piece]:
+        out: list[Piece] = []
+        before: Block | None = None
+        for block in blocks:
+            if block.kind is Kind.TAB and not self._holds_cell(block):
+                out += self._folded(block, depth, is_open=before is None or before.kind is not Kind.TAB)
+            else:
+                out += self._block(block, depth)
+            before = block if any(line.text.strip() for line in block.lines) else before
+        return out
+
+    def _fence(self, block: Block, depth: int) -> list[Piece]:
+        lines = _lines(block.lines if block.new is None else block.new)
+        number = block.lines[-1].number
+        sign = self.sign(block)
+        return [*lines, *_lines([Line("", number), Line(sign, number), Line("", number)])] if sign else lines
+
+    def _group(self, block: Block, depth: int) -> list[Piece]:
+        return _spaced(self._children(block.children, depth), block)
+
+    def _admonition(self, block: Block, depth: int) -> list[Piece]:
+        style = block.style if block.style in STYLES else "note"
+        colons = ":" * (3 + _height(block))
+        opening = (
+            [f"{colons}{{admonition}} {block.title}", f":class: {style}"] if block.title else [f"{colons}{{{style}}}"]
+        )
+        return _wrapped(self._children(block.children, depth + 1), opening, [colons], block)
+
+    def _tab(self, block: Block, depth: int) -> list[Piece]:
+        if not self._holds_cell(block):
+            return self._folded(block, depth, is_open=True)
+        return self._titled(block, depth)
+
+    def _details(self, block: Block, depth: int) -> list[Piece]:
+        return self._titled(block, depth) if self._holds_cell(block) else self._folded(block, depth, is_open=False)
+
+    def _titled(self, block: Block, depth: int) -> list[Piece]:
+        title = _lines([Line(f"**{block.title}**", block.line), Line("", block.line)]) if block.title else []
+        return _spaced([*title, *self._children(block.children, depth)], block)
+
+    def _folded(self, block: Block, depth: int, *, is_open: bool) -> list[Piece]:
+        opening = [f"<details{' open' if is_open else ''}>", f"<summary>{block.title}</summary>", ""]
+        inside = self._children(block.children, depth + 1)
+        return _spaced(_wrapped(inside, opening, ["", "</details>"], block), block)
+
+    def _quote(self, block: Block, depth: int) -> list[Piece]:
+        return [
+            _changed(piece, lambda text: f"> {text}".rstrip()) for piece in self._children(block.children, depth + 1)
+        ]
+
+    def _list(self, block: Block, depth: int) -> list[Piece]:
+        out: list[Piece] = []
+        cut = self._holds_cell(block)
+        for index, item in enumerate(block.children):
+            marker = item.lines[0].text[: item.offset]
+            if cut and item.title.isdigit():
+                # A list that is cut goes on counting.
+                number = int(block.children[0].title) + index
+                marker = marker.replace(item.title, str(number), 1)
+            out += _item(self._children(item.children, depth + 1), marker, item)
+        return out
+
+
+def _item(pieces: list[Piece], marker: str, item: Block) -> list[Piece]:
+    """An item's lines below its marker, up to its first cell; what comes behind a cell stands at the margin."""
+    out: list[Piece] = []
+    first, in_item = True, True
+    for piece in pieces:
+        if piece.block is not None:
+            if first:
+                out.append(Piece(Line(marker.rstrip(), item.line)))
+            out += [Piece(Line("", item.line)), piece, Piece(Line("", item.line))]
+            in_item = first = False
+        elif in_item:
+            out.append(_prefixed(piece, marker if first else " " * item.offset))
+            first = False
+        else:
+            out.append(piece)
+    return out
+
+
+def _lines(lines: Iterable[Line]) -> list[Piece]:
+    return [Piece(line) for line in lines]
+
+
+def _prefixed(piece: Piece, prefix: str) -> Piece:
+    return _changed(piece, lambda text: f"{prefix}{text}".rstrip() if text else "")
+
+
+def _changed(piece: Piece, change: Callable[[str], str]) -> Piece:
+    return piece if piece.line is None else Piece(Line(change(piece.line.text), piece.line.number))
+
+
+def _height(block: Block) -> int:
+    inner = [_height(child) + (child.kind is Kind.ADMONITION) for child in block.children]
+    return max(inner, default=0)
+
+
+def _spaced(pieces: list[Piece], block: Block) -> list[Piece]:
+    """With an empty line before and behind: what is put in place of a tag must not run into its neighbours."""
+    if not pieces:
+        return []
+    before = [] if pieces[0].is_blank else _lines([Line("", block.line)])
+    behind = [] if pieces[-1].is_blank else _lines([Line("", block.lines[-1].number)])
+    return [*before, *pieces, *behind]
+
+
+def _wrapped(pieces: list[Piece], opening: Sequence[str], closing: Sequence[str], block: Block) -> list[Piece]:
+    """The lines between an opening and a closing, anew around each cell."""
+    out: list[Piece] = []
+    lines: list[Piece] = []
+
+    def flush() -> None:
+        while lines and lines[0].is_blank:
+            lines.pop(0)
+        while lines and lines[-1].is_blank:
+            lines.pop()
+        if lines:
+            end = lines[-1].line.number if lines[-1].line else block.line
+            out.extend([*_lines(Line(text, block.line) for text in opening), *lines])
+            out.extend(_lines([*(Line(text, end) for text in closing), Line("", end)]))
+        lines.clear()
+
+    for piece in pieces:
+        if piece.block is not None:
+            flush()
+            out.append(piece)
+        else:
+            lines.append(piece)
+    flush()
+    return out

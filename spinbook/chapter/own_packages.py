@@ -1,0 +1,153 @@
+"""The ROS packages that a chapter makes: what it calls them, which files and executables they have.
+
+It is read from `ros2 pkg create`, from the `setup.py` shown, and from files' paths and the sentences that name them.
+"""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+from markdown_it import MarkdownIt
+
+from spinbook.chapter.block import Block, Kind
+from spinbook.chapter.fence import Fence
+from spinbook.chapter.terminal import programs_of
+
+_ENTRY = re.compile(r"""["']\s*([\w.-]+)\s*=\s*([\w.]+):(\w+)\s*["']""")
+_PACKAGE_NAME = re.compile(r"""\b(?:package_name|name)\s*=\s*["']([a-z][a-z0-9_]*)["']""")
+_FILE_COMMENT = re.compile(r"""^\s*(?:#+|\"\"\"|''')\s*(?:[Ff]ile(?:name)?\s*:?\s*)?`?([\w./~-]+\.py)\b""")
+_PY_FILE = re.compile(r"[\w./~-]*\w\.py\b")
+_EDITORS = frozenset({"touch", "nano", "vim", "vi", "gedit", "code", "cat"})
+#: Options of `ros2 pkg create` that take one value, and those that take several.
+_ONE = frozenset(
+    {"--build-type", "--license", "--description", "--maintainer-name", "--maintainer-email", "--node-name"}
+) | {
+    "--library-name",
+    "--destination-directory",
+    "--package-format",
+}
+_SEVERAL = frozenset({"--dependencies"})
+#: Files that are part of a package and no program.
+_NOT_PROGRAMS = frozenset({"setup.py", "__init__.py", "conftest.py"})
+
+
+@dataclass(frozen=True)
+class OwnPackages:
+    """A chapter's packages. `executables` maps (package, executable) to the module, without .py."""
+
+    names: frozenset[str] = frozenset()
+    executables: dict[tuple[str, str], str] = field(default_factory=dict)
+    compiled: frozenset[str] = frozenset()
+    """Those that `ros2 pkg create` makes for C++."""
+
+
+def own_packages(fences: Iterable[Fence]) -> OwnPackages:
+    """The packages that these fences make or show."""
+    names: set[str] = set()
+    compiled: set[str] = set()
+    executables: dict[tuple[str, str], str] = {}
+    for fence in fences:
+        if fence.title and (package := _package_of(fence.title)):
+            names.add(package)
+        if "ros2 pkg create" in fence.code:
+            for name, build_type in _created(fence.code):
+                (compiled if build_type in {"ament_cmake", "cmake"} else names).add(name)
+        if "console_scripts" in fence.code or "entry_points" in fence.code or _ENTRY.search(fence.code):
+            entries, shown = _entries(fence.code)
+            executables.update(entries)
+            names |= shown
+    return OwnPackages(frozenset(names | compiled), executables, frozenset(compiled))
+
+
+def created_package(words: Sequence[str]) -> tuple[str, str]:
+    """(name, build type) of `ros2 pkg create …`; the name is "" where there is none."""
+    name, build_type, skip = "", "ament_cmake", ""
+    for word in words[3:]:
+        if word.startswith("--"):
+            option, _, value = word.partition("=")
+            build_type = value if option == "--build-type" and value else build_type
+            skip = option if not value and option in _ONE | _SEVERAL else ""
+        elif skip:
+            build_type = word if skip == "--build-type" else build_type
+            skip = skip if skip in _SEVERAL else ""
+        elif not name:
+            name = word
+    if not name and "--dependencies" in words:
+        # Written behind the dependencies, the name is the last word.
+        name = words[-1]
+    return name, build_type
+
+
+def _created(code: str) -> Iterator[tuple[str, str]]:
+    for words in programs_of(code):
+        if words[:3] == ("ros2", "pkg", "create"):
+            name, build_type = created_package(words)
+            if re.fullmatch(r"[a-z][a-z0-9_]*", name):
+                yield name, build_type
+
+
+def _entries(code: str) -> tuple[dict[tuple[str, str], str], set[str]]:
+    found: dict[tuple[str, str], str] = {}
+    names = {match[1] for match in _PACKAGE_NAME.finditer(code)} if "setup(" in code else set()
+    for executable, module, _ in _ENTRY.findall(code):
+        package, _, stem = module.rpartition(".")
+        package = package.partition(".")[0]
+        if package:
+            names.add(package)
+            found[package, executable] = stem
+    return found, names
+
+
+def _package_of(path: str) -> str:
+    """The package in a path such as src/my_robot/my_robot/talker.py."""
+    parts = [part for part in path.split("/")[:-1] if part not in {"", ".", "..", "~"}]
+    if "src" in parts and parts.index("src") + 1 < len(parts):
+        name = parts[parts.index("src") + 1]
+    else:
+        name = next((a for a, b in itertools.pairwise(parts) if a == b), "")
+    return name if re.fullmatch(r"[a-z][a-z0-9_]*", name) else ""
+
+
+def told_files(blocks: Iterable[Block]) -> dict[int, str]:
+    """Line of a fence -> the Python file that its first comment, or the text just before it, says that it is."""
+    found: dict[int, str] = {}
+    words: list[str] = []
+    for block in (inner for top in blocks for inner in top.walk()):
+        if block.kind in {Kind.TEXT, Kind.HEADING}:
+            text = "\n".join(line.text for line in block.lines)
+            if text.strip():
+                words = _files_in(text)
+        elif block.kind is Kind.TAB and block.title.endswith(".py"):
+            words = [block.title]
+        elif block.kind is Kind.FENCE and block.fence is not None:
+            fence = block.fence
+            if fence.is_shell:
+                words = _edited(fence) or words
+                continue
+            told = _in_comment(fence.code) or (words[-1] if words else "")
+            if told and told.rsplit("/", 1)[-1] not in _NOT_PROGRAMS:
+                found[fence.line] = told
+            words = []
+    return found
+
+
+def _in_comment(code: str) -> str:
+    for line in code.split("\n")[:4]:
+        if match := _FILE_COMMENT.match(line):
+            return match[1]
+    return ""
+
+
+def _files_in(text: str) -> list[str]:
+    if ".py" not in text:
+        return []
+    tokens = MarkdownIt("commonmark").parse(text)
+    said = [child.content for token in tokens for child in token.children or []]
+    return [match for content in said for match in _PY_FILE.findall(content)]
+
+
+def _edited(fence: Fence) -> list[str]:
+    return [word for words in programs_of(fence.code) if words[0] in _EDITORS for word in words if word.endswith(".py")]

@@ -1,0 +1,212 @@
+"""Decides for each piece of a chapter's Python what becomes of it: a node, a snippet, a part of one, or shown only."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from spinbook.chapter.classify import Classified, FenceKind, node_name
+from spinbook.chapter.imports import Missing, missing_imports
+from spinbook.chapter.joining import Joined, join
+from spinbook.chapter.python_code import PythonCode, inspect
+from spinbook.problem import Problem, Severity
+
+
+@dataclass
+class Programs:
+    """The Python of one chapter, decided fence by fence in order.
+
+    `own` are the packages that are not installed but made by the course, each with its modules; `told` says which
+    file the text before a fence names, by the fence's line; `interfaces` are those that the course defines.
+    """
+
+    file: Path
+    own: Mapping[str, frozenset[str]]
+    told: Mapping[int, str]
+    interfaces: frozenset[str] = frozenset()
+    problems: list[Problem] = field(default_factory=list)
+    _pieces: list[int] = field(default_factory=list)
+    _defined: set[str] = field(default_factory=set)
+    _names: dict[str, str] = field(default_factory=dict)
+    _used: dict[int, tuple[int, ...]] = field(default_factory=dict)
+
+    def decide(self, items: Sequence[Classified]) -> list[Classified]:
+        """What becomes of each fence; those that hold no Python stay as they are."""
+        out = list(items)
+        for number, item in enumerate(items):
+            if item.kind is FenceKind.NODE:
+                out[number] = self._node(number, item, out)
+            elif item.kind is FenceKind.SNIPPET:
+                out[number] = self._snippet(item)
+            if item.code and not item.code.fragment and not item.code.is_setup_script and not item.code.is_launch_file:
+                self._pieces.append(number)
+        return _with_parts(out, self._used)
+
+    def _node(self, number: int, item: Classified, out: Sequence[Classified]) -> Classified:
+        code = item.code
+        assert code is not None
+        joined = self._joined(item, out)
+        if item.fence.has("raises"):
+            # Failing is the lesson.
+            return self._made(number, item, joined)
+        if joined.missing:
+            return self._undefined(item, code, joined.missing)
+        if not code.is_complete and code.node_classes and not code.calls_main:
+            if code.lacking and not joined.amends:
+                names = ", ".join(f"`self.{name}`" for name in list(code.lacking)[:3])
+                verb = "is" if len(code.lacking) == 1 else "are"
+                return _static(item, f"it is a fragment: {names} {verb} set nowhere in it")
+            if not code.alone and not _is_file(item):
+                return _static(item, "it is a fragment: nothing makes a node of its class")
+        if code.lacking and code.is_complete and not joined.amends:
+            self._lacking(item, code)
+            if code.fails_at_once:
+                return _static(item, f"`self.{code.fails_at_once}` is set nowhere in it")
+        if missing := missing_imports(_facts(joined, code), self.own, self.interfaces):
+            return self._missing(item, missing, joined)
+        return self._made(number, item, joined)
+
+    def _made(self, number: int, item: Classified, joined: Joined) -> Classified:
+        name, named = self._name(item)
+        if joined.used:
+            self._used[number] = tuple(self._pieces[i] for i in joined.used)
+        return replace(item, name=name, named=named, before=joined.before)
+
+    def _joined(self, item: Classified, out: Sequence[Classified]) -> Joined:
+        assert item.code is not None
+        if not item.code.needs and not item.code.lacking:
+            return Joined(item.fence.code)
+        return join(item.fence.code, [out[i].fence.code for i in self._pieces])
+
+    def _snippet(self, item: Classified) -> Classified:
+        code = item.code
+        assert code is not None
+        missing = [name for name in code.needs if name not in self._defined]
+        if item.fence.has("raises"):
+            return item
+        if missing:
+            names = ", ".join(f"`{name}`" for name in missing)
+            return _static(
+                item,
+                f"it uses {names}, which no earlier snippet of the chapter defines",
+                f"it uses {names}, which nothing above defines.",
+            )
+        if absent := missing_imports(code, self.own, self.interfaces):
+            return self._missing(item, absent, Joined(item.fence.code))
+        self._defined |= code.defines
+        return item
+
+    def _undefined(self, item: Classified, code: PythonCode, missing: Mapping[str, int]) -> Classified:
+        names = ", ".join(f"`{name}`" for name in missing)
+        verb = "is" if len(missing) == 1 else "are"
+        if code.is_complete and code.imports:
+            found = f"{names} {verb} defined neither here nor above, so this program would fail."
+            fix = "Define or import it, or write `static` behind the language if this is only a piece of a program."
+            line = item.fence.first_code_line + min(missing.values()) - 1
+            self.problems.append(Problem(self.file, line, found, fix, Severity.NOT_RUN))
+        return _static(item, f"it uses {names}, which nothing above defines")
+
+    def _lacking(self, item: Classified, code: PythonCode) -> None:
+        name = code.fails_at_once or next(iter(code.lacking))
+        line = code.lacking[name]
+        severity = Severity.NOT_RUN if code.fails_at_once else Severity.WARNING
+        found = f"`self.{name}` is used and set nowhere."
+        fix = "Set it in `__init__`, or check its name: the node fails where it is used."
+        at = item.fence.first_code_line + line - 1
+        self.problems.append(Problem(self.file, at, found, fix, severity))
+
+    def _missing(self, item: Classified, missing: Sequence[Missing], joined: Joined) -> Classified:
+        above = joined.before.count("\n")
+        packages = list(dict.fromkeys(one.package for one in missing))
+        for one in missing:
+            line = item.fence.first_code_line + max(one.line - above, 1) - 1
+            alone = len(packages) == 1
+            self.problems.append(
+                Problem(self.file, line, one.found, one.fix, Severity.NOT_RUN, group=one.package, alone=alone)
+            )
+        names = ", ".join(f"`{name}`" for name in packages)
+        if packages == ["relative imports"]:
+            return _static(item, "it imports relative to a package")
+        verb = "is" if len(packages) == 1 else "are"
+        return _static(item, f"it needs {names}, which {verb} not installed", f"it needs {names}, not installed here.")
+
+    def _name(self, item: Classified) -> tuple[str, bool]:
+        """A name for a node's cell; a file that is shown again, changed, keeps its own."""
+        name, named, problems = node_name(item, self.told.get(item.fence.line, ""), self.file)
+        self.problems += problems
+        wanted, count = name, 1
+        while not named and name in self._names:
+            count += 1
+            name = f"{wanted}_{count}"
+        if name in self.own:
+            # Its package's folder would be taken for it.
+            name = f"{name}_node"
+        self._names[name] = name
+        return name, named
+
+
+def _facts(joined: Joined, code: PythonCode) -> PythonCode:
+    return inspect(joined.whole) if joined.before else code
+
+
+def _is_file(item: Classified) -> bool:
+    return bool(item.fence.title and item.fence.title.endswith(".py"))
+
+
+def _static(item: Classified, why: str, sign: str = "") -> Classified:
+    return replace(item, kind=FenceKind.STATIC, why=why, sign=sign or f"{why}.")
+
+
+def _with_parts(items: list[Classified], used: Mapping[int, Iterable[int]]) -> list[Classified]:
+    """Name the pieces from which later nodes are made whole, and turn those into parts that are no program alone."""
+    out = list(items)
+    needed = {i for number, pieces in used.items() if out[number].kind is FenceKind.NODE for i in pieces}
+    names: dict[int, str] = {}
+    taken: set[str | None] = {item.name for item in items if item.name}
+    for number in sorted(needed):
+        item = out[number]
+        if item.kind is FenceKind.NODE and _goes_on(number, used, out):
+            out[number] = replace(item, kind=FenceKind.PART, runs_in_kernel=False)
+        elif item.kind is not FenceKind.NODE:
+            runs = item.kind is FenceKind.SNIPPET
+            name = _part_name(item, taken)
+            out[number] = replace(item, kind=FenceKind.PART, name=name, runs_in_kernel=runs, why="", sign="")
+        names[number] = out[number].name or ""
+        taken.add(names[number])
+    for number, pieces in used.items():
+        if out[number].kind in {FenceKind.NODE, FenceKind.PART}:
+            after = tuple(dict.fromkeys(names[i] for i in pieces if i in names))
+            out[number] = replace(out[number], after=after)
+    return out
+
+
+def _goes_on(number: int, used: Mapping[int, Iterable[int]], items: Sequence[Classified]) -> bool:
+    """Whether a class without a main, or a script that only begins, gets what it lacks further down."""
+    code = items[number].code
+    if code is None or code.has_main or code.has_main_guard or code.spins or code.loops:
+        return False
+    for later, pieces in used.items():
+        item = items[later]
+        if number in pieces and item.kind is FenceKind.NODE and item.code and item.code.is_complete:
+            return True
+    return False
+
+
+def _part_name(item: Classified, taken: set[str | None]) -> str:
+    code = item.code
+    names = sorted(code.defines) if code else []
+    base = (
+        "imports"
+        if code and code.imports and set(names) <= _imported(code)
+        else (names[0] if names else "part").lower()
+    )
+    name, count = base, 1
+    while name in taken:
+        count += 1
+        name = f"{base}_{count}"
+    return name
+
+
+def _imported(code: PythonCode) -> set[str]:
+    return {name for _, name in code.interfaces} | {name.partition(".")[0] for name in code.imports} | {"np", "plt"}

@@ -1,0 +1,292 @@
+"""Decides for each command of a chapter's shell fences whether it can run: whose program, whose package, whose type."""
+
+from __future__ import annotations
+
+import difflib
+import itertools
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from interface_compiler import prefixes
+from spinbook.chapter.classify import Classified, FenceKind
+from spinbook.chapter.imports import interfaces_of, own_names, remedy, ros_packages
+from spinbook.chapter.launch_files import launched_nodes
+from spinbook.chapter.own_packages import OwnPackages, created_package
+from spinbook.chapter.terminal import Command, CommandKind
+from spinbook.problem import Problem, Severity
+from spinbook.ros2 import executables
+
+#: Commands that fail for a name which nothing has: noun -> verbs.
+_ASKING = {
+    "topic": {"echo", "info", "type"},
+    "service": {"call", "type", "info"},
+    "node": {"info"},
+    "action": {"info", "send_goal"},
+    "param": {"list", "get", "set", "describe", "dump", "load", "delete"},
+}
+#: The services that every node has for its parameters.
+_PARAMETER_SERVICES = {
+    "describe_parameters",
+    "get_parameter_types",
+    "get_parameters",
+    "list_parameters",
+    "set_parameters",
+    "set_parameters_atomically",
+}
+#: Programs that fail where there is no keyboard.
+_READ_KEYS = {("turtlesim", "turtle_teleop_key")}
+_TYPE = re.compile(r"(\w+)/(msg|srv|action)/(\w+)")
+
+
+@dataclass(frozen=True)
+class _Refused:
+    """Why a command can't run here. `group` is what would have to be there."""
+
+    why: str
+    fix: str
+    group: str
+
+
+class _Said:
+    """The text of all that runs so far: a name that a program gives is somewhere in it."""
+
+    def __init__(self) -> None:
+        self._text = ""
+
+    def add(self, text: str) -> None:
+        """Hear what runs. turtlesim's own names are known."""
+        self._text += text.lower()
+        if "turtlesim" in text:
+            self._text += _TURTLESIM
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._text
+
+
+_TURTLESIM = " turtlesim turtle1 turtle2 cmd_vel pose color_sensor spawn kill clear reset set_pen teleport_absolute "
+_TURTLESIM += "teleport_relative rotate_absolute background_r background_g background_b "
+
+
+@dataclass
+class Shells:
+    """The shell fences of one chapter.
+
+    `package` is the course's own, `modules` what the course's node cells make, `own` the chapter's packages, `told`
+    which file the text before a fence names, `interfaces` the course's own.
+    """
+
+    file: Path
+    package: str
+    modules: frozenset[str]
+    own: OwnPackages
+    told: Mapping[int, str] = field(default_factory=dict)
+    has_exercise: bool = False
+    interfaces: frozenset[str] = frozenset()
+    problems: list[Problem] = field(default_factory=list)
+    _created: set[str] = field(default_factory=set)
+    _files: set[str] = field(default_factory=set)
+    """Launch and parameter files that cells above have put into the package, by name."""
+    _launch_files: dict[str, str] = field(default_factory=dict)
+    _said: _Said = field(default_factory=_Said)
+    _nodes: dict[str, int] = field(default_factory=dict)
+    """The chapter's nodes so far -> their number among the fences."""
+
+    def decide(self, items: Sequence[Classified]) -> list[Classified]:
+        """What becomes of each fence; a node that `ros2 run` starts further down gets the names it has there."""
+        out = list(items)
+        for number, item in enumerate(items):
+            if item.kind is FenceKind.NODE and item.name:
+                self._nodes[item.name] = number
+            elif item.kind is FenceKind.SHELL:
+                out[number] = self._fence(item, out)
+            elif item.kind is FenceKind.INTERFACE:
+                self._created.add((item.name or "").partition("/")[0])
+            elif item.kind is not FenceKind.STATIC:
+                self._said.add(item.whole)
+            if item.kind is FenceKind.FILE:
+                self._files.add((item.name or "").rpartition("/")[2])
+            if item.code is not None and item.code.is_launch_file:
+                name = item.fence.title or self.told.get(item.fence.line) or f"launch file {number}"
+                self._launch_files[name.rsplit("/", 1)[-1]] = item.fence.code
+            if item.kind is FenceKind.NODE:
+                self._said.add(item.whole)
+        return out
+
+    def _fence(self, item: Classified, out: list[Classified]) -> Classified:
+        item = replace(item, commands=tuple(part for command in item.commands for part in self._launched(command)))
+        for command in item.commands:
+            refused = self._refused(command, out)
+            if refused is None:
+                self._said.add(command.text if "pub" in command.words or "run" in command.words else "")
+                continue
+            line = item.fence.first_code_line + command.line - 1
+            found = f"{refused.why} (`{command.text}`)."
+            self.problems.append(Problem(self.file, line, found, refused.fix, Severity.NOT_RUN, group=refused.group))
+            return replace(item, kind=FenceKind.STATIC, why=refused.why, sign=f"{refused.why}.")
+        return item
+
+    def _refused(self, command: Command, out: list[Classified]) -> _Refused | None:
+        if command.kind is CommandKind.COLCON:
+            return self._colcon(command)
+        if command.kind is not CommandKind.ROS2:
+            return None
+        if self._lacks_file(command):
+            fix = "Give the parameters with -p NAME:=VALUE."
+            return _Refused("it reads a file of parameters, which is not here", fix, "files of parameters")
+        if command.runs is not None:
+            return self._run(*command.runs, out)
+        if command.words[1:2] == ("launch",):
+            if any(_file_name(word) in self._files for word in command.words[2:]):
+                return None
+            return _Refused("no fence above is its launch file", "Show it in a fence above.", "launch files")
+        if command.words[1:3] == ("pkg", "create"):
+            return self._create(command)
+        return self._types(command) or self._named(command)
+
+    def _run(self, package: str, executable: str, out: list[Classified]) -> _Refused | None:
+        if package == self.package and executable in self.modules:
+            return None
+        if package not in ros_packages() and (number := self._started(package, executable, out)) is not None:
+            known = out[number].executables
+            if (package, executable) not in known:
+                out[number] = replace(out[number], executables=(*known, (package, executable)))
+            return None
+        if package == self.package:
+            found = f"the course's package `{package}` has no executable `{executable}`"
+            fix = f"Its node cells make these: {', '.join(sorted(self.modules)) or 'none'}."
+            return _Refused(found, fix, "")
+        return self._foreign(package, executable)
+
+    def _foreign(self, package: str, executable: str) -> _Refused | None:
+        if (package, executable) in _READ_KEYS:
+            fix = "Run it in a terminal; write `static` behind the language to say that this is meant."
+            return _Refused(f"`{executable}` reads keys from a terminal", fix, "")
+        there = set(executables.BUILT_IN.get(package, ()))
+        if package in ros_packages():
+            prefix = prefixes.prefix_of(package, prefixes.installed())
+            there |= {path.name for path in executables.in_prefix(prefix, package)} if prefix else set()
+        if executable in there:
+            return None
+        if there:
+            fix = f"It has these: {', '.join(sorted(there))}."
+            return _Refused(f"`{package}` has no program `{executable}` here", fix, f"programs of {package}")
+        close = difflib.get_close_matches(
+            package, [self.package, *executables.BUILT_IN, *self.own.names], n=1, cutoff=0.85
+        )
+        if package in self.own.names:
+            fix = f'Show its program in a fence above: ```python title="{executable}.py"'
+            return _Refused(f"no fence above shows `{executable}` of `{package}`", fix, "programs that no fence shows")
+        fix = f"Did you mean `{close[0]}`?" if close else "Install it, or show its program in a fence of the chapter."
+        return _Refused(f"there is no package `{package}` here", fix, package)
+
+    def _started(self, package: str, executable: str, out: Sequence[Classified]) -> int | None:
+        """The node above that `ros2 run` means, by the setup.py shown, by its file, by its node's name or its class."""
+        stem = executable.removesuffix(".py")
+        module = self.own.executables.get((package, executable))
+        for name in (module, stem):
+            if name in self._nodes:
+                return self._nodes[name]
+        for number in reversed(self._nodes.values()):
+            code = out[number].code
+            ros_name = code.ros_name if code else None
+            if (ros_name and stem in {ros_name, ros_name.removesuffix("_node")}) or f"{stem}_node" == ros_name:
+                return number
+        unnamed = [number for number in self._nodes.values() if not out[number].named]
+        is_own = package in self.own.names and module is not None
+        return unnamed[-1] if is_own and len(unnamed) == 1 else None
+
+    def _lacks_file(self, command: Command) -> bool:
+        """Whether it reads a file of parameters that no cell above has put into the package."""
+        words = command.words
+        named = [after for word, after in itertools.pairwise(words) if word == "--params-file"]
+        if words[1:3] == ("param", "load"):
+            named += [word for word in words[4:] if not word.startswith("-")]
+        return any(_file_name(word) not in self._files for word in named)
+
+    def _launched(self, command: Command) -> list[Command]:
+        """`ros2 launch` of a launch file above as a comment, and the commands that start its nodes."""
+        if command.kind is not CommandKind.ROS2 or command.words[1:2] != ("launch",):
+            return [command]
+        files = [word for word in command.words[2:] if word.endswith(".py")]
+        if any(_file_name(word) in self._files for word in command.words[2:]):
+            return [command]
+        code = self._launch_files.get(files[0].rsplit("/", 1)[-1] if files else "", "")
+        if not code and len(self._launch_files) == 1 and files:
+            (code,) = self._launch_files.values()
+        nodes = launched_nodes(code) if code else []
+        if not nodes:
+            return [command]
+        note = Command(CommandKind.NOTE, f"# {command.text} starts:", (), command.line)
+        return [note, *(node.command(command.line) for node in nodes)]
+
+    def _create(self, command: Command) -> _Refused | None:
+        name, build_type = created_package(command.words)
+        if build_type != "ament_python":
+            return _Refused(
+                "it makes a package for C++", "Python packages have --build-type ament_python.", "C++ packages"
+            )
+        if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
+            return _Refused("it names no package", "Write: ros2 pkg create --build-type ament_python NAME", "")
+        self._created.add(name)
+        return None
+
+    def _colcon(self, command: Command) -> _Refused | None:
+        words = command.words
+        makes = bool(self._nodes) or self.has_exercise
+        there = self._created | ({self.package} if makes else set())
+        there |= {package for package, _ in self.own.executables} & self.own.names if self._nodes else set()
+        chosen = _selected(words)
+        unknown = [name for name in chosen if name not in there]
+        if not there or (chosen and unknown and not (self._nodes and set(chosen) & self.own.names)):
+            what = f"`{unknown[0]}`" if unknown else "anything"
+            fix = "Node cells above it make what it builds."
+            return _Refused(f"no cell above makes {what} to build", fix, "packages that no fence shows")
+        return None
+
+    def _named(self, command: Command) -> _Refused | None:
+        """A topic, service or node that no program of the chapter has a name for: asking for it fails."""
+        words = [word for word in command.words[3:] if not word.startswith("-")]
+        if command.words[1] not in _ASKING or command.words[2] not in _ASKING[command.words[1]] or self.has_exercise:
+            return None
+        name = _last_name(words[0]) if words else ""
+        typed = command.words[1:3] == ("topic", "echo") and len(words) > 1
+        if not name or typed or name in {"rosout", "parameter_events"} or name in self._said:
+            return None
+        fix = "Show what makes it in a fence above."
+        return _Refused(f"nothing above makes `{words[0]}`", fix, "names that nothing makes")
+
+    def _types(self, command: Command) -> _Refused | None:
+        """Types of interfaces that a command names."""
+        for package, kind, name in _TYPE.findall(command.text):
+            own = own_names(f"{package}.{kind}", self.interfaces)
+            known = own or interfaces_of(f"{package}.{kind}")
+            if not own and package not in ros_packages():
+                return _Refused(f"it needs `{package}`, not installed here", remedy(package), package)
+            if known and name not in known:
+                close = difflib.get_close_matches(name, known, n=1)
+                fix = f"Did you mean `{close[0]}`?" if close else "Look at `ros2 interface list`."
+                return _Refused(f"`{package}/{kind}` has no `{name}`", fix, "")
+        return None
+
+
+def _last_name(path: str) -> str:
+    """The last part of a name, which a program's text holds; of a node's parameter services, the node's name."""
+    node, _, last = path.strip("/").lower().rpartition("/")
+    return _last_name(node) if last in _PARAMETER_SERVICES and node else last
+
+
+def _file_name(path: str) -> str:
+    return path.rpartition("/")[2]
+
+
+def _selected(words: Sequence[str]) -> list[str]:
+    chosen: list[str] = []
+    taking = False
+    for word in words:
+        if word.startswith("--"):
+            taking = word in {"--packages-select", "--packages-up-to"}
+        elif taking:
+            chosen.append(word)
+    return chosen

@@ -1,0 +1,25 @@
+"""Reads the chapters of a course, each knowing what the others define."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from spinbook.chapter.read import Reading, Surroundings, modules_of, read_chapter
+from spinbook.course.course import Course
+from spinbook.interfaces.compiling import collect
+
+
+def surroundings(course: Course) -> Surroundings:
+    """What any chapter of the course may refer to: modules of every chapter are found by their fences' titles."""
+    modules: set[str] = set()
+    for file in course.chapters:
+        modules |= modules_of(course.root, file)
+    interfaces = frozenset(item.full_name for item in collect(course).definitions)
+    return Surroundings(course.package.name, frozenset(modules), course.exercises, course.names, interfaces)
+
+
+def read_all(course: Course) -> Iterator[Reading]:
+    """Read every chapter, in the course's order."""
+    known = surroundings(course)
+    for file in course.chapters:
+        yield read_chapter(course.root, file, known)

@@ -1,0 +1,224 @@
+"""Checks of this machine: Python, folders, compiler, colcon, the Jupyter kernel, the browser, the ros2 command."""
+
+from __future__ import annotations
+
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from interface_compiler import prefixes, shipped, toolchain
+from spinbook.doctor.finding import Finding, missing, ok, warning
+from spinbook.ros2.executables import is_built_in, real_ros2
+
+OLDEST, NEWEST = (3, 10), (3, 14)
+
+
+def examine_python(name: str) -> Finding:
+    """Look at the version of the Python that runs this."""
+    found = f"{platform.python_implementation()} {platform.python_version()}, {sys.executable}"
+    if OLDEST <= sys.version_info[:2] <= NEWEST and platform.python_implementation() == "CPython":
+        return ok(name, found)
+    return missing(name, found, "Spinbook needs CPython 3.10 to 3.14. Name one: make PYTHON=python3.12 setup")
+
+
+def examine_folder(name: str) -> Finding:
+    """Look for characters that colcon's shell scripts, or the search paths, fall apart at."""
+    places = (Path.cwd(), Path(sys.prefix))
+    for place in places:
+        if any(character.isspace() or character == ":" for character in str(place)):
+            return missing(
+                name,
+                f"'{place}' has a space or a colon in it",
+                "colcon's scripts and ROS's search paths fall apart there. "
+                "Move it to a path without one, and run make again.",
+            )
+    return ok(name, f"{places[0]} (environment: {places[1]})")
+
+
+_WITHOUT = "Only courses that define interfaces of their own need them; a handout's wheels need no compiler."
+
+
+def examine_compiler(name: str) -> Finding:
+    """Look for both, and for the packages that set-up compiles with them."""
+    if ros := toolchain.sourced_ros():
+        return ok(name, f"colcon compiles interfaces, with the ROS 2 in {ros}")
+    lacking = list(filter(None, (toolchain.missing_compiler(), toolchain.missing_headers())))
+    if lacking:
+        return warning(name, _absent(), "\n".join([*lacking, _WITHOUT]))
+    installed = prefixes.packages(prefixes.installed())
+    absent = [package for package in shipped.standard() if package not in installed]
+    if absent:
+        return warning(name, f"{' and '.join(absent)} not compiled yet", "make setup compiles them")
+    return ok(name, f"{shutil.which('gcc')}, {shutil.which('g++')}, {toolchain.headers() / 'Python.h'}")
+
+
+def _absent() -> str:
+    programs = [program for program in ("gcc", "g++") if shutil.which(program) is None]
+    header = [] if (toolchain.headers() / "Python.h").is_file() else ["Python.h"]
+    return f"not found: {', '.join([*programs, *header])}"
+
+
+_NAME = "spinbook_doctor_trial"
+_FILES = {
+    "package.xml": f"""<?xml version="1.0"?>
+<package format="3">
+  <name>{_NAME}</name> <version>0.0.0</version> <description>A trial.</description>
+  <maintainer email="nobody@example.org">Nobody</maintainer> <license>Apache-2.0</license>
+  <export> <build_type>ament_python</build_type> </export>
+</package>
+""",
+    "setup.py": f"""from setuptools import setup
+setup(name='{_NAME}', version='0.0.0', packages=['{_NAME}'],
+      entry_points={{'console_scripts': ['trial = {_NAME}.trial:main']}})
+""",
+    "setup.cfg": f"[develop]\nscript_dir=$base/lib/{_NAME}\n[install]\ninstall_scripts=$base/lib/{_NAME}\n",
+    f"{_NAME}/__init__.py": "",
+    f"{_NAME}/trial.py": "def main():\n    print('built')\n",
+}
+_TOO_NEW = 80
+
+
+def examine_colcon(name: str) -> Finding:
+    """Build a package of one module with `--symlink-install`."""
+    try:
+        colcon, setuptools = version("colcon-core"), version("setuptools")
+    except PackageNotFoundError as error:
+        return missing(
+            name, f"{error.name} is not installed for {sys.executable}", "Make the environment anew: make setup"
+        )
+    found = f"colcon-core {colcon}, setuptools {setuptools}"
+    with tempfile.TemporaryDirectory(prefix="spinbook-doctor-") as folder:
+        workspace = Path(folder)
+        for path, text in _FILES.items():
+            file = workspace / "src" / _NAME / path
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text)
+        built = _build(workspace)
+        if built.returncode:
+            lines = [line for line in built.stderr.splitlines() if line.strip()] or [f"exit code {built.returncode}"]
+            return missing(name, f"{found}; a build fails: {lines[-1]}", "Make the environment anew: make setup")
+        linked = not any((workspace / "install").glob(f"{_NAME}/lib/python*/site-packages/{_NAME}/trial.py"))
+    if not linked or int(setuptools.split(".")[0]) >= _TOO_NEW:
+        return warning(
+            name,
+            f"{found}; `--symlink-install` copies, silently",
+            "With setuptools 80 and newer an edited node is not the one that runs. pip install 'setuptools<80'",
+        )
+    return ok(name, f"{found}; built a package with --symlink-install")
+
+
+def _build(workspace: Path) -> subprocess.CompletedProcess[str]:
+    prefixes = [entry for entry in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]
+    settings = {
+        "AMENT_PREFIX_PATH": os.pathsep.join(dict.fromkeys([*prefixes, sys.prefix])),
+        "COLCON_LOG_LEVEL": "error",
+    }
+    return subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "colcon",
+            "--log-base",
+            "log",
+            "build",
+            "--symlink-install",
+            "--event-handlers",
+            "console_direct-",
+        ],
+        cwd=workspace,
+        env=os.environ | settings,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+_NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+_ONLY_TESTS = (
+    "Only the tests need one; those of pages fail without. `make test` installs it: sudo apt-get install chromium"
+)
+_PAGE = "data:text/html,<title>spinbook</title>"
+_DEADLINE_S = 30.0
+
+
+def examine_browser(name: str) -> Finding:
+    """Open a page in it, without a window."""
+    path = next(filter(None, map(shutil.which, _NAMES)), None)
+    if path is None:
+        return warning(name, "no Chromium found", _ONLY_TESTS)
+    with tempfile.TemporaryDirectory(prefix="spinbook-doctor-") as profile:
+        argv = [path, "--headless", "--disable-gpu", f"--user-data-dir={profile}", "--dump-dom", _PAGE]
+        if os.geteuid() == 0:
+            argv.insert(1, "--no-sandbox")
+        try:
+            trial = subprocess.run(argv, capture_output=True, text=True, timeout=_DEADLINE_S, check=False)
+        except subprocess.TimeoutExpired:
+            return warning(name, f"{path} does not answer within {_DEADLINE_S:g} s", _ONLY_TESTS)
+    if "spinbook" not in trial.stdout:
+        lines = trial.stderr.strip().splitlines() or [f"exit code {trial.returncode}"]
+        return warning(name, f"{path} does not show a page: {lines[-1]}", _ONLY_TESTS)
+    return ok(name, path)
+
+
+def examine_ros2_command(name: str) -> Finding:
+    """Look for them. Either way the chapters run, so this is never a fault."""
+    ros2 = real_ros2([], os.environ)
+    prefix = prefixes.prefix_of("turtlesim", prefixes.installed())
+    turtlesim = None if is_built_in("turtlesim", prefix) else prefix
+    parts = [
+        f"ros2 at {ros2[0]}" if ros2 else "no ros2: Spinbook's own answers (ros2, spinbook ros2)",
+        f"turtlesim in {turtlesim}" if turtlesim else "turtlesim's nodes: Spinbook's own",
+    ]
+    return ok(name, "; ".join(parts))
+
+
+_KERNEL_DEADLINE_S = 45.0
+_CELL = "%load_ext spinbook\nimport sys; print(sys.prefix)"
+
+
+def examine_kernel(name: str) -> Finding:
+    """Start the kernel that the notebooks name, and run a cell in it."""
+    try:
+        from jupyter_client.manager import start_new_kernel
+    except ImportError as error:
+        return missing(name, str(error), "Make the environment anew: make setup")
+    start = time.monotonic()
+    try:
+        manager, client = start_new_kernel(kernel_name="python3", startup_timeout=_KERNEL_DEADLINE_S)
+    except (OSError, RuntimeError) as error:
+        return missing(
+            name,
+            f"does not start: {error}",
+            "Run it by hand to see why: python -m ipykernel\nJupyter keeps files below HOME: can you write there?",
+        )
+    try:
+        printed, fault = _run(client)
+    finally:
+        client.stop_channels()
+        manager.shutdown_kernel(now=True)
+    took = time.monotonic() - start
+    if fault:
+        return missing(name, f"a cell fails: {fault}", "Make the environment anew: make setup")
+    if printed.strip().splitlines()[-1:] != [sys.prefix]:
+        return missing(name, f"another Python answers: {printed.strip()}", "jupyter kernelspec remove python3")
+    return ok(name, f"started and ran a cell in {took:.1f} s")
+
+
+def _run(client: Any) -> tuple[str, str]:
+    """What the cell printed, and what went wrong."""
+    printed: list[str] = []
+
+    def keep(message: dict[str, Any]) -> None:
+        if message["msg_type"] == "stream" and message["content"]["name"] == "stdout":
+            printed.append(message["content"]["text"])
+
+    reply = client.execute_interactive(_CELL, timeout=_KERNEL_DEADLINE_S, output_hook=keep)["content"]
+    fault = "" if reply["status"] == "ok" else f"{reply.get('ename')}: {reply.get('evalue')}"
+    return "".join(printed), fault

@@ -1,0 +1,170 @@
+"""Checks of ROS 2: whether rclpy and its libraries load, and settings that surprise people."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from importlib.metadata import version as distribution_version
+from pathlib import Path
+from xml.etree import ElementTree
+
+from spinbook.doctor.finding import Finding, missing, ok, warning
+from spinbook.doctor.ros_origin import NoRos, ros_origin, this_machine
+from spinbook.kernel.environment import HIGHEST, LOOPBACK_PROFILE
+from spinbook.ros2.executables import GUARD
+
+#: Packages that the chapters and the grader use.
+MESSAGES = ("builtin_interfaces", "geometry_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs")
+_MAKE_ANEW = "Make the environment anew, in the terminal that you want to use: make setup"
+
+
+def examine_ros_library(name: str) -> Finding:
+    """Import rclpy with its compiled part and a type support, and compare with what else is installed."""
+    # A middleware that is not installed would end this process. It is a matter of its own: see middleware.py.
+    os.environ.pop("RMW_IMPLEMENTATION", None)
+    try:
+        sourced = ros_origin(os.environ, this_machine()).sourced
+        package = Path(importlib.import_module("rclpy").__path__[0])
+        _load_messages()
+    except NoRos as error:
+        return missing(name, *str(error).split("\n", 1))
+    except ImportError as error:
+        return missing(name, str(error).splitlines()[0], _fix_of(error))
+    wheels = wheels_installed()
+    version = distribution_version("ros-rclpy") if wheels and not sourced else _version_of(package)
+    if sourced and wheels:
+        return missing(
+            name,
+            f"two of them: rclpy {version} from {package.parent}, and PyPI's wheels in {sys.prefix}",
+            f"Which libraries are loaded would be chance. {_MAKE_ANEW}",
+        )
+    return ok(name, f"rclpy {version}, {'PyPI wheels' if wheels else 'sourced'}, {package.parent}")
+
+
+def wheels_installed() -> bool:
+    """Whether this environment holds the wheels from PyPI."""
+    return any(Path(sys.prefix).glob("lib/python3*/site-packages/ros_rclpy-*.dist-info"))
+
+
+def _load_messages() -> None:
+    for package in ("rclpy.impl.implementation_singleton", *MESSAGES):
+        importlib.import_module(package)
+    support = importlib.import_module("rclpy.type_support")
+    support.check_for_type_support(importlib.import_module("sensor_msgs.msg").JointState)
+
+
+def _version_of(package: Path) -> str:
+    """The version in the package.xml that every ROS installation has; the distribution's name where it is sourced."""
+    distro = os.environ.get("ROS_DISTRO", "")
+    for prefix in package.parents:
+        manifest = prefix / "share" / "rclpy" / "package.xml"
+        if manifest.is_file():
+            version = ElementTree.parse(manifest).findtext("version") or "of unknown version"
+            return f"{version} ({distro})" if distro else version
+    return "of unknown version"
+
+
+def _fix_of(error: ImportError) -> str:
+    absent = (error.name or "").split(".")[0]
+    if "cannot open shared object file" in str(error):
+        return "The library is not found: open a new terminal. Where ROS 2 is sourced, source its setup file again."
+    if absent in MESSAGES and os.environ.get("ROS_DISTRO"):
+        return f"sudo apt-get install ros-{os.environ['ROS_DISTRO']}-common-interfaces"
+    return _MAKE_ANEW
+
+
+_PROFILES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
+_WATCHED = (
+    "ROS_DOMAIN_ID",
+    "ROS_AUTOMATIC_DISCOVERY_RANGE",
+    "ROS_LOCALHOST_ONLY",
+    "ROS_STATIC_PEERS",
+    "ROS_DISCOVERY_SERVER",
+    "FASTDDS_BUILTIN_TRANSPORTS",
+    *_PROFILES,
+)
+
+
+def examine_ros_settings(name: str) -> Finding:
+    """Look at the variables that decide which nodes see one another."""
+    surprises = [*_about_domain(), *_about_profiles(), *_about_discovery()]
+    if surprises:
+        return warning(name, "; ".join(found for found, _ in surprises), "\n".join(fix for _, fix in surprises))
+    is_set = [f"{variable}={os.environ[variable]}" for variable in _WATCHED if os.environ.get(variable)]
+    return ok(name, ", ".join(is_set) or "none set: domain 0, notebooks in domains of their own")
+
+
+def _about_domain() -> list[tuple[str, str]]:
+    text = os.environ.get("ROS_DOMAIN_ID", "")
+    if not text or (text.isdecimal() and int(text) <= HIGHEST):
+        return []
+    return [
+        (
+            f"ROS_DOMAIN_ID is '{text}'",
+            f"Take one from 0 to {HIGHEST} (others have no ports, or the system's own): export ROS_DOMAIN_ID=0",
+        )
+    ]
+
+
+def _about_profiles() -> list[tuple[str, str]]:
+    for variable in _PROFILES:
+        file = os.environ.get(variable, "")
+        if file and not Path(file).is_file():
+            return [(f"{variable} names {file}, which does not exist", f"unset {variable}")]
+        if file and Path(file) != LOOPBACK_PROFILE:
+            return [
+                (
+                    f"{variable}={file}",
+                    "Notebooks and the grader use profiles of their own in its place; your terminals use this one. "
+                    f"If they do not hear one another: unset {variable}",
+                )
+            ]
+    return []
+
+
+def _about_discovery() -> list[tuple[str, str]]:
+    surprises = []
+    if os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper() == "OFF":
+        surprises.append(
+            (
+                "ROS_AUTOMATIC_DISCOVERY_RANGE is OFF",
+                "Terminals won't find any node: unset ROS_AUTOMATIC_DISCOVERY_RANGE",
+            )
+        )
+    if os.environ.get("ROS_DISCOVERY_SERVER"):
+        surprises.append(
+            (
+                "ROS_DISCOVERY_SERVER is set",
+                "Nodes of notebooks would ask that server for one another: unset ROS_DISCOVERY_SERVER",
+            )
+        )
+    return surprises
+
+
+# The wheels set it themselves: their .pth file starts Python a second time with it, and marks that with a guard
+# variable. Where the guard is inherited without the path, or from another environment, the second start is skipped.
+
+
+def examine_library_path(name: str) -> Finding:
+    """Compare LD_LIBRARY_PATH with where this environment's libraries are."""
+    entries = [Path(entry) for entry in os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep) if entry]
+    with_ros = list(dict.fromkeys(entry for entry in entries if (entry / "librcl.so").exists()))
+    own = Path(sys.prefix, "lib")
+    if not wheels_installed():
+        return ok(name, ", ".join(map(str, with_ros)) or "no ROS libraries on it")
+    if own not in entries:
+        return missing(
+            name,
+            f"{GUARD} is set, but LD_LIBRARY_PATH does not name {own}",
+            f"Something dropped LD_LIBRARY_PATH and kept the guard. Drop both: unset {GUARD} LD_LIBRARY_PATH",
+        )
+    others = [str(entry) for entry in with_ros if entry != own]
+    if others:
+        return warning(
+            name,
+            f"{own}, and also {', '.join(others)}",
+            "Libraries of another ROS may be loaded. Use a terminal in which neither another environment is active nor "
+            f"a ROS setup file is sourced, or: unset {GUARD} LD_LIBRARY_PATH",
+        )
+    return ok(name, f"{own}, set by the wheels themselves")

@@ -1,0 +1,117 @@
+"""Wheels for students: Spinbook without the parts for authors, and compiled interfaces."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+from collections.abc import Iterable, Iterator
+from importlib import metadata
+from pathlib import Path
+
+import spinbook
+from interface_compiler import shipped, store
+from interface_compiler.archive import zipped
+from interface_compiler.wheel import record, wheel
+from spinbook.course.course import Course
+from spinbook.interfaces.compiling import FOLDER, compile_course
+from spinbook.problem import Problem, SpinbookError
+
+# A wheel is a zip whose RECORD lists every file with its hash (PEP 427, and "Recording installed projects").
+
+
+#: What `spinbook new` starts from has solutions and hidden checks in it; courses may still use them.
+FOR_AUTHORS = ("spinbook/new/template/", "spinbook/new/kinds/")
+
+_BUILD = "import sys; from setuptools.build_meta import build_wheel; print(build_wheel(sys.argv[1]))"
+_PACKAGES = ("spinbook/", "grader/", "interface_compiler/")
+_SOURCES = ("pyproject.toml", "README.md", "LICENSE", "spinbook", "grader", "interface_compiler")
+
+
+def spinbook_wheel() -> tuple[str, bytes]:
+    """The wheel's file name and content. Raises SpinbookError where it can't be made."""
+    source = Path(spinbook.__file__).parents[1]
+    files = _built(source) if (source / "pyproject.toml").is_file() else _installed()
+    kept = {name: content for name, content in files.items() if not name.startswith(FOR_AUTHORS)}
+    listing = next(name for name in kept if name.endswith(".dist-info/RECORD"))
+    # Without the project's README below its header, which has examples from a course in it.
+    described = listing.replace("RECORD", "METADATA")
+    kept[described] = kept[described].partition(b"\n\n")[0] + b"\n"
+    kept[listing] = record(kept, listing)
+    return f"spinbook-{spinbook.__version__}-py3-none-any.whl", zipped(kept, last=listing)
+
+
+def _built(source: Path) -> dict[str, bytes]:
+    """What setuptools makes of a checkout, which is left as it is."""
+    with tempfile.TemporaryDirectory(prefix="spinbook-") as temporary:
+        copy, out = Path(temporary) / "source", Path(temporary) / "out"
+        copy.mkdir()
+        for name in _SOURCES:
+            if (source / name).is_dir():
+                shutil.copytree(source / name, copy / name, ignore=shutil.ignore_patterns("__pycache__"))
+            elif (source / name).exists():
+                shutil.copy(source / name, copy)
+        done = subprocess.run(
+            [sys.executable, "-c", _BUILD, str(out)], cwd=copy, capture_output=True, text=True, check=False
+        )
+        wheels = list(out.glob("*.whl"))
+        if done.returncode or not wheels:
+            said = (done.stderr.strip().splitlines() or ["setuptools said nothing"])[-1]
+            fix = 'It is built with setuptools: pip install "setuptools>=77,<80"'
+            raise SpinbookError(Problem(source, None, f"the wheel of Spinbook could not be built: {said}", fix))
+        with zipfile.ZipFile(wheels[0]) as archive:
+            return {name: archive.read(name) for name in archive.namelist() if not name.endswith("/")}
+
+
+def _installed() -> dict[str, bytes]:
+    """The files of the Spinbook that is installed: for a package of pure Python, what was in its wheel."""
+    distribution = metadata.distribution("spinbook")
+    files = {}
+    for file in distribution.files or ():
+        name = file.as_posix()
+        wanted = name.startswith(
+            ("spinbook/", "grader/", "interface_compiler/", f"spinbook-{spinbook.__version__}.dist-info/")
+        )
+        own = name.rpartition("/")[2] not in ("INSTALLER", "REQUESTED", "direct_url.json") and "__pycache__" not in name
+        if wanted and own:
+            files[name] = Path(str(distribution.locate_file(file))).read_bytes()
+    return files
+
+
+#: Where a course keeps wheels that were compiled for other versions of Python.
+OTHERS = Path(FOLDER, "wheels")
+
+
+def interface_wheels(course: Course, texts: Iterable[bytes]) -> dict[str, bytes]:
+    """File name -> content of each wheel: the course's own packages, and those beyond PyPI's that it may use.
+
+    `texts` are what students get to read; an optional package goes with them where it is named there.
+
+    Raises:
+        SpinbookError: if the course's interfaces have faults or can't be compiled.
+    """
+    found = {path.name: path.read_bytes() for path in sorted((course.root / OTHERS).glob("*.whl"))}
+    found.update(wheel(package, prefix) for package, prefix in _packages(course, b"".join(texts)))
+    return found
+
+
+def _packages(course: Course, text: bytes) -> Iterator[tuple[str, Path]]:
+    """The packages, each with the prefix that has it."""
+    environment = Path(sys.prefix)
+    for package in (*shipped.standard(), *shipped.optional()):
+        wanted = package in shipped.standard() or package.encode() in text
+        if wanted and store.key_of(package, environment):
+            yield package, environment
+    if compiled := compile_course(course):
+        for package in compiled.packages:
+            yield package, compiled.prefix
+
+
+def requirement(file: str) -> str:
+    """The line of a requirements.txt for a wheel, for the Python and the machine that it was compiled for."""
+    version, platform = file.removesuffix(".whl").split("-")[2:5:2]
+    minor = version.removeprefix("cp3")
+    machine = platform.partition("_")[2]
+    return f'./wheels/{file} ; python_version == "3.{minor}" and platform_machine == "{machine}"'

@@ -1,0 +1,187 @@
+"""`%check` and `%submit`: find the student's code, and have another process check it or hand it in."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from IPython.display import display
+
+from grader.exercise import Exercise, ExerciseError, load
+from grader.exercise.loading import NoExercise, find
+from grader.submission.reading import NoCell, cell_of
+from spinbook.kernel.process import CellFailed, KeptProcess
+from spinbook.kernel.session import Session
+from spinbook.kernel.showing import Bound
+
+
+@dataclass(frozen=True)
+class Code:
+    """The exercise's code, its lines numbered as in the cell, and where it is from.
+
+    `origin` completes "Checked: …". `warning` says that the cell's text is another one now; empty if that is not known.
+    """
+
+    text: str
+    origin: str
+    warning: str = ""
+
+    def note(self, what: str, command: str) -> str:
+        """Return what to tell the student: `what` is "Checked" or "Handed in", `command` what to run again."""
+        told = f"{what}: {self.origin}."
+        return f"{told}\nWARNING: {self.warning.format(command=command)}" if self.warning else told
+
+
+def code_of(exercise: Exercise, session: Session, notebook: Path | None) -> Code:
+    """The code of the exercise's cell, as the session ran it last.
+
+    Raises CellFailed, with what to do, where the cell has not been run and the notebook's file is not known.
+    """
+    node = exercise.file_name.removesuffix(".py")
+    saved = _saved(exercise, notebook)
+    if node in session.ran:
+        # The line with %%node is the cell's first.
+        text = "\n" + session.ran[node]
+        edited = saved and saved.strip() != text.strip() and _saved_after(notebook, session.ran_at[node])
+        return Code(text, _as_run(node, session.ran_at[node]), _edited(node) if edited else "")
+    if saved and notebook:
+        not_run = f"it has not been run since the kernel started, so this is how it was last saved in {notebook.name}"
+        return Code(saved, f"the cell %%node {node}; {not_run}")
+    raise CellFailed(f"Run the cell that begins with %%node {node} first. Then run this one again.")
+
+
+def _as_run(node: str, moment: float) -> str:
+    at = datetime.fromtimestamp(moment).strftime("%H:%M:%S")
+    return f"the cell %%node {node} as you ran it at {at}, without any change that you made after that"
+
+
+def _edited(node: str) -> str:
+    return (
+        f"You have changed the cell %%node {node} since you ran it, and the change is not in this result. "
+        "Run that cell again, then {command}."
+    )
+
+
+def _saved_after(notebook: Path | None, moment: float) -> bool:
+    """Whether the notebook was saved after this moment (s since the epoch): what was saved before is out of date."""
+    try:
+        return notebook is not None and notebook.stat().st_mtime > moment
+    except OSError:
+        return False
+
+
+def _saved(exercise: Exercise, notebook: Path | None) -> str:
+    try:
+        return cell_of(notebook.read_bytes(), exercise) if notebook else ""
+    except (OSError, NoCell):
+        return ""
+
+
+#: Set in the kernel's environment by Jupyter's server: the notebook's path.
+JUPYTER = "JPY_SESSION_NAME"
+#: Set among the kernel's variables by VS Code: the notebook's path.
+VS_CODE = "__vsc_ipynb_file__"
+
+
+def notebook_file(variables: Mapping[str, Any], environment: Mapping[str, str]) -> Path | None:
+    """The notebook's file as it was last saved, or None where that is not known (Colab, a plain terminal)."""
+    for given in (variables.get(VS_CODE), environment.get(JUPYTER)):
+        if isinstance(given, str) and given.endswith(".ipynb") and Path(given).is_file():
+            return Path(given).resolve()
+    return None
+
+
+#: How long the process has to end in order when it is told to (s).
+_GRACE = (0.5, 0.5)
+
+
+def checked(exercise: Path, code: str, seconds: float) -> dict[str, str]:
+    """The result for `code`, by media type: text/html and text/plain.
+
+    Raises CellFailed when there is none: after `seconds`, when interrupted, or by a fault that is not the student's.
+    """
+    with tempfile.TemporaryDirectory(prefix="spinbook-") as temporary:
+        folder = Path(temporary)
+        (folder / "code").write_text(code, encoding="utf-8", errors="replace")
+        argv = [sys.executable, "-m", "spinbook.check.program", os.fspath(exercise), "code", "result"]
+        process = KeptProcess(argv, os.environ, folder)
+        try:
+            status = process.wait(seconds)
+            if status.running:
+                raise CellFailed(
+                    f"The check was not done after {seconds:g} s and has been stopped. Does your program do something "
+                    "for a long time before it spins its node? If not, this machine may be very busy: try again, or "
+                    f"allow more time, as in %check {exercise.name} --seconds {2 * seconds:g}"
+                )
+            said = process.read_all()[0].decode(errors="replace")
+        except KeyboardInterrupt:
+            raise CellFailed("The check was interrupted; nothing is known of your code.") from None
+        finally:
+            if process.status.running:
+                process.stop(_GRACE)
+            process.close()
+        return _result(folder / "result", said)
+
+
+def _result(file: Path, said: str) -> dict[str, str]:
+    try:
+        result: dict[str, str] = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        last = "\n".join(said.strip().splitlines()[-3:])
+        raise CellFailed(f"The check itself broke, which is not your fault:\n{last}") from None
+    if "problem" in result:
+        raise CellFailed(result["problem"])
+    return result
+
+
+def check_cell(session: Session, shell: Any, name: str, course: str, seconds: float) -> None:
+    """Check the cell of the exercise `name` and show the result. Raises CellFailed where it can't be checked.
+
+    `course` is the folder that has the exercises, where it is neither this one nor one above it or the notebook's.
+    """
+    notebook = notebook_file(shell.user_ns, os.environ)
+    exercise = exercise_of(name, course, notebook)
+    code = code_of(exercise, session, notebook)
+    print(code.note("Checked", f"%check {exercise.name}"))
+    display(checked(exercise.folder, code.text, seconds), raw=True)
+
+
+def exercise_of(name: str, course: str, notebook: Path | None) -> Exercise:
+    """The exercise `name`, in the folder `course`, else in this one, the notebook's, or above. Raises CellFailed."""
+    places = [Path(course)] if course else [Path.cwd(), *([notebook.parent] if notebook else [])]
+    told = ""
+    for place in places:
+        try:
+            return load(find(name, place.resolve()))
+        except NoExercise as error:
+            told = told or str(error)
+        except ExerciseError as error:
+            raise CellFailed(f"The exercise is at fault, not your code.\n{error}") from None
+    where = " and ".join(str(place.resolve()) for place in places)
+    raise CellFailed(
+        f"{told}\nI looked in {where} and above. A notebook from the course's website: run its first code cells. "
+        f"One from a handout: keep the notebook in the folder of the handout, or name it: %check {name} --course FOLDER"
+    )
+
+
+def submit_cell(session: Session, shell: Any, name: str, course: str, student: str | None, seconds: float) -> None:
+    """Write the upload for the exercise `name`. Raises CellFailed where there is nothing to hand in, or it fails."""
+    notebook = notebook_file(shell.user_ns, os.environ)
+    exercise = exercise_of(name, course, notebook)
+    code = code_of(exercise, session, notebook)
+    print(code.note("Handed in", f"%submit {exercise.name}"))
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, exercise.file_name)
+        file.write_text(code.text, encoding="utf-8")
+        command = [sys.executable, "-u", "-m", "spinbook", "submit", os.fspath(exercise.folder)]
+        command += [os.fspath(notebook)] if notebook else []
+        command += ["--code", os.fspath(file)]
+        command += ["--student", student] if student is not None else []
+        session.run_command(command, {}, Path.cwd(), Bound(seconds), f"%submit {name}")

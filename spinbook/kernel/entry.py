@@ -1,0 +1,60 @@
+"""Starts code that does not start itself: `python -m spinbook.kernel.entry FILE HOW [-- ARGS]`.
+
+HOW is `--main` or `--class A [--class B …]`. `--main` calls the file's `main`, as the executable of an installed
+package does. `--class` spins Node classes that come without a main, all in one process.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import inspect
+import runpy
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import rclpy
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+
+
+def main() -> None:
+    """Start what the command line names."""
+    file, words = Path(sys.argv[1]), sys.argv[2:]
+    own, rest = (words[: words.index("--")], words[words.index("--") + 1 :]) if "--" in words else (words, [])
+    sys.argv = [str(file), *rest]
+    start(runpy.run_path(str(file), run_name=file.stem), own)
+
+
+def start(module: Mapping[str, Any], own: Sequence[str]) -> None:
+    """Start a module's `main` or its classes; `own` are the words HOW."""
+    if "--main" in own:
+        sys.exit(_call(module["main"]))
+    _spin([module[name] for name in own if name != "--class"])
+
+
+def _call(start: Any) -> Any:
+    """Call a `main`, with None for an argument that it insists on."""
+    required = [
+        p
+        for p in inspect.signature(start).parameters.values()
+        if p.default is p.empty and p.kind in {p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD}
+    ]
+    return start(*[None] * len(required))
+
+
+def _spin(classes: Sequence[Any]) -> None:
+    """Make a node of each class and spin them until Ctrl-C."""
+    rclpy.init()
+    together = SingleThreadedExecutor()
+    made = [make() for make in classes]
+    with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+        if all(together.add_node(one) for one in made):
+            together.spin()
+    for one in made:
+        one.destroy_node()
+    rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,126 @@
+"""The environment of a notebook's processes: a ROS domain of their own, this machine only, readable logs."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from interface_compiler import prefixes
+
+LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
+#: No time stamps: the same log from build to build.
+LOG_FORMAT = "[{severity}] [{name}]: {message}"
+#: Set while a notebook is executed by `spinbook build`: nobody watches, so plots are drawn once.
+EXECUTING = "SPINBOOK_EXECUTING"
+#: Names a file into which a notebook writes its ROS domain, for whoever watches it.
+DOMAIN_NOTE = "SPINBOOK_DOMAIN_NOTE"
+
+
+def for_domain(domain: int, environment: Mapping[str, str]) -> dict[str, str]:
+    """What to set so that ROS processes talk in `domain`, and with this machine only.
+
+    Fast DDS (the default) gets a profile that speaks UDP on 127.0.0.1; other middlewares are told LOCALHOST.
+    """
+    is_fast_dds = environment.get("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp").startswith("rmw_fastrtps")
+    settings = {
+        "ROS_DOMAIN_ID": str(domain),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT" if is_fast_dds else "LOCALHOST",
+        "RCUTILS_CONSOLE_OUTPUT_FORMAT": environment.get("RCUTILS_CONSOLE_OUTPUT_FORMAT", LOG_FORMAT),
+        "RCUTILS_COLORIZED_OUTPUT": environment.get("RCUTILS_COLORIZED_OUTPUT", "0"),
+        # Jupyter asks for colours of every program; Python obeys from 3.13 on.
+        "PYTHON_COLORS": environment.get("PYTHON_COLORS", "0"),
+        "PYTHONUNBUFFERED": "1",
+    }
+    if is_fast_dds:
+        settings["FASTRTPS_DEFAULT_PROFILES_FILE"] = os.fspath(LOOPBACK_PROFILE)
+        settings["FASTDDS_DEFAULT_PROFILES_FILE"] = os.fspath(LOOPBACK_PROFILE)
+    if "HOME" not in environment:
+        # rclpy.init raises without one, even where ROS_LOG_DIR is set.
+        settings["HOME"] = tempfile.gettempdir()
+    if "ROS_LOG_DIR" not in environment and not _home_is_writable(environment):
+        # It raises too where it can't write its log files.
+        settings["ROS_LOG_DIR"] = os.fspath(Path(tempfile.gettempdir()) / f"spinbook-ros-log-{os.getuid()}")
+    return settings
+
+
+def _home_is_writable(environment: Mapping[str, str]) -> bool:
+    home = environment.get("HOME")
+    return bool(home) and os.access(home or "", os.W_OK)
+
+
+def missing_middleware(environment: Mapping[str, str]) -> str | None:
+    """The middleware that RMW_IMPLEMENTATION names, if it is not installed here.
+
+    rclpy ends the whole process (exit code 102) when asked for one that is absent, so this must be known before.
+    """
+    name = environment.get("RMW_IMPLEMENTATION", "")
+    installed = prefixes.resources("rmw_typesupport", prefixes.installed())
+    return name if name and installed and name not in installed else None
+
+
+# A domain is held by a lock on a file that every user of the machine can open; the lock goes when the kernel does,
+# however it ends. Domains up to 101 have ports below Linux's ephemeral range (ROS 2's concepts, "The ROS_DOMAIN_ID").
+
+
+#: 0 is everybody's default and is left to the terminals of this machine.
+OWN_DOMAINS = range(1, 60)
+HIGHEST = 101
+
+
+@dataclass(frozen=True)
+class Domain:
+    """A ROS domain. `lock` is the open file that holds it, or None where it is shared with others on purpose."""
+
+    number: int
+    lock: int | None
+
+    def release(self) -> None:
+        """Give it back."""
+        if self.lock is not None:
+            os.close(self.lock)
+
+
+class NoDomainLeft(Exception):
+    """Every domain is held by some running notebook."""
+
+
+def claim_domain() -> Domain:
+    """Take a domain that nobody on this machine holds. Raises NoDomainLeft."""
+    folder = Path(tempfile.gettempdir()) / "spinbook-domains"
+    folder.mkdir(exist_ok=True)
+    with contextlib.suppress(PermissionError):
+        folder.chmod(0o1777)
+    # Begin at a place of this process's own, so that many notebooks that start at once do not queue at the first.
+    start = os.getpid() % len(OWN_DOMAINS)
+    for number in [*OWN_DOMAINS[start:], *OWN_DOMAINS[:start]]:
+        with contextlib.suppress(OSError):
+            lock = _open(folder / str(number))
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                os.close(lock)
+                continue
+            return Domain(number, lock)
+    raise NoDomainLeft(
+        f"all {len(OWN_DOMAINS)} ROS domains are in use by notebooks on this machine: close some of them."
+    )
+
+
+def _open(file: Path) -> int:
+    try:
+        return os.open(file, os.O_RDONLY | os.O_CREAT | os.O_CLOEXEC, 0o644)
+    except PermissionError:
+        # Sticky folders of other users forbid O_CREAT on what exists (fs.protected_regular).
+        return os.open(file, os.O_RDONLY | os.O_CLOEXEC)
+
+
+def shared_domain(number: int) -> Domain:
+    """A domain that others may use too. Raises ValueError where ROS has no such domain."""
+    if not 0 <= number <= HIGHEST:
+        raise ValueError(f"a ROS domain is a number from 0 to {HIGHEST}, not {number}.")
+    return Domain(number, None)

@@ -1,0 +1,56 @@
+"""`%load_ext spinbook`: gives a notebook its commands, a ROS domain of its own, and an orderly end."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import sysconfig
+import warnings
+from typing import Any
+
+from spinbook.kernel import environment, magics
+from spinbook.kernel import environment as domain
+from spinbook.kernel.process import KeptProcess
+from spinbook.kernel.session import Session
+
+#: Names a domain to share with other programs, in place of one of the notebook's own.
+DOMAIN_VARIABLE = "SPINBOOK_DOMAIN"
+#: How long the nodes have to end in order when the kernel does (s).
+_FAREWELL_S = 2.0
+
+
+def load(shell: Any) -> None:
+    """Set up a notebook; loading twice changes nothing."""
+    if getattr(shell, "spinbook_session", None) is not None:
+        return
+    if name := environment.missing_middleware(os.environ):
+        warnings.warn(
+            f"RMW_IMPLEMENTATION names {name}, which is not installed here; the notebook uses the default middleware.",
+            stacklevel=2,
+        )
+        del os.environ["RMW_IMPLEMENTATION"]
+    asked_for = os.environ.get(DOMAIN_VARIABLE, "")
+    session = Session(domain.shared_domain(int(asked_for)) if asked_for.isdigit() else domain.claim_domain())
+    shell.spinbook_session = session
+    magics.register(shell, session)
+    _find_scripts()
+    atexit.register(farewell, session)
+
+
+def _find_scripts() -> None:
+    """Let `!ros2` and `%%bash` find this environment's programs: its kernel may run without it being activated."""
+    folders = os.environ.get("PATH", os.defpath).split(os.pathsep)
+    if (scripts := sysconfig.get_path("scripts")) not in folders:
+        os.environ["PATH"] = os.pathsep.join([*folders, scripts])
+
+
+def farewell(session: Session) -> None:
+    """End every node, as gently as a kernel's end allows."""
+    if session.timeline is not None:
+        session.timeline.close()
+    processes: list[KeptProcess] = [node.process for name in session.nodes.names() if (node := session.nodes.get(name))]
+    for process in processes:
+        process.stop((_FAREWELL_S / 2, _FAREWELL_S / 4))
+    for process in processes:
+        process.wait(_FAREWELL_S)
+        process.close()

@@ -1,0 +1,318 @@
+"""The notebook's commands: `%%node`, `%nodes`, `%stop`, `%log`, `%ros2`, `%colcon`, `%plot`, `%graph`, `%turtle` …
+
+Thin: each reads its line and calls the session.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import shlex
+from collections.abc import Sequence
+from typing import Any, NoReturn
+
+from IPython.core.magic import Magics, cell_magic, line_magic, magics_class, no_var_expand
+
+from spinbook.course.course import Package
+from spinbook.kernel import environment, interface_cell, picture_cells, plot_cell, terminal_cells, timeline_cell
+from spinbook.kernel.process import CellFailed
+from spinbook.kernel.session import COMMAND_SECONDS, GRAPH_SECONDS, LOG_SECONDS, NODE_SECONDS, Session, Start
+from spinbook.kernel.showing import Bound
+
+_OWN_OPTION = re.compile(r"""\s*--(seconds|until)\s+("[^"]*"|'[^']*'|\S+)\s*""")
+
+
+class LineReader(argparse.ArgumentParser):
+    """Reads a magic's line; bad usage is told in the cell, and `--help` prints there."""
+
+    def __init__(self, prog: str, description: str) -> None:
+        super().__init__(prog=prog, description=description, allow_abbrev=False)
+
+    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
+        raise CellFailed(message or "")
+
+    def error(self, message: str) -> NoReturn:
+        raise CellFailed(f"{message}\n{self.format_usage().rstrip()}")
+
+    def read(self, line: str) -> argparse.Namespace | None:
+        """The arguments, or None where help was asked for and has been printed."""
+        words = split(line)
+        if "-h" in words or "--help" in words:
+            print(self.format_help())
+            return None
+        return self.parse_args(words)
+
+
+def split(line: str) -> list[str]:
+    """The words of a line, quoted as in a shell. Raises CellFailed."""
+    try:
+        return shlex.split(line)
+    except ValueError as error:
+        raise CellFailed(f"can't read this line: {error}. A quotation mark is missing in: {line}") from None
+
+
+def own_options(line: str, seconds: float) -> tuple[Bound, str]:
+    """Take leading options `--seconds N` and `--until TEXT` off a line whose rest belongs to another command.
+
+    `seconds` holds where the line does not say.
+    """
+    until = None
+    while match := _OWN_OPTION.match(line):
+        option, value = match.groups()
+        line = line[match.end() :]
+        if option == "until":
+            until = shlex.split(value)[0]
+            continue
+        try:
+            seconds = float(value)
+        except ValueError:
+            raise CellFailed("`--seconds` wants a number, as in --seconds 5.") from None
+    return Bound(seconds, until), line
+
+
+@magics_class
+class SpinbookMagics(Magics):
+    """The commands of one notebook."""
+
+    def __init__(self, shell: Any, session: Session) -> None:
+        super().__init__(shell)
+        self.session = session
+
+    @no_var_expand
+    @line_magic
+    def chapter(self, line: str) -> None:
+        """%chapter NAME --package PACKAGE: what this notebook's nodes belong to."""
+        reader = LineReader("%chapter", "Say which chapter this notebook is, and which package its nodes make.")
+        reader.add_argument("name")
+        reader.add_argument("--package", default="notebook_nodes")
+        reader.add_argument("--workspace", default="notebook_ws")
+        if given := reader.read(line):
+            self.session.package = Package(name=given.package, workspace=given.workspace)
+            interface_cell.begin(self.session)
+
+    @no_var_expand
+    @cell_magic
+    def interface(self, line: str, cell: str) -> None:
+        """%%interface msg/NAME.msg: define a message, a service or an action, and compile it if it is new."""
+        reader = LineReader("%%interface", "Define a message, a service or an action: this cell's text is its file.")
+        reader.add_argument("path", help="msg/NAME.msg, srv/NAME.srv or action/NAME.action; a package may come first")
+        if given := reader.read(line):
+            interface_cell.run(self.session, given.path, cell.rstrip("\n") + "\n" if cell.strip() else "")
+
+    @no_var_expand
+    @cell_magic
+    def package_file(self, line: str, cell: str) -> None:
+        """%%package_file launch/NAME.launch.py: put this cell's text into the package as a file."""
+        reader = LineReader("%%package_file", "Put a launch or parameter file into the package.")
+        reader.add_argument("path", help="launch/NAME.launch.py (.yaml, .xml) or config/NAME.yaml")
+        if given := reader.read(line):
+            self.session.write_file(given.path, cell)
+
+    @no_var_expand
+    @cell_magic
+    def node(self, line: str, cell: str) -> None:
+        """%%node NAME: run this cell's code as a process of its own, as `ros2 run` would."""
+        reader = LineReader("%%node", "Run this cell as a node: a process of its own. Running it again restarts it.")
+        reader.add_argument("name", help="the node's file, without .py")
+        reader.add_argument("--seconds", type=float, default=NODE_SECONDS, help="how long its log is shown")
+        reader.add_argument("--until", help="stop showing once the log holds this text")
+        reader.add_argument("--class", dest="classes", action="append", default=[], help="spin this Node class")
+        reader.add_argument("--main", action="store_true", help="call the code's main(); it does not do so itself")
+        reader.add_argument(
+            "--after", nargs="+", default=[], metavar="CELL", help="use what these nodes and parts define"
+        )
+        reader.add_argument("--usual-imports", action="store_true", help="add the imports that the code leaves out")
+        reader.add_argument(
+            "--as",
+            dest="known_as",
+            action="append",
+            default=[],
+            metavar="PACKAGE/EXECUTABLE",
+            help="what `ros2 run` calls this node",
+        )
+        if given := reader.read(line):
+            name = given.name.removesuffix(".py")
+            if not name.isidentifier():
+                raise CellFailed(f"`{name}` can't be a node's file name: use letters, digits and underscores.")
+            parts = given.after if given.after or given.usual_imports else None
+            start = Start(tuple(given.classes), given.main, tuple(given.known_as))
+            self.session.run_node(name, cell, Bound(given.seconds, given.until), start, parts)
+
+    @no_var_expand
+    @cell_magic
+    def part(self, line: str, cell: str) -> None:
+        """%%part NAME: code that later nodes use, by `%%node … --after NAME`."""
+        reader = LineReader("%%part", "Keep this cell's code for nodes further down, and run it as any other cell.")
+        reader.add_argument("name", help="what `--after` calls it")
+        reader.add_argument("--keep", action="store_true", help="only keep it: it can't run by itself")
+        if given := reader.read(line):
+            self.session.parts[given.name] = cell
+            if given.keep:
+                print(f"— kept for the nodes below that use it: {given.name} —")
+            else:
+                assert self.shell is not None
+                self.shell.run_cell(cell).raise_error()
+
+    @no_var_expand
+    @line_magic
+    def nodes(self, line: str) -> None:
+        """%nodes: what this notebook has started, and whether it still runs."""
+        reader = LineReader("%nodes", "List the nodes that this notebook has started.")
+        if reader.read(line) is None:
+            return
+        names = self.session.nodes.names()
+        for name in names:
+            status = self.session.nodes.status(name)
+            state = "running" if status.exit is None else f"ended (exit code {status.exit})"
+            print(f"{name:<28} {state:<22} {status.lines} lines logged")
+        if not names:
+            print("No nodes. Run a cell that begins with %%node.")
+
+    @no_var_expand
+    @line_magic
+    def stop(self, line: str) -> None:
+        """%stop NAME … | --all: end nodes as Ctrl-C would."""
+        reader = LineReader("%stop", "End nodes as Ctrl-C in their terminal would.")
+        reader.add_argument("names", nargs="*")
+        reader.add_argument("--all", action="store_true", help="every node of this notebook")
+        given = reader.read(line)
+        if given is None:
+            return
+        if not given.names and not given.all:
+            running = ", ".join(self.session.nodes.names()) or "none"
+            raise CellFailed(f"Which one? %stop NAME, or %stop --all. Started are: {running}.")
+        for stopped in self.session.stop(None if given.all else given.names):
+            if not stopped.had_ended and stopped.status.exit not in (0, None) and stopped.said.strip():
+                print(stopped.said.rstrip())
+            print(stopped.in_words)
+
+    @no_var_expand
+    @line_magic
+    def log(self, line: str) -> None:
+        """%log NAME [--all] [--until TEXT]: what a node has printed so far."""
+        reader = LineReader("%log", "Show what a node has printed since it was started.")
+        reader.add_argument("name")
+        reader.add_argument("--all", action="store_true", help="every line, however many")
+        reader.add_argument("--until", help="wait until the log holds this text")
+        reader.add_argument("--seconds", type=float, default=LOG_SECONDS, help="how long to wait for it at most")
+        if given := reader.read(line):
+            if given.until is not None:
+                self.session.wait_for(given.name, Bound(given.seconds, given.until))
+            print(self.session.log(given.name, given.all))
+
+    @no_var_expand
+    @line_magic
+    def ros2(self, line: str) -> None:
+        """%ros2 …: the command of a terminal, bounded in time."""
+        bound, rest = own_options(line, COMMAND_SECONDS)
+        terminal_cells.run_ros2(self.session, split(rest), bound)
+
+    @no_var_expand
+    @line_magic
+    def colcon(self, line: str) -> None:
+        """%colcon build …: colcon in this notebook's workspace."""
+        bound, rest = own_options(line, terminal_cells.COLCON_SECONDS)
+        terminal_cells.run_colcon(self.session, split(rest), bound)
+
+    @no_var_expand
+    @line_magic
+    def plot(self, line: str) -> None:
+        """%plot TOPIC/FIELD[i] …: draw what topics carry, as rqt_plot would."""
+        reader = LineReader("%plot", "Record topics for a while and draw them; live where somebody watches.")
+        reader.add_argument("what", nargs="+", metavar="TOPIC/FIELD[i]", help="such as /joint_commands/position[0]")
+        reader.add_argument("--seconds", type=float, default=COMMAND_SECONDS, help="how long to record")
+        reader.add_argument("--title", default="", help="stands above the plot")
+        if given := reader.read(line):
+            plot_cell.run(given.what, given.seconds, given.title)
+
+    @no_var_expand
+    @line_magic
+    def timeline(self, line: str) -> None:
+        """%timeline --record NAME …, and later %timeline: draw what happened on services, actions and topics."""
+        reader = LineReader("%timeline", "Record services, actions and topics while other cells run, then draw them.")
+        reader.add_argument("--record", nargs="+", metavar="NAME", help="begin to record these")
+        reader.add_argument("--title", default="", help="stands above the picture")
+        given = reader.read(line)
+        if given is None:
+            return
+        recorded, self.session.timeline = self.session.timeline, None
+        if given.record:
+            if recorded is not None:
+                recorded.close()
+            self.session.timeline = timeline_cell.begin(given.record)
+        elif recorded is None:
+            raise CellFailed("Nothing is being recorded. Begin with: %timeline --record /NAME")
+        else:
+            timeline_cell.show(recorded, given.title)
+
+    @no_var_expand
+    @line_magic
+    def turtle(self, line: str) -> None:
+        """%turtle: turtlesim's window as a picture: the turtle and its trail."""
+        reader = LineReader("%turtle", "Show turtlesim's window as it is now.")
+        if reader.read(line) is not None:
+            picture_cells.show_turtle()
+
+    @no_var_expand
+    @line_magic
+    def graph(self, line: str) -> None:
+        """%graph: nodes and topics as they are now, drawn as rqt_graph would."""
+        reader = LineReader("%graph", "Draw who publishes what, who subscribes, and how many messages a second come.")
+        reader.add_argument("--seconds", type=float, default=GRAPH_SECONDS, help="how long messages are counted")
+        if given := reader.read(line):
+            picture_cells.show_graph(given.seconds)
+
+    @no_var_expand
+    @line_magic
+    def check(self, line: str) -> None:
+        """%check EXERCISE: what the public checks say of the exercise's cell."""
+        reader = LineReader("%check", "Check the cell of an exercise, as you ran it last. This is not your grade.")
+        reader.add_argument("exercise")
+        reader.add_argument("--course", default="", help="the folder of the handout, if it is not this one")
+        reader.add_argument("--seconds", type=float, default=60.0, help="how long it may take")
+        if given := reader.read(line):
+            # Loaded when it is used: most cells are no exercise.
+            from spinbook.kernel import check_cell
+
+            check_cell.check_cell(self.session, self.shell, given.exercise, given.course, given.seconds)
+
+    @no_var_expand
+    @line_magic
+    def submit(self, line: str) -> None:
+        """%submit EXERCISE: write one file to upload, with the exercise's cell as it was run last."""
+        reader = LineReader("%submit", "Write one file to upload: the exercise's cell, as you ran it last.")
+        reader.add_argument("exercise")
+        reader.add_argument("--student", help="your name or number, as your course wants it; kept for the next time")
+        reader.add_argument("--course", default="", help="the folder of the handout, if it is not this one")
+        reader.add_argument("--seconds", type=float, default=120.0, help="how long it may take")
+        if given := reader.read(line):
+            from spinbook.kernel import check_cell
+
+            check_cell.submit_cell(self.session, self.shell, given.exercise, given.course, given.student, given.seconds)
+
+    @no_var_expand
+    @line_magic
+    def domain(self, line: str) -> None:
+        """%domain [N]: the ROS domain in which this notebook's nodes talk."""
+        reader = LineReader("%domain", "Tell this notebook's ROS domain, or share another one with other programs.")
+        reader.add_argument("number", nargs="?", type=int, help="hear and be heard by everything in this domain")
+        given = reader.read(line)
+        if given is None:
+            return
+        if given.number is not None:
+            try:
+                chosen = environment.shared_domain(given.number)
+            except ValueError as error:
+                raise CellFailed(str(error)) from None
+            self.session.stop(None)
+            self.session.domain.release()
+            self.session.use_domain(chosen)
+        print(f"ROS_DOMAIN_ID={self.session.domain.number}", end="")
+        print(" (this notebook's own)" if self.session.domain.lock is not None else " (shared)")
+
+
+def register(shell: Any, session: Session) -> Sequence[str]:
+    """Give a shell the commands. Returns their names."""
+    magics = SpinbookMagics(shell, session)
+    shell.register_magics(magics)
+    return [*magics.magics["line"], *magics.magics["cell"]]

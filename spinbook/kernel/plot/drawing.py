@@ -1,0 +1,242 @@
+"""Draws recordings: as a figure, and as an animated SVG of a few KB."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from html import escape
+from itertools import pairwise
+
+from matplotlib.figure import Figure
+
+from spinbook.animation import Cycle, coord, on_paper, thinned
+from spinbook.kernel.plot.quantity import Curve, Recording
+
+#: Told apart in grey and by readers who do not see red and green alike (after Okabe and Ito, 2008).
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
+_DASHES = ["-", "--", "-.", ":"]
+
+
+def draw(recording: Recording, title: str = "") -> Figure:
+    """A figure of what was recorded. Time counts from the first sample."""
+    shown = panels(recording)
+    figure = Figure(figsize=(8, 1.2 + 2.6 * len(shown)), layout="constrained")
+    axes = figure.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]
+    several_topics = len({curve.quantity.topic for curve in recording.curves.values()}) > 1
+    for axis, ((kind, unit), curves) in zip(axes, shown.items(), strict=True):
+        for number, curve in enumerate(curves):
+            label = f"{curve.quantity.topic} {curve.quantity.label}" if several_topics else curve.quantity.label
+            axis.plot(
+                [time - recording.start for time in curve.times],
+                curve.values,
+                color=COLOURS[number % len(COLOURS)],
+                linestyle=_DASHES[number // len(COLOURS) % len(_DASHES)],
+                linewidth=1.6,
+                marker="." if len(curve.times) < 40 else None,
+                markersize=4,
+                label=label,
+            )
+        axis.set_ylabel(f"{kind.replace('_', ' ')} ({unit})" if unit else kind.replace("_", " "))
+        axis.grid(alpha=0.3)
+        axis.spines[["top", "right"]].set_visible(False)
+        axis.margins(x=0.01)
+        axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize="small")
+    axes[-1].set_xlabel("time (s)")
+    figure.suptitle(title or ", ".join(dict.fromkeys(c.quantity.topic for c in recording.curves.values())), fontsize=11)
+    return figure
+
+
+def panels(recording: Recording) -> dict[tuple[str, str], list[Curve]]:
+    """(kind, unit) -> the curves that share an axis, in the order in which they first appeared."""
+    panels: dict[tuple[str, str], list[Curve]] = {}
+    for quantity, curve in recording.curves.items():
+        panels.setdefault((quantity.kind, quantity.unit), []).append(curve)
+    return panels
+
+
+def in_words(recording: Recording) -> str:
+    """What the figure shows, for those who can't see it and for front ends without pictures."""
+    lines = []
+    for (kind, unit), curves in panels(recording).items():
+        for curve in curves:
+            low, high = min(curve.values), max(curve.values)
+            span = f"{low:.3f} … {high:.3f} {unit}".rstrip()
+            lines.append(f"{kind} {curve.quantity.label}: {len(curve.values)} samples, {span}")
+    return "\n".join(lines)
+
+
+def as_png(figure: Figure) -> bytes:
+    """The figure as a PNG, without the date or the version of what drew it."""
+    out = io.BytesIO()
+    figure.savefig(out, format="png", dpi=110, metadata={"Software": None})
+    return out.getvalue()
+
+
+@dataclass(frozen=True)
+class Scale:
+    """`low` stands at `start`, `high`, which is greater, at `end` (px)."""
+
+    low: float
+    high: float
+    start: float
+    end: float
+
+    def at(self, value: float) -> float:
+        """The place of a value (px)."""
+        return self.start + (value - self.low) / (self.high - self.low) * (self.end - self.start)
+
+    def marks(self) -> list[float]:
+        """Up to five round values between, 1, 2 or 5 times a power of ten apart."""
+        span = self.high - self.low
+        step = 10.0 ** math.floor(math.log10(span / 5))
+        step *= next((factor for factor in (1, 2, 5) if span / (step * factor) <= 5), 10)
+        # A mark is written with the digits of its step: 3 * 0.1 is 0.3.
+        digits = max(0, -math.floor(math.log10(step)))
+        numbers = range(math.ceil(self.low / step - 1e-9), math.floor(self.high / step + 1e-9) + 1)
+        return [round(step * number, digits) for number in numbers]
+
+
+def around(values: list[float], start: float, end: float) -> Scale:
+    """A scale for these values, with some room beyond the outermost."""
+    low, high = min(values), max(values)
+    room = (high - low) * 0.06 or abs(high) * 0.1 or 1.0
+    return Scale(low - room, high + room, start, end)
+
+
+#: A curve is drawn within so many pixels of its samples, or coarser, where it would have more points than this.
+PRECISION_PX, MOST_POINTS = 0.5, 120
+#: Width of a plot, of the axis' numbers, and height of a panel (px).
+WIDTH, LEFT, RIGHT, HEIGHT = 420, 50, 10, 150
+_SVG_DASHES = ("", "7 4", "7 3 1.5 3", "1.5 3")
+_GREY = "#808890"
+_NAME_CHAR = 6.9
+
+
+def panel(
+    name: str, curves: Mapping[str, Curve], top: float, across: Scale, start: float, key: str
+) -> tuple[str, float]:
+    """The panel below `top` with curves by label, and where it ends.
+
+    Curves are seen through the clip path `key` + "c"; the class `key` + "x" moves the pointer.
+    """
+    bottom = top + 24 + HEIGHT
+    up = around([value for curve in curves.values() for value in curve.values], bottom, bottom - HEIGHT)
+    looks = {label: _look(index) for index, label in enumerate(curves)}
+    lines = "".join(
+        f'<path d="{_polyline(curve, across, up, start)}" {looks[label]} stroke-linejoin="round"/>'
+        for label, curve in curves.items()
+    )
+    legend, end = _legend(looks, bottom + 38)
+    title = f'<text x="{LEFT}" y="{coord(top + 17)}">{escape(name)}</text>'
+    pointer = f'<path class="{key}x" d="M{LEFT} {coord(bottom)}v-{HEIGHT}" stroke="{_GREY}" opacity="0"/>'
+    return f'{title}{_axes(across, up)}<g clip-path="url(#{key}c)">{lines}</g>{pointer}{legend}', end
+
+
+def _look(index: int) -> str:
+    colour = COLOURS[index % len(COLOURS)].replace("#000000", _GREY)  # black can't be seen on dark paper
+    dash = _SVG_DASHES[index // len(COLOURS) % len(_SVG_DASHES)]
+    return f'stroke="{colour}" fill="none" stroke-width="2"' + (f' stroke-dasharray="{dash}"' if dash else "")
+
+
+def _axes(across: Scale, up: Scale) -> str:
+    grid, texts = "", ""
+    for mark in up.marks():
+        grid += f"M{LEFT} {coord(up.at(mark))}H{WIDTH - RIGHT}"
+        texts += f'<text x="{LEFT - 6}" y="{coord(up.at(mark) + 4)}" text-anchor="end">{mark:g}</text>'
+    for mark in across.marks():
+        x = coord(across.at(mark))
+        grid += f"M{x} {coord(up.start)}v-{HEIGHT}"
+        unit = " s" if mark == across.marks()[-1] else ""
+        texts += f'<text x="{x}" y="{coord(up.start + 17)}" text-anchor="middle">{mark:g}{unit}</text>'
+    return f'<path d="{grid}" stroke="{_GREY}" stroke-opacity=".3" fill="none"/>{texts}'
+
+
+def _legend(looks: Mapping[str, str], y: float) -> tuple[str, float]:
+    """The names, as many in a row as fit, the first row at `y`; and where they end."""
+    x, texts = float(LEFT), ""
+    for label, look in looks.items():
+        width = 38 + _NAME_CHAR * len(label)
+        if x > LEFT and x + width > WIDTH:
+            x, y = float(LEFT), y + 18
+        texts += f'<path d="M{coord(x)} {coord(y - 4)}h18" {look}/>'
+        texts += f'<text x="{coord(x + 23)}" y="{coord(y)}">{escape(label)}</text>'
+        x += width
+    return texts, y + 14
+
+
+def _polyline(curve: Curve, across: Scale, up: Scale, start: float) -> str:
+    """The curve's path, each point told from the one before it."""
+    places = [(across.at(time - start), up.at(value)) for time, value in zip(curve.times, curve.values, strict=True)]
+    precision = PRECISION_PX
+    while len(points := thinned(places, precision)) > MOST_POINTS:
+        precision *= 2
+    whole = [(round(x, 1), round(y, 1)) for x, y in points]
+    steps = (f"l{coord(b[0] - a[0])} {coord(b[1] - a[1])}".replace(" -", "-") for a, b in pairwise(whole))
+    return f"M{coord(whole[0][0])} {coord(whole[0][1])}{''.join(steps)}"
+
+
+# Then a rest, then again. In print, and for readers who prefer no motion, it is still: the whole curves.
+
+
+#: What was recorded for longer (s) is shown so many times as fast that it takes no longer.
+LONGEST_S = 20.0
+#: More curves than this do not move: the picture would be large, and nobody could follow.
+MOST_CURVES = 12
+_TOP = 28
+
+
+def moving_plot(recording: Recording, title: str = "") -> str | None:
+    """The picture, or None where nothing can move: no time has passed, or there are too many curves."""
+    shown = _shown(recording)
+    curves = [curve for by_label in shown.values() for curve in by_label.values()]
+    end = max((curve.times[-1] for curve in curves), default=recording.start) - recording.start
+    if end <= 0 or len(curves) > MOST_CURVES:
+        return None
+    name = title or ", ".join(dict.fromkeys(curve.quantity.topic for curve in curves))
+    words = in_words(recording)
+    key = "p" + hashlib.sha256(repr((name, words, [curve.values for curve in curves])).encode()).hexdigest()[:8]
+    faster = max(1, math.ceil(end / LONGEST_S))
+    y, drawn = float(_TOP), []
+    for kind, by_label in shown.items():
+        part, y = panel(kind, by_label, y, Scale(0.0, end, LEFT, WIDTH - RIGHT), recording.start, key)
+        drawn.append(part)
+    heading = f'<text x="{LEFT}" y="20" font-size="14" font-weight="600">{escape(name)}</text>'
+    content = _moving(Cycle(key, end / faster), y) + f'<g class="{key}i" font-size="12">{heading}{"".join(drawn)}</g>'
+    pace = "as fast as they were recorded" if faster == 1 else f"{faster} times as fast as they were recorded"
+    return on_paper(content, WIDTH, math.ceil(y), key, name, f"{words}\nThe curves are drawn {pace}, again and again.")
+
+
+def _shown(recording: Recording) -> dict[str, dict[str, Curve]]:
+    """Axis -> label -> curve, of curves that can be drawn."""
+    several_topics = len({quantity.topic for quantity in recording.curves}) > 1
+    shown: dict[str, dict[str, Curve]] = {}
+    for (kind, unit), curves in panels(recording).items():
+        axis = f"{kind.replace('_', ' ')} ({unit})" if unit else kind.replace("_", " ")
+        for curve in curves:
+            if len(curve.values) > 1 and all(map(math.isfinite, curve.values)):
+                label = f"{curve.quantity.topic} {curve.quantity.label}" if several_topics else curve.quantity.label
+                shown.setdefault(axis, {})[label] = curve
+    return shown
+
+
+def _moving(cycle: Cycle, height: float) -> str:
+    """The window through which the curves are seen, which grows to the right, and the pointers at its edge."""
+    key, width = cycle.key, WIDTH - LEFT - RIGHT
+    away = f"transform:translateX({width}px)"
+    rules = cycle.style(
+        cycle.keyframes("w", [(0.0, "transform:scaleX(0)"), (cycle.moving_s, "transform:scaleX(1)")]),
+        cycle.keyframes(
+            "x",
+            [
+                (0.0, "transform:translateX(0px);opacity:1"),
+                (cycle.moving_s, f"{away};opacity:1"),
+                (cycle.moving_s + 0.2, f"{away};opacity:0"),
+            ],
+        ),
+        f".{key}w{{transform-origin:{LEFT}px 0}}",
+    )
+    window = f'<rect class="{key}w" x="{LEFT}" y="0" width="{width}" height="{coord(height)}"/>'
+    return f'{rules}<clipPath id="{key}c">{window}</clipPath>'

@@ -1,0 +1,88 @@
+"""Records numbers from topics and prints them, one JSON array a line: a process of its own beside the kernel.
+
+    python -m spinbook.kernel.plot.recorder PATH …
+
+Lines: ["waiting", [paths not found yet], [topics there are]], ["sample", topic, kind, unit, label, time (s), value],
+["error", words].
+A process and not a thread: the kernel then needs no rclpy, and its Stop button can't break one.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from functools import partial
+from typing import Any
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+from spinbook.kernel.plot.quantity import TopicPath, quantities, resolve, stamp_of
+from spinbook.ros2.cli import CommandError
+from spinbook.ros2.interfaces import message_class
+
+#: Hears publishers of every reliability and durability.
+_HEARS_ALL = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE)
+
+
+def _tell(*line: Any) -> None:
+    print(json.dumps(line), flush=True)
+
+
+class Recorder(Node):
+    """Looks for the topics that paths name, and prints every number that comes from them."""
+
+    def __init__(self, paths: list[str]) -> None:
+        super().__init__("spinbook_plot", start_parameter_services=False)
+        self._missing = list(paths)
+        self._subscribed: set[tuple[str, str]] = set()
+        self._look()
+        self.create_timer(0.05, self._look)
+
+    def _look(self) -> None:
+        published = {
+            topic: types[0] for topic, types in self.get_topic_names_and_types() if self.count_publishers(topic)
+        }
+        for path in list(self._missing):
+            found = resolve(path, published)
+            if found is not None:
+                self._missing.remove(path)
+                self._subscribe(found, published[found.topic])
+        if self._missing:
+            _tell("waiting", self._missing, sorted(t for t in published if t not in {"/rosout", "/parameter_events"}))
+
+    def _subscribe(self, path: TopicPath, full_type: str) -> None:
+        short = full_type.replace("/msg/", "/")
+        self.create_subscription(message_class(full_type), path.topic, partial(self._hear, path, short), _HEARS_ALL)
+
+    def _hear(self, path: TopicPath, type_name: str, message: Any) -> None:
+        now = stamp_of(message) or time.time()
+        for quantity, value in quantities(path, message, type_name):
+            _tell("sample", quantity.topic, quantity.kind, quantity.unit, quantity.label, now, value)
+
+
+def main() -> None:
+    """Record until told to stop."""
+    rclpy.init()
+    try:
+        recorder: Node = Recorder(sys.argv[1:])
+        try:
+            rclpy.spin(recorder)
+        finally:
+            # Without this its end is not announced, and others see it for another minute.
+            recorder.destroy_node()
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    except (LookupError, ValueError) as error:
+        _tell("error", str(error.args[0] if error.args else error))
+    except CommandError as error:
+        _tell("error", error.format_message())
+    finally:
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

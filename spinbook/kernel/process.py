@@ -1,0 +1,105 @@
+"""A process that the notebook started, as the kernel sees it: its output, whether it runs, how to end it."""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from spinbook.kernel import supervisor
+
+#: How long a process may take to end after Ctrl-C, and then after SIGTERM, before it is killed (s).
+STOP_GRACE = (3.0, 2.0)
+
+
+@dataclass(frozen=True)
+class Status:
+    """Where a process stands. `exit` is None while it runs; negative: ended by that signal (as in subprocess)."""
+
+    exit: int | None
+    ended_by: str | None
+    lines: int
+
+    @property
+    def running(self) -> bool:
+        """Whether it still runs."""
+        return self.exit is None
+
+
+class KeptProcess:
+    """A child process under a supervisor (see supervisor.py): it never outlives this process, however this one ends."""
+
+    def __init__(self, argv: Sequence[str], env: Mapping[str, str], cwd: Path) -> None:
+        ours, theirs = socket.socketpair()
+        with theirs:
+            self._supervisor = subprocess.Popen(
+                [sys.executable, "-I", "-S", supervisor.__file__, str(theirs.fileno())],
+                pass_fds=[theirs.fileno()],
+                stdin=subprocess.DEVNULL,
+                start_new_session=True,
+            )
+        self._control = ours
+        self._answers = ours.makefile("rb")
+        self._offset = 0
+        self.status = Status(None, None, 0)
+        self._ask({"start": {"argv": list(argv), "env": dict(env), "cwd": os.fspath(cwd)}})
+
+    def _ask(self, request: Mapping[str, Any]) -> None:
+        self._control.sendall(json.dumps(request).encode() + b"\n")
+
+    def read(self) -> tuple[bytes, int]:
+        """(what it printed since the last call, how many bytes before that were too many to keep); updates `status`."""
+        data, dropped, self._offset = self._read_from(self._offset)
+        return data, dropped
+
+    def read_all(self) -> tuple[bytes, int]:
+        """(all that is kept of what it printed, how many bytes are missing in the middle)."""
+        head, _, offset = self._read_from(0)
+        tail, dropped, _ = self._read_from(offset)
+        return head + tail, dropped
+
+    def _read_from(self, offset: int) -> tuple[bytes, int, int]:
+        self._ask({"read": offset})
+        line = self._answers.readline()
+        if not line:
+            # Somebody killed the supervisor; the kernel kills what it kept.
+            self.status = Status(-9, "SIGKILL", self.status.lines)
+            return b"", 0, offset
+        answer = json.loads(line)
+        data = self._answers.read(answer["length"])
+        self.status = Status(answer["exit"], answer["ended_by"], answer["lines"])
+        return data, answer["dropped"], answer["offset"] + len(data)
+
+    def stop(self, grace: tuple[float, float] = STOP_GRACE) -> None:
+        """Begin to end it: SIGINT, then SIGTERM, then SIGKILL, `grace` seconds apart. Does not wait."""
+        self._ask({"stop": list(grace)})
+
+    def wait(self, timeout_s: float) -> Status:
+        """Wait until it has ended, or for `timeout_s`; its output stays to be read."""
+        deadline = time.monotonic() + timeout_s
+        while True:
+            self._read_from(1 << 62)
+            if not self.status.running or time.monotonic() >= deadline:
+                return self.status
+            time.sleep(0.01)
+
+    def close(self) -> None:
+        """Let it go: whatever still runs of it is ended."""
+        self._answers.close()
+        self._control.close()
+        self._supervisor.wait()
+
+
+class CellFailed(Exception):
+    """Raised by a notebook command. Shown as its message alone, yet the cell counts as failed everywhere."""
+
+    def _render_traceback_(self) -> list[str]:
+        """What IPython prints in place of a traceback."""
+        return [str(self)]

@@ -1,0 +1,323 @@
+"""What one notebook has while its kernel lives: a ROS domain, its nodes, a workspace, the package of its cells."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from spinbook.chapter.joining import join
+from spinbook.chapter.package_file import is_package_file
+from spinbook.chapter.python_code import CodeError
+from spinbook.course.course import Package
+from spinbook.kernel import environment
+from spinbook.kernel.environment import Domain
+from spinbook.kernel.process import STOP_GRACE, CellFailed, KeptProcess, Status
+from spinbook.kernel.showing import Bound, in_short, joins, show_for, show_rest
+from spinbook.kernel.timeline_cell import Timeline
+from spinbook.package.files import Module
+from spinbook.package.write import add_file, add_module
+
+
+@dataclass
+class RunningNode:
+    """A node that was started, and may have ended since."""
+
+    name: str
+    process: KeptProcess
+
+
+@dataclass(frozen=True)
+class Stopped:
+    """How a node ended when it was told to. `said` is what it printed after it was told."""
+
+    name: str
+    status: Status
+    said: str
+    had_ended: bool
+
+    @property
+    def in_words(self) -> str:
+        """One line for the reader."""
+        code, by = self.status.exit, self.status.ended_by
+        if self.had_ended:
+            return f"{self.name} had ended before (exit code {code})."
+        if by == "SIGKILL":
+            return f"{self.name} ignored Ctrl-C and SIGTERM for {sum(STOP_GRACE):g} s; it was killed."
+        if code == 0 or (code is not None and code < 0):
+            late = f", but only after {STOP_GRACE[0]:g} s and SIGTERM" if by == "SIGTERM" else ""
+            return f"{self.name} stopped{late}."
+        return f"{self.name} stopped with exit code {code}; a node that ends in order has 0."
+
+
+class NodeRegistry:
+    """Every node that this notebook started and did not replace or stop."""
+
+    def __init__(self) -> None:
+        self._nodes: dict[str, RunningNode] = {}
+
+    def start(self, name: str, argv: Sequence[str], settings: Mapping[str, str], cwd: Path) -> RunningNode:
+        """Start a process under this name; one that has the name already is stopped first."""
+        if name in self._nodes:
+            self.stop(name)
+        node = RunningNode(name, KeptProcess(argv, {**os.environ, **settings}, cwd))
+        self._nodes[name] = node
+        return node
+
+    def get(self, name: str) -> RunningNode | None:
+        """The node of that name, running or ended."""
+        return self._nodes.get(name)
+
+    def names(self) -> list[str]:
+        """The names, in the order in which they were started."""
+        return list(self._nodes)
+
+    def status(self, name: str) -> Status:
+        """Where a node stands now."""
+        return self._nodes[name].process.wait(0)
+
+    def stop(self, name: str) -> Stopped:
+        """End a node as Ctrl-C would, harder where that does not help, and forget it."""
+        return self.stop_all([name])[0]
+
+    def stop_all(self, names: Sequence[str] | None = None) -> list[Stopped]:
+        """End these nodes (all without `names`) at the same time, and forget them."""
+        chosen = [self._nodes.pop(name) for name in (self.names() if names is None else names)]
+        had_ended = []
+        for node in chosen:
+            node.process.read()
+            had_ended.append(not node.process.status.running)
+            if not had_ended[-1]:
+                node.process.stop()
+        stopped = []
+        for node, ended in zip(chosen, had_ended, strict=True):
+            status = node.process.wait(sum(STOP_GRACE) + 5)
+            said, _ = node.process.read()
+            node.process.close()
+            stopped.append(Stopped(node.name, status, said.decode(errors="replace"), ended))
+        return stopped
+
+
+#: How long a node's log is shown, and how long a command that does not end may run (s).
+NODE_SECONDS = 3.0
+COMMAND_SECONDS = 5.0
+#: How long `%log --until` waits at most (s).
+LOG_SECONDS = 30.0
+#: How often it looks (s).
+_LOG_POLL_S = 0.1
+#: How long messages are counted for the graph (s).
+GRAPH_SECONDS = 2.5
+#: How long a bounded command may take to end by itself when it is told to (s): its last lines are wanted.
+COMMAND_GRACE = (3.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Start:
+    """How a node's code is started: by itself, by its `main`, or by spinning these classes.
+
+    `known_as` are the names `PACKAGE/EXECUTABLE` by which `ros2 run` finds it.
+    """
+
+    classes: tuple[str, ...] = ()
+    calls_main: bool = False
+    known_as: tuple[str, ...] = ()
+
+    def argv(self, file: Path, words: Sequence[str] = ()) -> list[str]:
+        """The command that starts the code in `file`; `words` are for the node."""
+        own = [part for name in self.classes for part in ("--class", name)]
+        own = ["--main"] if self.calls_main else own
+        if not own:
+            return [sys.executable, "-u", os.fspath(file), *words]
+        return [sys.executable, "-u", "-m", "spinbook.kernel.entry", os.fspath(file), *own, "--", *words]
+
+
+@dataclass
+class Session:
+    """The notebook's state. Processes that it starts run in `settings` on top of the kernel's own environment."""
+
+    domain: Domain
+    package: Package = field(default_factory=lambda: Package(name="notebook_nodes", workspace="notebook_ws"))
+    nodes: NodeRegistry = field(default_factory=NodeRegistry)
+    ran: dict[str, str] = field(default_factory=dict)
+    """The code of each node's cell as it was run last, by the node's name."""
+    ran_at: dict[str, float] = field(default_factory=dict)
+    """When that was (s since the epoch)."""
+    parts: dict[str, str] = field(default_factory=dict)
+    """Code that later nodes use, by its name."""
+    starts: dict[str, tuple[Path, Start]] = field(default_factory=dict)
+    """The file of each node and how it is started, by the node's name."""
+    timeline: Timeline | None = None
+    """What is being recorded for `%timeline`."""
+
+    def __post_init__(self) -> None:
+        self.use_domain(self.domain)
+
+    def use_domain(self, domain: Domain) -> None:
+        """Let everything that starts from now on talk in this domain, snippets in the kernel too."""
+        self.domain = domain
+        os.environ.update(environment.for_domain(domain.number, os.environ))
+        if note := os.environ.get(environment.DOMAIN_NOTE):
+            Path(note).write_text(str(domain.number), encoding="utf-8")
+
+    @property
+    def workspace(self) -> Path:
+        """The colcon workspace: beside the notebook."""
+        return Path.cwd() / self.package.workspace
+
+    def run_node(
+        self, name: str, code: str, bound: Bound, start: Start | None = None, after: Sequence[str] | None = None
+    ) -> None:
+        """Write a node's code as a module of its package, start it and show its log for a while.
+
+        `after` names the nodes and parts whose code makes it whole; None: it is whole.
+        """
+        start = start or Start()
+        package, executables = self._package_of(start.known_as)
+        if package.name == name:
+            raise CellFailed(f"A node can't have the package's name, {name}.")
+        self.ran[name] = code
+        self.ran_at[name] = time.time()
+        whole = code if after is None else self._whole(code, after)
+        module = Module(name, whole.rstrip("\n") + "\n", executables)
+        file = add_module(self.workspace, package, module)
+        self.starts[name] = (file, start)
+        self.run_background(name, start.argv(file), self._import_path(file), Path.cwd(), bound)
+
+    def write_file(self, path: str, text: str) -> None:
+        """Put a launch or parameter file into the package. Raises CellFailed for any other path."""
+        if not is_package_file(path):
+            raise CellFailed(
+                f"`{path}` is no launch or parameter file. Write launch/NAME.launch.py or config/NAME.yaml."
+            )
+        file = add_file(self.workspace, self.package, path, text.rstrip("\n") + "\n")
+        print(f"Wrote {file.relative_to(Path.cwd())}")
+
+    def _package_of(self, known_as: Sequence[str]) -> tuple[Package, tuple[str, ...]]:
+        """The package to which a node belongs, and what its executables are called there."""
+        pairs = [name.partition("/") for name in known_as]
+        if not pairs:
+            return self.package, ()
+        package = pairs[0][0]
+        executables = tuple(executable for name, _, executable in pairs if name == package)
+        return (self.package if package == self.package.name else replace(self.package, name=package)), executables
+
+    def _whole(self, code: str, after: Sequence[str]) -> str:
+        pieces = []
+        for name in after:
+            piece = self.parts.get(name, self.ran.get(name))
+            if piece is None:
+                raise CellFailed(f"This node uses what `{name}` defines: run its cell above first.")
+            pieces.append(piece)
+        try:
+            return join(code, pieces).whole
+        except CodeError:
+            # Python says best itself what is wrong.
+            return code
+
+    def _import_path(self, module: Path) -> dict[str, str]:
+        """Lets nodes import each other by their package, as they can once it is installed."""
+        paths = [os.fspath(module.parents[1]), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
+        return {"PYTHONPATH": os.pathsep.join(path for path in paths if path)}
+
+    def run_executable(self, package: str, executable: str, words: Sequence[str], bound: Bound, known_as: str) -> bool:
+        """Start the node that a cell made as this executable. False if no cell did.
+
+        `known_as` is another name than the executable's where it runs beside the one that has that.
+        """
+        for name, (file, start) in self.starts.items():
+            if f"{package}/{executable}" in start.known_as:
+                instance = name if known_as == executable else known_as
+                self.run_background(instance, start.argv(file, words), self._import_path(file), Path.cwd(), bound)
+                return True
+        return False
+
+    def run_background(self, name: str, argv: list[str], settings: dict[str, str], cwd: Path, bound: Bound) -> None:
+        """Start a process that goes on behind the cell, and show its log for a while. Raises CellFailed."""
+        if self.nodes.get(name):
+            if self.nodes.status(name).running:
+                print(f"(restarting {name})")
+            self.nodes.stop(name)
+        has_joined = joins(self.domain.number)
+        node = self.nodes.start(name, argv, settings, cwd)
+        self._show(node, bound, has_joined)
+
+    def _show(self, node: RunningNode, bound: Bound, has_joined: Callable[[], bool]) -> None:
+        try:
+            show_for(node.process, bound, f": %log {node.name} shows them", has_joined)
+        except KeyboardInterrupt:
+            print(f"\n{self.nodes.stop(node.name).in_words}")
+            return
+        status = node.process.status
+        if status.exit is None:
+            print(f"— {node.name} goes on in the background: %stop {node.name} ends it, %log {node.name} shows more —")
+        elif status.exit == 0:
+            print(f"— {node.name} has ended (exit code 0) —")
+        else:
+            raise CellFailed(f"{node.name} {_how_it_ended(status.exit)} Its last words are above.")
+
+    def run_command(self, argv: list[str], settings: dict[str, str], cwd: Path, bound: Bound, shown_as: str) -> None:
+        """Run a command in the cell; one that has not ended when its time is up is ended as Ctrl-C would.
+
+        Raises CellFailed where it fails.
+        """
+        has_joined = joins(self.domain.number)
+        process = KeptProcess(argv, {**os.environ, **settings}, cwd)
+        try:
+            try:
+                show_for(process, bound, "", has_joined)
+                bounded = process.status.running
+            except KeyboardInterrupt:
+                bounded = True
+            if bounded:
+                process.stop(COMMAND_GRACE)
+                show_rest(process, sum(COMMAND_GRACE) + 1)
+        finally:
+            process.close()
+        status = process.status
+        if bounded and status.ended_by == "SIGKILL":
+            print(f"— {shown_as} ignored Ctrl-C and was killed —")
+        elif not bounded and status.exit != 0:
+            raise CellFailed(f"{shown_as}: {_how_it_ended(status.exit or 0)}")
+
+    def wait_for(self, name: str, bound: Bound) -> None:
+        """Wait until a node's log holds the bound's text, or its time is up. Raises CellFailed for an unknown name."""
+        node = self.find(name)
+        deadline = time.monotonic() + bound.seconds
+        text = (bound.until or "").encode()
+        while text not in node.process.read_all()[0]:
+            if not node.process.status.running or time.monotonic() >= deadline:
+                print(f"({name} did not print {bound.until!r} within {bound.seconds:g} s)")
+                return
+            time.sleep(_LOG_POLL_S)
+
+    def log(self, name: str, whole: bool) -> str:
+        """All that is kept of what a node printed. Raises CellFailed for a name that nothing has."""
+        node = self.find(name)
+        data, dropped = node.process.read_all()
+        text = data.decode(errors="replace")
+        if dropped:
+            text += f"\n({dropped:,} bytes in the middle were too many to keep)"
+        return text if whole else in_short(text)
+
+    def find(self, name: str) -> RunningNode:
+        """The node of that name. Raises CellFailed, naming those that there are."""
+        node = self.nodes.get(name)
+        if node is None:
+            there = ", ".join(self.nodes.names()) or "none"
+            raise CellFailed(f"This notebook has started no node `{name}`. Started are: {there}.")
+        return node
+
+    def stop(self, names: list[str] | None) -> list[Stopped]:
+        """End these nodes, or all. Raises CellFailed for a name that nothing has."""
+        for name in names or ():
+            self.find(name)
+        return self.nodes.stop_all(names)
+
+
+def _how_it_ended(code: int) -> str:
+    if code < 0:
+        return f"was ended by signal {-code}."
+    return f"ended with exit code {code}."

@@ -1,0 +1,175 @@
+"""Shows in a cell what a process prints, while it prints it, for a bounded time and a bounded number of lines."""
+
+from __future__ import annotations
+
+import re
+import sys
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from spinbook.kernel.process import KeptProcess
+from spinbook.ros2 import graph
+
+#: Lines shown as they come, and lines kept for the end when more come.
+FIRST_LINES = 60
+LAST_LINES = 10
+_POLL_S = 0.03
+#: A process that has neither printed anything nor joined ROS by then (s) is taken to have started.
+_STARTING_S = 20.0
+
+
+@dataclass(frozen=True)
+class Bound:
+    """How long a process is shown: for so many seconds, or until it has printed this text, or until it ends.
+
+    The seconds count from its first line, so that a slow machine shows as much as a fast one.
+    """
+
+    seconds: float
+    until: str | None = None
+
+
+class Countdown:
+    """Says when a process has been shown for long enough.
+
+    The seconds count from its first line. While there is none they count from when it joined ROS, and then they are
+    at least as many as it took to join: where starting takes long, so does the first message.
+    """
+
+    def __init__(self, bound: Bound, has_joined: Callable[[], bool], now: Callable[[], float] = time.monotonic) -> None:
+        self._bound = bound
+        self._has_joined = has_joined
+        self._now = now
+        self._began = now()
+        self._joined: float | None = None
+        self._first_line: float | None = None
+
+    def is_over(self, has_printed: bool) -> bool:
+        """To be asked again and again; `has_printed` says whether the process has printed anything yet."""
+        now = self._now()
+        if self._first_line is None and has_printed:
+            self._first_line = now
+        if self._first_line is not None:
+            return now - self._first_line >= self._bound.seconds
+        return now >= self._end_of_silence(now)
+
+    def _end_of_silence(self, now: float) -> float:
+        if self._joined is None and self._has_joined():
+            self._joined = now
+        if self._joined is None:
+            return self._began + max(_STARTING_S, self._bound.seconds)
+        return self._joined + max(self._bound.seconds, self._joined - self._began)
+
+    @property
+    def silent_s(self) -> float:
+        """For how long nothing has been printed, counted from when the process joined ROS, if it has (s)."""
+        return self._now() - (self._began if self._joined is None else self._joined)
+
+
+def joins(domain: int) -> Callable[[], bool]:
+    """Says whether another program of this host has joined the ROS domain since this was called."""
+    before = graph.participants(domain) or 0
+    return lambda: (graph.participants(domain) or 0) > before
+
+
+class Shown:
+    """Prints lines as they come; of very many it prints the first and, at the end, the last."""
+
+    def __init__(self, first: int = FIRST_LINES, last: int = LAST_LINES) -> None:
+        self._first = first
+        self._last: deque[str] = deque(maxlen=last)
+        self._count = 0
+        self._part = ""
+        self._lost = False
+        self.seen = ""
+        """The last lines, for who waits for a text in them."""
+
+    @property
+    def has_any(self) -> bool:
+        """Whether anything has been printed."""
+        return bool(self.seen)
+
+    def add(self, data: bytes, dropped: int = 0) -> None:
+        """Take in more output; `dropped` bytes before it were too many to keep."""
+        self._lost = self._lost or dropped > 0
+        text = self._part + data.decode(errors="replace")
+        # What comes in two pieces is found as well.
+        self.seen = self.seen[-1000:] + data.decode(errors="replace")
+        *lines, self._part = text.split("\n")
+        for line in lines:
+            self._line(line)
+        sys.stdout.flush()
+
+    def _line(self, line: str) -> None:
+        self._count += 1
+        if self._count <= self._first:
+            print(line.rstrip("\r"))
+        else:
+            self._last.append(line)
+
+    def end(self, total_lines: int, rest_is: str) -> None:
+        """Print what was held back. `rest_is` tells where the lines between can be read."""
+        if self._part:
+            self._line(self._part)
+            self._part = ""
+        hidden = max(self._count, total_lines) - self._first - len(self._last)
+        if hidden > 0 or self._lost:
+            print(f"… {hidden:,} more lines{rest_is} …")
+        for line in self._last:
+            print(line.rstrip("\r"))
+        sys.stdout.flush()
+
+
+#: What is said where a text was waited for in vain: see `never_came`.
+NEVER_CAME = re.compile(r"^— the text (.+) did not come within ([\d.]+) s —$", re.MULTILINE)
+
+
+def never_came(bound: Bound) -> str:
+    """Say that the text a cell waited for was not printed in its time; `NEVER_CAME` finds it again."""
+    return f"— the text {bound.until!r} did not come within {bound.seconds:g} s —"
+
+
+def show_for(process: KeptProcess, bound: Bound, rest_is: str, has_joined: Callable[[], bool] = lambda: False) -> None:
+    """Show what a process prints until it ends, or until its time is up; then say what did not come.
+
+    `has_joined` says whether the process takes part in ROS yet (see `joins`).
+    """
+    shown = Shown()
+    countdown = Countdown(bound, has_joined)
+    over = came = False
+    while not over:
+        shown.add(*process.read())
+        over = not process.status.running or countdown.is_over(shown.has_any)
+        came = bound.until is not None and bound.until in shown.seen
+        if came:
+            break
+        if not over:
+            time.sleep(_POLL_S)
+    shown.end(process.status.lines, rest_is)
+    if bound.until is not None and not came:
+        print(never_came(bound))
+    elif process.status.running and not shown.has_any:
+        print(f"— nothing arrived in {countdown.silent_s:.0f} s —")
+
+
+def show_rest(process: KeptProcess, seconds: float) -> None:
+    """Show what a process that was told to end still prints, for so many seconds at most."""
+    shown = Shown()
+    deadline = time.monotonic() + seconds
+    while True:
+        shown.add(*process.read())
+        if not process.status.running or time.monotonic() >= deadline:
+            break
+        time.sleep(_POLL_S)
+    shown.end(process.status.lines, "")
+
+
+def in_short(text: str, first: int = FIRST_LINES, last: int = LAST_LINES) -> str:
+    """A long log with its middle left out."""
+    lines = text.rstrip("\n").split("\n")
+    if len(lines) <= first + last:
+        return "\n".join(lines)
+    left_out = len(lines) - first - last
+    return "\n".join([*lines[:first], f"… {left_out:,} more lines …", *lines[-last:]])

@@ -1,0 +1,228 @@
+"""Supervises one process: starts it, reads its output, signals it, and leaves nothing of it behind."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import json
+import os
+import selectors
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+#: Bytes kept of what the process prints: the first and the last so many.
+KEPT_AT_EACH_END = 2_000_000
+_PR_SET_PDEATHSIG = 1
+_PR_SET_CHILD_SUBREAPER = 36
+#: How long a process may take to end after SIGINT and SIGTERM (s) when nobody is left to ask for more.
+_ORPHAN_GRACE = (1.0, 0.5)
+
+
+def _prctl(option: int, value: int) -> None:
+    ctypes.CDLL(None, use_errno=True).prctl(option, value, 0, 0, 0)
+
+
+class Printed:
+    """What a process printed: its first and last bytes, and how many came between them."""
+
+    def __init__(self, kept_at_each_end: int = KEPT_AT_EACH_END) -> None:
+        self._kept = kept_at_each_end
+        self._head = bytearray()
+        self._tail = bytearray()
+        self.total = 0
+        self.lines = 0
+
+    def add(self, data: bytes) -> None:
+        """Take in more of it."""
+        self.total += len(data)
+        self.lines += data.count(b"\n")
+        room = max(0, self._kept - len(self._head))
+        self._head += data[:room]
+        self._tail += data[room:]
+        if len(self._tail) > 2 * self._kept:
+            del self._tail[: -self._kept]
+
+    def since(self, offset: int) -> tuple[int, int, bytes]:
+        """(offset, dropped, bytes): what is kept from `offset` on, and how many bytes before it are lost."""
+        if offset < len(self._head):
+            return offset, 0, bytes(self._head[offset:])
+        start = self.total - len(self._tail)
+        first = max(offset, start)
+        return first, first - offset, bytes(self._tail[first - start :])
+
+
+def descendants(root: int) -> list[int]:
+    """The process ids of all that `root` started and that still run, zombies left out."""
+    children: dict[int, list[int]] = {}
+    for entry in Path("/proc").iterdir():
+        if not entry.name.isdigit():
+            continue
+        with contextlib.suppress(OSError, ValueError, IndexError):
+            state, parent = (entry / "stat").read_bytes().rpartition(b")")[2].split()[:2]
+            if state != b"Z":
+                children.setdefault(int(parent), []).append(int(entry.name))
+    found, todo = [], [root]
+    while todo:
+        new = children.get(todo.pop(), [])
+        found += new
+        todo += new
+    return found
+
+
+class Keeper:
+    """One process under watch. `run` returns when the process and the kernel have both gone."""
+
+    def __init__(self, control: socket.socket) -> None:
+        self._control = control
+        self._selector = selectors.DefaultSelector()
+        self._selector.register(control, selectors.EVENT_READ)
+        self._requests = bytearray()
+        self._printed = Printed()
+        self._process: subprocess.Popen[bytes] | None = None
+        self._exit: int | None = None
+        self._ended_by: str | None = None
+        self._stopping: list[tuple[float, signal.Signals]] = []
+        self._orphaned = False
+
+    def run(self) -> None:
+        """Serve requests until nothing is left to keep."""
+        _prctl(_PR_SET_CHILD_SUBREAPER, 1)
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        signal.signal(signal.SIGTERM, lambda *_: self._orphan())
+        while not (self._orphaned and (self._process is None or self._exit is not None)):
+            for key, _ in self._selector.select(timeout=0.05):
+                if key.fileobj is self._control:
+                    self._serve()
+                else:
+                    self._drain()
+            self._look_after()
+        self._kill_all()
+
+    def _serve(self) -> None:
+        try:
+            data = self._control.recv(1 << 20)
+        except OSError:
+            data = b""
+        if not data:
+            self._selector.unregister(self._control)
+            self._orphan()
+            return
+        self._requests += data
+        while b"\n" in self._requests:
+            line, _, rest = bytes(self._requests).partition(b"\n")
+            self._requests = bytearray(rest)
+            self._handle(json.loads(line))
+
+    def _handle(self, request: dict[str, Any]) -> None:
+        if "start" in request:
+            self._start(**request["start"])
+        elif "read" in request:
+            self._answer(request["read"])
+        elif "stop" in request:
+            self._stop(*request["stop"])
+
+    def _start(self, argv: list[str], env: dict[str, str], cwd: str) -> None:
+        def die_with_supervisor() -> None:
+            _prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+
+        try:
+            self._process = subprocess.Popen(
+                argv,
+                env=env,
+                cwd=cwd,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+                preexec_fn=die_with_supervisor,
+            )
+        except OSError as error:
+            self._printed.add(f"{argv[0]}: {error.strerror}\n".encode())
+            self._exit = 127
+            return
+        assert self._process.stdout is not None
+        os.set_blocking(self._process.stdout.fileno(), False)
+        self._selector.register(self._process.stdout, selectors.EVENT_READ)
+
+    def _drain(self) -> bool:
+        """Take in what waits in the pipe; False at its end."""
+        assert self._process is not None
+        assert self._process.stdout is not None
+        try:
+            data = os.read(self._process.stdout.fileno(), 1 << 20)
+        except BlockingIOError:
+            return False
+        if not data:
+            with contextlib.suppress(KeyError):
+                self._selector.unregister(self._process.stdout)
+            return False
+        self._printed.add(data)
+        return True
+
+    def _look_after(self) -> None:
+        if self._process is None or self._exit is not None:
+            return
+        code = self._process.poll()
+        if code is not None:
+            # What it started goes with it; then the pipe's last bytes are there to be read.
+            self._kill_all()
+            while self._drain():
+                pass
+            self._exit = code
+            return
+        while self._stopping and time.monotonic() >= self._stopping[0][0]:
+            self._signal(self._stopping.pop(0)[1])
+
+    def _stop(self, after_interrupt: float, after_terminate: float) -> None:
+        now = time.monotonic()
+        self._stopping = [
+            (now + after_interrupt, signal.SIGTERM),
+            (now + after_interrupt + after_terminate, signal.SIGKILL),
+        ]
+        self._signal(signal.SIGINT)
+
+    def _signal(self, number: signal.Signals) -> None:
+        if self._process is None or self._process.poll() is not None:
+            return
+        self._ended_by = number.name
+        if number is signal.SIGKILL:
+            self._kill_all()
+        else:
+            # The whole group, as a terminal does.
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.killpg(self._process.pid, number)
+
+    def _kill_all(self) -> None:
+        while left := descendants(os.getpid()):
+            for pid in left:
+                with contextlib.suppress(ProcessLookupError, PermissionError):
+                    os.kill(pid, signal.SIGKILL)
+            time.sleep(0.002)
+
+    def _orphan(self) -> None:
+        if not self._orphaned:
+            self._orphaned = True
+            self._stop(*_ORPHAN_GRACE)
+
+    def _answer(self, offset: int) -> None:
+        first, dropped, data = self._printed.since(offset)
+        head = {
+            "offset": first,
+            "length": len(data),
+            "dropped": dropped,
+            "lines": self._printed.lines,
+            "exit": self._exit,
+            "ended_by": self._ended_by,
+        }
+        with contextlib.suppress(OSError):
+            self._control.sendall(json.dumps(head).encode() + b"\n" + data)
+
+
+if __name__ == "__main__":
+    Keeper(socket.socket(fileno=int(sys.argv[1]))).run()

@@ -1,0 +1,108 @@
+"""`%ros2` and `%colcon`: a terminal's commands in a cell."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+from interface_compiler import toolchain
+from spinbook.chapter.own_packages import created_package
+from spinbook.kernel.process import CellFailed
+from spinbook.kernel.session import Session
+from spinbook.kernel.showing import Bound
+from spinbook.package.write import write_package, written_definitions
+
+#: How long a build may take (s).
+COLCON_SECONDS = 120.0
+
+
+def run_colcon(session: Session, words: list[str], bound: Bound) -> None:
+    """Run colcon with these words. Raises CellFailed where there is nothing to build, or where the build fails."""
+    workspace = session.workspace
+    if not (workspace / "src").is_dir():
+        raise CellFailed(f"There is nothing to build in {workspace.name} yet: run the chapter's node cells first.")
+    # Where ROS 2 came from PyPI, this Python's prefix is the underlay that /opt/ros/jazzy is elsewhere.
+    prefixes = [p for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
+    settings = {
+        "AMENT_PREFIX_PATH": os.pathsep.join(dict.fromkeys([*prefixes, sys.prefix])),
+        # It would warn that this prefix has no local_setup script; nothing here needs one.
+        "COLCON_LOG_LEVEL": os.environ.get("COLCON_LOG_LEVEL", "error"),
+    }
+    if words[:1] == ["build"]:
+        words = [*words, *_without_interfaces(session)]
+    argv = [sys.executable, "-m", "colcon", "--log-base", os.fspath(workspace / "log"), *words]
+    session.run_command(argv, settings, workspace, bound, "colcon")
+
+
+def _without_interfaces(session: Session) -> list[str]:
+    """Options that leave out packages of interfaces where there is no ament_cmake: Spinbook compiles them itself."""
+    if toolchain.sourced_ros() is not None:
+        return []
+    packages = sorted({item.package for item in written_definitions(session.workspace)})
+    return ["--packages-ignore", *packages] if packages else []
+
+
+def run_ros2(session: Session, words: list[str], bound: Bound) -> None:
+    """Run a `ros2` command, for no longer than its bound. Raises CellFailed where it fails."""
+    if words[:1] == ["run"] and not {"-h", "--help"} & set(words):
+        _run_executable(session, words[1:], bound)
+        return
+    if words[:1] == ["launch"] and not {"-h", "--help", "-s", "--show-args", "--show-arguments"} & set(words):
+        _launch(session, words, bound)
+        return
+    if words[:2] == ["pkg", "create"]:
+        _create_package(session, words)
+        return
+    argv = [sys.executable, "-m", "spinbook.ros2", *words]
+    session.run_command(argv, {}, _folder(session, words), bound, "ros2 " + " ".join(words[:2]))
+
+
+def _folder(session: Session, words: list[str]) -> Path:
+    """Where a command runs: in the workspace if it reads files of the package, as in a terminal."""
+    reads_files = words[:1] == ["launch"] or words[:2] == ["param", "load"]
+    return session.workspace if reads_files and session.workspace.is_dir() else Path.cwd()
+
+
+def _launch(session: Session, words: list[str], bound: Bound) -> None:
+    """`ros2 launch …`: goes on behind the cell as a node does, under the name of its file: `humanoid`."""
+    files = [word.rpartition("/")[2] for word in words if re.search(r"launch\.(py|ya?ml|xml)$", word)]
+    name = files[0].split(".")[0] if files else "launch"
+    argv = [sys.executable, "-m", "spinbook.ros2", *words]
+    session.run_background(name, argv, {}, _folder(session, words), bound)
+
+
+def _create_package(session: Session, words: list[str]) -> None:
+    """`ros2 pkg create … NAME`: an empty package in the workspace, which the chapter's nodes fill."""
+    name, _ = created_package(["ros2", *words])
+    if not name:
+        raise CellFailed("Write: ros2 pkg create --build-type ament_python NAME")
+    if name != session.package.name and (session.workspace / "src" / name).exists():
+        print(f"{name} is there already.")
+        return
+    folder = write_package(session.workspace, replace(session.package, name=name), [])
+    print(f"Created the package {name} in {folder.relative_to(Path.cwd())}")
+
+
+def _run_executable(session: Session, words: list[str], bound: Bound) -> None:
+    """`ros2 run PACKAGE EXECUTABLE …`: a node like any other of the notebook, called as it or as `__node:=` says."""
+    if len(words) < 2 or words[0].startswith("-"):
+        raise CellFailed("Write: ros2 run PACKAGE EXECUTABLE, such as ros2 run turtlesim turtlesim_node")
+    executable = words[1]
+    name = _renamed(words[2:]) or executable
+    if session.run_executable(words[0], executable, words[2:], bound, name):
+        return
+    argv = [sys.executable, "-m", "spinbook.ros2", "run", *words]
+    cwd = session.workspace if session.workspace.is_dir() else Path.cwd()
+    session.run_background(name, argv, {}, cwd, bound)
+
+
+def _renamed(words: list[str]) -> str:
+    """What `__node:=NAME` or `__name:=NAME` calls the node: a second one of that executable, beside the first."""
+    for word in words:
+        option, found, name = word.partition(":=")
+        if found and option in ("__node", "__name"):
+            return name
+    return ""

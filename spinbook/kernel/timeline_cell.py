@@ -1,0 +1,96 @@
+"""`%timeline`: records what happens on services, actions and topics while other cells run, and draws it."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from pathlib import Path
+
+from IPython.display import display
+
+from spinbook.kernel.plot.drawing import as_png
+from spinbook.kernel.process import CellFailed, KeptProcess
+from spinbook.kernel.timeline import Happenings, in_words, lanes
+from spinbook.kernel.timeline_picture import moving_timeline, span_of, still_timeline
+
+#: How long the recorder may take to find the first name (s).
+_APPEAR_S = 20.0
+#: What was sent just before the recorder is asked may still be on its way (s).
+_LATE_S = 0.3
+
+
+class Timeline:
+    """A recorder that listens while other cells run. `names` are those of services, actions and topics."""
+
+    def __init__(self, names: list[str]) -> None:
+        argv = [sys.executable, "-u", "-m", "spinbook.kernel.timeline_recorder", *names]
+        self.names = names
+        self._process = KeptProcess(argv, os.environ, Path.cwd())
+        self._happenings = Happenings()
+        self._rest = ""
+
+    def wait_for_all(self) -> list[str]:
+        """Wait until every name has been found. Returns those that have not. Raises CellFailed where it fails."""
+        deadline = time.monotonic() + _APPEAR_S
+        while self._missing() and time.monotonic() < deadline and self._process.status.running:
+            time.sleep(0.03)
+            self._read()
+        if self._happenings.error or not self._process.status.running:
+            self.close()
+            raise CellFailed(self._happenings.error or "The timeline's recorder has ended. Run this cell again.")
+        return self._missing()
+
+    def _missing(self) -> list[str]:
+        return [name for name in self.names if name not in self._happenings.kinds]
+
+    def _read(self) -> None:
+        data, _ = self._process.read()
+        *complete, self._rest = (self._rest + data.decode(errors="replace")).split("\n")
+        self._happenings.take(complete)
+
+    def end(self) -> Happenings:
+        """Stop recording. Returns what has happened, in the order of the names."""
+        time.sleep(_LATE_S)
+        self._process.stop((1.0, 1.0))
+        self._process.wait(3.0)
+        self._read()
+        self.close()
+        kinds = self._happenings.kinds
+        self._happenings.kinds = {name: kinds[name] for name in self.names if name in kinds}
+        return self._happenings
+
+    def close(self) -> None:
+        """End the recorder."""
+        self._process.close()
+
+
+def begin(names: list[str]) -> Timeline:
+    """Start recording, and say so. Raises CellFailed where it fails."""
+    timeline = Timeline(names)
+    try:
+        missing = timeline.wait_for_all()
+    except KeyboardInterrupt:
+        timeline.close()
+        raise
+    print(f"Recording {', '.join(names)}. %timeline draws what happens from now on.")
+    if missing:
+        print(f"Not there yet: {', '.join(missing)}.")
+    return timeline
+
+
+def show(timeline: Timeline, title: str) -> None:
+    """Stop recording and draw what has happened. Raises CellFailed if nothing has."""
+    happenings = timeline.end()
+    if happenings.error:
+        raise CellFailed(happenings.error)
+    drawn = lanes(happenings)
+    if not any(lane.marks for lane in drawn):
+        raise CellFailed(f"Nothing has happened on {', '.join(timeline.names)} since `%timeline --record`.")
+    words = in_words(drawn, span_of(drawn)[0])
+    bundle = {
+        "image/png": as_png(still_timeline(drawn, title)),
+        "image/svg+xml": moving_timeline(drawn, title),
+        "text/plain": words,
+    }
+    display(bundle, raw=True, metadata={kind: {"alt": words} for kind in bundle if kind != "text/plain"})

@@ -1,0 +1,233 @@
+"""A timeline as pictures: an SVG that is drawn as fast as it happened, and the same still, as a PNG.
+
+In print, and for readers who prefer no motion, the SVG is still: the whole timeline.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from html import escape
+from itertools import chain
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from spinbook.animation import Cycle, coord, on_paper
+from spinbook.kernel.plot.drawing import Scale
+from spinbook.kernel.timeline import Lane, Mark, Span, in_words
+
+#: What took longer (s) is shown so many times as fast that it takes no longer.
+LONGEST_S = 20.0
+#: More ticks than this on one lane are thinned out: they would be one bar.
+MOST_TICKS = 150
+_WIDTH, _LEFT, _RIGHT, _TOP = 420, 14, 16, 14
+_LABEL, _BAR, _ROW, _GAP = 18, 16, 14, 8
+_CHAR, _CAPITAL = 6.4, 8.0
+_GREY = "#808890"
+_SPANS = {"waits": ("#a8b0b8", "waits"), "runs": ("#0072B2", "runs"), "cancels": ("#E69F00", "is being canceled")}
+_MARKS = {
+    "asked": ("#808890", "goal or request"),
+    "answered": ("#009E73", "answer"),
+    "cancel": ("#D55E00", "cancel"),
+    "good": ("#009E73", ""),
+    "bad": ("#D55E00", ""),
+}
+#: What marks of these kinds say is written at them, except for what the lane's legend says already.
+_WRITTEN = ("good", "bad", "cancel", "answered")
+_UNWRITTEN = "response"
+
+
+def span_of(lanes: Iterable[Lane]) -> tuple[float, float]:
+    """The first and the last time (s) of anything on the lanes."""
+    times = [mark.at for lane in lanes for mark in lane.marks]
+    return min(times), max(times)
+
+
+def moving_timeline(lanes: Sequence[Lane], title: str = "") -> str:
+    """The picture of lanes of which at least one has a mark."""
+    start, end = span_of(lanes)
+    across = Scale(start, max(end, start + 0.1), _LEFT, _WIDTH - _RIGHT)
+    words = in_words(lanes, start)
+    name = title or ", ".join(dict.fromkeys(lane.name for lane in lanes))
+    key = "t" + hashlib.sha256(f"{name} {lanes}".encode()).hexdigest()[:8]
+    y, labels, drawn = float(_TOP), [], []
+    for lane in lanes:
+        labels.append(f'<text x="{_LEFT}" y="{coord(y + 12)}" font-weight="600">{escape(_fitting(lane.label))}</text>')
+        part, y = _lane(lane, y + _LABEL, across)
+        drawn.append(part)
+    grid, bottom = _axis(across, _TOP, y), y + 22
+    legend, bottom = _legend(lanes, bottom + 16)
+    faster = max(1, math.ceil((end - start) / LONGEST_S))
+    moving = _moving(Cycle(key, max(end - start, 0.1) / faster), y)
+    pointer = f'<path class="{key}x" d="M{_LEFT} {_TOP}V{coord(y)}" stroke="{_GREY}" opacity="0"/>'
+    content = (
+        f'{moving}<g class="{key}i" font-size="12">{grid}{"".join(labels)}'
+        f'<g clip-path="url(#{key}c)">{"".join(drawn)}</g>{pointer}{legend}</g>'
+    )
+    pace = "as fast as it happened" if faster == 1 else f"{faster} times as fast as it happened"
+    return on_paper(content, _WIDTH, math.ceil(bottom), key, name, f"{words}\nIt is drawn {pace}, again and again.")
+
+
+def _fitting(label: str) -> str:
+    most = int((_WIDTH - _LEFT - _RIGHT) / (_CHAR + 0.6))
+    return label if len(label) <= most else label[: most - 1] + "…"
+
+
+def _lane(lane: Lane, top: float, across: Scale) -> tuple[str, float]:
+    """The bars, marks and words of a lane below `top`, and where it ends."""
+    middle = top + _BAR / 2
+    bars = "".join(_bar(span, top, across) for span in lane.spans)
+    marks = "".join(_shape(mark, across.at(mark.at), middle) for mark in _few(lane.marks))
+    rows, texts = 0, ""
+    for text, x, row in _placed(lane.marks, across):
+        rows = max(rows, row + 1)
+        texts += f'<text x="{coord(x)}" y="{coord(top + _BAR + _ROW * row + 11)}" font-size="11">{escape(text)}</text>'
+    return bars + marks + texts, top + _BAR + _ROW * rows + _GAP
+
+
+def _bar(span: Span, top: float, across: Scale) -> str:
+    x, width = across.at(span.start), max(1.0, across.at(span.end) - across.at(span.start))
+    colour, _ = _SPANS[span.look]
+    inset = 5 if span.look == "waits" else 2
+    dash = ' stroke-dasharray="4 3" fill-opacity=".15"' if span.open else ' fill-opacity=".45"'
+    return (
+        f'<rect x="{coord(x)}" y="{coord(top + inset)}" width="{coord(width)}" height="{_BAR - 2 * inset}" '
+        f'fill="{colour}" stroke="{colour}"{dash}/>'
+    )
+
+
+def _few(marks: Sequence[Mark]) -> Iterator[Mark]:
+    """The marks, with every so manyth of very many ticks."""
+    ticks = [mark for mark in marks if mark.look == "tick"]
+    step = math.ceil(len(ticks) / MOST_TICKS) or 1
+    return chain(ticks[::step], (mark for mark in marks if mark.look != "tick"))
+
+
+def _shape(mark: Mark, x: float, y: float) -> str:
+    if mark.look == "tick":
+        return f'<path d="M{coord(x - 0.6)} {coord(y - 6)}h1.2v12h-1.2z"/>'
+    colour, _ = _MARKS[mark.look]
+    if mark.look == "asked":
+        return f'<path d="M{coord(x - 4)} {coord(y - 6)}l9 6l-9 6z" fill="{colour}"/>'
+    if mark.look in ("cancel", "bad"):
+        cross = f"M{coord(x - 5)} {coord(y - 5)}l10 10m0-10l-10 10"
+        return f'<path d="{cross}" stroke="{colour}" stroke-width="2.6"/>'
+    return f'<circle cx="{coord(x)}" cy="{coord(y)}" r="4.5" fill="{colour}"/>'
+
+
+def _placed(marks: Sequence[Mark], across: Scale) -> Iterator[tuple[str, float, int]]:
+    """(text, x in px, row) of what is written, so that no two texts lie on one another."""
+    ends: list[float] = []
+    for mark in filter(_is_written, marks):
+        width = sum(_CAPITAL if char.isupper() else _CHAR for char in mark.text)
+        x = min(max(across.at(mark.at) - width / 2, _LEFT), _WIDTH - 4 - width)
+        row = next((row for row, end in enumerate(ends) if end + 6 <= x), len(ends))
+        ends[row : row + 1] = [x + width]
+        yield mark.text, x, row
+
+
+def _is_written(mark: Mark) -> bool:
+    return mark.look in _WRITTEN and mark.text not in ("", _UNWRITTEN)
+
+
+def _axis(across: Scale, top: float, bottom: float) -> str:
+    """Lines at round times counted from the first event, and the times below them."""
+    seconds = Scale(0.0, across.high - across.low, across.start, across.end)
+    lines = texts = ""
+    for mark in seconds.marks():
+        x = coord(seconds.at(mark))
+        lines += f"M{x} {coord(top)}V{coord(bottom)}"
+        unit = " s" if mark == seconds.marks()[-1] else ""
+        texts += f'<text x="{x}" y="{coord(bottom + 15)}" text-anchor="middle">{mark:g}{unit}</text>'
+    return f'<path d="{lines}" stroke="{_GREY}" stroke-opacity=".3" fill="none"/>{texts}'
+
+
+def _legend(lanes: Sequence[Lane], y: float) -> tuple[str, float]:
+    """What the bars and marks mean that are there; and where it ends."""
+    spans = {span.look for lane in lanes for span in lane.spans}
+    marks = {mark.look for lane in lanes for mark in lane.marks}
+    entries = [
+        (
+            f'<rect x="{{x}}" y="{{y}}" width="16" height="8" fill="{colour}" fill-opacity=".45" stroke="{colour}"/>',
+            text,
+        )
+        for look, (colour, text) in _SPANS.items()
+        if look in spans
+    ]
+    shown = [("asked", "goal or request"), ("cancel", "cancel"), ("answered", "answer")]
+    entries += [(look, text) for look, text in shown if look in marks]
+    entries += [("tick", "feedback" if spans and not _plain_ticks(lanes) else "message")] if "tick" in marks else []
+    x, drawn = float(_LEFT), ""
+    for look, text in entries:
+        width = 34 + _CHAR * len(text)
+        if x > _LEFT and x + width > _WIDTH:
+            x, y = float(_LEFT), y + 18
+        middle = y - 4
+        is_bar = look.startswith("<")
+        drawn += look.format(x=coord(x), y=coord(y - 8)) if is_bar else _shape(Mark(0.0, look), x + 8, middle)  # type: ignore[arg-type]
+        drawn += f'<text x="{coord(x + 21)}" y="{coord(y)}" font-size="11">{escape(text)}</text>'
+        x += width
+    return drawn, y + 12
+
+
+def _plain_ticks(lanes: Sequence[Lane]) -> bool:
+    """Whether a topic is among the lanes, whose ticks are messages."""
+    return any(not lane.spans and any(mark.look == "tick" for mark in lane.marks) for lane in lanes)
+
+
+def _moving(cycle: Cycle, height: float) -> str:
+    """The window through which the lanes are seen, which grows to the right, and the pointer at its edge."""
+    key, width = cycle.key, _WIDTH - _LEFT - _RIGHT
+    whole = _WIDTH
+    shown = f"transform:scaleX({coord(_LEFT / whole, 4)})"
+    last = f"transform:scaleX({coord(1 - _RIGHT / whole, 4)})"
+    rules = cycle.style(
+        cycle.keyframes("w", [(0.0, shown), (cycle.moving_s, last), (cycle.moving_s + 0.1, "transform:scaleX(1)")]),
+        cycle.keyframes(
+            "x",
+            [
+                (0.0, "transform:translateX(0px);opacity:1"),
+                (cycle.moving_s, f"transform:translateX({width}px);opacity:1"),
+                (cycle.moving_s + 0.2, f"transform:translateX({width}px);opacity:0"),
+            ],
+        ),
+        f".{key}w{{transform-origin:0 0}}",
+    )
+    window = f'<rect class="{key}w" x="0" y="0" width="{whole}" height="{coord(height)}"/>'
+    return f'{rules}<clipPath id="{key}c">{window}</clipPath>'
+
+
+def still_timeline(lanes: Sequence[Lane], title: str = "") -> Figure:
+    """The same as a figure of matplotlib. Time counts from the first event."""
+    start, _ = span_of(lanes)
+    figure = Figure(figsize=(8, 0.9 + 0.75 * len(lanes)), layout="constrained")
+    axes = figure.subplots()
+    for row, lane in enumerate(lanes):
+        _draw_lane(axes, lane, -row, start)
+    axes.set_ylim(-len(lanes) + 0.3, 0.75)
+    axes.set_yticks([])
+    axes.set_xlabel("time (s)")
+    axes.grid(axis="x", alpha=0.3)
+    axes.spines[["top", "right", "left"]].set_visible(False)
+    figure.suptitle(title or ", ".join(dict.fromkeys(lane.name for lane in lanes)), fontsize=11)
+    return figure
+
+
+def _draw_lane(draw: Axes, lane: Lane, y: float, start: float) -> None:
+    draw.text(0, y + 0.34, lane.label, fontsize=9, fontweight="bold")
+    for span in lane.spans:
+        colour, _ = _SPANS[span.look]
+        length, alpha = span.end - span.start, 0.25 if span.open else 0.5
+        draw.barh(y, length, left=span.start - start, height=0.3, color=colour, alpha=alpha)
+    for mark in _few(lane.marks):
+        at = mark.at - start
+        if mark.look == "tick":
+            draw.plot([at, at], [y - 0.16, y + 0.16], color="black", linewidth=1)
+            continue
+        shape = {"asked": ">", "cancel": "X", "bad": "X"}.get(mark.look, "o")
+        draw.plot([at], [y], marker=shape, color=_MARKS[mark.look][0], markersize=8)
+        if _is_written(mark):
+            above = mark.look == "answered"
+            draw.text(at, y + (0.19 if above else -0.33), mark.text, fontsize=8, ha="center")

@@ -1,0 +1,234 @@
+"""Records what happens on services, actions and topics, one JSON array a line: a process of its own beside the kernel.
+
+    python -m spinbook.kernel.timeline_recorder NAME …
+
+Lines: ["found", name, "action" | "service" | "topic"], ["error", words], and events, ["event", time (s), name, what,
+goal, text], where `what` is one of those in timeline.py, `goal` is a goal's number (hexadecimal) or "".
+
+Everything is read where it goes by: requests by a second server that never answers, answers from their DDS topic,
+feedback and status by subscribing. Times are those at which it was sent.
+
+A client that has found this second server and not yet the real one takes the service for ready, and its request would
+be lost. So the requests of a service are read only if it has a client already, which then knows the real one. Clients
+of an action also wait for its status and feedback, which this does not publish.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from typing import Any
+
+import rclpy
+from action_msgs.msg import GoalStatus
+from rclpy.action import get_action_names_and_types
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.qos import (
+    DurabilityPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_profile_services_default,
+)
+
+from spinbook.kernel.reply_reader import ReplyReader
+from spinbook.ros2.cli import CommandError
+from spinbook.ros2.interfaces import action_class, message_class, service_class
+
+_HEARS_ALL = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE)
+_FEEDBACK = QoSProfile(depth=100)
+_STATUS = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_LOOK_S = 0.01
+#: How long after a service its clients may be discovered (s).
+_CLIENTS_S = 0.5
+
+#: Reads what has arrived: (when it was sent in s, the message).
+Take = Callable[[], Iterator[tuple[float, Any]]]
+
+
+class TimelineRecorder(Node):
+    """Looks for what the names mean, and prints every event of theirs."""
+
+    def __init__(self, names: list[str]) -> None:
+        # With parameter services: by them the `ros2` command makes sure that whoever serves has heard of its client.
+        super().__init__("_spinbook_timeline", enable_rosout=False)
+        self._began = time.time()
+        self._missing = list(names)
+        self._polled: list[tuple[Take, Callable[[float, Any], None]]] = []
+        self._states: dict[str, int] = {}
+        self._kept: list[Any] = []
+        self._seen: dict[str, float] = {}
+
+    def look(self) -> None:
+        """Look for what has not been found yet, and take in what has arrived."""
+        for name in list(self._missing):
+            if (found := self._kind(name)) and self._is_known(name, found[0]):
+                self._missing.remove(name)
+                kind, type_name = found
+                getattr(self, f"_follow_{kind}")(name, type_name)
+                _tell("found", name, kind)
+        for take, tell in self._polled:
+            for sent, message in take():
+                tell(sent, message)
+
+    def _is_known(self, name: str, kind: str) -> bool:
+        """Whether it is known who else uses what has been found: a service's clients may not be heard of yet."""
+        since = time.monotonic() - self._seen.setdefault(name, time.monotonic())
+        return kind != "service" or self.count_clients(name) > 0 or since > _CLIENTS_S
+
+    def _kind(self, name: str) -> tuple[str, str] | None:
+        """What a name means, and its type, if there is a node that serves or publishes it."""
+        ready = self.count_publishers(f"{name}/_action/status") > 0
+        tables: Mapping[str, tuple[bool, list[tuple[str, list[str]]]]] = {
+            "action": (ready, get_action_names_and_types(self)),
+            "service": (self.count_services(name) > 0, self.get_service_names_and_types()),
+            "topic": (self.count_publishers(name) > 0, self.get_topic_names_and_types()),
+        }
+        for kind, (is_there, table) in tables.items():
+            if is_there and name in dict(table):
+                return kind, dict(table)[name][0]
+        return None
+
+    # Topics
+
+    def _follow_topic(self, name: str, type_name: str) -> None:
+        self._hear(message_class(type_name), name, _HEARS_ALL, partial(_event, name, "message"))
+
+    def _hear(self, kind: Any, topic: str, qos: QoSProfile, tell: Callable[..., None]) -> None:
+        self._kept.append(self.create_subscription(kind, topic, _ear(tell), qos))
+
+    # Services
+
+    def _follow_service(self, name: str, type_name: str) -> None:
+        kind = service_class(type_name)
+        if self.count_clients(name):
+            self._polled.append((self._requests(kind, name), partial(_event, name, "request")))
+        self._polled.append((ReplyReader(self, name, kind.Response).take, partial(_event, name, "response")))
+
+    def _follow_calls(self, kind: Any, name: str, asked: Callable[..., None], answered: Callable[..., None]) -> None:
+        self._polled.append((self._requests(kind, name), asked))
+        self._polled.append((ReplyReader(self, name, kind.Response).take, answered))
+
+    def _requests(self, kind: Any, name: str) -> Take:
+        """What is asked of a service, taken as a server of its own would, and never answered."""
+        from rclpy.impl.implementation_singleton import rclpy_implementation
+        from rclpy.type_support import check_for_type_support
+
+        check_for_type_support(kind)
+        with self.handle:
+            qos = qos_profile_services_default.get_c_qos_profile()
+            server = rclpy_implementation.Service(self.handle, kind, name, qos)
+        self._kept.append(server)
+
+        def take() -> Iterator[tuple[float, Any]]:
+            while True:
+                with server:
+                    request, header = server.service_take_request(kind.Request)
+                if request is None or header is None:
+                    return
+                yield header.source_timestamp / 1e9, request
+
+        return take
+
+    # Actions
+
+    def _follow_action(self, name: str, type_name: str) -> None:
+        kind = action_class(type_name).Impl
+        own = f"{name}/_action"
+        self._follow_calls(
+            kind.SendGoalService,
+            f"{own}/send_goal",
+            lambda at, asked: _event(name, "goal", at, asked.goal, _number(asked.goal_id)),
+            lambda at, answer: _tell("event", at, name, "accepted" if answer.accepted else "rejected", "", ""),
+        )
+        self._follow_calls(
+            kind.CancelGoalService,
+            f"{own}/cancel_goal",
+            lambda at, asked: _tell("event", at, name, "cancel", _number(asked.goal_info.goal_id), ""),
+            lambda at, answer: _tell(
+                "event", at, name, "cancel answered", "", f"{len(answer.goals_canceling)} to be canceled"
+            ),
+        )
+        self._hear(
+            kind.FeedbackMessage,
+            f"{own}/feedback",
+            _FEEDBACK,
+            lambda at, message: _event(name, "feedback", at, message.feedback, _number(message.goal_id)),
+        )
+        self._hear(kind.GoalStatusMessage, f"{own}/status", _STATUS, partial(self._hear_status, name))
+
+    def _hear_status(self, name: str, at: float, message: Any) -> None:
+        """The states of all goals; those that have changed are told."""
+        for goal in message.status_list:
+            number = _number(goal.goal_info.goal_id)
+            if self._states.get(number) != goal.status:
+                self._states[number] = goal.status
+                # The status is kept for late listeners: what is older than the recording is none of its business.
+                if at >= self._began:
+                    _tell("event", at, name, _STATES.get(goal.status, "UNKNOWN"), number, "")
+
+
+_STATES = {
+    getattr(GoalStatus, f"STATUS_{state}"): state
+    for state in ("ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED")
+}
+
+
+def _ear(tell: Callable[..., None]) -> Any:
+    """A callback of the form that rclpy gives the information beside a message to: it looks at the parameters."""
+
+    def hear(message: Any, information: dict[str, int]) -> None:
+        tell(information["source_timestamp"] / 1e9, message)
+
+    return hear
+
+
+def _number(goal_id: Any) -> str:
+    return bytes(goal_id.uuid).hex()
+
+
+def _event(name: str, what: str, at: float, message: Any, goal: str = "") -> None:
+    _tell("event", at, name, what, goal, in_short(message))
+
+
+def in_short(message: Any) -> str:
+    """The first plain field of a message with its value, such as `position 1.0`; "" if it has none."""
+    for field in message.get_fields_and_field_types():
+        value = getattr(message, field)
+        if isinstance(value, bool):
+            return f"{field} {str(value).lower()}"
+        if isinstance(value, int | str) and value != "":
+            return f"{field} {value}"[:40]
+        if isinstance(value, float):
+            return f"{field} {value:.4g}"
+    return ""
+
+
+def _tell(*line: Any) -> None:
+    print(json.dumps(line), flush=True)
+
+
+def main() -> None:
+    """Record until told to stop."""
+    rclpy.init()
+    try:
+        recorder: TimelineRecorder = TimelineRecorder(sys.argv[1:])
+        try:
+            while True:
+                rclpy.spin_once(recorder, timeout_sec=_LOOK_S)
+                recorder.look()
+        finally:
+            recorder.destroy_node()  # type: ignore[no-untyped-call]
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    except CommandError as error:
+        _tell("error", error.format_message())
+    finally:
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

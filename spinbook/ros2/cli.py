@@ -1,0 +1,163 @@
+"""The `ros2` command line: nouns and verbs, errors for people, and how it ends on Ctrl-C."""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from types import FrameType
+from typing import Any, NoReturn, TypeVar
+
+import click
+
+CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A noun or a verb: where its click command is (`module:name`), and its line in the help."""
+
+    place: str
+    help: str
+
+
+class Menu(click.Group):
+    """A group whose help lists its entries without importing any, and whose errors say what there is."""
+
+    def __init__(self, *, entries: Mapping[str, Entry], **attributes: Any) -> None:
+        super().__init__(context_settings=CONTEXT, **attributes)
+        self.entries = entries
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        if not args and not ctx.resilient_parsing:
+            # As the real command: help is no error.
+            click.echo(ctx.get_help())
+            ctx.exit(0)
+        return super().parse_args(ctx, args)
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(self.entries)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in self.entries:
+            return None
+        module, _, name = self.entries[cmd_name].place.partition(":")
+        command = getattr(importlib.import_module(module), name)
+        assert isinstance(command, click.Command)
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, entry.help) for name, entry in self.entries.items()])
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args and not args[0].startswith("-") and args[0] not in self.entries:
+            close = difflib.get_close_matches(args[0], self.entries, n=1)
+            meant = f" Did you mean '{close[0]}'?" if close else ""
+            raise click.UsageError(
+                f"there is no '{ctx.command_path} {args[0]}' here.{meant}\n"
+                f"There is: {', '.join(self.entries)}.\n"
+                "Other commands need a ROS 2 installation, whose own ros2 is then used by itself.",
+                ctx,
+            )
+        return super().resolve_command(ctx, args)
+
+
+def discovery_options(command: F) -> F:
+    """The options of the real command that concern discovery: `spin_time` and `use_sim_time` reach the function."""
+    for option in (
+        click.option("-s", "--use-sim-time", is_flag=True, help="Take the time from /clock."),
+        click.option("--no-daemon", is_flag=True, expose_value=False, help="Always so here: there is no daemon."),
+        click.option(
+            "--spin-time",
+            type=click.FloatRange(min=0, min_open=True),
+            metavar="N",
+            help="Give discovery N seconds and no more.",
+        ),
+    ):
+        command = option(command)
+    return command
+
+
+class CommandError(click.ClickException):
+    """A message for the person at the terminal; the process ends with 1, as the real command's does.
+
+    The first line has the real command's words where it has any; further lines say what is there and what to do.
+    """
+
+    exit_code = 1
+
+    def __init__(self, *lines: str) -> None:
+        super().__init__("\n".join(lines))
+
+    def show(self, file: object = None) -> None:
+        """Print the lines on standard error, without a prefix."""
+        sys.stdout.flush()
+        click.echo(self.message, err=True)
+
+
+#: What the real command exits with after Ctrl-C (it passes on the number of the signal).
+EXIT_AFTER_SIGINT = int(signal.SIGINT)
+
+
+class Stopped(KeyboardInterrupt):
+    """Raised in the main thread when SIGINT or SIGTERM came."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__()
+        #: Exit status: 2 after SIGINT as the real command's, 0 after SIGTERM.
+        self.exit_code = EXIT_AFTER_SIGINT if number == signal.SIGINT else 0
+
+
+def listen() -> None:
+    """Make SIGINT and SIGTERM raise `Stopped`, for the rest of this process's life.
+
+    SIGINT is set even where it was ignored (a shell ignores it for what it starts in the background), because a
+    notebook stops its commands with it. Only the first signal is raised: cleaning up is not interrupted by the
+    second, and a SIGTERM during it ends the process at once.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        return
+    signal.signal(signal.SIGINT, _stop)
+    signal.signal(signal.SIGTERM, _stop)
+
+
+@contextmanager
+def held_back() -> Iterator[None]:
+    """Let the first signal that comes meanwhile raise `Stopped` only at the end of the block; a second ends it at once.
+
+    For work inside rclpy: raised while its C++ makes a message, an exception comes out as a TypeError or not at all.
+    """
+    _held.append(None)
+    try:
+        yield
+    finally:
+        number = _held.pop()
+    if number is not None:
+        _raise(number)
+
+
+# For each block that holds signals back, the number of the one that has come.
+_held: list[int | None] = []
+
+
+def _stop(number: int, frame: FrameType | None) -> None:
+    if _held and _held[-1] is None:
+        _held[-1] = number
+    else:
+        _raise(number)
+
+
+def _raise(number: int) -> NoReturn:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    raise Stopped(number)

@@ -1,0 +1,336 @@
+"""What Spinbook adds to Sphinx: the HTML of code cells, terms, maths and pictures, and the search index."""
+
+from __future__ import annotations
+
+import json
+import posixpath
+import re
+from collections.abc import Iterator
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from latex2mathml.converter import convert
+from PIL import Image
+from sphinx.application import Sphinx
+from sphinx.transforms import SphinxTransform
+from sphinx.util import logging
+from sphinx.writers.html5 import HTML5Translator
+
+from grader.files import write_if_changed
+from spinbook.site.log_lexer import LogLexer
+from spinbook.site.page import FRAME_SUFFIX, GLOSSARY, HOME
+
+_IMAGE = re.compile(r"<img\b[^>]*>")
+_SOURCE = re.compile(r'\bsrc="([^"]+)"')
+_HEADING_LINK = re.compile(r'<a class="headerlink" href="(#[^"]*)" title="[^"]*">[^<]*</a>')
+_EMPTY_HEAD = re.compile(r'<th class="head[^"]*">\s*(?:<p></p>)?\s*</th>')
+_STYLE = re.compile(r'\sstyle="[^"]*"')
+
+
+def finish(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: nodes.document | None) -> None:
+    """Give pictures their size, headings' links a name, and tables a frame that scrolls."""
+    context["frame"] = _frame(app, page)
+    if "body" not in context:
+        return
+    body = context["body"]
+    # A strict content security policy allows no styles in the page itself.
+    body = _STYLE.sub("", body)
+    folder = Path(app.outdir, page).parent
+    body = _IMAGE.sub(lambda match: _sized(match.group(), folder, app), body)
+    body = _HEADING_LINK.sub(r'<a class="headerlink" href="\1" aria-label="Link to this section">#</a>', body)
+    body = _EMPTY_HEAD.sub("<td></td>", body)
+    if context.get("display_toc"):
+        contents = f'<details class="page-toc-small"><summary>On this page</summary>{context["toc"]}</details>'
+        body = body.replace("</h1>", f"</h1>\n{contents}", 1)
+    body = body.replace("<table", '<div class="table"><table').replace("</table>", "</table></div>")
+    context["body"] = body
+
+
+def _frame(app: Sphinx, page: str) -> dict[str, Any]:
+    """What was staged beside the page for the theme."""
+    try:
+        frame = json.loads(Path(app.srcdir, f"{page}{FRAME_SUFFIX}").read_text(encoding="utf-8"))
+    except OSError:
+        return {"kind": "search"}
+    return dict(frame)
+
+
+def depend(app: Sphinx, page: str, source: list[str]) -> None:
+    """A page is made again when what stands beside it changes."""
+    app.env.note_dependency(f"{page}{FRAME_SUFFIX}")
+
+
+def _size(file: Path) -> tuple[int, int]:
+    """Width and height of a picture in CSS pixels. Raises OSError or ValueError where it does not say."""
+    if file.suffix != ".svg":
+        with Image.open(file) as image:
+            return int(image.width), int(image.height)
+    opening = file.read_text(encoding="utf-8").partition(">")[0]
+    sizes = dict(re.findall(r'\b(width|height)="([\d.]+)(?:px)?"', opening))
+    if len(sizes) < 2:
+        raise ValueError(file)
+    return round(float(sizes["width"])), round(float(sizes["height"]))
+
+
+def _sized(tag: str, folder: Path, app: Sphinx) -> str:
+    source = _SOURCE.search(tag)
+    if source is None or " width=" in tag or 'class="still"' in tag:
+        # What is shown on paper only must be there when somebody prints, and so is not left for later.
+        return tag
+    # Sphinx copies pictures after the pages are written; it knows already what they will be called.
+    name = Path(source.group(1)).name
+    original = next((Path(app.srcdir, at) for at, (_, to) in app.env.images.items() if to == name), folder / name)
+    try:
+        width, height = _size(original)
+    except (OSError, ValueError):
+        return f'{tag.rstrip("/> ")} loading="lazy">'
+    return f'{tag.rstrip("/> ")} width="{width}" height="{height}" loading="lazy">'
+
+
+_LANGUAGES = {"shell": "bash", "node": "python", "part": "python", "interface": "text"}
+#: By how a package's file ends.
+_FILE_LANGUAGES = {"py": "python", "yaml": "yaml", "yml": "yaml", "xml": "xml"}
+_KINDS = {
+    "shell": "Terminal",
+    "node": "Node",
+    "snippet": "Notebook",
+    "part": "Part of a node",
+    "interface": "Interface",
+    "package_file": "File",
+}
+
+
+class DescribeCells(SphinxTransform):
+    """Adds a line above a cell's code, a name to its output, and words to its pictures."""
+
+    default_priority = 400
+
+    def apply(self, **kwargs: Any) -> None:
+        """Change the document's cells."""
+        for cell in list(self.document.findall(nodes.container)):
+            about = cell.get("cell_metadata", {}).get("spinbook")
+            if cell.get("nb_element") == "cell_code" and about:
+                _describe(cell, about)
+
+
+def _describe(cell: nodes.container, about: dict[str, Any]) -> None:
+    kind = about["kind"]
+    cell["classes"] += [f"cell-{name}" for name in (kind, about.get("runs_as")) if name]
+    for part in cell.children:
+        if not isinstance(part, nodes.container):
+            continue
+        if part.get("nb_element") == "cell_code_source":
+            for code in part.findall(nodes.literal_block):
+                code["language"] = _language(kind, about)
+        elif part.get("nb_element") == "cell_code_output":
+            _pictures(part, about["alts"], about["stills"])
+            words = "Output: it fails, as it is meant to" if about["fails"] else "Output"
+            part.insert(0, nodes.raw("", f'<p class="output-name">{words}</p>', format="html"))
+    cell.insert(0, nodes.raw("", _head(kind, about), format="html"))
+
+
+def _language(kind: str, about: dict[str, Any]) -> str:
+    ending = str(about.get("package_file", "")).rpartition(".")[2]
+    return _FILE_LANGUAGES.get(ending) or _LANGUAGES.get(kind, "ipython3")
+
+
+def _head(kind: str, about: dict[str, Any]) -> str:
+    file = about.get("file", "")
+    shown = file or about.get("interface", "") or about.get("package_file", "")
+    name = f'<span class="cell-file">{escape(shown)}</span>' if shown else ""
+    name += f'<span class="cell-kind">{escape(about["after"])}</span>' if about.get("after") else ""
+    of = shown or f"this {_KINDS.get(kind, 'cell').lower()} block"
+    source = (
+        f'<a class="cell-source" href="{escape(about["source"])}" '
+        f'aria-label="Source of {escape(of)}, line {about["line"]}">source</a>'
+        if about["source"]
+        else ""
+    )
+    download = (
+        f'<a class="cell-download" href="../{escape(about["download"])}" download aria-label="Download {escape(file)}">'
+        "Download</a>"
+        if file
+        else ""
+    )
+    kind_name = f'<span class="cell-kind">{_KINDS.get(kind, "Cell")}</span>'
+    run = f' data-run="{escape(json.dumps(about["run"]))}"' if about.get("run") else ""
+    return f'<div class="cell-head"{run}>{kind_name}{name}<span class="cell-links">{download}{source}</span></div>'
+
+
+def _pictures(output: nodes.container, alts: list[str], stills: list[str]) -> None:
+    """Gives each picture its words, and a moving one its still; a picture in several formats is one picture."""
+    pictures: dict[int, list[nodes.image]] = {}
+    for image in output.findall(nodes.image):
+        bundle = image.parent
+        while bundle is not output and bundle.get("nb_element") != "mime_bundle":
+            bundle = bundle.parent
+        pictures.setdefault(id(bundle), []).append(image)
+    for images, alt, still in zip(pictures.values(), alts, stills, strict=False):
+        for image in images:
+            image["alt"] = alt
+        if still:
+            _beside(images[0], still)
+
+
+def _beside(image: nodes.image, still: str) -> None:
+    """Puts the still after the image. Style sheets show one of the two: browsers choose no other source to print."""
+    image["classes"].append("moving")
+    alt = escape(image["alt"])
+    shown = nodes.raw("", f'<img class="still" src="../{escape(still)}" alt="{alt}">', format="html")
+    image.parent.insert(image.parent.index(image) + 1, shown)
+
+
+_LOG = logging.getLogger(__name__)
+
+
+def visit_inline(translator: HTML5Translator, node: nodes.math) -> None:
+    """`$…$` in a line."""
+    translator.body.append(_mathml(node, "inline"))
+    raise nodes.SkipNode
+
+
+def visit_block(translator: HTML5Translator, node: nodes.math_block) -> None:
+    """`$$…$$`, on a line of its own."""
+    translator.body.append(f'<div class="math">{_mathml(node, "block")}</div>\n')
+    raise nodes.SkipNode
+
+
+#: Functions that LaTeX sets upright, with a thin space around them (The TeXbook, chapter 18: "Op" atoms).
+_NAMES = "arccos|arcsin|arctan|arg|cos|cosh|cot|det|dim|exp|gcd|inf|ker|lim|ln|log|max|min|sec|sin|sinh|sup|tan|tanh"
+_OPERATOR = re.compile(
+    rf"(?P<before></m(?:i|n|row|sup|sub|frac|sqrt)>)?"
+    rf"(?P<name><mi>(?:{_NAMES})</mi>|<m(?P<script>sup|sub)><mi>(?:{_NAMES})</mi>.*?</m(?P=script)>)"
+    rf"(?P<after>(?=<m(?:i|n|row|sup|sub|frac|sqrt)>))?"
+)
+_THIN = '<mspace width="0.167em" />'
+
+
+def spaced(mathml: str) -> str:
+    """Put the thin spaces around names of functions that the library leaves out: 0.5 sin t, and not 0.5sint."""
+    return _OPERATOR.sub(_with_spaces, mathml)
+
+
+def _with_spaces(match: re.Match[str]) -> str:
+    before = f"{match['before']}{_THIN}" if match["before"] else ""
+    return f"{before}{match['name']}{_THIN if match['after'] is not None else ''}"
+
+
+def _mathml(node: nodes.Element, display: str) -> str:
+    text = node.astext()
+    try:
+        return spaced(str(convert(text, display=display)))
+    except Exception as error:  # the library raises many kinds, for what an author wrote
+        _LOG.warning("this is no LaTeX that can be read: %s (%s)", text, error, location=node)
+        return f"<code>{node.astext()}</code>"
+
+
+# Sphinx's own index knows pages, and needs a server to show what it found in them. Chapters are long, and a reader who
+# looks for "publisher" wants the section; a page opened from a folder has no server.
+
+
+FILE = "_static/search-data.js"
+
+
+def no_index_of_sphinx(app: Sphinx) -> None:
+    """Keep Sphinx from writing an index that nobody reads."""
+    app.builder.search = False  # type: ignore[attr-defined]
+
+
+def write(app: Sphinx, error: Exception | None) -> None:
+    """Write the sections of every page."""
+    if error is None:
+        rows = [row for page in sorted(app.env.found_docs) if page != HOME for row in _sections(app, page)]
+        text = ",\n".join(json.dumps(row, ensure_ascii=False) for row in rows)
+        write_if_changed(Path(app.outdir, FILE), f"const courseSections = [\n{text}\n];\n")
+
+
+def _sections(app: Sphinx, page: str) -> Iterator[tuple[str, str, str, str]]:
+    """Address, page's title, section's title, and the section's words without those of its subsections."""
+    title = app.env.titles[page].astext()
+    for section in app.env.get_doctree(page).findall(nodes.section):
+        heading = next((child.astext() for child in section.children if isinstance(child, nodes.title)), "")
+        words = " ".join(_words(section))
+        yield f"{page}.html#{section['ids'][0]}", title, heading, re.sub(r"\s+", " ", words).strip()
+
+
+def _words(node: nodes.Element) -> Iterator[str]:
+    for child in node.children:
+        if isinstance(child, (nodes.section, nodes.title, nodes.raw, nodes.comment)):
+            continue
+        if isinstance(child, nodes.container) and child.get("nb_element") == "cell_code_output":
+            continue
+        if isinstance(child, (nodes.TextElement, nodes.math_block)):
+            yield child.astext()
+        elif isinstance(child, nodes.Element):
+            yield from _words(child)
+
+
+_NOT_IN = (nodes.title, nodes.reference, nodes.literal, nodes.raw, nodes.math, nodes.caption, nodes.literal_block)
+
+
+class LinkTerms(SphinxTransform):
+    """Works on chapters and exercises; code, headings, links and tables stay as they are."""
+
+    default_priority = 850
+
+    def apply(self, **kwargs: Any) -> None:
+        """Change the document."""
+        page = self.env.docname
+        terms: dict[str, str] = dict(self.config.spinbook_terms)
+        if "/" not in page or not terms:
+            return
+        glossary = posixpath.relpath(f"{GLOSSARY}.html", posixpath.dirname(page))
+        longest = sorted(terms, key=len, reverse=True)
+        pattern = re.compile(rf"\b(?:{'|'.join(map(re.escape, longest))})\b", re.IGNORECASE)
+        by_lower = {form.lower(): anchor for form, anchor in terms.items()}
+        seen: set[str] = set()
+        for text in list(self.document.findall(nodes.Text)):
+            if _is_prose(text):
+                _link(text, pattern, by_lower, seen, glossary)
+
+
+def _is_prose(text: nodes.Text) -> bool:
+    parent = text.parent
+    in_paragraph = False
+    while parent is not None and not isinstance(parent, nodes.document):
+        if isinstance(parent, (*_NOT_IN, nodes.table)):
+            return False
+        in_paragraph = in_paragraph or isinstance(parent, nodes.paragraph)
+        parent = parent.parent
+    return in_paragraph
+
+
+def _link(text: nodes.Text, pattern: re.Pattern[str], anchors: dict[str, str], seen: set[str], glossary: str) -> None:
+    whole = text.astext()
+    pieces: list[nodes.Node] = []
+    position = 0
+    for match in pattern.finditer(whole):
+        anchor = anchors[match.group().lower()]
+        if anchor in seen:
+            continue
+        seen.add(anchor)
+        pieces.append(nodes.Text(whole[position : match.start()]))
+        target = f"{glossary}#{anchor}"
+        pieces.append(nodes.reference("", match.group(), refuri=target, internal=True, classes=["term"]))
+        position = match.end()
+    if pieces:
+        text.parent.replace(text, [*pieces, nodes.Text(whole[position:])])
+
+
+NAME = "spinbook.site.extension"
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Called by Sphinx. Each module adds what its name says."""
+    app.add_config_value("spinbook_terms", [], "env")
+    app.add_lexer("ros-log", LogLexer)
+    app.add_html_math_renderer("mathml", (visit_inline, None), (visit_block, None))
+    app.add_transform(DescribeCells)
+    app.add_transform(LinkTerms)
+    app.connect("builder-inited", no_index_of_sphinx)
+    app.connect("source-read", depend)
+    app.connect("html-page-context", finish)
+    app.connect("build-finished", write)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
