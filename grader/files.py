@@ -7,51 +7,33 @@ import tempfile
 from pathlib import Path
 
 
-def write_durably(file: Path, content: str) -> None:
-    """Make `file` hold `content`, unless it does already. Whoever reads meanwhile sees the old or the new."""
-    write_bytes(file, content.encode("utf-8", errors="backslashreplace"))
-
-
-def write_bytes(file: Path, data: bytes) -> None:
-    """Make `file` hold `data`, unless it does already. Whoever reads meanwhile sees the old or the new."""
-    try:
-        if file.read_bytes() == data:
-            return
-    except OSError:
-        pass
-    file.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
-    try:
-        with os.fdopen(handle, "wb") as out:
-            out.write(data)
-            out.flush()
-            os.fsync(out.fileno())  # else a loss of power could leave the new name with nothing in it
-        os.chmod(temporary, 0o644)  # noqa: PTH101
-        os.replace(temporary, file)  # noqa: PTH105
-    except BaseException:
-        os.unlink(temporary)  # noqa: PTH108
-        raise
-
-
-def write_if_changed(file: Path, content: str | bytes) -> bool:
+def write_if_changed(file: Path, content: str | bytes, *, durable: bool = False) -> bool:
     """Make `file` hold `content`, and its folders exist. True if it had to be written.
 
-    Whoever reads the file meanwhile sees the old content or the new, never a part.
+    Whoever reads the file meanwhile sees the old content or the new, never a part. A `durable` file survives a loss of
+    power, too: it is on the disk before it takes the old one's place.
     """
-    data = content.encode("utf-8") if isinstance(content, str) else content
-    try:
-        if file.read_bytes() == data:
-            return False
-    except OSError:
-        pass
+    data = content.encode("utf-8", errors="backslashreplace") if isinstance(content, str) else content
+    if _holds(file, data):
+        return False
     file.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
+    descriptor, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
     try:
-        with os.fdopen(handle, "wb") as out:
+        with os.fdopen(descriptor, "wb") as out:
             out.write(data)
+            if durable:
+                out.flush()
+                os.fsync(out.fileno())
         os.chmod(temporary, 0o644)  # noqa: PTH101
         os.replace(temporary, file)  # noqa: PTH105
     except BaseException:
         os.unlink(temporary)  # noqa: PTH108
         raise
     return True
+
+
+def _holds(file: Path, data: bytes) -> bool:
+    try:
+        return file.read_bytes() == data
+    except OSError:
+        return False

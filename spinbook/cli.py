@@ -4,33 +4,67 @@ from __future__ import annotations
 
 import importlib
 import sys
+from dataclasses import dataclass
 
 import click
 
 from spinbook import __version__
 from spinbook.problem import SpinbookError
 
-#: Verb -> where its click command is. Loaded when it is called, so that no verb waits for another's imports.
-VERBS = {
-    "build": "spinbook.build.command:build",
-    "lint": "spinbook.lint.command:lint",
-    "package": "spinbook.package.command:package",
-    "site": "spinbook.site.command:site",
-    "interfaces": "spinbook.interfaces.command:interfaces",
-    "ros2": "spinbook.ros2.command:ros2",
-    "turtle": "spinbook.turtlesim.command:turtle",
-    "grade": "grader.command:grade",
-    "gradebook": "spinbook.gradebook.command:gradebook",
-    "gradescope": "grader.gradescope.command:gradescope",
-    "classroom50": "grader.classroom50.command:classroom50",
-    "audit": "grader.audit.command:audit",
-    "handout": "spinbook.handout.command:command",
-    "check": "spinbook.submit.check_command:check",
-    "submit": "spinbook.submit.command:submit",
-    "update": "spinbook.update.command:update",
-    "new": "spinbook.new.command:new",
-    "import": "spinbook.importing.command:import_book",
-    "doctor": "spinbook.doctor.command:doctor",
+
+@dataclass(frozen=True)
+class Verb:
+    """Where a verb's click command is, as `module:name`, and one line for `spinbook --help`."""
+
+    command: str
+    summary: str
+
+
+AUTHORS = {
+    "new": Verb("spinbook.new.command:new", "Make a course or an exercise that works at once, to go on from."),
+    "import": Verb(
+        "spinbook.importing.command:import_book", "Make a course of a book that exists (MkDocs, Docusaurus …)."
+    ),
+    "lint": Verb("spinbook.lint.command:lint", "Say what is wrong in the chapters and what will not run."),
+    "build": Verb(
+        "spinbook.build.command:build", "Build notebooks from chapters; --execute runs them with real nodes."
+    ),
+    "interfaces": Verb(
+        "spinbook.interfaces.command:interfaces", "List, compile and add messages, services and actions."
+    ),
+    "package": Verb("spinbook.package.command:package", "Write the chapters' nodes as a ROS 2 package."),
+    "site": Verb("spinbook.site.command:site", "Build the course's website from the notebooks as they ran."),
+    "handout": Verb("spinbook.handout.command:command", "Write what students get: no solutions, no hidden checks."),
+}
+INSTRUCTORS = {
+    "grade": Verb("grader.command:grade", "Grade one submission, or a whole class."),
+    "audit": Verb("grader.audit.command:audit", "Show whether an exercise's checks catch what is wrong."),
+    "gradebook": Verb("spinbook.gradebook.command:gradebook", "Write one page and one table for all exercises."),
+    "gradescope": Verb("grader.gradescope.command:gradescope", "Write an autograder to upload to Gradescope."),
+    "classroom50": Verb(
+        "grader.classroom50.command:classroom50", "Write an autograder for Classroom 50 and GitHub Actions."
+    ),
+}
+STUDENTS = {
+    "check": Verb("spinbook.submit.check_command:check", "Say what the public checks say of your node."),
+    "submit": Verb("spinbook.submit.command:submit", "Write one file to upload, with what the public checks say."),
+    "update": Verb("spinbook.update.command:update", "Bring your folder up to a newer handout; your work stays."),
+}
+EVERYBODY = {
+    "ros2": Verb("spinbook.ros2.command:ros2", "The ros2 command line, where no ROS 2 is installed."),
+    "turtle": Verb("spinbook.turtlesim.command:turtle", "Draw the running turtlesim."),
+    "doctor": Verb("spinbook.doctor.command:doctor", "Say what works on this machine, and how to fix what does not."),
+}
+SECTIONS = {"Authors": AUTHORS, "Instructors": INSTRUCTORS, "Students": STUDENTS, "Everybody": EVERYBODY}
+VERBS = {name: verb for section in SECTIONS.values() for name, verb in section.items()}
+
+#: The extra of `pip install spinbook[…]` that brings a module which not every installation has.
+EXTRAS = {
+    "libcst": "audit",
+    "distributed": "cluster",
+    "rosbags": "bag",
+    "rclpy": "ros",
+    **dict.fromkeys(("sphinx", "myst_nb", "myst_parser", "latex2mathml", "livereload", "sphinx_book_theme"), "site"),
 }
 
 
@@ -41,48 +75,43 @@ class Verbs(click.Group):
         return list(VERBS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        if cmd_name not in VERBS:
-            return None
-        module, _, name = VERBS[cmd_name].partition(":")
-        command = getattr(importlib.import_module(module), name)
-        assert isinstance(command, click.Command)
-        return command
+        return _load(cmd_name, VERBS[cmd_name]) if cmd_name in VERBS else None
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the verbs by who uses them, without importing any."""
+        for section, verbs in SECTIONS.items():
+            with formatter.section(section):
+                formatter.write_dl([(name, verb.summary) for name, verb in verbs.items()])
+
+
+def _load(name: str, verb: Verb) -> click.Command:
+    """A verb's command. Raises UsageError where a module is missing that an extra would have brought."""
+    module, _, attribute = verb.command.partition(":")
+    try:
+        command = getattr(importlib.import_module(module), attribute)
+    except ModuleNotFoundError as missing:
+        package = (missing.name or "").partition(".")[0]
+        if package not in EXTRAS:
+            raise
+        raise click.UsageError(
+            f"`spinbook {name}` needs {package}, which is not installed. "
+            f"Install it with: pip install 'spinbook[{EXTRAS[package]}]'"
+        ) from None
+    assert isinstance(command, click.Command)
+    return command
 
 
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="spinbook")
 def spinbook() -> None:
-    """Chapters about ROS 2 become notebooks that really run; students' nodes are graded by spinning them.
+    """Turn Markdown chapters about ROS 2 into notebooks that really run, and grade students' ROS 2 nodes.
 
-    Start in a course's folder (the one with course.toml):
-
-    \b
-      spinbook lint               what will not run in the chapters, and why
-      spinbook build --execute    chapters -> notebooks, run with real nodes
-      spinbook site               the course's website, from the notebooks as they ran
-      spinbook interfaces list    the messages, services and actions that it defines
-      spinbook package            the chapters' nodes as a ROS 2 package
-      spinbook grade EXERCISE F   what is right and wrong in a student's node
-      spinbook new COURSE         a small course of your own that works at once, to go on from
-      spinbook import BOOK        a course from a book that exists (MkDocs, Docusaurus, Jupyter Book …)
-      spinbook gradebook RESULTS  one page for all exercises of a class
-      spinbook gradescope E       an autograder to upload to Gradescope
-      spinbook classroom50 E      an autograder for Classroom 50 and GitHub Actions
-      spinbook handout            what students get: no solutions, no hidden checks
-      spinbook audit              whether the exercises' checks catch what is wrong
-
-    In a student's folder of a course:
-
-    \b
-      spinbook check EXERCISE     what the public checks say of your node
-      spinbook submit EXERCISE    one file to upload, with what the public checks say
-      spinbook package            your notebooks' nodes as a ROS 2 package
-      spinbook update NEW.zip     a newer handout, with your work kept
+    Start in a course's folder, the one with course.toml. `spinbook VERB --help` explains a verb.
     """
 
 
 def main() -> None:
-    """Run `spinbook` as a program; bad input is told in words and exits with 1, bad usage with 2."""
+    """Run `spinbook` as a program; bad input is reported in words and exits with 1, bad usage with 2."""
     try:
         spinbook()
     except SpinbookError as error:

@@ -7,12 +7,12 @@ import gzip
 import hashlib
 import json
 import os
-import tempfile
 import threading
 import time
 from functools import cache
 from pathlib import Path
 
+from grader.files import write_if_changed
 from grader.grading.grading import Grading
 from grader.grading.reference import GRADER, cache_folder, digest_of, versions
 from grader.recording import Recording
@@ -77,10 +77,7 @@ def audit_folder(exercise: str) -> Path:
 def keep(file: Path, content: bytes) -> None:
     """Write a file as a whole. Where nothing can be kept, it is made anew each time."""
     with contextlib.suppress(OSError):
-        file.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=file.parent, delete=False) as temporary:
-            temporary.write(content)
-        Path(temporary.name).replace(file)
+        write_if_changed(file, content)
 
 
 def tidy(exercise: str) -> None:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import os
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,6 +18,7 @@ from rich.text import Text
 
 from grader.audit.result import Audit, Fate, MutantResult, Problem
 from grader.audit.shadow import Shadow
+from grader.files import write_if_changed
 from grader.report.pages import render
 from grader.report.printable import printable
 
@@ -146,7 +145,7 @@ def write_json(audits: list[Audit], faults: list[Problem], file: Path) -> None:
         "audits": [_entries(audit) for audit in audits],
         "faults": [dataclasses.asdict(fault) for fault in faults],
     }
-    write(file, json.dumps(entries, indent=2, ensure_ascii=False) + "\n")
+    write_if_changed(file, json.dumps(entries, indent=2, ensure_ascii=False) + "\n")
 
 
 def _entries(audit: Audit) -> dict[str, Any]:
@@ -155,14 +154,6 @@ def _entries(audit: Audit) -> dict[str, Any]:
         del mutant["mutant"]["source"]
     counts = {fate: audit.count(fate) for fate in ("caught", "equivalent", "listed", "survived")}
     return {**entries, "score": audit.score, "different": audit.different, **counts}
-
-
-def write(file: Path, text: str) -> None:
-    """Write a file as a whole, or not at all."""
-    with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=file.absolute().parent, delete=False) as temporary:
-        temporary.write(text)
-    os.chmod(temporary.name, 0o644)  # noqa: PTH101 - a temporary file is its owner's only
-    Path(temporary.name).replace(file)
 
 
 #: Fate -> what it is called, and the page's colour for it.
@@ -180,7 +171,7 @@ def write_html(audits: list[Audit], faults: list[Problem], file: Path) -> None:
     It is one file, needs no network and runs no script.
     """
     here = f"{Path.cwd()}/"
-    write(
+    write_if_changed(
         file,
         render(
             "audit/audit.html",

@@ -30,7 +30,7 @@ from grader.classroom.rejudging import rejudge
 from grader.classroom.request import Backend, ClassRequest, host_error
 from grader.classroom.results import ClassGrading, Plan, Results, not_written
 from grader.exercise import Exercise
-from grader.files import write_durably
+from grader.files import write_if_changed
 from grader.grading import Grade, grading_of
 from grader.grading.grading import Grading
 from grader.report.printable import printable
@@ -228,7 +228,9 @@ def _finish(
     asked = [Skipped(", ".join(question.files), str(question)) for question in intake.questions]
     misconceptions = grouped(entries, _signatures(grading, entries, console))
     skipped = [*asked, *intake.skipped]
-    write_durably(folder / "index.html", overview_page(marking.exercise, entries, skipped, faults, misconceptions))
+    write_if_changed(
+        folder / "index.html", overview_page(marking.exercise, entries, skipped, faults, misconceptions), durable=True
+    )
     others = marking.results.others({entry.student.id for entry in every})
     if others:
         console.print(f"of an earlier run, left as they are: {', '.join(others)}", style="yellow")

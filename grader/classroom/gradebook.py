@@ -13,7 +13,7 @@ from pathlib import Path
 
 from grader.checking.verdict import Verdict
 from grader.exercise import Exercise
-from grader.files import write_durably
+from grader.files import write_if_changed
 from grader.grading.entry import Entry, Student
 from grader.report.as_json import folder_of
 from grader.report.feedback import told
@@ -261,7 +261,7 @@ def write_gradebook(
     """
     contents = gradebook(results, exercise, entries, due)
     for file, content in contents.items():
-        write_durably(file, content)
+        write_if_changed(file, content, durable=True)
     return tuple(contents)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import os
 import queue
 import tempfile
@@ -18,6 +17,7 @@ from grader.exercise import Exercise, ExerciseError
 from grader.grading import Grade
 from grader.grading.grading import Grading
 from grader.grading.running import WorkStealing
+from grader.locks import claim_number
 from grader.report.feedback_plot import feedback_plot
 from grader.sandbox import Middleware
 from grader.submission import Submission
@@ -119,20 +119,16 @@ def _marked(who: str, grading: Grading, submission: Submission) -> Graded:
 
 @contextlib.contextmanager
 def own_core() -> Iterator[int]:
-    """A CPU to keep a program on. It is that of the first number that nobody on this machine holds: 0, 1, 2 …"""
+    """A CPU to keep a program on: that of the first number that nobody on this machine holds."""
     folder = Path(tempfile.gettempdir()) / f"spinbook-cores-{os.getuid()}"
     folder.mkdir(mode=0o700, exist_ok=True)
     cores = sorted(os.sched_getaffinity(0))
-    for number in range(1024):
-        lock = os.open(folder / str(number), os.O_CREAT | os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW, 0o600)
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            os.close(lock)
-            continue
-        try:
-            yield cores[number % len(cores)]
-        finally:
-            os.close(lock)
+    claimed = claim_number(folder, range(1024))
+    if claimed is None:
+        yield cores[0]
         return
-    yield cores[0]
+    number, lock = claimed
+    try:
+        yield cores[number % len(cores)]
+    finally:
+        os.close(lock)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from grader.checking.verdict import Finding
-from grader.files import write_durably
+from grader.files import write_if_changed
 from grader.grading import Grade
 from grader.grading.entry import Entry
 from grader.grading.grading import Grading
@@ -218,7 +218,11 @@ def _failures(file: Path, grading: Grading) -> dict[str, Failure]:
     failures = failures_of(grade)
     if grade.outcome != "host-error":
         with contextlib.suppress(OSError):  # where nothing can be kept, it is graded anew each time
-            write_durably(kept, json.dumps({name: dataclasses.asdict(failure) for name, failure in failures.items()}))
+            write_if_changed(
+                kept,
+                json.dumps({name: dataclasses.asdict(failure) for name, failure in failures.items()}),
+                durable=True,
+            )
     return failures
 
 

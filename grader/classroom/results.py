@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import gzip
 import hashlib
 import json
@@ -19,9 +18,10 @@ from grader.classroom import Adjustment, Entry
 from grader.classroom.handed_in import HandedIn, Submissions
 from grader.classroom.request import Backend, Graded
 from grader.exercise import Exercise
-from grader.files import write_bytes, write_durably
+from grader.files import write_if_changed
 from grader.grading.grading import Grading
 from grader.grading.reference import digest_of, versions
+from grader.locks import try_lock
 from grader.recording import Recording
 from grader.recording.store import from_json as recordings_from_json
 from grader.recording.store import to_json as recordings_to_json
@@ -70,7 +70,7 @@ class Results:
     def keep_recordings(self, student: str, key: str, recordings: dict[str, Recording]) -> None:
         """Keep what was recorded of a student's run, so that changed checks can judge it."""
         content = gzip.compress(f"{key}\n{recordings_to_json(recordings)}".encode(), mtime=0)
-        write_bytes(folder_of(self.folder, student) / RECORDINGS, content)
+        write_if_changed(folder_of(self.folder, student) / RECORDINGS, content, durable=True)
 
     def write(self, entry: Entry, key: str, page: str, plot: str | None) -> None:
         """Keep a student's entry. Whenever this is broken off, what is there is whole, or is made again."""
@@ -82,12 +82,12 @@ class Results:
                 (folder / "grade.json").unlink()
         except (OSError, ValueError):
             pass
-        write_durably(folder / "feedback.html", page)
+        write_if_changed(folder / "feedback.html", page, durable=True)
         if plot is not None:
-            write_durably(folder / "plot.svg", plot)
+            write_if_changed(folder / "plot.svg", plot, durable=True)
         else:
             (folder / "plot.svg").unlink(missing_ok=True)
-        write_durably(folder / "grade.json", text)
+        write_if_changed(folder / "grade.json", text, durable=True)
 
     def forget(self, student: str) -> None:
         """Take away what vouches for a student's results, so that the next run grades the submission again."""
@@ -106,12 +106,10 @@ class Results:
 
     def __enter__(self) -> Results:
         self.folder.mkdir(parents=True, exist_ok=True)
-        self._lock = os.open(self.folder / ".lock", os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, 0o644)
-        try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            os.close(self._lock)
-            raise Busy(f"{self.folder}: another grading is at work in this folder. Wait for its end.") from None
+        lock = try_lock(self.folder / ".lock")
+        if lock is None:
+            raise Busy(f"{self.folder}: another grading is writing to this folder. Wait until it has finished.")
+        self._lock = lock
         return self
 
     def __exit__(

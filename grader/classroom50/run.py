@@ -13,7 +13,7 @@ from pathlib import Path
 
 from grader.classroom50.result import result, summary
 from grader.exercise import Exercise, ExerciseError, load
-from grader.files import write_durably
+from grader.files import write_if_changed
 from grader.gradescope.prepare import keep_beside
 from grader.gradescope.run import submission
 from grader.grading import Grade, Options, grading_of
@@ -32,10 +32,12 @@ def main(folder: Path, repository: Path, isolation: str = "") -> int:
     if grade.outcome == "host-error":
         return _fault(grade.message)
     text = summary(grade, exercise.title)
-    write_durably(
-        repository / "result.json", json.dumps(result(grade, os.environ), indent=2, ensure_ascii=False) + "\n"
+    write_if_changed(
+        repository / "result.json",
+        json.dumps(result(grade, os.environ), indent=2, ensure_ascii=False) + "\n",
+        durable=True,
     )
-    write_durably(repository / "release-body.md", text)
+    write_if_changed(repository / "release-body.md", text, durable=True)
     if page := os.environ.get("GITHUB_STEP_SUMMARY"):
         with Path(page).open("a", encoding="utf-8") as file:
             file.write(text)

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.exercise import Exercise, ExerciseError, load
-from grader.files import write_durably
+from grader.files import write_if_changed
 from grader.gradescope.prepare import keep_beside
 from grader.grading import Options, grading_of
 from grader.grading.entry import Entry, Student
@@ -37,7 +37,9 @@ def main(folder: Path, root: Path, isolation: str = "") -> None:
     except Exception:
         traceback.print_exc(file=sys.stdout)
         told = no_score("The autograder broke; its output says more.")
-    write_durably(root / "results" / "results.json", json.dumps(told, indent=2, ensure_ascii=False) + "\n")
+    write_if_changed(
+        root / "results" / "results.json", json.dumps(told, indent=2, ensure_ascii=False) + "\n", durable=True
+    )
 
 
 def _entry(exercise: Exercise, root: Path, isolation: str) -> Entry:

@@ -8,7 +8,6 @@ import json
 import os
 import platform
 import re
-import tempfile
 from functools import cache
 from importlib import metadata
 from pathlib import Path
@@ -17,6 +16,7 @@ from grader.checking.proofreading import line_with, points_that_do_not_add_up, s
 from grader.checking.verdict import Verdict
 from grader.exercise import Exercise, ExerciseError
 from grader.exercise.starter import MarkError, starter
+from grader.files import write_if_changed
 from grader.grading.running import ScenarioRunner
 from grader.recording import Recording
 from grader.recording.store import from_json, to_json
@@ -84,15 +84,8 @@ def reference(runner: ScenarioRunner) -> dict[str, Recording]:
     recordings = _made(runner)
     _prove(runner, recordings)
     with contextlib.suppress(OSError):  # where nothing can be kept, it is made anew each time
-        _keep(recordings, kept)
+        write_if_changed(kept, to_json(recordings))
     return recordings
-
-
-def _keep(recordings: dict[str, Recording], file: Path) -> None:
-    file.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=file.parent, delete=False) as temporary:
-        temporary.write(to_json(recordings))
-    Path(temporary.name).replace(file)
 
 
 def cache_folder() -> Path:

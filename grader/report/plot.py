@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+import io
 import math
-import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ from matplotlib.figure import Figure
 from grader.checking import Run
 from grader.checking.comparator import equal
 from grader.exercise import Exercise
+from grader.files import write_if_changed
 from grader.grading import Grade
 from grader.report.printable import printable
 
@@ -111,12 +111,7 @@ def _first_wrong(grade: Grade) -> str:
 
 def _save(figure: Figure, file: Path) -> None:
     kind = file.suffix.lower().removeprefix(".") or "svg"
-    with tempfile.NamedTemporaryFile(dir=file.parent, suffix=f".{kind}", delete=False) as temporary:
-        pass
-    try:
-        with mpl.rc_context(SETTINGS):
-            figure.savefig(temporary.name, format=kind, metadata={"Date": None} if kind == "svg" else None)
-        os.chmod(temporary.name, 0o644)  # noqa: PTH101
-        Path(temporary.name).replace(file)
-    finally:
-        Path(temporary.name).unlink(missing_ok=True)
+    picture = io.BytesIO()
+    with mpl.rc_context(SETTINGS):
+        figure.savefig(picture, format=kind, metadata={"Date": None} if kind == "svg" else None)
+    write_if_changed(file, picture.getvalue())

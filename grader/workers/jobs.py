@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import tempfile
 from collections.abc import Callable
@@ -12,6 +11,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from grader.exercise import Exercise
+from grader.locks import claim_number
 from grader.recording import Recording
 from grader.runner.task import Task
 from grader.sandbox import ForkServer, Isolation, Limits, Middleware, Program, Student, enter
@@ -32,16 +32,11 @@ def domain_for(isolation: Isolation) -> int:
         return ALONE
     folder = Path(tempfile.gettempdir()) / f"spinbook-domains-{os.getuid()}"
     folder.mkdir(mode=0o700, exist_ok=True)
-    for domain in SHARED:
-        # Never closed: the lock goes with the process.
-        lock = os.open(folder / str(domain), os.O_CREAT | os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW, 0o600)
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            os.close(lock)
-        else:
-            return domain
-    raise OSError("all ROS domains for rigs are in use by other gradings on this machine")
+    # Never closed: the lock goes with the process.
+    claimed = claim_number(folder, SHARED)
+    if claimed is None:
+        raise OSError("all ROS domains for grading are in use by other gradings on this machine")
+    return claimed[0]
 
 
 class Job(Protocol):

@@ -10,7 +10,7 @@ import click
 from grader.classroom.course_gradebook import course_csv, course_page, course_rows, graded_exercises
 from grader.classroom.gradebook import BYTE_ORDER_MARK
 from grader.exercise import ExerciseError, load
-from grader.files import write_durably
+from grader.files import write_if_changed
 from spinbook.chapter.chapter import CellKind
 from spinbook.chapters import read_all
 from spinbook.course.course import Course, find_course
@@ -44,8 +44,8 @@ def gradebook(results: Path, start: Path) -> None:
         click.echo(f"{message} {results / 'EXERCISE'}", err=True)
         sys.exit(NOTHING_GRADED)
     rows = course_rows(exercises)
-    write_durably(results / "index.html", course_page(course.title, exercises, rows))
-    write_durably(results / "gradebook.csv", BYTE_ORDER_MARK + course_csv(exercises, rows))
+    write_if_changed(results / "index.html", course_page(course.title, exercises, rows), durable=True)
+    write_if_changed(results / "gradebook.csv", BYTE_ORDER_MARK + course_csv(exercises, rows), durable=True)
     students = "1 student" if len(rows) == 1 else f"{len(rows)} students"
     click.echo(f"{students}, exercises: {', '.join(exercise.name for exercise in exercises)}.")
     click.echo(f"Open {results / 'index.html'}.")

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import os
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from grader.locks import claim_number
 from interface_compiler import prefixes
 
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
@@ -97,26 +97,12 @@ def claim_domain() -> Domain:
         folder.chmod(0o1777)
     # Begin at a place of this process's own, so that many notebooks that start at once do not queue at the first.
     start = os.getpid() % len(OWN_DOMAINS)
-    for number in [*OWN_DOMAINS[start:], *OWN_DOMAINS[:start]]:
-        with contextlib.suppress(OSError):
-            lock = _open(folder / str(number))
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                os.close(lock)
-                continue
-            return Domain(number, lock)
-    raise NoDomainLeft(
-        f"all {len(OWN_DOMAINS)} ROS domains are in use by notebooks on this machine: close some of them."
-    )
-
-
-def _open(file: Path) -> int:
-    try:
-        return os.open(file, os.O_RDONLY | os.O_CREAT | os.O_CLOEXEC, 0o644)
-    except PermissionError:
-        # Sticky folders of other users forbid O_CREAT on what exists (fs.protected_regular).
-        return os.open(file, os.O_RDONLY | os.O_CLOEXEC)
+    claimed = claim_number(folder, [*OWN_DOMAINS[start:], *OWN_DOMAINS[:start]])
+    if claimed is None:
+        raise NoDomainLeft(
+            f"all {len(OWN_DOMAINS)} ROS domains are in use by notebooks on this machine: close some of them."
+        )
+    return Domain(*claimed)
 
 
 def shared_domain(number: int) -> Domain:

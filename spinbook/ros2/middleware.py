@@ -5,27 +5,12 @@ from __future__ import annotations
 import os
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from interface_compiler import prefixes
 from spinbook.ros2.cli import CommandError
 
-if TYPE_CHECKING:
-    from spinbook.ros2.graph import Graph
-
 #: Above this, DDS has no port numbers left (https://docs.ros.org/en/jazzy/Concepts/Intermediate/About-Domain-ID.html).
 LARGEST_DOMAIN = 232
-
-
-def open_graph(*, node_name: str | None = None, spin_time: float | None = None, use_sim_time: bool = False) -> Graph:
-    """Check the environment, then create a node of ours that looks at the graph (a context manager).
-
-    `spin_time` bounds discovery, in seconds. Raises `CommandError` for an environment that rclpy can't work in.
-    """
-    prepare()
-    from spinbook.ros2.graph import Graph
-
-    return Graph(node_name=node_name, spin_time=spin_time, use_sim_time=use_sim_time)
 
 
 def prepare() -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from spinbook.ros2.cli import CONTEXT, CommandError, Entry, Menu, discovery_options
-from spinbook.ros2.middleware import open_graph
+from spinbook.ros2.opening import open_graph
 
 if TYPE_CHECKING:
     from spinbook.ros2.graph import Graph

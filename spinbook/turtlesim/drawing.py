@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+import io
 import math
-import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Affine2D
 
+from grader.files import write_if_changed
 from spinbook.turtlesim.geometry import PIXELS_PER_UNIT
 from spinbook.turtlesim.moving import turtle_shapes
 from spinbook.turtlesim.world_picture import Color, TurtlePicture, WorldPicture, caption
@@ -64,15 +64,10 @@ def save(world: WorldPicture, file: Path) -> None:
         raise ValueError(f"{file}: a picture's name must end in .png or .svg")
     # Neither dates nor versions nor random ids, or no two pictures would be alike.
     metadata = {"Date": None, "Creator": None} if kind == "svg" else {"Software": None}
-    descriptor, unfinished = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
-    try:
-        with os.fdopen(descriptor, "wb") as stream, mpl.rc_context({"svg.hashsalt": "turtlesim"}):
-            draw(world).savefig(stream, format=kind, dpi=_DPI, metadata=metadata)
-        Path(unfinished).chmod(0o644)
-        Path(unfinished).replace(file)
-    except BaseException:
-        Path(unfinished).unlink(missing_ok=True)
-        raise
+    picture = io.BytesIO()
+    with mpl.rc_context({"svg.hashsalt": "turtlesim"}):
+        draw(world).savefig(picture, format=kind, dpi=_DPI, metadata=metadata)
+    write_if_changed(file, picture.getvalue())
 
 
 def _prepare(axes: Axes, world: WorldPicture) -> None:

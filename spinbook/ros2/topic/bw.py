@@ -7,7 +7,7 @@ import time
 import click
 
 from spinbook.ros2.cli import CONTEXT, discovery_options
-from spinbook.ros2.middleware import open_graph
+from spinbook.ros2.opening import open_graph
 from spinbook.ros2.topic.statistics import Bandwidth
 
 WINDOW = 100

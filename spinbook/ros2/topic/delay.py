@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from spinbook.ros2.cli import CONTEXT, CommandError, discovery_options
-from spinbook.ros2.middleware import open_graph
+from spinbook.ros2.opening import open_graph
 from spinbook.ros2.topic.statistics import Delay
 
 WINDOW = 10000

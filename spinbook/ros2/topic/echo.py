@@ -11,7 +11,7 @@ import yaml
 
 from spinbook.ros2 import interfaces, qos
 from spinbook.ros2.cli import CONTEXT, discovery_options
-from spinbook.ros2.middleware import open_graph
+from spinbook.ros2.opening import open_graph
 from spinbook.ros2.topic.selection import check_path, field, field_path, filter_option
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import click
 
 from spinbook.ros2 import interfaces
 from spinbook.ros2.cli import CONTEXT, discovery_options
-from spinbook.ros2.middleware import open_graph
+from spinbook.ros2.opening import open_graph
 
 
 @click.command(context_settings=CONTEXT)

@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from spinbook.ros2.cli import CONTEXT, discovery_options
-from spinbook.ros2.middleware import open_graph
+from spinbook.ros2.opening import open_graph
 from spinbook.ros2.topic.selection import Filter, filter_option
 from spinbook.ros2.topic.statistics import Rate
 

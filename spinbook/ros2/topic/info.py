@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from spinbook.ros2.cli import CONTEXT, CommandError, discovery_options
-from spinbook.ros2.middleware import open_graph
+from spinbook.ros2.opening import open_graph
 
 
 @click.command(context_settings=CONTEXT)

@@ -9,7 +9,7 @@ import click
 
 from spinbook.ros2 import interfaces, qos
 from spinbook.ros2.cli import CONTEXT, CommandError, discovery_options
-from spinbook.ros2.middleware import open_graph
+from spinbook.ros2.opening import open_graph
 
 if TYPE_CHECKING:
     from spinbook.ros2.graph import Graph
