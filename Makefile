@@ -36,11 +36,12 @@ course: setup   ## Build, run and package the real course, make its site, and gr
 class: setup   ## Make a class of 200, grade it, and check every grade; the pages lie in build/class/results.
 	$(BIN)/python benchmarks/class/grade_all.py --count 200 --out build/class
 
-test: setup   ## Check types and style, then run every test.
+test: setup   ## Check style, types and the direction of imports, then run every test.
 	@sh test-programs.sh
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/lint-imports
 	$(PYTEST) -n 2
 
 soak: setup   ## Run the long suites in full, and count how often the same program gets another recording or grade.

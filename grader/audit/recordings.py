@@ -23,7 +23,7 @@ from grader.submission import Submission
 
 #: The parts of the grader that decide what a recording holds.
 SPINNING = ("workers", "exercise", "recording", "runner", "sandbox", "scenario", "submission")
-SPINNING_FILES = ("grading/spinning.py", "loopback.xml")
+SPINNING_FILES = ("grading/running.py", "loopback.xml")
 
 #: What nobody has asked for since is thrown away.
 KEPT_DAYS = 30

@@ -15,7 +15,7 @@ from grader.checking.verdict import Finding
 from grader.grading.reference import digest_of, solution_file
 
 #: What decides a trial beside what decides a recording.
-JUDGING = ("checking", "audit/trial.py", "audit/comparing.py", "audit/listing.py")
+JUDGING = ("checking", "audit/trial.py", "audit/listing.py")
 
 
 class Store:

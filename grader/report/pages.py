@@ -72,7 +72,7 @@ def _harmless(value: Any) -> Any:
 
 @cache
 def _style() -> str:
-    return (GRADER / "pages" / "style.css").read_text(encoding="utf-8")
+    return (GRADER / "report" / "style.css").read_text(encoding="utf-8")
 
 
 def _allowed(text: str) -> str:

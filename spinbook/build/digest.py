@@ -38,10 +38,13 @@ def _bytes(file: Path) -> bytes:
         return b"\0missing"
 
 
-def folders_digest(root: Path, *folders: str) -> str:
-    """A digest of all files in these folders of `root`, those apart that Python compiled."""
-    files = (file for folder in folders for file in (root / folder).rglob("*.*") if file.suffix != ".pyc")
-    return files_digest(files, root)
+def folders_digest(root: Path, *parts: str) -> str:
+    """A digest of these files of `root` and of all files in these folders, without those that Python compiled."""
+    return files_digest((file for part in parts for file in _files(root / part) if file.suffix != ".pyc"), root)
+
+
+def _files(path: Path) -> Iterable[Path]:
+    return [path] if path.is_file() else path.rglob("*.*")
 
 
 @functools.cache

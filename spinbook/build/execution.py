@@ -120,7 +120,7 @@ def _printed(cell: dict[str, Any]) -> str:
 DEADLINE_S = 300.0
 _TO_SAY_SO_S = 20.0
 #: What of Spinbook a notebook's cells use.
-_USED_BY_CELLS = ("check", "course", "graph", "kernel", "ros2", "turtlesim", "package", "interfaces")
+_USED_BY_CELLS = ("check", "chapter", "course", "graph", "kernel", "ros2", "turtlesim", "package", "interfaces")
 
 
 @dataclass(frozen=True)

@@ -55,7 +55,7 @@ def build_notebooks(course: Course, *, is_strict: bool = False) -> Iterator[Buil
     before = _read_record(record)
     forget_chapters()
     known = surroundings(course)
-    code = code_digest("chapter", "build", "course", "interfaces")
+    code = code_digest("chapter", "chapters.py", "build", "course", "interfaces")
     common = digest(code, repr(course), repr(_sorted(known)), str(is_strict))
     parts = ("exercises", "solutions")
     exercise_files = files_digest(

@@ -38,6 +38,7 @@ _CODE = (
     "browser",
     "chapter",
     "build",
+    "chapters.py",
     "course",
     "kernel",
     "ros2",
