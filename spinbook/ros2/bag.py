@@ -14,7 +14,7 @@ import click
 from spinbook.ros2 import cli, interfaces
 from spinbook.ros2 import interfaces as interface_files
 from spinbook.ros2.cli import CONTEXT, CommandError, Entry, Menu
-from spinbook.ros2.middleware import open_graph
+from spinbook.ros2.opening import open_graph
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -14,7 +14,7 @@ from spinbook.ros2.cli import CONTEXT, CommandError, Entry, Menu
 pkg = Menu(
     name="pkg",
     entries={
-        "create": Entry("spinbook.ros2.creating:create", "Make a new package of Python."),
+        "create": Entry("spinbook.package.create:create", "Make a new package of Python."),
         "executables": Entry("spinbook.ros2.pkg:executables", "What `ros2 run` can start."),
         "list": Entry("spinbook.ros2.pkg:list_", "The packages there are."),
         "prefix": Entry("spinbook.ros2.pkg:prefix", "Where a package is installed."),
