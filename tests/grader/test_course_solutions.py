@@ -31,15 +31,23 @@ NAMES = sorted(
 )
 
 
+@pytest.fixture(scope="module")
+def workers_with_interfaces() -> Iterator[WorkerPool]:
+    """A worker that was started when the course's own interfaces could be imported."""
+    compile_course(find_course(ROOT))
+    load(ROOT / "exercises" / "calibration")
+    with WorkerPool() as workers:
+        yield workers
+
+
 @pytest.fixture(scope="module", params=NAMES)
 def graded(
-    request: pytest.FixtureRequest, workers: WorkerPool, tmp_path_factory: pytest.TempPathFactory
+    request: pytest.FixtureRequest, workers_with_interfaces: WorkerPool, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Grading]:
     """Ready to grade one exercise; its solution has been run anew."""
-    compile_course(find_course(ROOT))
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SPINBOOK_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield grading_of(load(ROOT / "exercises" / request.param), Options(), workers)
+        yield grading_of(load(ROOT / "exercises" / request.param), Options(), workers_with_interfaces)
 
 
 def test_the_solution_gets_full_marks_and_the_starter_nothing(graded: Grading) -> None:
