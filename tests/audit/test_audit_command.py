@@ -65,7 +65,8 @@ def test_an_exercise_that_can_not_be_audited_ends_with_1_and_says_why(small: Sma
     small.change("exercises/doubler/exercise.toml", "points = 10", "points = 11")
     done = run("--quick", "--json", "audit.json")
     assert done.exit_code == 1
-    assert "give 10 points together, but points = 11" in done.stderr
+    assert "the checks give 10 points together" in done.stderr
+    assert "but points = 11" in done.stderr
     assert json.loads(Path("audit.json").read_text())["faults"][0]["place"].endswith("exercise.toml")
 
 
