@@ -16,6 +16,7 @@ from grader.exercise.loading import NoExercise, find
 from grader.grading import Options
 from grader.sandbox import Middleware, SandboxUnavailable, choose_middleware
 from grader.workers import HostFault, WorkerPool
+from interface_compiler.near import use_near
 
 #: Exit codes, beside click's 2 for usage and a shell's 130 for Ctrl-C.
 PROVED, TO_FIX, OUR_FAULT, STOPPED = 0, 1, 3, 130
@@ -80,6 +81,8 @@ def audit(
     try:
         if not shadow and (warning := choose_middleware(options.middleware).warning):
             click.echo(warning, err=True)
+        # Workers can import a course's own interfaces only if these were found before the workers start.
+        use_near(Path.cwd())
         with WorkerPool(*(Middleware if shadow else (options.middleware,))) as workers:
             for folder in [_folder(name) for name in exercises] or _all_here():
                 try:
