@@ -20,7 +20,7 @@ REACHES = ["test_reaches_the_goal"]
     rule="Before the first message on /goal, publish nothing, or zeros.",
 )
 def test_stands_still_without_a_goal(no_goal: Run) -> None:
-    """Without a goal the turtle stands still."""
+    """Until the first goal it sends no command but zeros."""
     for command in no_goal.messages_on(COMMANDS):
         if any(command.fields["linear"].values()) or any(command.fields["angular"].values()):
             told = "there is no goal yet, but your node drives."

@@ -36,7 +36,7 @@ def test_goes_on_for_a_minute(minute: Run) -> None:
     rule="After a minute, the beats still come at quarters of a second.",
 )
 def test_does_not_drift(minute: Run) -> None:
-    """After a minute, the beats still come at quarters of a second."""
+    """The 240th beat is as punctual as the first."""
     must_be_regular(minute)
 
 

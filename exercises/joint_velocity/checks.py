@@ -39,7 +39,7 @@ def test_answers_each_message_once(chapter: Run) -> None:
     misconception="answers late",
 )
 def test_answers_at_once(chapter: Run) -> None:
-    """Each answer goes out within 2 ms, and before the next message."""
+    """Each answer goes out within 10 ms, and before the next message."""
     chapter.must_answer_at_once()
 
 

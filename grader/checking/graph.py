@@ -111,7 +111,7 @@ class GraphChecks(Recorded):
 
     def _lacks(self, kind: Kind, name: str) -> NoReturn:
         does, others = _WORDS[kind]
-        names = ", ".join(sorted({end.topic for end in self.end_points(kind)})) or "none"
+        names = ", ".join(sorted({end.topic for end in self.end_points(kind)} - {*OF_EVERY_NODE})) or "none"
         _wrong(f"your node does not {does} {name}. {others}: {names}.", name, names)
 
 

@@ -22,7 +22,7 @@ _STAMPS = ("header", "stamp")
 
 
 #: What is answered within this time (s) is answered at once: an asyncio loop may look for messages every millisecond.
-AT_ONCE = 0.002
+AT_ONCE = 0.01
 
 _NEXT_MESSAGE = " Your node answers each message only when the next one arrives: every answer is one message late."
 _TIMER = (

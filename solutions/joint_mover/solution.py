@@ -23,14 +23,14 @@ class JointMover(Node):
         # TODO: create the action server '/move_joint' (MoveJoint).
         # TODO: see to it that goals and cancel requests are answered while execute runs.
         # BEGIN SOLUTION
-        self.server = ActionServer(
+        self.actions = ActionServer(
             self,
             MoveJoint,
             '/move_joint',
             self.execute,
-            goal_callback=self.on_goal,
-            cancel_callback=self.on_cancel,
             callback_group=ReentrantCallbackGroup(),
+            cancel_callback=self.on_cancel,
+            goal_callback=self.on_goal,
         )
         # END SOLUTION
         self.get_logger().info('The joint is at 0.0 rad')
@@ -63,13 +63,14 @@ class JointMover(Node):
             self.get_clock().sleep_for(PERIOD)
             if goal_handle.is_cancel_requested:
                 goal_handle.canceled()
-                return MoveJoint.Result(position=self.position)
+                break
             if self.current is not goal_handle:
                 goal_handle.abort()
-                return MoveJoint.Result(position=self.position)
+                break
             self.position = max(self.position - STEP, min(target, self.position + STEP))
             goal_handle.publish_feedback(MoveJoint.Feedback(position=self.position))
-        goal_handle.succeed()
+        else:
+            goal_handle.succeed()
         return MoveJoint.Result(position=self.position)
         # END SOLUTION
 

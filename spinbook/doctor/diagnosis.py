@@ -22,13 +22,13 @@ from spinbook.doctor.finding import Finding, State, missing
 class Check:
     """One thing to look at.
 
-    `module` is the one whose `examine(name)` does it. `seconds` is how long it may take.
+    `function` is what does it, as `module:name`; it is called with `name`. `seconds` is how long it may take.
     `needs` are the words of earlier checks without which this one can only fail, so that a cause is told once.
     """
 
     word: str
     name: str
-    module: str
+    function: str
     seconds: float = 15.0
     needs: tuple[str, ...] = ()
 
@@ -38,24 +38,24 @@ _NODE = ("ros", "libraries", "middleware", "logs")
 
 
 CHECKS = (
-    Check("python", "Python", "spinbook.doctor.machine"),
-    Check("folder", "Folder", "spinbook.doctor.machine"),
-    Check("libraries", "Library path", "spinbook.doctor.ros"),
-    Check("ros", "ROS 2", "spinbook.doctor.ros", 30.0, ("libraries",)),
-    Check("middleware", "Middleware", "spinbook.doctor.middleware", 30.0, ("ros",)),
-    Check("logs", "Log folder", "spinbook.doctor.middleware"),
-    Check("message", "A message", "spinbook.doctor.message", 60.0, _NODE),
-    Check("environment", "ROS settings", "spinbook.doctor.ros"),
-    Check("memory", "Shared memory", "spinbook.doctor.middleware"),
-    Check("kernel", "Jupyter kernel", "spinbook.doctor.machine", 60.0),
-    Check("colcon", "colcon", "spinbook.doctor.machine", 90.0),
-    Check("compiler", "Compiler", "spinbook.doctor.machine"),
-    Check("namespaces", "Namespaces", "spinbook.doctor.sandbox"),
-    Check("sandbox", "Sandbox", "spinbook.doctor.sandbox", 150.0, _NODE),
-    Check("bubblewrap", "bubblewrap", "spinbook.doctor.sandbox"),
-    Check("lockstep", "Lockstep", "spinbook.doctor.middleware", 30.0, ("ros",)),
-    Check("ros2", "ros2, turtlesim", "spinbook.doctor.machine"),
-    Check("browser", "Browser", "spinbook.doctor.machine", 45.0),
+    Check("python", "Python", "spinbook.doctor.machine:examine_python"),
+    Check("folder", "Folder", "spinbook.doctor.machine:examine_folder"),
+    Check("libraries", "Library path", "spinbook.doctor.ros:examine_library_path"),
+    Check("ros", "ROS 2", "spinbook.doctor.ros:examine_ros_library", 30.0, ("libraries",)),
+    Check("middleware", "Middleware", "spinbook.doctor.middleware:examine_middleware", 30.0, ("ros",)),
+    Check("logs", "Log folder", "spinbook.doctor.middleware:examine_log_folder"),
+    Check("message", "A message", "spinbook.doctor.message:examine", 60.0, _NODE),
+    Check("environment", "ROS settings", "spinbook.doctor.ros:examine_ros_settings"),
+    Check("memory", "Shared memory", "spinbook.doctor.middleware:examine_shared_memory"),
+    Check("kernel", "Jupyter kernel", "spinbook.doctor.machine:examine_kernel", 60.0),
+    Check("colcon", "colcon", "spinbook.doctor.machine:examine_colcon", 90.0),
+    Check("compiler", "Compiler", "spinbook.doctor.machine:examine_compiler"),
+    Check("namespaces", "Namespaces", "spinbook.doctor.sandbox:examine_namespaces"),
+    Check("sandbox", "Sandbox", "spinbook.doctor.sandbox:examine_sandbox", 150.0, _NODE),
+    Check("bubblewrap", "bubblewrap", "spinbook.doctor.sandbox:examine_bubblewrap"),
+    Check("lockstep", "Lockstep", "spinbook.doctor.middleware:examine_lockstep", 30.0, ("ros",)),
+    Check("ros2", "ros2, turtlesim", "spinbook.doctor.machine:examine_ros2_command"),
+    Check("browser", "Browser", "spinbook.doctor.machine:examine_browser", 45.0),
 )
 
 
@@ -83,7 +83,7 @@ def diagnose(checks: Sequence[Check], done: Callable[[Finding], None]) -> list[F
 
 def examine(check: Check) -> Finding:
     """Run one check, whatever happens to it."""
-    argv = [sys.executable, "-m", "spinbook.doctor.diagnosis", check.module, check.name]
+    argv = [sys.executable, "-m", "spinbook.doctor.diagnosis", check.function, check.name]
     process = subprocess.Popen(
         argv,
         stdin=subprocess.DEVNULL,
@@ -131,11 +131,12 @@ def _end_all(process: subprocess.Popen[str]) -> None:
 # A process of its own, because what is examined may end it: rclpy does so where its middleware is not installed.
 
 
-def main(module: str, name: str) -> None:
-    """Run the module's check. What libraries print meanwhile goes to stderr, so that stdout holds the finding alone."""
+def main(function: str, name: str) -> None:
+    """Run a check, given as `module:name`. What libraries print meanwhile goes to stderr, so that stdout holds the finding alone."""
     answer = os.dup(1)
     os.dup2(2, 1)
-    finding = importlib.import_module(module).examine(name)
+    module, _, attribute = function.partition(":")
+    finding = getattr(importlib.import_module(module), attribute)(name)
     assert isinstance(finding, Finding)
     with os.fdopen(answer, "w") as out:
         json.dump(dataclasses.asdict(finding), out)

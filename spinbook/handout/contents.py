@@ -17,7 +17,7 @@ from grader.workers.jobs import ListJob
 from spinbook import __version__
 from spinbook.build.notebooks import build_notebooks
 from spinbook.course.course import Course
-from spinbook.handout.leaks import Secret, hidden_names, located, secrets
+from spinbook.handout.leaks import Secret, located, secrets_of_all
 from spinbook.handout.student_copy import exercise_files, for_students
 from spinbook.handout.wheels import interface_wheels, requirement, spinbook_wheel
 from spinbook.interfaces.compiling import compile_course
@@ -122,8 +122,8 @@ def handout(course: Course) -> Handout:
             files |= {f"exercises/{exercise.name}/{name}": content for name, content in copy.items()}
     taught = "\n".join(_nodes(notebooks))
     every = [_load(course, name) for name in sorted(course.exercises)]
-    known = [secret for exercise in every for secret in secrets(exercise, taught)]
-    _prove(files, known + [secret for exercise in every for secret in hidden_names(exercise)])
+    known, names = secrets_of_all(every, taught)
+    _prove(files, known + names)
     name, content = spinbook_wheel()
     compiled = interface_wheels(course, files.values())
     files[f"wheels/{name}"] = content

@@ -7,7 +7,7 @@ import io
 import json
 import re
 import zipfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,15 +32,17 @@ class Secret:
 Line = tuple[int, str]
 
 
-def secrets(exercise: Exercise, taught: str) -> list[Secret]:
-    """What of this exercise is secret: solutions, hidden checks, and what nodes are spun against.
+def secrets(exercise: Exercise, taught: str, others: str = "") -> list[Secret]:
+    """What of this exercise is secret: solutions, hidden checks, and the scenarios that nodes run in.
 
     `taught` is code that students have from the chapters; a line of it is no secret, wherever else it stands. Nor is a
-    line of the starter, or of the public checks.
+    line of the starter, or of the public checks. `others` is what students get of the course's other exercises, see
+    `public_code`: what stands there, too, says nothing about this one.
     """
     public = exercise.folder / "checks.py"
-    told = taught + (public.read_text(encoding="utf-8") if public.exists() else "")
+    told = taught + others + (public.read_text(encoding="utf-8") if public.exists() else "")
     found = []
+    elsewhere = bare(others)
     if exercise.solution_file:
         source = exercise.solution_file.read_text(encoding="utf-8")
         told += starter(source)
@@ -49,7 +51,7 @@ def secrets(exercise: Exercise, taught: str) -> list[Secret]:
         known = bare(told)
         for lines in _solved(source):
             found += _pieces(what, place, lines, known)
-            found += _windows(what, place, lines)
+            found += [secret for secret in _windows(what, place, lines) if secret.text not in elsewhere]
     known = bare(told)
     if exercise.solution_folder:
         for file in sorted(exercise.solution_folder.rglob("*.py")):
@@ -62,12 +64,33 @@ def secrets(exercise: Exercise, taught: str) -> list[Secret]:
         if file.exists():
             place = f"exercises/{exercise.name}/{name}"
             found += _pieces(f"a line of {name} of {exercise.name}", place, _lines(file), known)
-    return found + list(_hidden_titles(exercise))
+    return found + [secret for secret in _hidden_titles(exercise) if secret.text not in elsewhere]
 
 
-def hidden_names(exercise: Exercise) -> list[Secret]:
-    """The names of hidden checks. Spinbook's own files may have a check of that name in an example."""
-    return [Secret(_named(entry, exercise), entry.name) for entry in _hidden_checks(exercise)]
+def hidden_names(exercise: Exercise, others: str = "") -> list[Secret]:
+    """The names of hidden checks, without those that public checks of `others` have, too.
+
+    Spinbook's own files may have a check of that name in an example.
+    """
+    checks = _hidden_checks(exercise)
+    return [Secret(_named(entry, exercise), entry.name) for entry in checks if f"def {entry.name}(" not in others]
+
+
+def secrets_of_all(exercises: Sequence[Exercise], taught: str) -> tuple[list[Secret], list[Secret]]:
+    """What is secret of a course's exercises, and the names of their hidden checks."""
+    texts, names = [], []
+    for exercise in exercises:
+        others = "\n".join(public_code(other) for other in exercises if other is not exercise)
+        texts += secrets(exercise, taught, others)
+        names += hidden_names(exercise, others)
+    return texts, names
+
+
+def public_code(exercise: Exercise) -> str:
+    """The code that students get of an exercise: its starter and its public checks."""
+    public = exercise.folder / "checks.py"
+    checks = public.read_text(encoding="utf-8") if public.exists() else ""
+    return checks + (starter(exercise.solution_file.read_text(encoding="utf-8")) if exercise.solution_file else "")
 
 
 def bare(text: str) -> str:
@@ -155,7 +178,7 @@ def located(files: Mapping[str, bytes], known: list[Secret]) -> Iterator[Leak]:
         text = bare(f"{name}\n{_readable(name, content)}")
         first: dict[str, Secret] = {}
         for secret in known:
-            if secret.text in text:
+            if secret.text in text and not _is_meant(name, secret):
                 first.setdefault(secret.what, secret)
         for secret in first.values():
             yield _leak(name, content, secret)
@@ -163,6 +186,11 @@ def located(files: Mapping[str, bytes], known: list[Secret]) -> Iterator[Leak]:
             with zipfile.ZipFile(io.BytesIO(content)) as archive:
                 inner = {f"{name}/{entry}": archive.read(entry) for entry in archive.namelist()}
             yield from located(inner, known)
+
+
+def _is_meant(name: str, secret: Secret) -> bool:
+    """Whether a file is made of what is secret elsewhere: `public.json` holds the messages of public scenarios."""
+    return name.endswith("public.json") and "/scenarios.py:" in secret.at
 
 
 def _leak(name: str, content: bytes, secret: Secret) -> Leak:

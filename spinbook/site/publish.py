@@ -8,7 +8,7 @@ from pathlib import Path
 from grader.exercise import Exercise, ExerciseError, load
 from grader.files import write_if_changed
 from spinbook.course.course import Course
-from spinbook.handout.leaks import hidden_names, leaks, secrets
+from spinbook.handout.leaks import leaks, secrets_of_all
 from spinbook.problem import Problem, SpinbookError
 from spinbook.site.contents import Contents
 from spinbook.site.page import FRAME_SUFFIX, HOME
@@ -78,9 +78,9 @@ def prove_nothing_leaks(course: Course, contents: Contents) -> None:
     """
     exercises = [_load(course, name) for name in sorted(course.exercises)]
     taught = "\n".join(contents.taught)
-    known = [secret for exercise in exercises for secret in (*secrets(exercise, taught), *hidden_names(exercise))]
+    known, names = secrets_of_all(exercises, taught)
     found: dict[Path, str] = {}
-    for file, what in leaks(_published(contents), known):
+    for file, what in leaks(_published(contents), known + names):
         page = file.removesuffix(".frame").partition(".")[0]
         found.setdefault(contents.origins.get(page, Path("build", file)), what)
     if found:

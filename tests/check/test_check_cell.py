@@ -181,7 +181,7 @@ def test_stop_ends_a_check_in_the_midst_and_leaves_nothing_behind(kernel: Kernel
         deadline = time.monotonic() + 60
         while time.monotonic() < deadline:
             found = [child for check in checks_of(kernel) for child in [check, *children_of(check)]]
-            if any("fork_server" in " ".join(command_of(child)) for child in found):
+            if any("grader.sandbox.zygote" in " ".join(command_of(child)) for child in found):
                 started.extend(found)
                 break
             time.sleep(0.01)

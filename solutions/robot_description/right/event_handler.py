@@ -18,10 +18,10 @@ class RobotDescription(Node):
     def __init__(self):
         super().__init__(NAME)
         qos = QoSProfile(
-            history=HistoryPolicy.KEEP_LAST,
             depth=1,
-            reliability=ReliabilityPolicy.RELIABLE,
             durability=DurabilityPolicy.TRANSIENT_LOCAL,
+            history=HistoryPolicy.KEEP_LAST,
+            reliability=ReliabilityPolicy.RELIABLE,
         )
         self.publisher = self.create_publisher(String, NAME, qos)
         self.text = self.declare_parameter(NAME, '<robot name="humanoid"/>').value
