@@ -26,7 +26,7 @@ from grader.classroom.local import LocalBackend, at_once
 from grader.classroom.misconceptions import Signature, failures_of, grouped, signatures
 from grader.classroom.overview import overview_page
 from grader.classroom.publishing import publish
-from grader.classroom.rejudging import rejudge
+from grader.classroom.rejudging import difference, rejudge
 from grader.classroom.request import Backend, ClassRequest, host_error
 from grader.classroom.results import ClassGrading, Plan, Results, not_written
 from grader.exercise import Exercise
@@ -84,26 +84,6 @@ def show_result(
 
 def _say(console: Console, text: str, style: str = "") -> None:
     console.print(Text(printable(text), style=style), soft_wrap=True)
-
-
-def difference(before: Grade, after: Grade) -> str:
-    """In words, beginning with the two scores: which checks went up, and which down. Empty where nothing changed."""
-    old = {verdict.name: verdict for verdict in before.verdicts}
-    new = {verdict.name: verdict for verdict in after.verdicts}
-    up, down = [], []
-    for name in [*new, *(name for name in old if name not in new)]:
-        earned = [found.earned if found else 0.0 for found in (old.get(name), new.get(name))]
-        if earned[1] > earned[0]:
-            up.append(f"{name} (+{earned[1] - earned[0]:g})")
-        elif earned[1] < earned[0]:
-            down.append(f"{name} (-{earned[0] - earned[1]:g})")
-    told = [f"up: {', '.join(up)}"] if up else []
-    told += [f"down: {', '.join(down)}"] if down else []
-    if before.outcome != after.outcome:
-        told.append(f"{before.outcome}, now {after.outcome}")
-    if not told and before.score == after.score:
-        return ""
-    return "; ".join([f"{before.score:g} -> {after.score:g} points", *told])
 
 
 class ProgressDisplay:

@@ -132,7 +132,7 @@ def _end_all(process: subprocess.Popen[str]) -> None:
 
 
 def main(function: str, name: str) -> None:
-    """Run a check, given as `module:name`; stdout holds its finding alone, and stderr what libraries print meanwhile."""
+    """Run a check, given as `module:name`; its finding goes to stdout, what libraries print to stderr."""
     answer = os.dup(1)
     os.dup2(2, 1)
     module, _, attribute = function.partition(":")

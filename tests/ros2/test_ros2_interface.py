@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import pytest
 from ros2_terminal import Terminal
 
 
@@ -55,7 +58,8 @@ def test_proto_is_yaml_in_quotes(terminal: Terminal) -> None:
     assert terminal.ros2("interface", "proto", "--no-quotes", "test_msgs/action/Fibonacci").out == "order: 0\n\n"
 
 
-def test_lists(terminal: Terminal) -> None:
+def test_lists(terminal: Terminal, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)  # no course, whose own types would be listed, too
     assert terminal.ros2("interface", "list", "-a").out == (
         "Actions:\n    example_interfaces/action/Fibonacci\n"
         "    test_msgs/action/Fibonacci\n    test_msgs/action/NestedMessage\n    turtlesim/action/RotateAbsolute\n"

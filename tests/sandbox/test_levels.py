@@ -83,7 +83,7 @@ def test_where_a_machine_refuses_user_namespaces_landlock_is_what_is_left() -> N
     code = f"""
 import os, sys
 sys.path[:0] = {[str(Path(__file__).parent), str(Path(__file__).parents[2])]!r}
-from grader.sandbox import SandboxUnavailable, available, choose, kernel, seccomp
+from grader.sandbox import SandboxUnavailable, available, choose, seccomp, syscalls
 from sandbox_rig import become_nobody
 if os.geteuid() == 0:
     become_nobody()
@@ -91,7 +91,7 @@ if os.geteuid() == 0:
 for name in set(seccomp._FORBIDDEN) - {{'unshare'}}:
     del seccomp._FORBIDDEN[name]
 del seccomp._ABSENT['memfd_create']
-kernel.prctl(kernel.PR_SET_NO_NEW_PRIVS, 1)
+syscalls.prctl(syscalls.PR_SET_NO_NEW_PRIVS, 1)
 seccomp.install(seccomp.program())
 print(choose())
 print(*available().values(), sep='\\n')

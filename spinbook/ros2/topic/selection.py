@@ -9,7 +9,6 @@ import click
 
 from spinbook.ros2 import interfaces
 from spinbook.ros2.cli import CommandError
-from spinbook.ros2.graph import seen
 
 if TYPE_CHECKING:
     from spinbook.ros2.graph import Graph
@@ -101,6 +100,7 @@ def type_on_graph(graph: Graph, topic: str) -> Any | None:
 def wait_for_type(graph: Graph, topic: str) -> Any:
     """The class of a topic's messages; waits without end, after a warning, for a topic that nobody has."""
     graph.settle(lambda: bool(graph.topic_types(topic)))
+
     message = type_on_graph(graph, topic)
     if message is None:
         print(f"WARNING: topic [{topic}] does not appear to be published yet", flush=True)
@@ -112,6 +112,8 @@ def wait_for_type(graph: Graph, topic: str) -> Any:
 
 def type_or_refusal(graph: Graph, topic: str) -> Any:
     """The class of a topic's messages. Raises `CommandError` after the real command's two lines if nobody has it."""
+    from spinbook.ros2.graph import seen
+
     message = type_on_graph(graph, topic)
     if message is None:
         print(f"WARNING: topic [{topic}] does not appear to be published yet", flush=True)
