@@ -15,11 +15,11 @@ from rclpy.topic_endpoint_info import TopicEndpointInfo
 from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
 from spinbook.graph.model import End, NodeGraph, SeenNode, Topic
-from spinbook.ros2 import graph
 from spinbook.ros2.cli import CommandError
 from spinbook.ros2.graph import LOOK, Graph
 from spinbook.ros2.interfaces import message_class
 from spinbook.ros2.middleware import domain_id, prepare
+from spinbook.ros2.participants import participants
 
 #: A rate is told from at least this long (s).
 ENOUGH_S = 0.8
@@ -124,7 +124,7 @@ class Sight(Graph):
 
     def _look(self) -> tuple[Any, ...]:
         # A node that has started and has not been heard of yet is a change as well.
-        return (*super()._look(), graph.participants(domain_id()))
+        return (*super()._look(), participants(domain_id()))
 
     def graph(self) -> NodeGraph:
         """What is there now, with the rates that have been counted so far."""

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from spinbook.kernel.process import KeptProcess
-from spinbook.ros2 import graph
+from spinbook.ros2.participants import participants
 
 #: Lines shown as they come, and lines kept for the end when more come.
 FIRST_LINES = 60
@@ -70,8 +70,8 @@ class Countdown:
 
 def joins(domain: int) -> Callable[[], bool]:
     """Says whether another program of this host has joined the ROS domain since this was called."""
-    before = graph.participants(domain) or 0
-    return lambda: (graph.participants(domain) or 0) > before
+    before = participants(domain) or 0
+    return lambda: (participants(domain) or 0) > before
 
 
 class Shown:

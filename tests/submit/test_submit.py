@@ -211,7 +211,7 @@ def test_the_public_checks_run_in_a_terminal_too(folder: Path) -> None:
     done = CliRunner().invoke(check, ["joint_velocity", "mine.py"])
     assert done.exit_code == 1, done.output
     assert "Checking mine.py." in done.output
-    assert "of 36 points" in done.output
+    assert "of 41 points" in done.output
     assert not Path(UPLOAD).exists()
     assert CliRunner().invoke(check, ["joint_velocity", "none.py"]).exit_code == 2
     with pytest.raises(SpinbookError, match="nothing here holds joint_velocity"):
