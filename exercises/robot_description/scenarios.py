@@ -11,7 +11,8 @@ PARAMETER = "robot_description"
 #: A text with line breaks, spaces, quotes and letters that are not English.
 ARM = """<?xml version="1.0"?>
 <robot name="right-arm">
-  <link name="upper_arm"/>   <!-- Länge: 0.3 m -->
+  <link name="upper_arm"/>
+  <!-- Länge: 0.3 m -->
   <link name="forearm"/>
   <joint name='elbow' type="revolute">
     <parent link="upper_arm"/>

@@ -29,6 +29,9 @@ PARAMETER_TYPES = {
     **{f"{name}_array": (list,) for name in ("byte", "bool", "integer", "double", "string")},
 }
 
+#: A table that concerns classes only: grader/classroom/deadline.py reads it.
+DEADLINE = "deadline"
+
 #: The keys of exercise.toml, of its tables, and whether a table's key has to be there.
 KEYS: dict[str, dict[str, bool]] = {
     "": dict.fromkeys(("title", "points", "file", "class", "node", "reference_node"), False),
@@ -70,8 +73,8 @@ class Table:
         """Raise `ExerciseError` for a key that is not known, or one that is missing."""
         known = KEYS[self.kind]
         for key in self.entries:
-            if key not in known and not (not self.kind and key in KEYS):
-                allowed = sorted({*known, *(() if self.kind else (k for k in KEYS if k))})
+            if key not in known and not (not self.kind and key in (*KEYS, DEADLINE)):
+                allowed = sorted({*known, *(() if self.kind else (k for k in (*KEYS, DEADLINE) if k))})
                 self.fault(key, f"the key {key!r} is not known {self._place}", f"Known are: {', '.join(allowed)}.")
         for key, needed in known.items():
             if needed and key not in self.entries:

@@ -178,7 +178,7 @@ def located(files: Mapping[str, bytes], known: list[Secret]) -> Iterator[Leak]:
         text = bare(f"{name}\n{_readable(name, content)}")
         first: dict[str, Secret] = {}
         for secret in known:
-            if secret.text in text and not _is_meant(name, secret):
+            if secret.text in text:
                 first.setdefault(secret.what, secret)
         for secret in first.values():
             yield _leak(name, content, secret)
@@ -186,11 +186,6 @@ def located(files: Mapping[str, bytes], known: list[Secret]) -> Iterator[Leak]:
             with zipfile.ZipFile(io.BytesIO(content)) as archive:
                 inner = {f"{name}/{entry}": archive.read(entry) for entry in archive.namelist()}
             yield from located(inner, known)
-
-
-def _is_meant(name: str, secret: Secret) -> bool:
-    """Whether a file is made of what is secret elsewhere: `public.json` holds the messages of public scenarios."""
-    return name.endswith("public.json") and "/scenarios.py:" in secret.at
 
 
 def _leak(name: str, content: bytes, secret: Secret) -> Leak:

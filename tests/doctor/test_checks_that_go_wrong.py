@@ -25,7 +25,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def check(folder: Path, word: str, does: str, seconds: float = 60.0, needs: tuple[str, ...] = ()) -> Check:
     """A check that does this."""
     (folder / f"{word}_check.py").write_text(_HEAD + _EXAMINE.format(does))
-    return Check(word, word.capitalize(), f"{word}_check", seconds, needs)
+    return Check(word, word.capitalize(), f"{word}_check:examine", seconds, needs)
 
 
 @pytest.mark.parametrize(

@@ -171,7 +171,7 @@ def test_two_gradings_never_write_into_one_folder(done: SmallClass) -> None:
         fcntl.flock(lock, fcntl.LOCK_EX)
         code, printed = done.grade()
     assert code == 2
-    assert "another grading is at work in this folder" in printed
+    assert "another grading is writing to this folder" in printed
 
 
 #: File names that are also names of files in the results, that mean something to a spreadsheet, a page, a terminal or a

@@ -62,4 +62,4 @@ def test_an_exercise_is_checked(page: Firefox, address: str) -> None:
         solution.read_text(),
     )
     page.click("Check joint_velocity.py")
-    page.wait_for(".check-total", "8 of 8 public checks, 36 of 36 points")
+    page.wait_for(".check-total", "11 of 11 public checks, 41 of 41 points")
