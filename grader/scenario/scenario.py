@@ -6,7 +6,7 @@ import hashlib
 import json
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, fields
-from typing import Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from grader.exercise.interface import Qos
 from grader.recording.recording import Fields
@@ -164,6 +164,9 @@ class Companion:
 
 Content: TypeAlias = Message | Step
 
+#: Messages and steps, in tuples of tuples as deep as an author likes.
+Nested: TypeAlias = Content | Iterable["Nested"]
+
 
 @dataclass(frozen=True)
 class Scenario:
@@ -204,6 +207,30 @@ class Scenario:
     companions: tuple[Companion, ...] = ()
     steps: tuple[Step, ...] = ()
     line: int = field(default_factory=line_of_the_author, compare=False, repr=False)
+
+    if TYPE_CHECKING:
+        # What an author may give is more than what is kept: one for several, and nested tuples.
+        def __init__(
+            self,
+            name: str,
+            title: str,
+            messages: Nested = (),
+            interrupt: bool = False,
+            computer_time: ComputerTime = "apart",
+            duration: float = 0.0,
+            rate: float | None = None,
+            parameters: dict[str, Any] = ...,
+            remappings: dict[str, str] = ...,
+            namespace: str = "",
+            arguments: tuple[str, ...] = (),
+            servers: Server | ActionServer | Iterable[Server | ActionServer] = (),
+            world: World | None = None,
+            qos: dict[str, Qos] = ...,
+            programs: Program | Iterable[Program] = (),
+            companions: Companion | Iterable[Companion] = (),
+            steps: tuple[Step, ...] = (),
+            line: int = 0,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         """Sort what was given together: messages and steps."""

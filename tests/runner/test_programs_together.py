@@ -78,7 +78,7 @@ def test_two_programs_talk_to_one_another_until_one_is_killed(together: Together
 
 def test_a_program_may_start_later_and_again(together: Together) -> None:
     steps = (at(0.35).kill("talker.py"), at(0.45).start("talker.py"))
-    recording = together(Scenario("s", "t", steps, programs=Program("talker.py", starts=0.2), duration=0.6))  # type: ignore[arg-type]
+    recording = together(Scenario("s", "t", steps, programs=Program("talker.py", starts=0.2), duration=0.6))
     assert heard(recording) == [0.21, 0.3, 0.46, 0.5, 0.6]
 
 

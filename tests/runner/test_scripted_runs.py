@@ -280,7 +280,7 @@ def test_without_a_cancel_callback_the_request_is_refused(scripted: Scripted, go
     ids=["succeeds", "rejects", "aborts", "is cancelled", "refuses to cancel"],
 )
 def test_a_scripted_action_server_does_with_a_goal_what_its_script_says(
-    scripted: Scripted, script: object, texts: list[object], states: list[str]
+    scripted: Scripted, script: object, texts: list[tuple[float, str]], states: list[str]
 ) -> None:
     servers = ActionServer("/climb", goals=script)  # type: ignore[arg-type]
     recording = scripted(program(ACTION_CLIENT), Scenario("s", "t", servers=servers, duration=2.5))
