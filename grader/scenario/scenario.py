@@ -237,7 +237,7 @@ class Scenario:
         given = tuple(_flat(self.messages))
         steps = (*self.steps, *(one for one in given if not isinstance(one, Message)))
         messages = tuple(one for one in given if isinstance(one, Message))
-        object.__setattr__(self, "messages", messages)
+        object.__setattr__(self, "messages", tuple(sorted(messages, key=_at)))
         object.__setattr__(self, "steps", tuple(sorted(steps, key=_at)))
         for name in ("arguments", "servers", "programs", "companions"):
             object.__setattr__(self, name, tuple(_flat(getattr(self, name))))

@@ -32,7 +32,7 @@ MISTAKES = {
     "action-server": "forgets_succeed",
     "action-client": "ignores_status",
     "closed-loop": "wraps_the_angle",
-    "several-nodes": "waits_for_the_scale",
+    "several-nodes": "never_closes",
 }
 
 
