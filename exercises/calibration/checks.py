@@ -10,7 +10,7 @@ from grader.checking import Run, check, fail
 OFFSETS, PENDING = "/joint_offsets", "/calibrations_pending"
 
 
-@check(points=10, hint="call_async() in the callback of /calibrate, with the joint's name in the request.")
+@check(points=8, hint="call_async() in the callback of /calibrate, with the joint's name in the request.")
 def test_asks(one: Run) -> None:
     """It calls /calibrate_joint with the name of the joint that it heard on /calibrate."""
     one.must_have_interface()

@@ -17,7 +17,7 @@ def test_answers_each_message(default: Run) -> None:
 
 
 @check(
-    points=12,
+    points=10,
     hint="smooth = smooth + gain * (position - smooth), for each joint.",
     depends=[test_answers_each_message],
 )

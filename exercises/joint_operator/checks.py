@@ -20,7 +20,7 @@ def test_sends_a_goal(succeeds: Run) -> None:
 
 
 @check(
-    points=12,
+    points=10,
     hint="Ask for the result when the goal was accepted, and look at its status.",
     depends=[test_sends_a_goal],
 )

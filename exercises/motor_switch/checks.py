@@ -35,7 +35,7 @@ def test_message(switching: Run) -> None:
 
 
 @check(
-    points=12,
+    points=10,
     hint="Publish in the moment when the motors are switched.",
     depends=[test_responds],
 )
