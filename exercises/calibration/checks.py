@@ -5,12 +5,12 @@ Each fixture is a scenario of scenarios.py; hidden_checks.py goes through the ha
 
 from __future__ import annotations
 
-from grader.checking import Run, check
+from grader.checking import Run, check, fail
 
 OFFSETS, PENDING = "/joint_offsets", "/calibrations_pending"
 
 
-@check(points=10, hint="call_async() in the callback of /calibrate, with the joint's name in the request.")
+@check(points=8, hint="call_async() in the callback of /calibrate, with the joint's name in the request.")
 def test_asks(one: Run) -> None:
     """It calls /calibrate_joint with the name of the joint that it heard on /calibrate."""
     one.must_have_interface()
@@ -53,8 +53,11 @@ def test_number_of_pending(one: Run) -> None:
 
 @check(points=3, hint="super().__init__('calibration')", depends=[test_asks])
 def test_node_is_called_calibration(one: Run) -> None:
-    """There is one node, and it is called calibration."""
+    """There is one node, it is called calibration, and it publishes on no other topics."""
     one.must_have_nodes()
+    declared = {topic.name for topic in one.exercise.outputs}
+    if others := sorted({end.topic for end in one.end_points("publisher")} - declared):
+        fail("Your node publishes on other topics, too.", expected="none", got=", ".join(others))
 
 
 @check(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from grader.checking import Run, check
+from grader.checking import Run, check, fail
 
 OFFSETS, PENDING = "/joint_offsets", "/calibrations_pending"
 OFFSET, COUNT, RATE = ["test_publishes_the_offset"], ["test_number_of_pending"], ["test_ten_times_a_second"]
@@ -136,3 +136,18 @@ def test_gives_up(never: Run) -> None:
 def test_answer_that_is_too_late(too_late: Run) -> None:
     """An answer that comes after it gave up is ignored."""
     too_late.must_match_series("name", OFFSETS)
+
+
+@check(
+    points=2,
+    hint="Create each end once, in __init__, with a plain 10.",
+    depends=["test_asks"],
+    rule="Use a queue depth of 10 for all topics.",
+)
+def test_quality_of_service(one: Run) -> None:
+    """All ends are reliable and volatile, and there is one publisher on each topic."""
+    one.must_have_qos()
+    for topic in one.exercise.outputs:
+        count = len(one.end_points("publisher", topic.name))
+        if count != 1:
+            fail(f"Publishers on {topic.name}.", expected=1, got=count)

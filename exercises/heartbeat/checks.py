@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 
-from grader.checking import Run, check
+from grader.checking import Run, check, fail
 
 
 def must_be_regular(run: Run) -> None:
@@ -49,7 +49,7 @@ def test_each_beat_comes_in_time(start: Run) -> None:
 
 @check(
     points=10,
-    hint="message.stamp = self.get_clock().now().to_msg(), anew for each beat.",
+    hint="Ask the node's clock, anew for each beat.",
     depends=[test_publishes_beats],
     misconception="another time in the stamp",
 )
@@ -69,8 +69,11 @@ def test_frame_is_torso(start: Run) -> None:
 
 @check(points=2, hint="super().__init__('heartbeat')", depends=[test_publishes_beats])
 def test_node_is_called_heartbeat(start: Run) -> None:
-    """There is one node, and it is called heartbeat."""
+    """There is one node, it is called heartbeat, and it publishes on no other topics."""
     start.must_have_nodes()
+    declared = {topic.name for topic in start.exercise.outputs}
+    if others := sorted({end.topic for end in start.end_points("publisher")} - declared):
+        fail("Your node publishes on other topics, too.", expected="none", got=", ".join(others))
 
 
 @check(

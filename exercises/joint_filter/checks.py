@@ -5,7 +5,7 @@ Each fixture is a scenario of scenarios.py; hidden_checks.py goes through the ha
 
 from __future__ import annotations
 
-from grader.checking import Run, check
+from grader.checking import Run, check, fail
 
 
 @check(points=8, hint="Create the publisher in __init__ and call publish() in the callback.")
@@ -17,7 +17,7 @@ def test_answers_each_message(default: Run) -> None:
 
 
 @check(
-    points=12,
+    points=10,
     hint="smooth = smooth + gain * (position - smooth), for each joint.",
     depends=[test_answers_each_message],
 )
@@ -40,8 +40,11 @@ def test_header(default: Run) -> None:
 
 @check(points=3, hint="super().__init__('joint_filter')", depends=[test_answers_each_message])
 def test_node_is_called_joint_filter(default: Run) -> None:
-    """There is one node, and it is called joint_filter."""
+    """There is one node, it is called joint_filter, and it publishes on no other topics."""
     default.must_have_nodes()
+    declared = {topic.name for topic in default.exercise.outputs}
+    if others := sorted({end.topic for end in default.end_points("publisher")} - declared):
+        fail("Your node publishes on other topics, too.", expected="none", got=", ".join(others))
 
 
 @check(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from grader.checking import Run, check
+from grader.checking import Run, check, fail
 
 NAMED = "test_node_is_called_joint_filter"
 FILTERS, GAIN = ["test_filters_with_the_default"], ["test_gain_of_the_start", NAMED]
@@ -110,3 +110,18 @@ def test_missing_joint(missing_joint: Run) -> None:
 def test_new_joint(new_joint: Run) -> None:
     """A joint that appears later starts at its position."""
     new_joint.must_match("position", per="name")
+
+
+@check(
+    points=2,
+    hint="Create each end once, in __init__, with a plain 10.",
+    depends=["test_answers_each_message"],
+    rule="Use a queue depth of 10 for both.",
+)
+def test_quality_of_service(default: Run) -> None:
+    """All ends are reliable and volatile, and there is one publisher on each topic."""
+    default.must_have_qos()
+    for topic in default.exercise.outputs:
+        count = len(default.end_points("publisher", topic.name))
+        if count != 1:
+            fail(f"Publishers on {topic.name}.", expected=1, got=count)

@@ -5,7 +5,7 @@ Each fixture is a scenario of scenarios.py; hidden_checks.py goes through the ha
 
 from __future__ import annotations
 
-from grader.checking import Run, check
+from grader.checking import Run, check, fail
 
 
 @check(points=8, hint="Create the ActionServer in __init__. goal_callback returns GoalResponse.ACCEPT.")
@@ -55,8 +55,11 @@ def test_cancel(canceled: Run) -> None:
 
 @check(points=3, hint="super().__init__('joint_mover')", depends=[test_accepts_a_goal])
 def test_node_is_called_joint_mover(up: Run) -> None:
-    """There is one node, and it is called joint_mover."""
+    """There is one node, it is called joint_mover, and it publishes on no other topics."""
     up.must_have_nodes()
+    declared = {topic.name for topic in up.exercise.outputs}
+    if others := sorted({end.topic for end in up.end_points("publisher")} - declared):
+        fail("Your node publishes on other topics, too.", expected="none", got=", ".join(others))
 
 
 @check(

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 
-from grader.checking import Run, check
+from grader.checking import Run, check, fail
 
 OUTCOMES, PROGRESS = "/outcomes", "/progress"
 
@@ -20,7 +20,7 @@ def test_sends_a_goal(succeeds: Run) -> None:
 
 
 @check(
-    points=12,
+    points=10,
     hint="Ask for the result when the goal was accepted, and look at its status.",
     depends=[test_sends_a_goal],
 )
@@ -69,8 +69,11 @@ def test_one_goal_at_a_time(several: Run) -> None:
 
 @check(points=3, hint="super().__init__('joint_operator')", depends=[test_sends_a_goal])
 def test_node_is_called_joint_operator(succeeds: Run) -> None:
-    """There is one node, and it is called joint_operator."""
+    """There is one node, it is called joint_operator, and it publishes on no other topics."""
     succeeds.must_have_nodes()
+    declared = {topic.name for topic in succeeds.exercise.outputs}
+    if others := sorted({end.topic for end in succeeds.end_points("publisher")} - declared):
+        fail("Your node publishes on other topics, too.", expected="none", got=", ".join(others))
 
 
 @check(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from grader.checking import Run, check
+from grader.checking import Run, check, fail
 
 OUTCOMES = "/outcomes"
 OUTCOME, ORDER = ["test_publishes_the_outcome"], ["test_every_target_in_order"]
@@ -127,3 +127,18 @@ def test_cancel_that_does_not_work(refuses_to_cancel: Run, ignores_the_cancel: R
     """What counts is how the goal ends, also when the server does not cancel it."""
     for run in (refuses_to_cancel, ignores_the_cancel, aborts_late):
         outcomes(run)
+
+
+@check(
+    points=2,
+    hint="Create each end once, in __init__, with a plain 10.",
+    depends=["test_sends_a_goal"],
+    rule="Use a queue depth of 10 for all topics.",
+)
+def test_quality_of_service(succeeds: Run) -> None:
+    """All ends are reliable and volatile, and there is one publisher on each topic."""
+    succeeds.must_have_qos()
+    for topic in succeeds.exercise.outputs:
+        count = len(succeeds.end_points("publisher", topic.name))
+        if count != 1:
+            fail(f"Publishers on {topic.name}.", expected=1, got=count)

@@ -5,7 +5,7 @@ Each fixture is a scenario of scenarios.py; hidden_checks.py goes through the em
 
 from __future__ import annotations
 
-from grader.checking import Run, check
+from grader.checking import Run, check, fail
 
 MOTORS = "/motors_on"
 
@@ -35,7 +35,7 @@ def test_message(switching: Run) -> None:
 
 
 @check(
-    points=12,
+    points=10,
     hint="Publish in the moment when the motors are switched.",
     depends=[test_responds],
 )
@@ -57,8 +57,11 @@ def test_nothing_to_do(already: Run) -> None:
 
 @check(points=3, hint="super().__init__('motor_switch')", depends=[test_responds])
 def test_node_is_called_motor_switch(switching: Run) -> None:
-    """There is one node, and it is called motor_switch."""
+    """There is one node, it is called motor_switch, and it publishes on no other topics."""
     switching.must_have_nodes()
+    declared = {topic.name for topic in switching.exercise.outputs}
+    if others := sorted({end.topic for end in switching.end_points("publisher")} - declared):
+        fail("Your node publishes on other topics, too.", expected="none", got=", ".join(others))
 
 
 @check(

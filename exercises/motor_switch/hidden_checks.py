@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from grader.checking import Run, check
+from grader.checking import Run, check, fail
 
 MOTORS = "/motors_on"
 SUCCESS, CHANGES = ["test_success"], ["test_publishes_each_change"]
@@ -120,3 +120,18 @@ def test_off_at_the_start(off_first: Run) -> None:
 def test_responds_at_once(many: Run) -> None:
     """Each of twenty requests in one second gets its response at once."""
     many.must_respond(within=0.06)
+
+
+@check(
+    points=2,
+    hint="Create each end once, in __init__, with a plain 10.",
+    depends=["test_responds"],
+    rule="Use a queue depth of 10 for both topics.",
+)
+def test_quality_of_service(switching: Run) -> None:
+    """All ends are reliable and volatile, and there is one publisher on each topic."""
+    switching.must_have_qos()
+    for topic in switching.exercise.outputs:
+        count = len(switching.end_points("publisher", topic.name))
+        if count != 1:
+            fail(f"Publishers on {topic.name}.", expected=1, got=count)

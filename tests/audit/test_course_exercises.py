@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -27,10 +28,13 @@ EXERCISES = [file.parent for course in COURSES for file in sorted(course.glob("e
 ALWAYS = {"joint_velocity", "speed_limit"}
 
 
-@pytest.fixture(scope="module", autouse=True)
-def interfaces() -> None:
-    """The course's own interfaces, compiled."""
+@pytest.fixture(scope="module")
+def crew() -> Iterator[Crew]:
+    """A worker that was started when the course's own interfaces could be imported."""
     compile_course(find_course(ROOT))
+    load(ROOT / "exercises" / "calibration")
+    with Crew() as crew:
+        yield crew
 
 
 def to_mend(result: Audit) -> str:

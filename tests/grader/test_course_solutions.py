@@ -31,13 +31,23 @@ NAMES = sorted(
 )
 
 
-@pytest.fixture(scope="module", params=NAMES)
-def graded(request: pytest.FixtureRequest, crew: Crew, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Grading]:
-    """Ready to grade one exercise; its solution has been run anew."""
+@pytest.fixture(scope="module")
+def crew_with_interfaces() -> Iterator[Crew]:
+    """A worker that was started when the course's own interfaces could be imported."""
     compile_course(find_course(ROOT))
+    load(ROOT / "exercises" / "calibration")
+    with Crew() as crew:
+        yield crew
+
+
+@pytest.fixture(scope="module", params=NAMES)
+def graded(
+    request: pytest.FixtureRequest, crew_with_interfaces: Crew, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Grading]:
+    """Ready to grade one exercise; its solution has been run anew."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SPINBOOK_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield grading_of(load(ROOT / "exercises" / request.param), Options(), crew)
+        yield grading_of(load(ROOT / "exercises" / request.param), Options(), crew_with_interfaces)
 
 
 def test_the_solution_gets_full_marks_and_the_starter_nothing(graded: Grading) -> None:

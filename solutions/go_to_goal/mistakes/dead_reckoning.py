@@ -1,6 +1,7 @@
 """Computes once how long to turn and to drive, and looks at no pose on the way.
 
 Caught by:
+- test_reaches_the_goal
 """
 
 import math

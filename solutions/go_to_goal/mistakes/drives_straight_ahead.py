@@ -1,6 +1,7 @@
 """Never turns.
 
 Caught by:
+- test_reaches_the_goal
 """
 
 import math

@@ -1,6 +1,7 @@
 """Has a goal at (0, 0) before any was published.
 
 Caught by:
+- test_stands_still_without_a_goal
 """
 
 import math

@@ -1,6 +1,8 @@
 """Publishes nothing any more at the goal, so that the turtle rolls on for a second.
 
 Caught by:
+- test_stops_at_the_goal
+- test_does_not_go_past_the_goal
 """
 
 import math

@@ -1,6 +1,8 @@
 """Takes no second goal.
 
 Caught by:
+- test_reaches_the_next_goal
+- test_takes_a_new_goal_on_its_way
 """
 
 import math

@@ -1,6 +1,7 @@
 """Keeps the first goal until it is there.
 
 Caught by:
+- test_takes_a_new_goal_on_its_way
 """
 
 import math

@@ -1,6 +1,7 @@
 """Publishes a pose at the goal itself.
 
 Caught by:
+- test_drives
 """
 
 import math

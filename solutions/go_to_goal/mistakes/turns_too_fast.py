@@ -1,6 +1,7 @@
 """Turns at up to 6 rad/s.
 
 Caught by:
+- test_not_too_fast
 """
 
 import math

@@ -1,6 +1,8 @@
 """Wraps the angle to the goal in the place of the difference.
 
 Caught by:
+- test_turns_the_shorter_way
+- test_reaches_the_next_goal
 """
 
 import math

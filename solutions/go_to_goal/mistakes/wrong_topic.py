@@ -1,6 +1,7 @@
 """Publishes on another topic.
 
 Caught by:
+- test_drives
 """
 
 import math

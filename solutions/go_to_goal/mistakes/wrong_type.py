@@ -1,6 +1,7 @@
 """Publishes a TwistStamped.
 
 Caught by:
+- test_drives
 """
 
 import math
