@@ -64,11 +64,13 @@ class Links:
 
 def rich(text: str, links: Links, folder: str, page_folder: str, draw: Draw) -> str:
     """`text`, from a file in `folder`, for a page in `page_folder`; without comments, in which authors write notes."""
-    lines = without_comments(text, keep_lines=True).split("\n")
+    bare = without_comments(text, keep_lines=True)
+    # Before the drawings: their files are the site's own, not the course's.
+    lines = linked(bare, lambda target, is_image: links.target(target, is_image, folder, page_folder)).split("\n")
     for token in parser().parse("\n".join(lines)):
         if token.type == "fence" and token.map:
             _fence(token, lines, draw)
-    return linked("\n".join(lines), lambda target, is_image: links.target(target, is_image, folder, page_folder))
+    return "\n".join(lines)
 
 
 def _fence(token: Token, lines: list[str], draw: Draw) -> None:
