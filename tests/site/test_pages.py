@@ -17,6 +17,8 @@ from latex2mathml.converter import convert
 from small_course import ROOT, SmallCourse
 
 from spinbook.site.extension.maths import spaced
+from spinbook.site.prose import Links, rich
+from spinbook.site.repository import Repository
 
 TALK = "chapters/01-talk.html"
 EXERCISE = "exercises/joint_velocity.html"
@@ -240,3 +242,15 @@ def test_a_page_can_be_edited_and_a_cell_names_its_source(built: SmallCourse) ->
     assert 'href="https://github.com/example/course/edit/main/chapters/01-talk.md">Edit this page</a>' in page
     assert re.search(r'aria-label="Source of talker\.py, line \d+">source</a>', page)
     assert "About 1 minute to read" in page
+
+
+def test_a_drawing_is_the_site_s_own_file_and_no_link_into_the_repository() -> None:
+    links = Links({}, Repository(ROOT, "https://github.com/example/course"))
+    shown = rich(
+        "[it](../course.toml)\n\n```mermaid\nflowchart LR\n```\n", links, "chapters", "chapters", lambda code: DRAWN
+    )
+    assert DRAWN in shown
+    assert "[it](https://github.com/example/course/blob/main/course.toml)" in shown
+
+
+DRAWN = '<figure><img src="../_drawings/a.svg" alt="a"></figure>'
