@@ -18,7 +18,7 @@ from grader.grading import grade_submission
 from grader.submission import read
 
 SOLUTIONS = ROOT / "solutions" / "joint_velocity"
-MISTAKES = ("wrong_topic", "degrees", "fixed_dt", "no_guard_for_dt_0", "sign_turned_round")
+MISTAKES = ("wrong_topic", "degrees", "sign_turned_round", "publishes_on_the_first_message", "traceback_on_ctrl_c")
 PATIENCE_MS = 180_000
 WIDTHS = (1280, 390)
 

@@ -66,7 +66,7 @@ def test_a_cell_that_computes_for_ever_can_be_stopped(shown: Opened) -> None:
     bar = shown.page.get_by_role("region", name="Running nodes")
     bar.get_by_role("button", name="Stop all nodes").click()
     expect(cell.get_by_role("status")).to_contain_text("It was ended, and the variables", timeout=PATIENCE_MS)
-    expect(bar).to_be_hidden()
+    expect(bar).to_be_hidden(timeout=PATIENCE_MS)
 
 
 @pytest.mark.soak
@@ -84,7 +84,8 @@ def test_a_browser_without_promise_integration_is_told_so(browser: Browser, addr
         page.page.add_init_script(WITHOUT_JSPI)
         page.page.reload()
         page.page.get_by_role("button", name="Run talker.py", exact=True).click()
-        expect(page.page.locator(".cell-node").get_by_role("status")).to_contain_text("This browser can't run nodes")
+        state = page.page.locator(".cell-node").get_by_role("status")
+        expect(state).to_contain_text("This browser can't run nodes", timeout=PATIENCE_MS)
         assert "A publisher sends messages." in page.page.inner_text("main")
         assert page.violations() == []
         assert page.faults == []

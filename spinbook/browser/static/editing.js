@@ -56,6 +56,7 @@ export function editing(place, key, name, language = "") {
   };
   fill(stored(key) ?? written);
   code.contentEditable = "plaintext-only";
+  code.tabIndex = 0; // What can be edited can be focused in any case, but not everybody knows.
   code.spellcheck = false;
   code.setAttribute("role", "textbox");
   code.setAttribute("aria-multiline", "true");
