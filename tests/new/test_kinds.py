@@ -64,7 +64,7 @@ def crew() -> Iterator[Crew]:
 
 
 #: Their scenarios last longest, so that only the soak grades them.
-LONG = ("publisher", "closed-loop", "several-nodes")
+LONG = ("publisher", "action-client", "closed-loop", "several-nodes")
 
 
 @pytest.fixture(
