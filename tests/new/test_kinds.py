@@ -63,7 +63,14 @@ def crew() -> Iterator[Crew]:
         yield crew
 
 
-@pytest.fixture(scope="module", params=MISTAKES)
+#: Their scenarios last longest, so that only the soak grades them.
+LONG = ("publisher", "action-client", "closed-loop", "several-nodes")
+
+
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(kind, marks=pytest.mark.soak if kind in LONG else ()) for kind in MISTAKES],
+)
 def grading(request: pytest.FixtureRequest, course: Path, crew: Crew) -> Grading:
     """Ready to grade the exercise of a kind: its solution has passed every check."""
     return grading_of(load(course / "exercises" / exercise_of(request.param)), Options(), crew)
