@@ -18,6 +18,7 @@ from grader.exercise import Exercise, ExerciseError, load
 from grader.exercise.finding import NoExercise, find
 from grader.grading import Options
 from grader.sandbox import Middleware, SandboxUnavailable, choose_middleware
+from interface_compiler.near import use_near
 
 #: Exit codes, beside click's 2 for usage and a shell's 130 for Ctrl-C.
 PROVED, TO_MEND, OUR_FAULT, STOPPED = 0, 1, 3, 130
@@ -82,6 +83,8 @@ def audit(
     try:
         if not shadow and (warning := choose_middleware(options.middleware).warning):
             click.echo(warning, err=True)
+        # Workers can import a course's own interfaces only if these were found before the workers start.
+        use_near(Path.cwd())
         with Crew(*(Middleware if shadow else (options.middleware,))) as crew:
             for folder in [_folder(name) for name in exercises] or _all_here():
                 try:

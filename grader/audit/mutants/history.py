@@ -16,7 +16,7 @@ def remembered(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     if assignment is None or function is None or function.name.value == "__init__":
         return
     name, value = program.text(assignment.targets[0].target), program.text(assignment.value)
-    if not name.startswith("self.") or "," in name:
+    if not name.removeprefix("self.").isidentifier() or not name.startswith("self."):
         return
     older = f"{name}_older"
     yield program.instead(
