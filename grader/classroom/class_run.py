@@ -168,7 +168,7 @@ def _adjusting(exercise: Exercise, order: ClassRequest, students: set[str]) -> A
     overrides = overrides_in(order.overrides, students) if order.overrides else {}
     for student in order.regrade:
         if student not in (*students, "*"):
-            raise SubmissionsError(f"--regrade {student}: nobody is called so who handed something in.")
+            raise SubmissionsError(f'--regrade {student}: no submission from a student called "{student}".')
     return Adjusting(deadline_of(exercise), overrides)
 
 

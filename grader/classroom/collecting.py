@@ -59,13 +59,13 @@ def date_of(path: Path) -> datetime | None:
 
 
 def by_student(files: list[File]) -> Sorted:
-    """STUDENT.py, or a folder a student with a file in it."""
+    """STUDENT.py, or one folder per student with a file in it."""
     found = []
     for file in files:
         top = file.parts[0]
         name = top if len(file.parts) > 1 else top.rpartition(".")[0] or top
         found.append((Student(student_id(name), name if name != student_id(name) else ""), file))
-    return Sorted("a folder with a file or a folder a student", tuple(found))
+    return Sorted("a folder with one file (or one folder) per student", tuple(found))
 
 
 NEEDED = ("file", "student")

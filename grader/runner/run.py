@@ -48,8 +48,7 @@ OUTSIDE = (
     "Your program did not go on for {0:g} s: it waits for something outside of it, such as another program that sleeps."
 )
 DEAF = (
-    "Your node does not answer: it is there, but it does nothing. Does your program call rclpy.spin(node), and does no "
-    "callback wait or sleep?"
+    "Your node started but never responds. Does your program call rclpy.spin(node), and does no callback wait or sleep?"
 )
 
 STEP = Allowance(ENDLESS.format(3.0), OUTSIDE.format(3.0))

@@ -27,7 +27,13 @@ _AT_ONCE = 2 * (os.cpu_count() or 1)
 @click.option("--course", "start", type=click.Path(path_type=Path), default=".", help="The course's folder.")
 @click.option("--execute", "run", is_flag=True, help="Run every notebook, with real nodes, and keep its outputs.")
 @click.option("--jobs", type=click.IntRange(1, 50), default=_AT_ONCE, show_default=True, help="Notebooks run at once.")
-@click.option("--deadline", type=click.FloatRange(1), default=DEADLINE_S, show_default=True, help="Seconds a notebook.")
+@click.option(
+    "--deadline",
+    type=click.FloatRange(1),
+    default=DEADLINE_S,
+    show_default=True,
+    help="Time limit per notebook, in seconds.",
+)
 @click.option("--strict", "is_strict", is_flag=True, help="It is an error that something is shown and not run.")
 @click.option("--again", is_flag=True, help="Run notebooks again that have not changed since a good run.")
 @click.argument("chapters", nargs=-1)
@@ -36,7 +42,7 @@ def build(
 ) -> None:
     """Make a notebook of each chapter that course.toml lists, in build/notebooks/.
 
-    With --execute each is run too, beside the others and unheard by them, and lies with its outputs in
+    With --execute, also runs each notebook, isolated from the others, and saves it with outputs in
     build/executed/. A chapter whose code has not changed since a good run is not run again. CHAPTERS, such as
     03-nodes-and-topics, run only those.
 

@@ -116,7 +116,7 @@ def checked(exercise: Path, code: str, seconds: float) -> dict[str, str]:
             status = process.wait(seconds)
             if status.running:
                 raise CellFailed(
-                    f"The check was not done after {seconds:g} s and has been stopped. Does your program do something "
+                    f"The check did not finish within {seconds:g} s and was stopped. Does your program do something "
                     "for a long time before it spins its node? If not, this machine may be very busy: try again, or "
                     f"allow more time, as in %check {exercise.name} --seconds {2 * seconds:g}"
                 )

@@ -169,7 +169,7 @@ def checks_of(kernel: Kernel) -> list[psutil.Process]:
 def test_a_check_ends_with_its_bound_and_leaves_nothing_behind(kernel: Kernel) -> None:
     shown = shown_of(kernel, solution(), "%check joint_velocity --seconds 0.05")
 
-    assert "not done after 0.05 s and has been stopped" in shown.error
+    assert "did not finish within 0.05 s and was stopped" in shown.error
     assert checks_of(kernel) == []
 
 

@@ -32,7 +32,7 @@ def test_everybody_gets_what_is_theirs_whatever_others_hand_in(graded: tuple[Sma
     small, printed = graded
     assert small.finals() == POINTS
     assert small.entry("fay")["grade"]["outcome"] == "did-not-start"
-    assert "6 submissions in a folder with a file or a folder a student." in printed
+    assert "6 submissions in a folder with one file (or one folder) per student." in printed
     assert "fay: 0 of 20 points (did-not-start)" in printed
     assert "6 grades: median 17 of 20 points, 2 with full marks." in printed
 
@@ -97,7 +97,7 @@ def test_regrade_grades_one_student_again_though_nothing_changed(done: SmallClas
     assert "dora: 18 -> 18 points; up: test_node_is_as_described (+2); down: test_not_a_number (-2)" in printed
     code, printed = done.grade("--regrade", "nobody")
     assert code == 2
-    assert "--regrade nobody: nobody is called so who handed something in." in printed
+    assert '--regrade nobody: no submission from a student called "nobody".' in printed
 
 
 def test_a_fault_of_ours_is_tried_again_listed_apart_and_never_scored(done: SmallClass, tmp_path: Path) -> None:

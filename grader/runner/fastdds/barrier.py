@@ -37,8 +37,7 @@ RESTLESS_S, RESTLESS_TIMES = 0.25, 3
 
 ENDLESS = "Your node used {0:g} s of computing time on one message without an end. Is there an endless loop?"
 DEAF = (
-    "Your node does not answer: it is there, but it does nothing. Does your program call rclpy.spin(node), and does no "
-    "callback wait or sleep?"
+    "Your node started but never responds. Does your program call rclpy.spin(node), and does no callback wait or sleep?"
 )
 
 SLEEPY = "Your node waits and sleeps instead of answering: {0:g} s in this scenario. Let callbacks return at once."

@@ -13,7 +13,7 @@ def test_publishes_safe_speeds(gentle: Run) -> None:
     """It hears /wanted_speed and publishes Float64 messages on /safe_speed."""
     if not gentle.subscriptions(WANTED):
         heard = ", ".join(gentle.topics("subscription")) or "none"
-        fail("Your node does not subscribe the topic.", expected=WANTED, got=heard)
+        fail("Your node does not subscribe to the topic.", expected=WANTED, got=heard)
     if not gentle.publishers(SAFE):
         published = ", ".join(gentle.topics("publisher")) or "none"
         fail("Your node has no publisher on the topic.", expected=SAFE, got=published)
