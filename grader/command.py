@@ -109,8 +109,9 @@ def grade(
     Exit codes: 0 full marks, 1 not, 2 wrong usage, 3 a fault of the course's or the machine's.
 
     A class is a folder with one file (or one folder) per student, nbgrader's folder, a zip from Moodle or Canvas, or a
-    CSV file with the columns file and student. What is unchanged since it was graded is not graded again; a run that was stopped
-    goes on. Exit codes then: 0 all graded, 1 there are questions to settle, 2 wrong usage, 3 a fault of ours.
+    CSV file with the columns file and student. What is unchanged since it was graded is not graded again, and a run
+    that was stopped goes on. Exit codes then: 0 all graded, 1 there are questions to settle, 2 wrong usage, 3 a fault
+    of ours.
 
     \b
       spinbook grade joint_velocity submissions/ --out results/

@@ -117,7 +117,7 @@ def _printed(cell: dict[str, Any]) -> str:
 
 
 #: How long a notebook may take (s), and how much longer its process may take to say so.
-DEADLINE_S = 300.0
+DEADLINE_S = 600.0
 _TO_SAY_SO_S = 20.0
 #: What of Spinbook a notebook's cells use.
 _USED_BY_CELLS = ("check", "chapter", "course", "graph", "kernel", "ros2", "turtlesim", "package", "interfaces")
