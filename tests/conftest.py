@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,6 +16,8 @@ from playwright.sync_api import Browser
 from process_mark import ProcessMark
 from workers import ByFolder
 from xdist.remote import Producer
+
+from interface_compiler.activation import VARIABLE
 
 
 def pytest_configure() -> None:
@@ -36,6 +40,18 @@ def ros_domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
         for name, value in ros_domains.environment(domain).items():
             monkeypatch.setenv(name, value)
         yield domain
+
+
+@pytest.fixture(scope="module")
+def only_here() -> Iterator[None]:
+    """Lets the interfaces that a module's tests activate end with the module; later ones would list them, too."""
+    path, names = list(sys.path), (VARIABLE, "AMENT_PREFIX_PATH", "PYTHONPATH")
+    before = {name: os.environ[name] for name in names if name in os.environ}
+    yield
+    for name in names:
+        os.environ.pop(name, None)
+    os.environ.update(before)
+    sys.path[:] = path
 
 
 @pytest.fixture

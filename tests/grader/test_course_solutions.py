@@ -32,7 +32,7 @@ NAMES = sorted(
 
 
 @pytest.fixture(scope="module")
-def workers_with_interfaces() -> Iterator[WorkerPool]:
+def workers_with_interfaces(only_here: None) -> Iterator[WorkerPool]:
     """A worker that was started when the course's own interfaces could be imported."""
     compile_course(find_course(ROOT))
     load(ROOT / "exercises" / "calibration")
