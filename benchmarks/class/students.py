@@ -139,10 +139,10 @@ def _handed(student: str, origin: Path | OddFile, chance: random.Random, exercis
     source = origin.read_text(encoding="utf-8")
     fails = frozenset(_caught_by(source)) if origin.parent.name == "mistakes" else frozenset()
     kind, score = ("mistake", "less") if fails else ("right", "full")
+    # A mistake may end its program: what was recorded until then is judged.
+    outcomes = ("graded", "crashed") if fails else ("graded",)
     name, text = _packed(reworded(source, student, chance), chance, exercise)
-    return Handed(
-        student, kind, origin.stem, Expected(("graded",), score, fails), lambda f: (f / name).write_bytes(text)
-    )
+    return Handed(student, kind, origin.stem, Expected(outcomes, score, fails), lambda f: (f / name).write_bytes(text))
 
 
 def _packed(source: str, chance: random.Random, exercise: str) -> tuple[str, bytes]:

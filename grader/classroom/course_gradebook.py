@@ -11,7 +11,7 @@ from urllib.parse import quote
 from grader.classroom.gradebook import Cell, csv_text
 from grader.classroom.overview import OUTCOMES, Distribution, Tally, distribution, tallies
 from grader.grading.entry import Entry, Student
-from grader.report.as_json import from_json
+from grader.report.as_json import STUDENTS, from_json
 from grader.report.pages import render
 
 
@@ -47,19 +47,19 @@ class CourseRow:
 def graded_exercises(
     results: Path, order: Sequence[str] = (), titles: Mapping[str, str] | None = None
 ) -> tuple[GradedExercise, ...]:
-    """Every exercise that has grades in `results/EXERCISE/STUDENT/grade.json`.
+    """Every exercise that has grades in `results/EXERCISE/students/STUDENT/grade.json`.
 
     First those of `order`, in that order, then all others by name. A grade that can't be read is left out, as `spinbook
     grade` grades it again.
     """
-    names = {file.parents[1].name for file in results.glob("*/*/grade.json")}
+    names = {file.parents[2].name for file in results.glob(f"*/{STUDENTS}/*/grade.json")}
     ordered = [*(name for name in order if name in names), *sorted(names - set(order))]
     found = [_graded_exercise(results / name, (titles or {}).get(name, name)) for name in ordered]
     return tuple(exercise for exercise in found if exercise.entries)
 
 
 def _graded_exercise(folder: Path, title: str) -> GradedExercise:
-    read = [_entry(file) for file in sorted(folder.glob("*/grade.json"))]
+    read = [_entry(file) for file in sorted(folder.glob(f"{STUDENTS}/*/grade.json"))]
     entries = {entry.student.id: entry for entry in read if entry}
     points = max((entry.grade.points for entry in entries.values()), default=0.0)
     return GradedExercise(folder.name, title, points, entries)
@@ -130,7 +130,7 @@ class Struggle:
 def course_page(title: str, exercises: Sequence[GradedExercise], rows: Sequence[CourseRow]) -> str:
     """The page `results/index.html` of a course, one HTML file.
 
-    Its links lead to `EXERCISE/index.html` and `EXERCISE/STUDENT/feedback.html` next to it.
+    Its links lead to `EXERCISE/index.html` and `EXERCISE/students/STUDENT/feedback.html` next to it.
     """
     columns = [column_of(exercise) for exercise in exercises]
     return render(
@@ -173,7 +173,7 @@ def struggles(columns: Sequence[Column]) -> tuple[Struggle, ...]:
 
 def feedback_of(exercise: GradedExercise, row: CourseRow) -> str:
     """Where a student's page for an exercise is, as seen from the course's."""
-    return f"{quote(exercise.name, safe='')}/{quote(row.student.id, safe='')}/feedback.html"
+    return f"{quote(exercise.name, safe='')}/{STUDENTS}/{quote(row.student.id, safe='')}/feedback.html"
 
 
 @cache

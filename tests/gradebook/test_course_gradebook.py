@@ -19,7 +19,7 @@ from grader.classroom.course_gradebook import (
     graded_exercises,
     struggles,
 )
-from grader.report.as_json import to_json
+from grader.report.as_json import folder_of, to_json
 from spinbook.cli import spinbook
 
 ROOT = Path(__file__).parents[2]
@@ -29,7 +29,7 @@ ADA, BEN, CARL = Student("ada", "Ada Lovelace", "ada@example.org"), Student("ben
 def keep(results: Path, exercise: str, *entries: Entry) -> None:
     """Lay out what `spinbook grade` leaves of an exercise."""
     for entry in entries:
-        folder = results / exercise / entry.student.id
+        folder = folder_of(results / exercise, entry.student.id)
         folder.mkdir(parents=True)
         graded = replace(entry, grade=replace(entry.grade, exercise=exercise))
         (folder / "grade.json").write_text(to_json(graded), encoding="utf-8")
@@ -76,7 +76,7 @@ def test_the_worst_checks_of_all_exercises_are_named_first(results: Path) -> Non
 
 
 def test_a_grade_that_can_not_be_read_is_left_out(results: Path) -> None:
-    (results / "heartbeat" / "ada" / "grade.json").write_text("{", encoding="utf-8")
+    (folder_of(results / "heartbeat", "ada") / "grade.json").write_text("{", encoding="utf-8")
     [heartbeat, _] = graded_exercises(results)
     assert set(heartbeat.entries) == {"carl"}
 
@@ -86,7 +86,7 @@ def test_the_page_links_to_each_exercise_and_each_students_page(results: Path) -
     rows = course_rows(exercises)
     page = course_page("Humanoids", exercises, rows)
     assert '<a class="whole" href="heartbeat/index.html">A heartbeat</a>' in page
-    assert feedback_of(exercises[1], rows[0]) == "joint_velocity/ada/feedback.html"
+    assert feedback_of(exercises[1], rows[0]) == "joint_velocity/students/ada/feedback.html"
     assert feedback_of(exercises[1], rows[0]) in page
     assert "nothing handed in" in page
     assert "not graded" in page
