@@ -98,9 +98,9 @@ def test_a_connection_that_is_handed_on_to_a_child_is_one_process(run_program: R
     ("source", "outcome", "told"),
     [
         (program(body="while message.data == 2.0: pass"), "timed-out", "endless loop"),
-        (program(body="while message.data == 2.0: time.monotonic()"), "timed-out", "does not answer"),
-        (program(body="time.sleep(3600)"), "timed-out", "does not answer"),
-        (program(body="threading.Event().wait()"), "timed-out", "does not answer"),
+        (program(body="while message.data == 2.0: time.monotonic()"), "timed-out", "never responds"),
+        (program(body="time.sleep(3600)"), "timed-out", "never responds"),
+        (program(body="threading.Event().wait()"), "timed-out", "never responds"),
         (program(before="time.sleep(11)"), "timed-out", "waits and creates no node"),
         (program(before="threading.Event().wait()"), "did-not-start", "waits and creates no node"),
         (program(before="sys.exit('no')"), "did-not-start", "gave up with exit code 1"),
