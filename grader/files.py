@@ -6,6 +6,9 @@ import os
 import tempfile
 from pathlib import Path
 
+#: How the name of a file ends while it is being written.
+PART = ".part"
+
 
 def write_if_changed(file: Path, content: str | bytes, *, durable: bool = False) -> bool:
     """Make `file` hold `content`, and its folders exist. True if it had to be written.
@@ -17,7 +20,7 @@ def write_if_changed(file: Path, content: str | bytes, *, durable: bool = False)
     if _holds(file, data):
         return False
     file.parent.mkdir(parents=True, exist_ok=True)
-    descriptor, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
+    descriptor, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.", suffix=PART)
     try:
         with os.fdopen(descriptor, "wb") as out:
             out.write(data)
@@ -30,6 +33,12 @@ def write_if_changed(file: Path, content: str | bytes, *, durable: bool = False)
         os.unlink(temporary)  # noqa: PTH108
         raise
     return True
+
+
+def remove_parts(folder: Path) -> None:
+    """Remove what a process that was killed left half-written in `folder`. Nobody may write there meanwhile."""
+    for part in folder.glob(f".*.????????{PART}"):
+        part.unlink(missing_ok=True)
 
 
 def _holds(file: Path, data: bytes) -> bool:

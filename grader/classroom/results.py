@@ -18,7 +18,7 @@ from grader.classroom import Adjustment, Entry
 from grader.classroom.handed_in import HandedIn, Submissions
 from grader.classroom.request import Backend, Graded
 from grader.exercise import Exercise
-from grader.files import write_if_changed
+from grader.files import remove_parts, write_if_changed
 from grader.grading.grading import Grading
 from grader.grading.reference import digest_of, versions
 from grader.locks import try_lock
@@ -110,6 +110,8 @@ class Results:
         if lock is None:
             raise Busy(f"{self.folder}: another grading is writing to this folder. Wait until it has finished.")
         self._lock = lock
+        for folder in (self.folder, *self.folder.glob(f"{STUDENTS}/*/")):
+            remove_parts(folder)
         return self
 
     def __exit__(
