@@ -14,7 +14,7 @@ from browser import chromium
 from course_folder import CourseFolder
 from playwright.sync_api import Browser
 from process_mark import ProcessMark
-from workers import ByFolder
+from workers import ByPiece
 from xdist.remote import Producer
 
 from interface_compiler.activation import VARIABLE
@@ -26,8 +26,8 @@ def pytest_configure() -> None:
 
 
 @pytest.hookimpl(optionalhook=True)
-def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> ByFolder:
-    return ByFolder(config, log)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> ByPiece:
+    return ByPiece(config, log)
 
 
 @pytest.fixture
