@@ -21,7 +21,8 @@ compile() {
 }
 
 # A sourced ROS 2 leaves lark, with which it reads interface files, to the system's Python: see rosidl_parser.
-echo "lark-parser" >"$new/sourced.in"
+# lark is the newer lark-parser, in the same place, and warns of nothing on a new Python.
+printf '%s\n' lark-parser lark >"$new/sourced.in"
 echo "Pinning what Spinbook needs ..." >&2
 compile pyproject.toml "$new/sourced.in" --extra colcon --extra bag --extra site --extra audit --extra cluster \
     --extra lab --extra dev --output-file "$new/constraints.txt"

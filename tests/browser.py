@@ -12,10 +12,13 @@ from typing import Any
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Browser, ConsoleMessage, Page, Request, sync_playwright
+from playwright.sync_api import Browser, ConsoleMessage, Page, Request, expect, sync_playwright
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 LOCAL = ("file:", "data:", "blob:", "about:")
+
+#: How long anything that has to happen in a page may take, on a machine with much else to do (ms).
+PATIENCE_MS = 90_000
 
 #: No calls home, and no GPU that a test machine would not have.
 ARGUMENTS = ["--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
@@ -52,6 +55,7 @@ def chromium() -> Iterator[Browser]:
     if path is None:
         pytest.fail("There is no Chromium here. Install it: sudo apt-get install chromium")
     arguments = [*ARGUMENTS, "--no-sandbox"] if os.geteuid() == 0 else ARGUMENTS
+    expect.set_options(timeout=PATIENCE_MS)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=path, args=arguments)
         try:
@@ -67,6 +71,7 @@ def opened(
     """The page at a file's path or a URL, loaded, in a window of `width` pixels."""
     url = where.resolve().as_uri() if isinstance(where, Path) else where
     context = browser.new_context(viewport={"width": width, "height": height}, color_scheme="dark" if dark else "light")
+    context.set_default_timeout(PATIENCE_MS)
     try:
         shown = Opened(context.new_page())
         origin = "/".join(url.split("/")[:3])

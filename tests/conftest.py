@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import sys
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,20 +16,24 @@ from browser import chromium
 from course_folder import CourseFolder
 from playwright.sync_api import Browser
 from process_mark import ProcessMark
-from workers import ByFolder
+from workers import ByPiece
 from xdist.remote import Producer
 
 from interface_compiler.activation import VARIABLE
 
 
-def pytest_configure() -> None:
+def pytest_configure(config: pytest.Config) -> None:
     # Started in a shell's background, tests would hand on to every program that they start that Ctrl-C is ignored.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    # Each run makes the solutions' recordings anew, once for all its processes: the user's own cache proves nothing.
+    if "PYTEST_XDIST_WORKER" not in os.environ:
+        os.environ["SPINBOOK_CACHE"] = tempfile.mkdtemp(prefix="spinbook-tests-")
+        config.add_cleanup(lambda: shutil.rmtree(os.environ["SPINBOOK_CACHE"], ignore_errors=True))
 
 
 @pytest.hookimpl(optionalhook=True)
-def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> ByFolder:
-    return ByFolder(config, log)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> ByPiece:
+    return ByPiece(config, log)
 
 
 @pytest.fixture
@@ -42,9 +48,12 @@ def ros_domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
         yield domain
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="module", autouse=True)
 def only_here() -> Iterator[None]:
-    """Lets the interfaces that a module's tests activate end with the module; later ones would list them, too."""
+    """Lets the interfaces that a file's tests activate end with the file; those of later ones would see them, too.
+
+    Reading an exercise is enough to activate what was compiled for its course.
+    """
     path, names = list(sys.path), (VARIABLE, "AMENT_PREFIX_PATH", "PYTHONPATH")
     before = {name: os.environ[name] for name in names if name in os.environ}
     yield

@@ -29,7 +29,7 @@ class ProcessMark:
                 continue
         return found
 
-    def wait_until_none(self, timeout_s: float = 20) -> None:
+    def wait_until_none(self, timeout_s: float = 60) -> None:
         """Wait until none runs any more; fails the test where one stays."""
         deadline = time.monotonic() + timeout_s
         while left := self.alive():

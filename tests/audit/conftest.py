@@ -1,4 +1,4 @@
-"""What the audit's tests share: a small exercise, a worker pool, and what has been spun."""
+"""What the audit's tests share: a small exercise, a worker pool, and what has been run."""
 
 from __future__ import annotations
 
@@ -24,13 +24,17 @@ def workers() -> Iterator[WorkerPool]:
 
 
 @pytest.fixture(scope="session")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """A cache of this session's own, in which one test finds what another has spun."""
-    folder = tmp_path_factory.mktemp("cache")
-    patch = pytest.MonkeyPatch()
-    patch.setenv("SPINBOOK_CACHE", str(folder))
-    yield folder
-    patch.undo()
+def cache_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where the cache of this session is."""
+    return tmp_path_factory.mktemp("cache")
+
+
+@pytest.fixture(scope="module")
+def cache(cache_folder: Path) -> Iterator[Path]:
+    """A cache of this session's own, in which one test finds what another has run."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SPINBOOK_CACHE", str(cache_folder))
+        yield cache_folder
 
 
 @pytest.fixture
@@ -39,9 +43,9 @@ def small(tmp_path: Path) -> SmallExercise:
     return written(tmp_path)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def audited(workers: WorkerPool, cache: Path) -> Auditing:
-    """Audits a small exercise with what this session has spun already."""
+    """Audits a small exercise with what this session has run already."""
 
     def run(small: SmallExercise, quick: bool = True, most: int = 0, seeds: int = 2) -> Audit:
         return audit(load(small.folder), Options(), workers, Silence(), quick, most, seeds)

@@ -29,7 +29,7 @@ ALWAYS = {"joint_velocity", "speed_limit"}
 
 
 @pytest.fixture(scope="module")
-def workers(only_here: None) -> Iterator[WorkerPool]:
+def workers() -> Iterator[WorkerPool]:
     """A worker that was started when the course's own interfaces could be imported."""
     compile_course(find_course(ROOT))
     load(ROOT / "exercises" / "calibration")

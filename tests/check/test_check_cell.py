@@ -194,7 +194,7 @@ def test_stop_ends_a_check_in_the_midst_and_leaves_nothing_behind(kernel: Kernel
 
     assert "The check was interrupted" in shown.error
     assert len(started) > 1, "it was stopped while it had processes of its own"
-    assert psutil.wait_procs(started, timeout=30)[1] == []
+    assert psutil.wait_procs(started, timeout=60)[1] == []
     assert checks_of(kernel) == []
     assert kernel.run("print(6 * 7)").text == "42\n"
 

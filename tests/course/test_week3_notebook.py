@@ -1,4 +1,8 @@
-"""The real Week 3 chapter, built and run: every cell does what the chapter says of it."""
+"""The real Week 3 chapter, built and run: every cell does what the chapter says of it.
+
+The whole chapter takes minutes, and `make course` runs it, too: `make test` runs the sections about the joints, and
+`make soak` all of it.
+"""
 
 from __future__ import annotations
 
@@ -16,14 +20,31 @@ ROOT = Path(__file__).parents[2]
 NAME = "03-nodes-and-topics"
 JOINTS = [f"{side}_{joint}" for side in ("left", "right") for joint in ("shoulder_pitch", "shoulder_roll", "elbow")]
 
+#: The sections that build on one another from the first node to the package, and those that every chapter has.
+THE_JOINTS = (
+    *("A publisher: the joint commands", "A subscriber: the joint monitor", "Look into the running system"),
+    *("See it move", "As a ROS 2 package", "Practice: joint velocities"),
+)
+WHOLE = pytest.param((), id="whole chapter", marks=[pytest.mark.soak, pytest.mark.timeout(900)])
 
-@pytest.fixture(scope="module")
-def notebook(tmp_path_factory: pytest.TempPathFactory) -> Any:
+
+def only(chapter: Path, titles: tuple[str, ...]) -> None:
+    """Take every section out of a chapter but these."""
+    head, *sections = re.split(r"(?m)^(?=## )", chapter.read_text(encoding="utf-8"))
+    kept = [section for section in sections if section[3:].partition("\n")[0] in titles]
+    assert len(kept) == len(titles), "a section has another title now"
+    chapter.write_text(head + "".join(kept), encoding="utf-8")
+
+
+@pytest.fixture(scope="module", params=[pytest.param(THE_JOINTS, id="the joints"), WHOLE])
+def notebook(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Any:
     """The chapter's notebook with its outputs, made from a copy of the course."""
     root = tmp_path_factory.mktemp("course")
     shutil.copy(ROOT / "course.toml", root)
     for folder in ("chapters", "exercises", "solutions"):
         shutil.copytree(ROOT / folder, root / folder)
+    if request.param:
+        only(root / "chapters" / f"{NAME}.md", request.param)
     said = CourseFolder(root).spinbook("build", "--execute", NAME)
     assert said.returncode == 0, said.stdout + said.stderr
     return nbformat.read(root / "build" / "executed" / f"{NAME}.ipynb", as_version=4)
@@ -44,10 +65,15 @@ def pictures(notebook: Any) -> list[Any]:
 def test_every_code_cell_ran_and_only_those_that_should_fail_did(notebook: Any) -> None:
     code = [c for c in notebook.cells if c.cell_type == "code"]
 
-    assert len(code) > 40
+    assert len(code) > 12
     assert all(c.execution_count for c in code)
     failed = {c.id for c in code if any(o.output_type == "error" for o in c.outputs)}
     assert failed == {c.id for c in code if "raises-exception" in c.metadata.get("tags", [])}
+
+
+@pytest.mark.parametrize("notebook", [WHOLE], indirect=True)
+def test_the_whole_chapter_is_there(notebook: Any) -> None:
+    assert sum(c.cell_type == "code" for c in notebook.cells) > 40
 
 
 def test_about_ten_messages_a_second_are_measured(notebook: Any) -> None:
@@ -70,6 +96,7 @@ def test_six_joints_are_plotted(notebook: Any) -> None:
     assert b64decode(plots[0]["data"]["image/png"]).startswith(b"\x89PNG")
 
 
+@pytest.mark.parametrize("notebook", [WHOLE], indirect=True)
 def test_the_turtles_circle_is_shown(notebook: Any) -> None:
     assert any("image/png" in output.get("data", {}) for output in cell(notebook, "code-drive-a-turtle").outputs)
 

@@ -58,7 +58,7 @@ def program() -> Iterator[Program]:
 
 def test_a_program_at_rest_has_not_stirred_until_it_does_something(program: Program) -> None:
     threads = Threads(program.pids)
-    assert threads.wait_until_idle(0.0, 10.0)
+    assert threads.wait_until_idle(0.0, 60.0)
     assert not threads.has_run()
     program.do("nothing")
     assert threads.has_run()
@@ -67,22 +67,22 @@ def test_a_program_at_rest_has_not_stirred_until_it_does_something(program: Prog
 
 def test_a_program_is_at_work_while_it_computes_and_not_while_it_waits(program: Program) -> None:
     threads = Threads(program.pids)
-    assert threads.wait_until_idle(0.0, 10.0)
+    assert threads.wait_until_idle(0.0, 60.0)
     assert not threads.at_work()
     program.do("compute")
-    wait_until(threads.at_work, 10.0)
+    wait_until(threads.at_work, 60.0)
     threads.close()
 
 
 def test_a_thread_that_begins_and_one_that_takes_the_place_of_another_are_found(program: Program) -> None:
     threads = Threads(program.pids)
-    assert threads.wait_until_idle(0.0, 10.0)
+    assert threads.wait_until_idle(0.0, 60.0)
     alone = threads.activity()
     program.do("begin")
-    assert threads.wait_until_idle(0.0, 10.0)
+    assert threads.wait_until_idle(0.0, 60.0)
     with_first = threads.activity()
     program.do("replace")
-    assert threads.wait_until_idle(0.0, 10.0)
+    assert threads.wait_until_idle(0.0, 60.0)
     with_second = threads.activity()
     assert alone is not None
     assert with_first is not None
@@ -95,7 +95,7 @@ def test_a_thread_that_begins_and_one_that_takes_the_place_of_another_are_found(
 
 def test_of_a_program_that_has_ended_nothing_is_left(program: Program) -> None:
     threads = Threads(program.pids)
-    assert threads.wait_until_idle(0.0, 10.0)
+    assert threads.wait_until_idle(0.0, 60.0)
     program.process.kill()
     program.process.wait()
     assert threads.activity() == {}

@@ -55,6 +55,12 @@ def test_a_fault_of_ours_has_no_score() -> None:
     assert "not your fault" in told["output"]
 
 
+@pytest.fixture(autouse=True)
+def no_cache_of_ours(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An autograder keeps the solution's recordings in a folder of its own."""
+    monkeypatch.delenv("SPINBOOK_CACHE")
+
+
 @pytest.fixture(scope="module")
 def autograder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder /autograder of a container, with the uploaded zip unpacked in it and this environment as its own."""

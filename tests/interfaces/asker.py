@@ -15,7 +15,7 @@ from peer import load
 from rclpy.action import ActionClient
 from rclpy.node import Node
 
-WAIT_S = 20.0
+WAIT_S = 60.0
 
 
 def fill(message: Any, values: dict[str, Any]) -> Any:

@@ -36,11 +36,11 @@ def talk(tmp_path: Path, asked: Asked, ours: Compiled | None, theirs: Compiled |
     peer = subprocess.Popen([sys.executable, str(HERE / "peer.py"), *names], env=environment(theirs))
     try:
         command = [sys.executable, str(HERE / "asker.py"), str(file)]
-        done = subprocess.run(command, env=environment(ours), capture_output=True, text=True, timeout=120, check=False)
+        done = subprocess.run(command, env=environment(ours), capture_output=True, text=True, timeout=240, check=False)
         return done.stdout + done.stderr
     finally:
         peer.send_signal(signal.SIGINT)
-        peer.wait(20)
+        peer.wait(60)
 
 
 LIMITS = {

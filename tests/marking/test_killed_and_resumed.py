@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import random
+import shutil
 import signal
 import subprocess
 
@@ -27,14 +28,24 @@ def killed(small: SmallClass, after: int) -> int:
     return len(small.finals())
 
 
+def interrupted(small: SmallClass) -> str:
+    """Press Ctrl-C when somebody has a grade and others have none yet; what is printed then."""
+    for _ in range(5):  # a busy machine may let the run come to its end before the signal arrives
+        process = small.start("--jobs", "2")
+        small.wait_for_grades(1, process)
+        process.send_signal(signal.SIGINT)
+        printed, _ = process.communicate(timeout=240)
+        if process.returncode == 130:
+            return printed
+        assert process.returncode == 0, printed
+        shutil.rmtree(small.folder / "results")
+    raise AssertionError("every run came to its end before Ctrl-C")
+
+
 def test_interrupted_then_killed_then_resumed_it_is_as_if_nothing_had_been(
     undisturbed: dict[str, str], small_class: SmallClass, process_mark: ProcessMark
 ) -> None:
-    process = small_class.start("--jobs", "2")
-    small_class.wait_for_grades(1, process)
-    process.send_signal(signal.SIGINT)
-    printed, _ = process.communicate(timeout=120)
-    assert process.returncode == 130, printed
+    printed = interrupted(small_class)
     assert "are graded and kept; the same command goes on from there." in printed
     assert "Traceback" not in printed
     process_mark.wait_until_none(60)

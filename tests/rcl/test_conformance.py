@@ -24,7 +24,7 @@ def printed(program: Path, *, over_python: bool) -> list[str]:
     """What the program prints."""
     command = [sys.executable, *(["-c", _OVER_PYTHON] if over_python else []), os.fspath(program)]
     environment = {**os.environ, "PYTHONPATH": os.fspath(ROOT)}
-    done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=100, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=280, check=False)
     assert done.returncode == 0, done.stderr
     return re.sub(r" at 0x[0-9a-f]+", "", done.stdout).splitlines()
 

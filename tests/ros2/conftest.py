@@ -75,9 +75,12 @@ def robot(ros_domain: int) -> Iterator[Robot]:
     end(started)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def standing_robots() -> Iterator[tuple[dict[tuple[str, ...], tuple[int, subprocess.Popen[str]]], ExitStack]]:
-    """Robots that go on from test to test, by their parts, each with a domain of its own."""
+    """Robots that go on from test to test, by their parts, each with a domain of its own.
+
+    They end with the file: robots publish without a pause, at the cost of whatever else the machine has to do.
+    """
     robots: dict[tuple[str, ...], tuple[int, subprocess.Popen[str]]] = {}
     with ExitStack() as domains:
         yield robots, domains

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 from notebook_kernel import Kernel
 
 CLASS = """class Talker(Node):
@@ -69,11 +67,9 @@ def test_nodes_of_a_package_import_each_other_by_its_name(kernel: Kernel) -> Non
 
 
 def test_an_endless_loop_is_a_process_that_the_kernel_does_not_wait_for(kernel: Kernel) -> None:
-    started = time.monotonic()
-
     shown = kernel.run(
-        "%%node endless --seconds 20 --until on\nimport time\nwhile True:\n    print('on')\n    time.sleep(1)\n"
+        "%%node endless --seconds 60 --until on\nimport time\nwhile True:\n    print('on')\n    time.sleep(1)\n"
     )
 
     assert "endless goes on in the background" in shown.text
-    assert time.monotonic() - started < 20
+    assert "did not come" not in shown.text

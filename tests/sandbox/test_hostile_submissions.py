@@ -118,7 +118,7 @@ def spin(fork_server: ForkServer, level: Isolation, source: bytes, domain: int, 
         node.destroy_node()
         rclpy.shutdown(context=context)
     # Of all that this rig's fork server has started only the fork server is left, once our own supervisor has ended.
-    deadline = time.monotonic() + 10.0
+    deadline = time.monotonic() + DEADLINE_S
     while (left := len(psutil.Process(os.getpid()).children(recursive=True)) - 1) and time.monotonic() < deadline:
         time.sleep(0.001)
     return Spun(student.exit, text, len(answers), left)

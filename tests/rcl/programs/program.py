@@ -37,7 +37,7 @@ for name, parameter in sorted(server._parameters.items()):
 
 
 def until(done: object) -> None:
-    for _ in range(400):
+    for _ in range(3000):
         if done():
             return
         executor.spin_once(timeout_sec=0.02)
@@ -61,13 +61,13 @@ def switch(request: SetBool.Request, response: SetBool.Response) -> SetBool.Resp
 
 server.create_service(SetBool, "~/switch", switch)
 caller = client.create_client(SetBool, "/server/switch")
-print("ready", caller.wait_for_service(timeout_sec=5.0))
+print("ready", caller.wait_for_service(timeout_sec=60.0))
 future = caller.call_async(SetBool.Request(data=True))
 until(future.done)
 print(future.result())
 
 asking = client.create_client(GetParameters, "/server/get_parameters")
-asking.wait_for_service(timeout_sec=5.0)
+asking.wait_for_service(timeout_sec=60.0)
 future = asking.call_async(GetParameters.Request(names=["rate", "list", "absent"]))
 until(future.done)
 print([value.type for value in future.result().values])
@@ -90,7 +90,7 @@ worker = ActionServer(
     cancel_callback=lambda goal: CancelResponse.ACCEPT,
 )  # fmt: skip
 sender = ActionClient(client, Fibonacci, "/count")
-print("server there", sender.wait_for_server(timeout_sec=5.0))
+print("server there", sender.wait_for_server(timeout_sec=60.0))
 for canceled in (False, True):
     feedback = []
     sent = sender.send_goal_async(

@@ -1,6 +1,7 @@
 """Prints what is said of profiles of quality of service, and which endpoints meet and hear of it."""
 
 import time
+from collections.abc import Callable
 
 import rclpy
 from rclpy.duration import Duration
@@ -50,14 +51,18 @@ def meet(offered: QoSProfile, requested: QoSProfile, topic: str) -> list[str]:
     )
     got = lambda message: heard.append(f"got {message.data}")  # noqa: E731
     node.create_subscription(String, topic, got, requested, event_callbacks=callbacks)
-    until = time.monotonic() + 5
-    while len(heard) < 2 and time.monotonic() < until:
-        rclpy.spin_once(node, timeout_sec=0.1)
-    rclpy.spin_once(node, timeout_sec=0.1)
+    wait_for(lambda: sum(not text.startswith("got") for text in heard) >= 2)
     publisher.publish(String(data="late"))
-    for _ in range(3):
-        rclpy.spin_once(node, timeout_sec=0.1)
+    if any(text.startswith("s matched") for text in heard):
+        wait_for(lambda: "got late" in heard)
+    rclpy.spin_once(node, timeout_sec=0.1)
     return sorted(heard)
+
+
+def wait_for(happened: Callable[[], bool]) -> None:
+    until = time.monotonic() + 60
+    while not happened() and time.monotonic() < until:
+        rclpy.spin_once(node, timeout_sec=0.1)
 
 
 PAIRS = [(0, 0), (1, 0), (0, 1), (0, 3), (3, 3), (3, 0), (6, 5), (0, 5), (7, 8), (10, 9)]
