@@ -25,7 +25,7 @@ from grader.audit.recordings import Spins, tidy
 from grader.audit.result import LEAST_SCORE, Audit, MutantResult, Problem, score_of
 from grader.audit.store import Store
 from grader.audit.survivors import listed, problems_of_survivors, result_of, stale
-from grader.audit.trial import Trial, Trials, Until
+from grader.audit.trial import Trial, Trials
 from grader.audit.worth import check_results, messages, problems_of_broken, problems_of_checks, scenario_results
 from grader.exercise import Exercise
 from grader.grading import Options, grading_of
@@ -154,11 +154,10 @@ class _Work:
         return self.store.trial({"code": program.submission.digest, "only": only}, make)
 
     def mutant(self, mutant: Mutant) -> Trial:
-        """Most are caught in the first scenario, and need no other; in a quick audit any failure is enough."""
+        """Any failure is enough."""
         submission = of_source(mutant.id, mutant.source.encode(), self.trials.grading.runner.exercise)
-        until: Until = "a failure" if self.plan.quick else "a failure in the first"
-        make: Callable[[], Trial] = lambda: self.trials.try_(submission, until=until)  # noqa: E731
-        return self.store.trial({"code": submission.digest, "until": until}, make)
+        make: Callable[[], Trial] = lambda: self.trials.try_(submission, until="a failure")  # noqa: E731
+        return self.store.trial({"code": submission.digest, "until": "a failure"}, make)
 
 
 def audit(
@@ -173,8 +172,8 @@ def audit(
     """Everything there is to find out about one exercise.
 
     A `quick` audit asks of each mistake only whether the checks that it names catch it, tries a sample of the mutants,
-    and leaves out the other right solutions and the seeds. With `most`, no more mutants than that are tried. Otherwise
-    right solutions have to be right over so many `seeds`.
+    and leaves out the other right solutions and the seeds. With `most`, no more mutants than that are tried; with 0,
+    nothing is said of what each check is worth. Otherwise right solutions have to be right over so many `seeds`.
     Raises what `grading_of` raises.
     """
     began = time.monotonic()
@@ -197,7 +196,9 @@ def audit(
     for number, with_seed in tried.seeds.items():
         problems += problems_of(plan.right, with_seed, checks, number)
     problems += problems_of_broken(checks, {**tried.programs, **evidence})
-    problems += messages(checks, evidence) if quick else problems_of_checks(checks, evidence)
+    # What a check is worth shows only next to mutants.
+    worth = problems_of_checks if mutants and not quick else messages
+    problems += worth(checks, evidence)
     problems += problems_in_text(exercise, checks)
     problems += problems_of_survivors(exercise, mutants)
     if not plan.sampled:
