@@ -25,8 +25,15 @@ from grader.audit.recordings import Spins, tidy
 from grader.audit.result import LEAST_SCORE, Audit, MutantResult, Problem, score_of
 from grader.audit.store import Store
 from grader.audit.survivors import listed, problems_of_survivors, result_of, stale
-from grader.audit.trial import Trial, Trials
-from grader.audit.worth import check_results, messages, problems_of_broken, problems_of_checks, scenario_results
+from grader.audit.trial import Trial, Trials, Until
+from grader.audit.worth import (
+    check_results,
+    messages,
+    problems_of_broken,
+    problems_of_checks,
+    scenario_results,
+    worth_spinning_on,
+)
 from grader.exercise import Exercise
 from grader.grading import Options, grading_of
 from grader.grading.reference import solution_file
@@ -137,6 +144,23 @@ def try_all(plan: Plan, trials: Trials, store: Store, progress: Progress) -> Tri
     return tried
 
 
+def spin_on(plan: Plan, tried: Tried, trials: Trials, store: Store) -> None:
+    """Spin those mutants through every scenario that settle what is in doubt of the checks."""
+    evidence = {**{one.name: tried.programs[one.name] for one in plan.mistakes}, **tried.mutants}
+    wanted = set(worth_spinning_on(trials.checks, evidence, tried.mutants))
+    work = _Work(plan, trials, store)
+    with ThreadPoolExecutor(trials.grading.runner.options.parallel) as pool:
+        futures = {m.id: pool.submit(work.mutant, m, "the end") for m in plan.mutants if m.id in wanted}
+        try:
+            tried.mutants.update({id_: future.result() for id_, future in futures.items()})
+        except BaseException:
+            trials.spins.stopped.set()
+            raise
+        finally:
+            for future in futures.values():
+                future.cancel()
+
+
 def _programs(plan: Plan) -> list[Candidate]:
     return [*plan.right, *plan.baselines, *plan.mistakes]
 
@@ -153,11 +177,11 @@ class _Work:
         make: Callable[[], Trial] = lambda: self.trials.try_(program.submission, only)  # noqa: E731
         return self.store.trial({"code": program.submission.digest, "only": only}, make)
 
-    def mutant(self, mutant: Mutant) -> Trial:
-        """Any failure is enough."""
+    def mutant(self, mutant: Mutant, until: Until = "a failure") -> Trial:
+        """Any failure is enough, unless more is to be known."""
         submission = of_source(mutant.id, mutant.source.encode(), self.trials.grading.runner.exercise)
-        make: Callable[[], Trial] = lambda: self.trials.try_(submission, until="a failure")  # noqa: E731
-        return self.store.trial({"code": submission.digest, "until": "a failure"}, make)
+        make: Callable[[], Trial] = lambda: self.trials.try_(submission, until=until)  # noqa: E731
+        return self.store.trial({"code": submission.digest, "until": until}, make)
 
 
 def audit(
@@ -185,6 +209,8 @@ def audit(
     reasons = listed(exercise)
     plan = planned(trials, quick, most, seeds)
     tried = try_all(plan, trials, store, progress)
+    if not plan.quick:
+        spin_on(plan, tried, trials, store)
     tidy(exercise.name)
 
     mutants = tuple(result_of(mutant, tried.mutants[mutant.id], reasons) for mutant in plan.mutants)

@@ -171,6 +171,11 @@ def test_services_actions_and_parameters_have_operators_of_their_own(
     assert line in added(peers, operator)
 
 
+def test_a_node_is_not_made_twice(mutants: tuple[Mutant, ...]) -> None:
+    assert "self.publisher.publish(answer)" in added(mutants, "statement twice")
+    assert "super().__init__" not in added(mutants, "statement twice")
+
+
 def test_there_are_more_than_enough_of_them_and_no_two_are_the_same(mutants: tuple[Mutant, ...]) -> None:
     assert len(mutants) >= 200
     assert len({mutant.id for mutant in mutants}) == len(mutants)
