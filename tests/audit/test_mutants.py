@@ -141,6 +141,12 @@ def test_a_timer_has_another_period() -> None:
     assert "Float64(data=1.0)" in added(made, "without call")
 
 
+def test_of_nothing_there_is_no_double() -> None:
+    made = mutants_of(TIMER.replace("1.0", "0.0"), load(ROOT / "exercises" / "joint_velocity"))
+    assert "Float64(data=float((1.0)))" in added(made, "constant")
+    assert "0.0 * 2" not in added(made, "constant")
+
+
 @pytest.mark.parametrize(
     ("operator", "line"),
     [
