@@ -2,7 +2,6 @@
 
 Caught by:
 - test_server_that_answers_late
-- test_has_patience
 """
 
 import rclpy
