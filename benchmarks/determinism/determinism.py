@@ -1,11 +1,14 @@
 """How often does the same program get another recording or another grade? It should be never.
 
     python benchmarks/determinism/determinism.py --rounds 4 --json build/determinism.json
+    python benchmarks/determinism/determinism.py --rounds 20 --exercise calibration --exercise heartbeat
+    python benchmarks/determinism/determinism.py --only solution.py --only thread
 
-Every file in solutions/joint_velocity is graded in each round, and so are the programs in the folder programs/, which
-do what makes a grader flaky: they answer from threads, timers, processes and asyncio, they sleep, poll, and wait by the
-clock. Every other round runs next to busy loops, four per core. A recording differs if any message in it does, by one
-bit, or the time at which it came, or the order; a grade differs if any verdict does.
+Of each exercise the solution and the right ones with threads are graded in each round; of joint_velocity every file in
+solutions/, and the programs in the folder programs/, which do what makes a grader flaky: they answer from threads,
+timers, processes and asyncio, they sleep, poll, and wait by the clock. Every other round runs next to busy loops, four
+per core. A recording differs if any message in it does, by one bit, or the time at which it came, or the order, or a
+call, goal or parameter; a grade differs if any verdict does.
 """
 
 from __future__ import annotations
@@ -22,15 +25,20 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from grader.exercise.loading import load
+from grader.exercise import Exercise, load
 from grader.grading import Grade, Options
 from grader.grading.grading import Grading, grading_of
 from grader.recording.store import to_json
 from grader.submission.reading import read
 from grader.workers import WorkerPool
+from spinbook.course.course import find_course
+from spinbook.interfaces.compiling import compile_course
 
 HERE = Path(__file__).parent
 COURSE = HERE.parents[1]
+
+#: Of this one every file is graded.
+HARDEST = "joint_velocity"
 
 #: Busy loops for each core in every other round.
 LOOPS_PER_CORE = 4
@@ -76,15 +84,15 @@ def _texts(grade: Grade) -> dict[str, str]:
 def main() -> int:
     """Run all rounds, print a line for each program, and return 1 if anything differed."""
     options = _options()
+    # Workers can import the course's own interfaces only if these were there before the workers start.
+    compile_course(find_course(COURSE))
+    exercises = [load(file.parent) for file in sorted(COURSE.glob("exercises/*/exercise.toml"))]
+    wanted = [one for one in exercises if not options.exercise or one.name in options.exercise]
+    counts: dict[Path, Counts] = {}
     with WorkerPool() as workers:
-        grading = grading_of(load(COURSE / "exercises" / "joint_velocity"), Options(parallel=1), workers)
-        counts = {file: Counts() for file in _files(options.only)}
-        for number in range(options.rounds):
-            began = time.monotonic()
-            with _load(number % 2 == 1):
-                _round(grading, counts)
-            how = "next to busy loops" if number % 2 else "alone"
-            print(f"round {number + 1}, {how}: {time.monotonic() - began:.0f} s", file=sys.stderr, flush=True)
+        for exercise in wanted:
+            grading = grading_of(exercise, Options(parallel=1), workers)
+            counts |= _rounds(grading, _files(exercise, options.only), options)
     return _report(counts, options.json)
 
 
@@ -93,14 +101,31 @@ def _options() -> argparse.Namespace:
     parser.add_argument(
         "--rounds", type=int, default=2, help="how often each program is graded  (default: %(default)s)"
     )
-    parser.add_argument("--only", default="", help="only programs whose path contains this")
+    parser.add_argument("--exercise", action="append", help="only this one; may be given several times")
+    parser.add_argument("--only", action="append", help="only programs whose path contains this, or another such text")
+    parser.add_argument("--nice", type=int, default=0, help="how nice the busy loops are  (default: %(default)s)")
     parser.add_argument("--json", type=Path, help="write the counts to this file, too")
     return parser.parse_args()
 
 
-def _files(only: str) -> list[Path]:
-    found = [*sorted((HERE / "programs").glob("*.py")), *sorted((COURSE / "solutions/joint_velocity").rglob("*.py"))]
-    return [file for file in found if only in str(file)]
+def _files(exercise: Exercise, only: list[str] | None) -> list[Path]:
+    folder = COURSE / "solutions" / exercise.name
+    found = [folder / "solution.py", *sorted(folder.glob("right/*thread*.py"))]
+    if exercise.name == HARDEST:
+        found = [*sorted((HERE / "programs").glob("*.py")), *sorted(folder.rglob("*.py"))]
+    return [file for file in found if not only or any(text in str(file) for text in only)]
+
+
+def _rounds(grading: Grading, files: list[Path], options: argparse.Namespace) -> dict[Path, Counts]:
+    counts = {file: Counts() for file in files}
+    for number in range(options.rounds):
+        began = time.monotonic()
+        with _load(number % 2 == 1, options.nice):
+            _round(grading, counts)
+        how = "next to busy loops" if number % 2 else "alone"
+        told = f"{grading.runner.exercise.name}, round {number + 1}, {how}: {time.monotonic() - began:.0f} s"
+        print(told, file=sys.stderr, flush=True)
+    return counts
 
 
 def _round(grading: Grading, counts: dict[Path, Counts]) -> None:
@@ -112,16 +137,17 @@ def _round(grading: Grading, counts: dict[Path, Counts]) -> None:
 
 
 @contextlib.contextmanager
-def _load(busy: bool) -> Iterator[None]:
+def _load(busy: bool, nice: int) -> Iterator[None]:
     """For as long as this lasts, something else keeps the machine busy."""
     count = LOOPS_PER_CORE * len(os.sched_getaffinity(0)) if busy else 0
-    loops = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
+    loop = [sys.executable, "-c", f"import os; os.nice({nice})\nwhile True: pass"]
+    loops = [subprocess.Popen(loop) for _ in range(count)]
     try:
         yield
     finally:
-        for loop in loops:
-            loop.kill()
-            loop.wait()
+        for process in loops:
+            process.kill()
+            process.wait()
 
 
 def _report(counts: dict[Path, Counts], file: Path | None) -> int:

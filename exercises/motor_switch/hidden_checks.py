@@ -128,10 +128,11 @@ def test_responds_at_once(many: Run) -> None:
     depends=["test_responds"],
     rule="Use a queue depth of 10 for both topics.",
 )
-def test_quality_of_service(switching: Run) -> None:
+def test_quality_of_service(switching: Run, emergency: Run) -> None:
     """All ends are reliable and volatile, and there is one publisher on each topic."""
-    switching.must_have_qos()
-    for topic in switching.exercise.outputs:
-        count = len(switching.end_points("publisher", topic.name))
-        if count != 1:
-            fail(f"Publishers on {topic.name}.", expected=1, got=count)
+    for run in (switching, emergency):
+        run.must_have_qos()
+        for topic in run.exercise.outputs:
+            count = len(run.end_points("publisher", topic.name))
+            if count != 1:
+                fail(f"Publishers on {topic.name}.", expected=1, got=count)

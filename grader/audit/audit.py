@@ -26,7 +26,14 @@ from grader.audit.result import LEAST_SCORE, Audit, MutantResult, Problem, score
 from grader.audit.store import Store
 from grader.audit.survivors import listed, problems_of_survivors, result_of, stale
 from grader.audit.trial import Trial, Trials, Until
-from grader.audit.worth import check_results, messages, problems_of_broken, problems_of_checks, scenario_results
+from grader.audit.worth import (
+    check_results,
+    messages,
+    problems_of_broken,
+    problems_of_checks,
+    scenario_results,
+    worth_spinning_on,
+)
 from grader.exercise import Exercise
 from grader.grading import Options, grading_of
 from grader.grading.reference import solution_file
@@ -137,6 +144,23 @@ def try_all(plan: Plan, trials: Trials, store: Store, progress: Progress) -> Tri
     return tried
 
 
+def spin_on(plan: Plan, tried: Tried, trials: Trials, store: Store) -> None:
+    """Spin those mutants through every scenario that settle what is in doubt of the checks."""
+    evidence = {**{one.name: tried.programs[one.name] for one in plan.mistakes}, **tried.mutants}
+    wanted = set(worth_spinning_on(trials.checks, evidence, tried.mutants))
+    work = _Work(plan, trials, store)
+    with ThreadPoolExecutor(trials.grading.runner.options.parallel) as pool:
+        futures = {m.id: pool.submit(work.mutant, m, "the end") for m in plan.mutants if m.id in wanted}
+        try:
+            tried.mutants.update({id_: future.result() for id_, future in futures.items()})
+        except BaseException:
+            trials.spins.stopped.set()
+            raise
+        finally:
+            for future in futures.values():
+                future.cancel()
+
+
 def _programs(plan: Plan) -> list[Candidate]:
     return [*plan.right, *plan.baselines, *plan.mistakes]
 
@@ -153,10 +177,9 @@ class _Work:
         make: Callable[[], Trial] = lambda: self.trials.try_(program.submission, only)  # noqa: E731
         return self.store.trial({"code": program.submission.digest, "only": only}, make)
 
-    def mutant(self, mutant: Mutant) -> Trial:
-        """Most are caught in the first scenario, and need no other; in a quick audit any failure is enough."""
+    def mutant(self, mutant: Mutant, until: Until = "a failure") -> Trial:
+        """Any failure is enough, unless more is to be known."""
         submission = of_source(mutant.id, mutant.source.encode(), self.trials.grading.runner.exercise)
-        until: Until = "a failure" if self.plan.quick else "a failure in the first"
         make: Callable[[], Trial] = lambda: self.trials.try_(submission, until=until)  # noqa: E731
         return self.store.trial({"code": submission.digest, "until": until}, make)
 
@@ -173,8 +196,8 @@ def audit(
     """Everything there is to find out about one exercise.
 
     A `quick` audit asks of each mistake only whether the checks that it names catch it, tries a sample of the mutants,
-    and leaves out the other right solutions and the seeds. With `most`, no more mutants than that are tried. Otherwise
-    right solutions have to be right over so many `seeds`.
+    and leaves out the other right solutions and the seeds. With `most`, no more mutants than that are tried; with 0,
+    nothing is said of what each check is worth. Otherwise right solutions have to be right over so many `seeds`.
     Raises what `grading_of` raises.
     """
     began = time.monotonic()
@@ -186,6 +209,8 @@ def audit(
     reasons = listed(exercise)
     plan = planned(trials, quick, most, seeds)
     tried = try_all(plan, trials, store, progress)
+    if not plan.quick:
+        spin_on(plan, tried, trials, store)
     tidy(exercise.name)
 
     mutants = tuple(result_of(mutant, tried.mutants[mutant.id], reasons) for mutant in plan.mutants)
@@ -197,7 +222,9 @@ def audit(
     for number, with_seed in tried.seeds.items():
         problems += problems_of(plan.right, with_seed, checks, number)
     problems += problems_of_broken(checks, {**tried.programs, **evidence})
-    problems += messages(checks, evidence) if quick else problems_of_checks(checks, evidence)
+    # What a check is worth shows only next to mutants.
+    worth = problems_of_checks if mutants and not quick else messages
+    problems += worth(checks, evidence)
     problems += problems_in_text(exercise, checks)
     problems += problems_of_survivors(exercise, mutants)
     if not plan.sampled:

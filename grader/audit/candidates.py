@@ -146,13 +146,14 @@ def _spun(trials: Trials, submission: Submission, scenarios: tuple[Scenario, ...
     """
     spun: list[Scenario] = []
     made: dict[str, Recording] = {}
-    for scenario in scenarios:
-        like = next((one for one in spun if _content(one) == _content(scenario)), None)
-        if like:
-            made[scenario.name] = replace(made[like.name], scenario=scenario.name)
-        else:
-            made[scenario.name] = trials.spin(submission, scenario)
-            spun.append(scenario)
+    with trials.spins.process() as process:
+        for scenario in scenarios:
+            like = next((one for one in spun if _content(one) == _content(scenario)), None)
+            if like:
+                made[scenario.name] = replace(made[like.name], scenario=scenario.name)
+            else:
+                made[scenario.name] = trials.spin(submission, scenario, process)
+                spun.append(scenario)
     return made
 
 

@@ -25,6 +25,7 @@ PROVED, TO_FIX, OUR_FAULT, STOPPED = 0, 1, 3, 130
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("exercises", nargs=-1, metavar="[EXERCISE]…")
 @click.option("--quick", is_flag=True, help="Only the mistakes, and a sample of the mutants: for every change.")
+@click.option("--solutions", is_flag=True, help="Only the files of solutions/, each judged in full; no mutants.")
 @click.option("--mutants", type=click.IntRange(0), help="Try at most so many mutants, of all kinds.")
 @click.option("--seeds", type=click.IntRange(1), help="Numbers for the scenarios with chance in them.  [default: 20]")
 @click.option("--json", "json_", type=click.Path(path_type=Path), help="Write the report as JSON, for programs.")
@@ -39,6 +40,7 @@ PROVED, TO_FIX, OUR_FAULT, STOPPED = 0, 1, 3, 130
 def audit(
     exercises: tuple[str, ...],
     quick: bool,
+    solutions: bool,
     mutants: int | None,
     seeds: int | None,
     json_: Path | None,
@@ -57,6 +59,7 @@ def audit(
       spinbook audit                              every exercise of the course
       spinbook audit joint_velocity               one
       spinbook audit --quick                      a sample, in seconds
+      spinbook audit --solutions                  is each file of solutions/ graded as it has to be?
       spinbook audit joint_velocity --html a.html how much each check catches, and what it costs
       spinbook audit --shadow                     do lockstep and Fast DDS lead to the same verdicts?
 
@@ -70,6 +73,10 @@ def audit(
         if file and (file.is_dir() or not file.absolute().parent.is_dir()):
             told = "that is a folder" if file.is_dir() else f"there is no folder {file.parent}"
             raise click.UsageError(f"{option} {file}: {told}. Name a file in a folder that is there.")
+    if solutions and (quick or mutants is not None or seeds):
+        raise click.UsageError("--solutions tries no mutants and no seeds: leave out --quick, --mutants and --seeds.")
+    if solutions:
+        mutants, seeds = 0, 1
     if shadow and (quick or mutants is not None or seeds or json_ or html or middleware):
         raise click.UsageError("--shadow goes with no other option but --parallel.")
     options = Options(middleware=Middleware(middleware) if middleware else None)

@@ -20,6 +20,7 @@ from grader.recording.store import from_json, to_json
 from grader.sandbox import Middleware
 from grader.scenario import Scenario
 from grader.submission import Submission
+from grader.workers.pool import Worker
 
 #: The parts of the grader that decide what a recording holds.
 SPINNING = ("workers", "exercise", "recording", "runner", "sandbox", "scenario", "submission")
@@ -44,7 +45,11 @@ class Spins:
         self._grading = grading
         self._folder = audit_folder(grading.runner.exercise.name)
 
-    def spin(self, submission: Submission, scenario: Scenario, turn: int) -> Recording:
+    def process(self) -> Worker:
+        """A process for the spins of one program: what it has made ready for one, it has ready for the next."""
+        return self._grading.runner.workers.hand()
+
+    def spin(self, submission: Submission, scenario: Scenario, turn: int, process: Worker) -> Recording:
         """The recording of a program in one scenario, kept or made now; `turn` chooses the core that it runs on.
 
         Raises `HostFault` where the machine or we are at fault, `Stopped` when no more are to be made.
@@ -61,7 +66,7 @@ class Spins:
             return kept
         except (OSError, EOFError, ValueError, KeyError, TypeError):
             pass
-        recording: Recording | None = runner.workers.do(runner.job(submission, scenario, turn), self.stopped)
+        recording: Recording | None = process.do(runner.job(submission, scenario, turn), self.stopped)
         if recording is None:
             raise Stopped
         if len(recording.log) <= LONGEST_LOG:

@@ -29,7 +29,7 @@ def show(audit: Audit, console: Console) -> None:
     _show_programs(audit, console)
     for problem in audit.problems:
         _show_problem(problem, console)
-    if not audit.quick:
+    if audit.mutants and not audit.quick:
         console.print(_checks(audit))
     _show_score(audit, console)
 
@@ -52,8 +52,10 @@ def _show_programs(audit: Audit, console: Console) -> None:
     tried = f"tried: {counts['solution'] + counts['right']} right solutions"
     if audit.seeds:
         tried += f" (with {audit.seeds} seeds)"
-    tried += f", {counts['mistake']} mistakes, {counts['nothing']} that do nothing, {len(audit.mutants)} mutants"
-    console.print(Text(tried + (", a sample" if audit.sampled else ""), style="dim"))
+    tried += f", {counts['mistake']} mistakes, {counts['nothing']} that do nothing"
+    if audit.mutants:
+        tried += f", {len(audit.mutants)} mutants" + (", a sample" if audit.sampled else "")
+    console.print(Text(tried, style="dim"))
 
 
 def _show_problem(problem: Problem, console: Console) -> None:
@@ -91,15 +93,20 @@ def _checks(audit: Audit) -> Table:
 
 
 def _show_score(audit: Audit, console: Console) -> None:
-    told = f"{audit.count('caught')} of {audit.different} mutants that differ are caught"
-    told += f" ({audit.score:.1%}); {audit.count('equivalent')} more do not differ from the solution"
-    if audit.count("listed"):
-        told += f"; {audit.count('listed')} are listed as survivors"
-    console.print(Text(told, style="bold"))
+    if audit.mutants:
+        console.print(Text(_score(audit), style="bold"))
     many = len(audit.problems)
     verdict = "nothing to fix" if not many else f"{many} thing{'s' if many > 1 else ''} to fix"
     console.print(Text(verdict, style="bold red" if many else "bold green"))
     console.print(Text(f"{audit.seconds:.0f} s; {audit.made} tried, {audit.kept} known from before", style="dim"))
+
+
+def _score(audit: Audit) -> str:
+    told = f"{audit.count('caught')} of {audit.different} mutants that differ are caught"
+    told += f" ({audit.score:.1%}); {audit.count('equivalent')} more do not differ from the solution"
+    if audit.count("listed"):
+        told += f"; {audit.count('listed')} are listed as survivors"
+    return told
 
 
 class Bar:

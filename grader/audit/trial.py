@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
@@ -17,6 +17,7 @@ from grader.recording import Ending, Received, Recording
 from grader.scenario import Scenario
 from grader.submission import Submission
 from grader.workers.jobs import JudgeJob
+from grader.workers.pool import Worker
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,7 @@ def _text(value: Any) -> str:
 
 
 #: Where a trial may end before its end.
-Until = Literal["a failure", "a failure in the first", "the end"]
+Until = Literal["a failure", "the end"]
 
 
 @dataclass(frozen=True)
@@ -134,34 +135,46 @@ class Trials:
     def try_(self, submission: Submission, only: tuple[str, ...] = (), until: Until = "the end") -> Trial:
         """Spin and judge a program.
 
-        The first scenario comes first. Then a scenario is spun only where a check wants it that is not blocked, which
-        changes no verdict: a blocked check never looks at its recording. With `only`, nothing but these checks counts.
-        With `until` it ends where a check fails, at once or in the first scenario: then nothing is known of the checks
-        that were not judged. A program that no check fails is spun through every scenario. Raises `HostFault` where the
-        machine or we are at fault.
+        The first scenario comes first, then the shorter ones before the longer ones. One is spun only where a check
+        wants it that is not blocked, which changes no verdict: a blocked check never looks at its recording. With
+        `only`, nothing but these checks counts. With `until` it ends as soon as a check fails: then nothing is known of
+        the checks that were not judged. A program that no check fails is spun through every scenario. Raises
+        `HostFault` where the machine or we are at fault.
         """
         if not submission.program:
             return self._nothing(submission.problem)
+        with self.spins.process() as process:
+            return self._tried(lambda scenario: self.spin(submission, scenario, process), only, until)
+
+    def _tried(self, spin: Callable[[Scenario], Recording], only: tuple[str, ...], until: Until) -> Trial:
+        first = self.grading.runner.scenarios[0]
+        recordings = {first.name: spin(first)}
+        if recordings[first.name].ending.outcome != "completed":
+            return self._broke_off(recordings)
         wanted_checks = self._with_what_they_depend_on(only)
-        scenarios = list(self.grading.runner.scenarios)
-        recordings = {scenarios[0].name: self.spin(submission, scenarios[0])}
-        first = recordings[scenarios[0].name]
-        if first.ending.outcome != "completed":
-            story = Ending(first.ending.outcome, first.ending.story)
-            rest = {s.name: Recording(s.name, (), (), (), (), "none", False, story) for s in scenarios[1:]}
-            return self._trial(first.ending.story, recordings, self._judged({**recordings, **rest}), self.checks)
         while True:
             verdicts = self._judged_where_different(recordings)
-            decided = [check for check in self.checks if set(check.scenarios) <= set(recordings)]
+            decided = tuple(check for check in self.checks if set(check.scenarios) <= set(recordings))
             failed = any(verdicts[check.name].status == "failed" for check in decided)
-            caught = failed and (until == "a failure" or (until == "a failure in the first" and len(recordings) == 1))
+            caught = failed and until == "a failure"
             wanted = [] if caught else self._wanted(wanted_checks, verdicts, recordings)
             if not wanted and not failed and not only:
-                wanted = [scenario for scenario in scenarios if scenario.name not in recordings]
+                wanted = [one for one in self._shorter_first() if one.name not in recordings]
             if not wanted:
-                return self._trial("", recordings, verdicts, tuple(decided))
-            for scenario in wanted[: 3 if until == "a failure" else None]:
-                recordings[scenario.name] = self.spin(submission, scenario)
+                return self._trial("", recordings, verdicts, decided)
+            for scenario in wanted[: 1 if until == "a failure" else None]:
+                recordings[scenario.name] = spin(scenario)
+
+    def _broke_off(self, recordings: dict[str, Recording]) -> Trial:
+        """The trial of a program that does not come through the first scenario: it has run through no other."""
+        [first] = recordings.values()
+        story = Ending(first.ending.outcome, first.ending.story)
+        names = [scenario.name for scenario in self.grading.runner.scenarios]
+        every = {name: Recording(name, (), (), (), (), "none", False, story) for name in names} | recordings
+        return self._trial(first.ending.story, recordings, self._judged(every), self.checks)
+
+    def _shorter_first(self) -> list[Scenario]:
+        return sorted(self.grading.runner.scenarios, key=lambda scenario: scenario.seconds)
 
     def judge(self, recordings: dict[str, Recording], references: dict[str, Recording]) -> dict[str, Verdict]:
         """The verdicts on these recordings, by check."""
@@ -174,10 +187,10 @@ class Trials:
         """The trial that these recordings of every scenario make."""
         return self._trial("", recordings, self._judged(recordings), self.checks)
 
-    def spin(self, submission: Submission, scenario: Scenario) -> Recording:
+    def spin(self, submission: Submission, scenario: Scenario, process: Worker) -> Recording:
         """The recording of one scenario. Raises `HostFault` where the machine or we are at fault."""
         # Turn by turn on each core: a program stays on the one it is given.
-        return self.spins.spin(submission, scenario, next(self._turn))
+        return self.spins.spin(submission, scenario, next(self._turn), process)
 
     def _nothing(self, problem: str) -> Trial:
         scenarios = self.grading.runner.scenarios
@@ -216,7 +229,7 @@ class Trials:
             if check.name in names and set(check.depends) <= passed
             for scenario in check.scenarios
         }
-        return [s for s in self.grading.runner.scenarios if s.name in asked - spun]
+        return [scenario for scenario in self._shorter_first() if scenario.name in asked - spun]
 
     def _with_what_they_depend_on(self, only: tuple[str, ...]) -> set[str]:
         if not only:

@@ -15,27 +15,23 @@ from grader.scenario import Scenario
 #: A message that names no expected value has to say in words what was to be.
 WORDS = re.compile(r"expect|must|should|has to|have to|was to|were to|instead of|may not", re.IGNORECASE)
 
+#: How many mutants are spun on for each check that has not failed yet, and for each two that look alike.
+EACH = 4
+
 
 def problems_of_checks(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Problem]:
     """`trials` are those of mistakes and of mutants that can be told from the solution, by name."""
     return [*_that_never_fail(checks, trials), *_that_fail_together(checks, trials), *messages(checks, trials)]
 
 
-def _that_never_fail(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Problem]:
+def never_failing(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Check]:
+    """The checks that failed in none of these trials."""
     failed = {name for trial in trials.values() for name in trial.failed}
-    return [
-        Problem(
-            f"{check.file}:{check.line}",
-            check.name,
-            f"no mutant and no mistake fails {check.name}: can it fail at all?",
-            "Write a mistake that it must catch, or remove it.",
-        )
-        for check in checks
-        if check.name not in failed
-    ]
+    return [check for check in checks if check.name not in failed]
 
 
-def _that_fail_together(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Problem]:
+def alike(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[tuple[Check, Check, int]]:
+    """Two checks each that failed together, and never only one of them; and how often they did."""
     found = []
     for one, other in combinations(checks, 2):
         # Where only one of them was judged, nothing is known of the other.
@@ -43,10 +39,56 @@ def _that_fail_together(checks: tuple[Check, ...], trials: dict[str, Trial]) -> 
         judged = [pair for pair in pairs if set(pair) <= {"passed", "failed"}]
         many = judged.count(("failed", "failed"))
         if many and all(first == second for first, second in judged):
-            told = f"{one.name} and {other.name} always fail together ({many} times): do both judge the same?"
-            fix = "Write a mistake that fails only one, let one depend on the other, or make them one check."
-            found.append(Problem(f"{other.file}:{other.line}", other.name, told, fix))
+            found.append((one, other, many))
     return found
+
+
+def worth_spinning_on(checks: tuple[Check, ...], trials: dict[str, Trial], mutants: dict[str, Trial]) -> list[str]:
+    """The mutants that may show that a check can fail, or that two are not alike: a few for each such doubt.
+
+    They were spun until a check caught them, so that nothing is known yet of the checks of other scenarios.
+    """
+    wanted: set[str] = set()
+    for check in never_failing(checks, trials):
+        wanted.update([id_ for id_, trial in mutants.items() if _undecided(check, trial)][:EACH])
+    for one, other, _ in alike(checks, trials):
+        tells = [
+            id_
+            for id_, trial in mutants.items()
+            for failed, open_ in ((one, other), (other, one))
+            if failed.name in trial.failed and _undecided(open_, trial)
+        ]
+        wanted.update(tells[:EACH])
+    return [id_ for id_ in mutants if id_ in wanted]
+
+
+def _undecided(check: Check, trial: Trial) -> bool:
+    return check.name not in trial.statuses and not set(check.depends) & set(trial.failed)
+
+
+def _that_never_fail(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Problem]:
+    return [
+        Problem(
+            f"{check.file}:{check.line}",
+            check.name,
+            f"no mutant and no mistake fails {check.name}: can it fail at all?",
+            "Write a mistake that it must catch, or remove it.",
+        )
+        for check in never_failing(checks, trials)
+    ]
+
+
+def _that_fail_together(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Problem]:
+    fix = "Write a mistake that fails only one, let one depend on the other, or make them one check."
+    return [
+        Problem(
+            f"{other.file}:{other.line}",
+            other.name,
+            f"{one.name} and {other.name} always fail together ({many} times): do both judge the same?",
+            fix,
+        )
+        for one, other, many in alike(checks, trials)
+    ]
 
 
 def problems_of_broken(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Problem]:

@@ -33,7 +33,8 @@ def judge(
     checks = Checks()
     run_pytest(exercise, runs, checks)
     topics = [topic.name for topic in exercise.topics]
-    return tuple(with_spelling(verdict, topics) for verdict in checks.verdicts.values())
+    node = f"/{exercise.node_name}"
+    return tuple(with_spelling(verdict, topics, node) for verdict in checks.verdicts.values())
 
 
 def load_pytest() -> None:

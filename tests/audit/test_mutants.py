@@ -141,6 +141,12 @@ def test_a_timer_has_another_period() -> None:
     assert "Float64(data=1.0)" in added(made, "without call")
 
 
+def test_of_nothing_there_is_no_double() -> None:
+    made = mutants_of(TIMER.replace("1.0", "0.0"), load(ROOT / "exercises" / "joint_velocity"))
+    assert "Float64(data=float((1.0)))" in added(made, "constant")
+    assert "0.0 * 2" not in added(made, "constant")
+
+
 @pytest.mark.parametrize(
     ("operator", "line"),
     [
@@ -169,6 +175,11 @@ def test_services_actions_and_parameters_have_operators_of_their_own(
     peers: tuple[Mutant, ...], operator: str, line: str
 ) -> None:
     assert line in added(peers, operator)
+
+
+def test_a_node_is_not_made_twice(mutants: tuple[Mutant, ...]) -> None:
+    assert "self.publisher.publish(answer)" in added(mutants, "statement twice")
+    assert "super().__init__" not in added(mutants, "statement twice")
 
 
 def test_there_are_more_than_enough_of_them_and_no_two_are_the_same(mutants: tuple[Mutant, ...]) -> None:

@@ -62,7 +62,9 @@ def constant(node: cst.CSTNode, program: Program) -> Iterator[Change]:
         for other in (value + 1, value - 1, 0):
             yield Change(node, node, expression(f"{other}"), f"{node.value} is {other}")
     elif isinstance(node, cst.Float):
-        for new in (f"{node.value} * 2", f"{node.value} / 2", "0.0"):
+        # Twice nothing is nothing: it would be spun for nothing, too.
+        others = (f"{node.value} * 2", f"{node.value} / 2", "0.0") if node.evaluated_value else ("1.0",)
+        for new in others:
             yield Change(node, node, expression(f"({new})"), f"{node.value} is {new}")
     elif isinstance(node, cst.SimpleString) and node.raw_value != "__main__":
         changed = node.with_changes(value=f"{node.value[:-1]}_x{node.value[-1]}")

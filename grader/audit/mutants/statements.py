@@ -16,8 +16,9 @@ def statement_dropped(node: cst.CSTNode, program: Program) -> Iterator[Change]:
 
 
 def statement_twice(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """A call is made twice."""
-    if _does_something(node, program) and isinstance(node, cst.SimpleStatementLine):
+    """A call is made twice. Not so a node's own making: nobody writes that, and the second one takes its place."""
+    making = "super().__init__" in program.text(node)
+    if _does_something(node, program) and isinstance(node, cst.SimpleStatementLine) and not making:
         inner = node.body[0]
         if isinstance(inner, (cst.Expr, cst.AugAssign)) or ".create_" in program.text(node):
             again = node.with_changes(leading_lines=[])

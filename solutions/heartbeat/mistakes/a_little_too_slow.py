@@ -1,0 +1,41 @@
+"""Beats every 0.252 s, so that it lags behind by half a second after a minute.
+
+Caught by:
+- test_does_not_drift
+"""
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from std_msgs.msg import Header
+
+
+class Heartbeat(Node):
+
+    def __init__(self):
+        super().__init__('heartbeat')
+        self.publisher = self.create_publisher(Header, '/heartbeat', 10)
+        self.timer = self.create_timer(0.252, self.beat)
+        self.get_logger().info('The heart is ready')
+
+    def beat(self):
+        message = Header()
+        message.stamp = self.get_clock().now().to_msg()
+        message.frame_id = 'torso'
+        self.publisher.publish(message)
+
+
+def main():
+    rclpy.init()
+    node = Heartbeat()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,43 @@
+"""`spinbook audit --solutions`: is every file of solutions/ graded as it has to be?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+from small_exercise import SmallExercise
+
+from grader.audit.command import audit
+
+
+def solutions_only(*more: str) -> Result:
+    return CliRunner().invoke(audit, ["--solutions", *more], catch_exceptions=False)
+
+
+@pytest.fixture(autouse=True)
+def in_the_course(small: SmallExercise, cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Start in the small exercise's course."""
+    monkeypatch.chdir(small.course)
+
+
+def test_without_mutants_it_tells_only_of_the_files(small: SmallExercise) -> None:
+    done = solutions_only()
+    assert done.exit_code == 0, done.stdout
+    assert "tried: 1 right solutions, 7 mistakes, 3 that do nothing\nnothing to fix" in done.stdout
+
+
+def test_points_for_a_node_that_does_nothing_end_with_1(small: SmallExercise) -> None:
+    small.change(
+        "exercises/doubler/checks.py", 'hint="Look at the name in __init__.", depends=[test_publishes])', 'hint="x")'
+    )
+    done = solutions_only("doubler")
+    assert done.exit_code == 1
+    assert "does nothing passes test_is_called_doubler and gets 1 points" in " ".join(done.stdout.split())
+
+
+@pytest.mark.parametrize("other", [("--quick",), ("--mutants", "3"), ("--seeds", "2")])
+def test_what_asks_for_something_else_is_refused(other: tuple[str, ...]) -> None:
+    done = solutions_only(*other)
+    assert done.exit_code == 2
+    assert "--solutions tries no mutants and no seeds" in done.stderr

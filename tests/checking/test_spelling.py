@@ -1,0 +1,27 @@
+"""A name that is almost that of a topic is probably a slip; the exercise's own names are none."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.checking.spelling import with_spelling
+from grader.checking.verdict import Finding, Verdict
+
+TOPICS, NODE = ("/joint_commands", "/joint_velocities"), "/joint_velocity"
+
+
+def told(text: str) -> str:
+    """What a student reads in the place of this finding."""
+    finding = with_spelling(Verdict("test_a", "a", "failed", 1.0, finding=Finding(text)), TOPICS, NODE).finding
+    assert finding
+    return finding.text
+
+
+def test_a_slip_is_told() -> None:
+    text = "Nothing came on /joint_velocitys."
+    assert told(text) == f"{text} Is /joint_velocitys a misspelling of /joint_velocities?"
+
+
+@pytest.mark.parametrize("text", ["Expected /joint_velocity, got /joint_velocity, /log.", "Nothing came on /scan."])
+def test_the_exercises_own_names_and_quite_other_ones_are_no_slips(text: str) -> None:
+    assert told(text) == text
