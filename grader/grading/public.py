@@ -7,7 +7,9 @@ the recordings in `public.json`, which is made from the author's folders by `pub
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 from grader.checking.judging import Listed
@@ -20,7 +22,7 @@ from grader.recording.store import from_plain, plain
 from grader.sandbox import Isolation
 from grader.scenario import Message, Scenario
 from grader.scenario.declared import declared
-from grader.scenario.store import NotForStudents
+from grader.scenario.store import HIDDEN_FILES, NotForStudents, code_in
 from grader.scenario.store import from_plain as from_plain_scenario
 from grader.scenario.store import plain as plain_scenario
 from grader.workers import WorkerPool
@@ -71,6 +73,12 @@ def to_json(exercise: Exercise, public: PublicPart) -> str:
     return json.dumps(entries, ensure_ascii=False, separators=(",", ":")) + "\n"
 
 
+def modules_of(public: PublicPart) -> Iterator[Path]:
+    """The author's files that the public scenarios need code of: each once. `to_json` refuses what must stay hidden."""
+    files = {code.file for scenario in public.scenarios for code in code_in(scenario)}
+    yield from sorted(Path(file) for file in files if Path(file).name not in HIDDEN_FILES)
+
+
 def _timeless(recording: Recording) -> Recording:
     """Without what the solution logged, and how long it took."""
     return replace(recording, log="", seconds=0.0, lockstep_seconds=0.0)
@@ -85,7 +93,7 @@ def _read(exercise: Exercise) -> PublicPart:
             fix = "Install the spinbook that came with the handout: pip install -r requirements.txt"
             raise ExerciseError(file, f"it has the format {entries['format']}, not {FORMAT}", fix)
         public = PublicPart(
-            tuple(_scenario(scenario) for scenario in entries["scenarios"]),
+            tuple(_scenario(scenario, exercise.folder) for scenario in entries["scenarios"]),
             from_plain(entries["expected"]),
             int(entries["hidden"]["checks"]),
             float(entries["hidden"]["points"]),
@@ -119,13 +127,13 @@ def _for_students(exercise: Exercise, scenario: Scenario) -> Any:
         return plain_scenario(scenario)
     except NotForStudents as error:
         found = f"the scenario {scenario.name}, which a public check uses, runs {error} of this file"
-        fix = "Students don't get this file. Use a world or replies without code of your own, or hide the check."
+        fix = f"Students don't get this file. Put {error} into another one in this folder, or hide the check."
         raise ExerciseError(exercise.scenarios_file, found, fix, scenario.line or None) from None
 
 
-def _scenario(entries: dict[str, Any]) -> Scenario:
+def _scenario(entries: dict[str, Any], folder: Path) -> Scenario:
     if "is" in entries:
-        scenario = from_plain_scenario(entries)
+        scenario = from_plain_scenario(entries, folder)
         if not isinstance(scenario, Scenario):
             raise TypeError("a scenario is something else")
         return scenario

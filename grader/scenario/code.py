@@ -36,6 +36,17 @@ class Code:
         """Whether it comes with the grader, and not from an author's file."""
         return self.file.startswith("grader.")
 
+    def for_students(self) -> Code:
+        """The same by its file's name alone, as in a student's copy of the exercise's folder."""
+        return self if self.is_the_graders else Code(Path(self.file).name, self.name)
+
+    def in_folder(self, folder: Path) -> Code:
+        """The same in a student's copy of the exercise's folder. Raises OSError where the file is missing."""
+        if self.is_the_graders:
+            return self
+        file = folder / Path(self.file).name
+        return Code(str(file), self.name, digest_of(file))
+
 
 def code_of(given: Callable[..., Any]) -> Code:
     """Where a function or a class is. Raises `ValueError` for one that has no name of its own, such as a lambda."""
@@ -45,7 +56,12 @@ def code_of(given: Callable[..., Any]) -> Code:
     if given.__module__.startswith("grader."):
         return Code(given.__module__, name)
     file = Path(inspect.getfile(given)).resolve()
-    return Code(str(file), name, hashlib.sha256(file.read_bytes()).hexdigest())
+    return Code(str(file), name, digest_of(file))
+
+
+def digest_of(file: Path) -> str:
+    """The SHA-256 of a file's text."""
+    return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
 @lru_cache(maxsize=8)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
+import importlib
 import importlib.util
 import sys
 import traceback
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -43,12 +46,29 @@ def _returned(exercise: Exercise, seed: int) -> tuple[Any, ...]:
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module  # where `inspect` finds the file of a class
     try:
-        spec.loader.exec_module(module)
-        return tuple(module.scenarios(seed))
+        with _files_of(exercise.folder):
+            spec.loader.exec_module(module)
+            return tuple(module.scenarios(seed))
     except Exception as error:
         raise ExerciseError(file, f"{type(error).__name__}: {error}", "It must run.", _line(error, file)) from None
     finally:
         del sys.modules[name]
+
+
+@contextlib.contextmanager
+def _files_of(folder: Path) -> Iterator[None]:
+    """Let scenarios.py import other files of its folder; another exercise may have files of the same names."""
+    sys.path.insert(0, str(folder))
+    known, wrote, sys.dont_write_bytecode = set(sys.modules), sys.dont_write_bytecode, True
+    importlib.invalidate_caches()
+    try:
+        yield
+    finally:
+        sys.path.remove(str(folder))
+        sys.dont_write_bytecode = wrote
+        for name in set(sys.modules) - known:
+            if Path(getattr(sys.modules[name], "__file__", None) or "/").parent == folder:
+                del sys.modules[name]
 
 
 def _line(error: Exception, file: Path) -> int | None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
+from pathlib import Path
 from typing import Any
 
 from grader.exercise.exercise import Qos
@@ -35,10 +37,28 @@ class NotForStudents(ValueError):
     """Raised for a scenario with code of scenarios.py in it, which a student's copy can't have."""
 
 
+#: What no student gets: the code of a public scenario has to be in another file of the exercise's folder.
+HIDDEN_FILES = ("scenarios.py", "hidden_checks.py")
+
+
+def code_in(value: Any) -> Iterator[Code]:
+    """The author's code in a scenario, or in a part of one: a world's class, a server's function."""
+    if isinstance(value, Code):
+        yield from () if value.is_the_graders else (value,)
+    elif isinstance(value, (list, tuple, dict)):
+        for one in value.values() if isinstance(value, dict) else value:
+            yield from code_in(one)
+    elif is_dataclass(value):
+        for entry in fields(value):
+            yield from code_in(getattr(value, entry.name))
+
+
 def plain(value: Any) -> Any:
     """Dictionaries, lists, texts and numbers of a scenario, or of a part of one. Raises `NotForStudents`."""
-    if isinstance(value, Code) and not value.is_the_graders:
-        raise NotForStudents(value.name)
+    if isinstance(value, Code):
+        if Path(value.file).name in HIDDEN_FILES:
+            raise NotForStudents(value.name)
+        value = value.for_students()
     if isinstance(value, (list, tuple)):
         return [plain(one) for one in value]
     if isinstance(value, dict):
@@ -49,15 +69,20 @@ def plain(value: Any) -> Any:
     return {"is": type(value).__name__, **found}
 
 
-def from_plain(value: Any) -> Any:
-    """What `plain` made such. Raises KeyError or TypeError where it did not."""
+def from_plain(value: Any, folder: Path) -> Any:
+    """What `plain` made such; the author's code is in `folder`.
+
+    Raises KeyError or TypeError where it is something else, and OSError where a file is missing.
+    """
     if isinstance(value, list):
-        return tuple(from_plain(one) for one in value)
+        return tuple(from_plain(one, folder) for one in value)
     if not isinstance(value, dict) or "is" not in value:
         return value
-    entries = {key: _entry(key, one) for key, one in value.items() if key != "is"}
+    entries = {key: _entry(key, one, folder) for key, one in value.items() if key != "is"}
     if value["is"] == World.__name__:
         return restored(entries["code"], entries["period"], entries["arguments"], 0)
+    if value["is"] == Code.__name__:
+        return Code(**entries).in_folder(folder)
     return _CLASSES[value["is"]](**entries)
 
 
@@ -65,11 +90,11 @@ def from_plain(value: Any) -> Any:
 _FIELDS = ("fields", "result", "parameters", "arguments", "value", "remappings")
 
 
-def _entry(key: str, value: Any) -> Any:
+def _entry(key: str, value: Any, folder: Path) -> Any:
     if key == "feedback":
         return tuple((after, fields_) for after, fields_ in value)
     if key == "arguments" and isinstance(value, list):
         return tuple(value)
     if key == "qos" and "is" not in value:
-        return {name: from_plain(one) for name, one in value.items()}
-    return value if key in _FIELDS else from_plain(value)
+        return {name: from_plain(one, folder) for name, one in value.items()}
+    return value if key in _FIELDS else from_plain(value, folder)

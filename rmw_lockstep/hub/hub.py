@@ -167,6 +167,7 @@ class Hub:
         while True:
             self._flush()
             if not self._is_idle():
+                self._flush()  # what `_is_idle` asks processes, or they would be waited for in vain
                 self._take()
             elif not self._go_on():
                 return

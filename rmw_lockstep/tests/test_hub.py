@@ -10,6 +10,7 @@ import pytest
 from stand_in import BEST_EFFORT, RELIABLE, TRANSIENT_LOCAL, VOLATILE, Process, Raw, idle, welcomed
 
 from rmw_lockstep.hub import BEGIN, PUBLISHER, SUBSCRIPTION, Hub, Qos
+from rmw_lockstep.hub.link import Link
 
 MS = 1_000_000
 STRING = "std_msgs/msg/String"
@@ -130,6 +131,22 @@ def test_two_processes_talk_and_neither_gets_ahead_of_the_other(hub: Hub, proces
     hub.wait_until_idle()
     hub.advance(BEGIN + 60 * MS)
     assert times == {1: [15, 30, 45, 60], 2: [10, 20, 30, 40, 50, 60]}
+
+
+def test_the_hub_does_not_wait_before_it_has_asked(hub: Hub, process: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It would wait in vain, for 20 ms each time, as no process knows yet what it is asked."""
+    queued: list[Link] = []
+
+    def take(hub: Hub, take: Callable[[Hub], None] = Hub._take) -> None:
+        queued.extend(link for link in hub.links if link._queued)
+        take(hub)
+
+    monkeypatch.setattr(Hub, "_take", take)
+    for number in (1, 2):
+        talker(process(number), 10 * MS, f"/of_{number}").start()
+        hub.pause()
+    hub.advance(BEGIN + 60 * MS)
+    assert queued == []
 
 
 def test_the_hub_knows_when_the_program_wakes_next(hub: Hub, process: Make) -> None:

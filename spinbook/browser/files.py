@@ -84,5 +84,11 @@ def public_parts(exercises: Iterable[Exercise]) -> dict[str, bytes]:
     with WorkerPool() as workers:
         for exercise in exercises:
             copy = exercise_files(exercise, workers)
-            files |= {f"exercises/{exercise.name}/{name}": copy[name] for name in _NEEDED if name in copy}
+            needed = [name for name in copy if name in _NEEDED or _is_code(name, exercise)]
+            files |= {f"exercises/{exercise.name}/{name}": copy[name] for name in needed}
     return files
+
+
+def _is_code(name: str, exercise: Exercise) -> bool:
+    """Whether it is a world of the author's, for example, and not the starter."""
+    return name.endswith(".py") and name != exercise.file_name

@@ -17,7 +17,7 @@ from grader.workers.jobs import ListJob
 from spinbook import __version__
 from spinbook.build.notebooks import build_notebooks
 from spinbook.course.course import Course
-from spinbook.handout.leaks import Secret, located, secrets_of_all
+from spinbook.handout.leaks import Secret, authors_code, located, secrets_of_all
 from spinbook.handout.student_copy import exercise_files, for_students
 from spinbook.handout.wheels import interface_wheels, requirement, spinbook_wheel
 from spinbook.interfaces.compiling import compile_course
@@ -120,7 +120,7 @@ def handout(course: Course) -> Handout:
             except ExerciseError as error:
                 raise SpinbookError(Problem(error.file, error.line, error.found, error.fix)) from None
             files |= {f"exercises/{exercise.name}/{name}": content for name, content in copy.items()}
-    taught = "\n".join(_nodes(notebooks))
+    taught = "\n".join([*_nodes(notebooks), authors_code(files)])
     every = [_load(course, name) for name in sorted(course.exercises)]
     known, names = secrets_of_all(every, taught)
     _prove(files, known + names)

@@ -10,6 +10,7 @@ import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from grader.exercise import Exercise, starter
 from grader.exercise.starter import BEGIN, END
@@ -33,7 +34,7 @@ Line = tuple[int, str]
 
 
 def secrets(exercise: Exercise, taught: str, others: str = "") -> list[Secret]:
-    """What of this exercise is secret: solutions, hidden checks, and the scenarios that nodes run in.
+    """What of this exercise is secret: solutions, hidden checks, and the scenarios that nodes run in, with their files.
 
     `taught` is code that students have from the chapters; a line of it is no secret, wherever else it stands. Nor is a
     line of the starter, or of the public checks. `others` is what students get of the course's other exercises, see
@@ -59,11 +60,10 @@ def secrets(exercise: Exercise, taught: str, others: str = "") -> list[Secret]:
                 place = f"solutions/{exercise.name}/{file.relative_to(exercise.solution_folder).as_posix()}"
                 windows = _windows(f"a part of {place}", place, _lines(file))
                 found += [secret for secret in windows if secret.text not in known]
-    for name in ("hidden_checks.py", "scenarios.py"):
-        file = exercise.folder / name
-        if file.exists():
-            place = f"exercises/{exercise.name}/{name}"
-            found += _pieces(f"a line of {name} of {exercise.name}", place, _lines(file), known)
+    for file in sorted(exercise.folder.glob("*.py")):
+        if file != public:
+            place = f"exercises/{exercise.name}/{file.name}"
+            found += _pieces(f"a line of {file.name} of {exercise.name}", place, _lines(file), known)
     return found + [secret for secret in _hidden_titles(exercise) if secret.text not in elsewhere]
 
 
@@ -91,6 +91,28 @@ def public_code(exercise: Exercise) -> str:
     public = exercise.folder / "checks.py"
     checks = public.read_text(encoding="utf-8") if public.exists() else ""
     return checks + (starter(exercise.solution_file.read_text(encoding="utf-8")) if exercise.solution_file else "")
+
+
+def authors_code(files: Mapping[str, bytes]) -> str:
+    """The code of the author's that runs in public scenarios, and so is in the students' copies of exercises.
+
+    `files` are those copies by their paths, such as `exercises/tank/public.json`.
+    """
+    return "\n".join(text for name in files if name.endswith("/public.json") for text in _run_by(files, name))
+
+
+def _run_by(files: Mapping[str, bytes], name: str) -> Iterator[str]:
+    waiting: list[Any] = [json.loads(files[name])["scenarios"]]
+    while waiting:
+        value = waiting.pop()
+        if isinstance(value, dict):
+            waiting += value.values()
+            if value.get("is") == "Companion":
+                yield value["text"]
+            elif value.get("is") == "Code" and (code := files.get(name.replace("public.json", value["file"]))):
+                yield code.decode()
+        elif isinstance(value, list):
+            waiting += value
 
 
 def bare(text: str) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 from grader.exercise import Exercise, starter
 from grader.exercise.writing import to_toml
 from grader.grading import Options
-from grader.grading.public import public_part, to_json
+from grader.grading.public import modules_of, public_part, to_json
 from grader.sandbox import Isolation, SandboxUnavailable, choose
 from grader.workers import WorkerPool
 
@@ -79,6 +79,7 @@ def exercise_files(exercise: Exercise, workers: WorkerPool) -> dict[str, bytes]:
         "exercise.toml": to_toml(exercise).encode(),
         "checks.py": (exercise.folder / "checks.py").read_bytes(),
         exercise.public_file.name: to_json(exercise, public).encode(),
+        **{file.name: file.read_bytes() for file in modules_of(public)},
         exercise.file_name: starter(solution.read_text(encoding="utf-8")).encode(),
         **{str(name): (exercise.folder / name).read_bytes() for name in _pictures(exercise)},
     }

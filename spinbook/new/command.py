@@ -6,9 +6,20 @@ from pathlib import Path
 
 import click
 
+from grader.exercise import Exercise, ExerciseError, load
 from spinbook.course.course import find_course
 from spinbook.new.kind import BY_NAME, KINDS, Kind
-from spinbook.new.writing import EXERCISE, exercise_name, package_name, title_of, words, write_course, write_exercise
+from spinbook.new.writing import (
+    EXERCISE,
+    exercise_name,
+    package_name,
+    title_of,
+    words,
+    write_course,
+    write_exercise,
+    write_solution,
+)
+from spinbook.problem import Problem, SpinbookError
 
 _COURSE = """\
 Made the course "{title}" in {folder}. It works as it is. Go on with:
@@ -37,6 +48,11 @@ after each step:
 
 To show it in a chapter, write this line there:  <!-- exercise: {name} -->"""
 
+_SOLUTION = """\
+Made {path}: a program with every topic, service, action and parameter of exercises/{name}/exercise.toml.
+Write what it does between its markers. The starter is this file without what stands there: move a marker up if
+students are to create an end themselves."""
+
 
 def _listed() -> str:
     return "\n".join(f"  {kind.name:<15} {kind.summary}" for kind in KINDS)
@@ -54,8 +70,9 @@ def _kind(context: click.Context, parameter: click.Parameter, name: str | None) 
 @click.option(
     "--kind", metavar="KIND", callback=_kind, help="What kind of node students write, see below.  [default: filter]"
 )
+@click.option("--solution", metavar="NAME", help="Write a first solution.py of an exercise, from its exercise.toml.")
 @click.option("--title", help="What the course or the exercise is called.  [default: its name, in words]")
-def new(course: Path | None, exercise: str | None, kind: Kind | None, title: str | None) -> None:
+def new(course: Path | None, exercise: str | None, kind: Kind | None, solution: str | None, title: str | None) -> None:
     """Make a small course of your own, or one more exercise, that builds, checks and grades at once.
 
     \b
@@ -63,13 +80,14 @@ def new(course: Path | None, exercise: str | None, kind: Kind | None, title: str
       spinbook new my-robots --title "Robots"  the same, with a title
       spinbook new --exercise gripper_force    an exercise, in the course in which you are
       spinbook new --exercise door --kind service-server
+      spinbook new --solution door             solutions/door/solution.py, from the interface in exercise.toml
 
     A course has a chapter with a publisher and a subscriber, an exercise with checks, its solution and usual mistakes,
     tests that prove it, and a workflow for CI. An exercise has a task, scenarios, checks, a solution, other right
     solutions and usual mistakes. Go on from there. Nothing that exists is ever overwritten.
     """
-    if (course is None) == (exercise is None):
-        raise click.UsageError("Name a folder for a course, or give --exercise NAME: one of the two.")
+    if sum(given is not None for given in (course, exercise, solution)) != 1:
+        raise click.UsageError("Name a folder for a course, or give --exercise NAME or --solution NAME: one of them.")
     if kind is not None and exercise is None:
         raise click.UsageError("--kind says what kind of exercise to make: give --exercise NAME, too.")
     if course is not None:
@@ -77,6 +95,9 @@ def new(course: Path | None, exercise: str | None, kind: Kind | None, title: str
         title = title_of(title or words(course.name), course)
         write_course(course, title, package)
         click.echo(_COURSE.format(title=title, folder=course, exercise=EXERCISE))
+        return
+    if solution is not None:
+        _new_solution(solution)
         return
     assert exercise is not None
     _new_exercise(exercise, kind or KINDS[0], title)
@@ -89,5 +110,22 @@ def _new_exercise(exercise: str, kind: Kind, title: str | None) -> None:
     write_exercise(root, name, title, kind)
     folder = root / "solutions" / name
     solution = next(file for file in (folder / "solution.py", folder / "solution") if file.exists())
-    shown = solution.relative_to(Path.cwd()) if solution.is_relative_to(Path.cwd()) else solution
-    click.echo(_EXERCISE.format(title=title, kind=kind.name, name=name, solution=solution.name, path=shown))
+    click.echo(_EXERCISE.format(title=title, kind=kind.name, name=name, solution=solution.name, path=_shown(solution)))
+
+
+def _new_solution(name: str) -> None:
+    root = find_course(Path.cwd()).root
+    exercise = _exercise(root / "exercises" / name)
+    click.echo(_SOLUTION.format(name=name, path=_shown(write_solution(root, exercise))))
+
+
+def _exercise(folder: Path) -> Exercise:
+    try:
+        return load(folder)
+    except ExerciseError as error:
+        raise SpinbookError(Problem(error.file, error.line, error.found, error.fix)) from None
+
+
+def _shown(file: Path) -> Path:
+    """The path as seen from where the author is, if the file is below."""
+    return file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file

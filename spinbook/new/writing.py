@@ -11,7 +11,10 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
+from grader.exercise import Exercise
+from grader.files import write_if_changed
 from spinbook.new.kind import COURSE, Kind
+from spinbook.new.skeleton import skeleton
 from spinbook.problem import Problem, SpinbookError
 
 
@@ -103,6 +106,19 @@ def write_exercise(course: Path, name: str, title: str, kind: Kind) -> None:
         _refuse_existing(folder)
     for part, folder in folders.items():
         _put(_filled(kind.root / part / kind.exercise, names), folder)
+
+
+def write_solution(course: Path, exercise: Exercise) -> Path:
+    """Make solution.py of an exercise that has none, from its interface. Raises `SpinbookError` if there is one."""
+    file = course / "solutions" / exercise.name / "solution.py"
+    _refuse_existing(file)
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        write_if_changed(file, skeleton(exercise).encode())
+    except OSError as error:
+        found = f"it can't be made: {error.strerror}."
+        raise SpinbookError(Problem(file, None, found, "Choose a place where you may write.")) from None
+    return file
 
 
 def _refuse_existing(folder: Path) -> None:

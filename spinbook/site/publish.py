@@ -8,7 +8,7 @@ from pathlib import Path
 from grader.exercise import Exercise, ExerciseError, load
 from grader.files import write_if_changed
 from spinbook.course.course import Course
-from spinbook.handout.leaks import leaks, secrets_of_all
+from spinbook.handout.leaks import authors_code, leaks, secrets_of_all
 from spinbook.problem import Problem, SpinbookError
 from spinbook.site.contents import Contents
 from spinbook.site.page import FRAME_SUFFIX, HOME
@@ -77,7 +77,7 @@ def prove_nothing_leaks(course: Course, contents: Contents) -> None:
     The pages are looked at before Sphinx gets them: in HTML every line of code is full of marks.
     """
     exercises = [_load(course, name) for name in sorted(course.exercises)]
-    taught = "\n".join(contents.taught)
+    taught = "\n".join([*contents.taught, authors_code(contents.copies)])
     known, names = secrets_of_all(exercises, taught)
     found: dict[Path, str] = {}
     for file, what in leaks(_published(contents), known + names):

@@ -189,14 +189,44 @@ STEPS = """(at(0.5).publish("/joints", name=["a"], position=[1.0]), at(0.1).set_
 
 def test_a_students_copy_has_the_same_scenarios(tmp_path: Path) -> None:
     scenario = scenario_of(tmp_path, STEPS, EVERYTHING)
-    again = from_plain(plain(scenario))
+    again = from_plain(plain(scenario), tmp_path)
     assert again == scenario
     assert again.digest == scenario.digest
 
 
-def test_code_of_the_authors_is_not_in_a_students_copy(tmp_path: Path) -> None:
+def test_code_of_scenarios_py_is_not_in_a_students_copy(tmp_path: Path) -> None:
     with pytest.raises(NotForStudents, match="Tank"):
         plain(scenario_of(tmp_path, more="world=World(Tank, level=1.0)"))
+
+
+def test_a_world_in_a_file_of_its_own_is_in_a_students_copy_of_that_folder(tmp_path: Path) -> None:
+    author, student = exercise_in(tmp_path / "author", more="world=World(Tank, level=1.0)"), tmp_path / "student"
+    text = (author / "scenarios.py").read_text()
+    (author / "tank.py").write_text(text[text.index("class Tank") : text.index("def answer")])
+    (author / "scenarios.py").write_text(f"{text.replace('class Tank', 'class Other')}\n\nfrom tank import Tank\n")
+    (scenario,) = declared(load(author), seed=0)
+    kept = plain(scenario)
+    assert str(tmp_path) not in repr(kept)
+    with pytest.raises(OSError, match=r"tank\.py"):
+        from_plain(kept, student)
+    student.mkdir()
+    (student / "tank.py").write_bytes((author / "tank.py").read_bytes())
+    world = from_plain(kept, student).world
+    assert world.begin().state() == {"/in": {"data": 1.0}}
+
+
+def test_two_exercises_may_have_worlds_in_files_of_the_same_name(tmp_path: Path) -> None:
+    levels = []
+    for number in (1.0, 2.0):
+        author = exercise_in(tmp_path / str(number), more="world=World(tank.Tank)")
+        world = "class Tank:\n    reads = publishes = {}\n    step = hear = print\n    state = dict\n    level = "
+        (author / "tank.py").write_text(f"{world}{number}\n")
+        text = (author / "scenarios.py").read_text()
+        (author / "scenarios.py").write_text(f"import tank\n{text}")
+        (scenario,) = declared(load(author), seed=0)
+        assert scenario.world
+        levels.append(scenario.world.begin().level)  # type: ignore[attr-defined]
+    assert levels == [1.0, 2.0]
 
 
 def test_scenarios_differ_if_anything_in_them_does(tmp_path: Path) -> None:

@@ -151,7 +151,7 @@ def test_a_title_that_would_break_a_file_is_refused(
 def test_either_a_course_or_an_exercise(words: list[str]) -> None:
     done = made(*words)
     assert done.exit_code == 2
-    assert "one of the two" in done.output
+    assert "one of them" in done.output
 
 
 @pytest.mark.soak

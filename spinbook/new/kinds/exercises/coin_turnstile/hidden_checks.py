@@ -68,10 +68,11 @@ def test_answers_at_once(visitors: Run) -> None:
 
 @check(
     points=1,
-    hint="Look at the name that __init__ gives to the node.",
+    hint="Compare the names and the queue depths in __init__ with the task.",
     depends=["test_serves_push"],
     rule="Its node is called coin_turnstile.",
 )
 def test_node_is_as_described(visitors: Run) -> None:
-    """The node has the name of the task."""
+    """The node has the name and the quality of service of the task."""
     visitors.must_have_nodes()
+    visitors.must_have_qos()

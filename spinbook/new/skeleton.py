@@ -1,0 +1,203 @@
+"""Writes a program that has the interface of exercise.toml, and nothing of the task yet: the first draft of a solution.
+
+What makes the interface stands outside of the solution's markers, so that a starter made from it has each topic,
+service, action and parameter with its type and quality of service. What it does with them is a TODO between markers.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from grader.exercise import Exercise
+from grader.exercise.exercise import Direction, Durability, Endpoint, Parameter, ProgramFile, Reliability, Role, Topic
+
+#: A program's end, and what an __init__ does for it.
+_ENTRY = {
+    "service": "self.{name}_service = self.create_service({type}, {topic}, self.on_{name})",
+    "client": "self.{name}_client = self.create_client({type}, {topic})",
+    "action": "self.{name}_server = ActionServer(self, {type}, {topic}, self.execute_{name})",
+    "action_client": "self.{name}_client = ActionClient(self, {type}, {topic})",
+}
+
+_ENUMS: dict[Reliability | Durability, str] = {
+    "best_effort": "reliability=ReliabilityPolicy.BEST_EFFORT",
+    "transient_local": "durability=DurabilityPolicy.TRANSIENT_LOCAL",
+}
+
+_VERBS: dict[Direction | Role, str] = {
+    "subscribe": "subscribe to",
+    "publish": "publish on",
+    "service": "serve",
+    "client": "call",
+    "action": "serve the action",
+    "action_client": "send goals to",
+}
+
+#: What a node without callbacks is still to have.
+_TIMER = "        # TODO: create a timer, and write what it calls."
+
+#: What stands between a program's imports and its end. Begin and end of a solution are the author's to fill in.
+_BODY = '''\
+class {class_name}(Node):
+    """TODO: what the node does."""
+
+    def __init__(self):
+        super().__init__("{node}")
+{init}
+{methods}
+
+def main():
+    rclpy.init()
+    node = {class_name}()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()
+'''
+
+
+@dataclass(frozen=True)
+class _Callback:
+    """A method that the program's ends call."""
+
+    name: str
+    arguments: str
+    about: str
+    last: str = ""
+
+
+def skeleton(exercise: Exercise) -> str:
+    """The text of a solution.py with the exercise's interface; of several programs, each with its part.
+
+    exercise.toml does not say which of several programs has which topic: there, comments list them for the author.
+    """
+    if not exercise.programs:
+        node = ProgramFile(exercise.file_name, exercise.node_name, exercise.class_name)
+        return _program(exercise.title, node, exercise.topics, exercise.endpoints, exercise.parameters)
+    todo = [f"        # TODO: {line}, if it is this node that does." for line in _listed(exercise)]
+    parts = (
+        f"# file: {one.file}\n{_filled(exercise.title, one, _imports((), ()), _marked(todo), '')}"
+        for one in exercise.programs
+    )
+    return "\n\n".join(parts)
+
+
+def _listed(exercise: Exercise) -> Iterator[str]:
+    for topic in exercise.topics:
+        quality = ", ".join(policy.replace("_", " ") for policy in (topic.reliability, topic.durability))
+        yield f"{_VERBS[topic.direction]} {topic.name} ({topic.type}, depth {topic.depth}, {quality})"
+    for one in exercise.endpoints:
+        yield f"{_VERBS[one.role]} {one.name} ({one.type})"
+    for parameter in exercise.parameters:
+        yield f"declare the parameter {parameter.name}"
+
+
+def _program(
+    title: str,
+    node: ProgramFile,
+    topics: Sequence[Topic],
+    endpoints: Sequence[Endpoint],
+    parameters: Sequence[Parameter],
+) -> str:
+    ends = [line for topic in topics for line in _topic(topic)]
+    init = [f"        {line}" for line in (*map(_parameter, parameters), *ends, *map(_end, endpoints))]
+    callbacks = [*_callbacks(topics, endpoints)]
+    methods = "".join(_method(one) for one in callbacks)
+    init += [] if callbacks else _marked([_TIMER])
+    return _filled(title, node, _imports(topics, endpoints), init, methods)
+
+
+def _filled(title: str, node: ProgramFile, imports: str, init: Sequence[str], methods: str) -> str:
+    class_name = node.class_name or "".join(word.capitalize() for word in node.node.split("_"))
+    body = _BODY.format(class_name=class_name, node=node.node, init="\n".join(init), methods=methods)
+    return f'"""{title}."""\n\n{imports}\n\n\n{body}'
+
+
+def _parameter(one: Parameter) -> str:
+    if one.default is None:
+        kind = f"Parameter.Type.{one.type.upper()}"
+        return f'self.declare_parameter("{one.name}", rclpy.parameter.{kind})'
+    return f'self.declare_parameter("{one.name}", {one.default!r})'
+
+
+def _topic(one: Topic) -> Iterator[str]:
+    name, type_, quality = _name(one.name), one.type.rpartition("/")[2], _quality(one)
+    if quality != str(one.depth):
+        yield f"{name}_quality = {quality}"
+        quality = f"{name}_quality"
+    if one.direction == "publish":
+        yield f"self.{name}_publisher = self.create_publisher({type_}, {_quoted(one.name)}, {quality})"
+    else:
+        yield f"self.create_subscription({type_}, {_quoted(one.name)}, self.on_{name}, {quality})"
+
+
+def _quality(one: Topic) -> str:
+    """The depth alone where that gives what is declared."""
+    policies = [_ENUMS[policy] for policy in (one.reliability, one.durability) if policy in _ENUMS]
+    return f"QoSProfile({', '.join([f'depth={one.depth}', *policies])})" if policies else str(one.depth)
+
+
+def _end(one: Endpoint) -> str:
+    return _ENTRY[one.role].format(name=_name(one.name), type=one.type.rpartition("/")[2], topic=_quoted(one.name))
+
+
+def _callbacks(topics: Sequence[Topic], endpoints: Sequence[Endpoint]) -> Iterator[_Callback]:
+    for topic in topics:
+        if topic.direction == "subscribe":
+            yield _Callback(f"on_{_name(topic.name)}", "message", f"Called once for each message on {topic.name}.")
+    for one in endpoints:
+        name, type_ = _name(one.name), one.type.rpartition("/")[2]
+        if one.role == "service":
+            about = "Called once for each request. What it returns is sent as the response."
+            yield _Callback(f"on_{name}", "request, response", about, "return response")
+        elif one.role == "action":
+            about = "Called once for each accepted goal. What it returns is the goal's result."
+            yield _Callback(f"execute_{name}", "goal_handle", about, f"return {type_}.Result()")
+
+
+def _method(one: _Callback) -> str:
+    lines = [f"    def {one.name}(self, {one.arguments}):", f'        """{one.about}"""']
+    lines += _marked(["        # TODO: write this."], one.last)
+    return "\n" + "\n".join(lines) + "\n"
+
+
+def _marked(todo: Sequence[str], last: str = "") -> list[str]:
+    """A block for the author to fill in, below what students read."""
+    inside = [f"        {last}"] if last else []
+    return [*todo, "        # BEGIN SOLUTION", *inside, "        # END SOLUTION"]
+
+
+def _imports(topics: Sequence[Topic], endpoints: Sequence[Endpoint]) -> str:
+    found = {
+        "rclpy.executors": {"ExternalShutdownException"},
+        "rclpy.node": {"Node"},
+        "rclpy.action": {kind for one in endpoints if (kind := _ACTION_ENDS.get(one.role))},
+        "rclpy.qos": {word for topic in topics for word in re.findall(r"QoSProfile|\w+Policy", _quality(topic))},
+    }
+    for type_ in (*(topic.type for topic in topics), *(one.type for one in endpoints)):
+        package, kind, name = type_.split("/")
+        found.setdefault(f"{package}.{kind}", set()).add(name)
+    lines = [f"from {module} import {', '.join(sorted(names))}" for module, names in sorted(found.items()) if names]
+    return "\n".join(["import rclpy", *lines])
+
+
+_ACTION_ENDS: dict[Role, str] = {"action": "ActionServer", "action_client": "ActionClient"}
+
+
+def _name(topic: str) -> str:
+    """The name of a topic, a service or an action as a part of a Python name."""
+    return re.sub(r"\W+", "_", topic).strip("_").lower()
+
+
+def _quoted(name: str) -> str:
+    return json.dumps(name)

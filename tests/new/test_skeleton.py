@@ -1,0 +1,101 @@
+"""`spinbook new --solution` writes a program with the interface of exercise.toml, which the starter has, too."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import rclpy
+from click.testing import CliRunner, Result
+from rclpy.node import Node
+
+from grader.exercise import Exercise, load, starter
+from grader.exercise.exercise import Topic
+from spinbook.new.command import new
+from spinbook.new.kind import KINDS, Kind
+from spinbook.new.skeleton import skeleton
+from spinbook.problem import SpinbookError
+
+ONE_PROGRAM = [pytest.param(kind, id=kind.name) for kind in KINDS if kind.name != "several-nodes"]
+
+
+def exercise_of(kind: Kind) -> Exercise:
+    return load(kind.root / "exercises" / kind.exercise)
+
+
+@pytest.fixture
+def ros(ros_domain: int) -> Iterator[None]:
+    rclpy.init()
+    yield
+    rclpy.try_shutdown()
+
+
+def node_of(source: str, class_name: str) -> Node:
+    entries: dict[str, Any] = {"__name__": "student"}
+    exec(compile(source, "starter.py", "exec"), entries)
+    node: Node = entries[class_name]()
+    return node
+
+
+def policies(topic: Topic, node: Node) -> list[tuple[str, str, str]]:
+    """Type, reliability and durability of the node's ends of a topic."""
+    ends = node.get_publishers_info_by_topic if topic.direction == "publish" else node.get_subscriptions_info_by_topic
+    return [
+        (end.topic_type, end.qos_profile.reliability.name.lower(), end.qos_profile.durability.name.lower())
+        for end in ends(topic.name)
+        if end.node_name == node.get_name()
+    ]
+
+
+@pytest.mark.usefixtures("ros")
+@pytest.mark.parametrize("kind", ONE_PROGRAM)
+def test_the_starter_has_each_declared_end_with_its_type_and_quality_of_service(kind: Kind) -> None:
+    exercise = exercise_of(kind)
+    node = node_of(starter(skeleton(exercise)), exercise.class_name)
+    try:
+        assert node.get_name() == exercise.node_name
+        for topic in exercise.topics:
+            assert policies(topic, node) == [(topic.type, topic.reliability, topic.durability)]
+        name, space = node.get_name(), node.get_namespace()
+        services = dict(node.get_service_names_and_types_by_node(name, space))
+        services |= dict(node.get_client_names_and_types_by_node(name, space))
+        for one in exercise.endpoints:
+            goal = one.role.startswith("action")
+            assert services[f"{one.name}/_action/send_goal" if goal else one.name][0].startswith(one.type)
+        for parameter in exercise.parameters:
+            assert node.get_parameter(parameter.name).value == parameter.default
+    finally:
+        node.destroy_node()
+
+
+def test_each_of_several_programs_has_a_part_with_its_node() -> None:
+    exercise = exercise_of(next(kind for kind in KINDS if kind.name == "several-nodes"))
+    source = skeleton(exercise)
+    starter(source)
+    for program in exercise.programs:
+        part = source.partition(f"# file: {program.file}\n")[2]
+        assert f"class {program.class_name}(Node)" in part
+        assert f'super().__init__("{program.node}")' in part
+        assert "TODO: publish on /full (std_msgs/msg/Bool, depth 10, reliable, volatile)" in part
+
+
+def made(*words: str) -> Result:
+    return CliRunner().invoke(new, words)
+
+
+def test_the_command_writes_a_solution_and_never_overwrites_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert made(str(tmp_path / "robots")).exit_code == 0
+    monkeypatch.chdir(tmp_path / "robots")
+    solution = Path("solutions", "speed_limit", "solution.py")
+    assert isinstance(made("--solution", "speed_limit").exception, SpinbookError)
+    solution.unlink()
+    done = made("--solution", "speed_limit")
+    assert f"Made {solution}" in done.output
+    assert 'self.create_subscription(Float64, "/wanted_speed", self.on_wanted_speed, 10)' in solution.read_text()
+    missing = made("--solution", "no_such_exercise").exception
+    assert isinstance(missing, SpinbookError)
+    assert "there is no such file" in str(missing)
