@@ -15,8 +15,9 @@ from spinbook.kernel.plot.drawing import as_png, draw, in_words, moving_plot
 from spinbook.kernel.plot.quantity import Recording
 from spinbook.kernel.process import CellFailed, KeptProcess
 
-#: How long a topic may take to appear (s).
-_APPEAR_S = 5.0
+#: How long the recorder may take to start, and a topic's first message to come after that (s).
+_STARTING_S = 30.0
+_APPEAR_S = 7.0
 #: How often a watched plot is drawn anew (s).
 _REDRAW_S = 0.5
 
@@ -43,9 +44,10 @@ def _record(process: KeptProcess, recording: Recording, seconds: float, title: s
     watched = EXECUTING not in os.environ
     handle: Any = None
     rest = ""
-    started = time.monotonic()
+    gives_up = time.monotonic() + _STARTING_S
     first: float | None = None
     drawn = 0.0
+    was_looking = False
     try:
         while True:
             data, _ = process.read()
@@ -54,9 +56,11 @@ def _record(process: KeptProcess, recording: Recording, seconds: float, title: s
             now = time.monotonic()
             if recording.error or not process.status.running:
                 return handle
+            if recording.is_looking and not was_looking:
+                was_looking, gives_up = True, now + _APPEAR_S
             if first is None and recording.curves:
-                first = now
-            if (first is None and now - started > _APPEAR_S + 2) or (first is not None and now - first > seconds):
+                first, gives_up = now, now + seconds
+            if now > gives_up:
                 return handle
             if watched and first is not None and now - drawn > _REDRAW_S:
                 handle = _show(recording, title, handle)
