@@ -15,8 +15,9 @@ from spinbook.kernel.plot.drawing import as_png, draw, in_words, moving_plot
 from spinbook.kernel.plot.quantity import Recording
 from spinbook.kernel.process import CellFailed, KeptProcess
 
-#: How long a topic may take to appear (s).
-_APPEAR_S = 5.0
+#: How long the recorder may take to start, and a topic's first message to come after that (s).
+_STARTING_S = 30.0
+_APPEAR_S = 7.0
 #: How often a watched plot is drawn anew (s).
 _REDRAW_S = 0.5
 
@@ -38,27 +39,42 @@ def run(paths: list[str], seconds: float, title: str) -> None:
     _show(recording, title, handle)
 
 
+class RecordingTime:
+    """Says when a recording is over: its seconds count from the first sample, or it waited for one in vain.
+
+    The recorder's own start does not count as waiting: on a busy machine it may take longer than the recording.
+    """
+
+    def __init__(self, seconds: float, now: float) -> None:
+        self._seconds = seconds
+        self._ends = now + _STARTING_S
+        self._is_looking = self._has_samples = False
+
+    def is_over(self, recording: Recording, now: float) -> bool:
+        """To be asked again and again; `now` is a monotonic clock's time (s)."""
+        if recording.is_looking and not self._is_looking:
+            self._is_looking, self._ends = True, now + _APPEAR_S
+        if recording.curves and not self._has_samples:
+            self._has_samples, self._ends = True, now + self._seconds
+        return now > self._ends
+
+
 def _record(process: KeptProcess, recording: Recording, seconds: float, title: str) -> Any:
     """Take in what comes. Returns the handle of the picture that is being watched, if one is."""
     watched = EXECUTING not in os.environ
     handle: Any = None
     rest = ""
-    started = time.monotonic()
-    first: float | None = None
     drawn = 0.0
+    recording_time = RecordingTime(seconds, time.monotonic())
     try:
         while True:
             data, _ = process.read()
             *lines, rest = (rest + data.decode(errors="replace")).split("\n")
             recording.take(lines)
             now = time.monotonic()
-            if recording.error or not process.status.running:
+            if recording.error or not process.status.running or recording_time.is_over(recording, now):
                 return handle
-            if first is None and recording.curves:
-                first = now
-            if (first is None and now - started > _APPEAR_S + 2) or (first is not None and now - first > seconds):
-                return handle
-            if watched and first is not None and now - drawn > _REDRAW_S:
+            if watched and recording.curves and now - drawn > _REDRAW_S:
                 handle = _show(recording, title, handle)
                 drawn = now
             time.sleep(0.03)

@@ -77,6 +77,10 @@ class KeptProcess:
         self.status = Status(answer["exit"], answer["ended_by"], answer["lines"])
         return data, answer["dropped"], answer["offset"] + len(data)
 
+    def descendants(self) -> list[int]:
+        """The ids of the process and of all that it has started, as far as they still run."""
+        return supervisor.descendants(self._supervisor.pid)
+
     def stop(self, grace: tuple[float, float] = STOP_GRACE) -> None:
         """Begin to end it: SIGINT, then SIGTERM, then SIGKILL, `grace` seconds apart. Does not wait."""
         self._ask({"stop": list(grace)})

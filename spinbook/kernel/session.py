@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -240,11 +240,11 @@ class Session:
             if self.nodes.status(name).running:
                 print(f"(restarting {name})")
             self.nodes.stop(name)
-        has_joined = joins(self.domain.number)
         node = self.nodes.start(name, argv, settings, cwd)
-        self._show(node, bound, has_joined)
+        self._show(node, bound)
 
-    def _show(self, node: RunningNode, bound: Bound, has_joined: Callable[[], bool]) -> None:
+    def _show(self, node: RunningNode, bound: Bound) -> None:
+        has_joined = joins(node.process, self.domain.number)
         try:
             show_for(node.process, bound, f": %log {node.name} shows them", has_joined)
         except KeyboardInterrupt:
@@ -263,11 +263,10 @@ class Session:
 
         Raises CellFailed where it fails.
         """
-        has_joined = joins(self.domain.number)
         process = KeptProcess(argv, {**os.environ, **settings}, cwd)
         try:
             try:
-                show_for(process, bound, "", has_joined)
+                show_for(process, bound, "", joins(process, self.domain.number))
                 bounded = process.status.running
             except KeyboardInterrupt:
                 bounded = True

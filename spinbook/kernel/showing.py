@@ -10,12 +10,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from spinbook.kernel.process import KeptProcess
-from spinbook.ros2.participants import participants
+from spinbook.ros2.participants import participates
 
 #: Lines shown as they come, and lines kept for the end when more come.
 FIRST_LINES = 60
 LAST_LINES = 10
 _POLL_S = 0.03
+#: How often it is looked whether a process has joined ROS (s).
+_LOOK_S = 0.2
 #: A process that has neither printed anything nor joined ROS by then (s) is taken to have started.
 _STARTING_S = 20.0
 
@@ -68,10 +70,21 @@ class Countdown:
         return self._now() - (self._began if self._joined is None else self._joined)
 
 
-def joins(domain: int) -> Callable[[], bool]:
-    """Says whether another program of this host has joined the ROS domain since this was called."""
-    before = participants(domain) or 0
-    return lambda: (participants(domain) or 0) > before
+def joins(process: KeptProcess, domain: int) -> Callable[[], bool]:
+    """Says whether a process, or one that it has started, takes part in the ROS domain yet.
+
+    It looks only every so often: it goes through all processes of the machine.
+    """
+    looked = time.monotonic()
+
+    def has_joined() -> bool:
+        nonlocal looked
+        if time.monotonic() - looked < _LOOK_S:
+            return False
+        looked = time.monotonic()
+        return participates(domain, process.descendants())
+
+    return has_joined
 
 
 class Shown:

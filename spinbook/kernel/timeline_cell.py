@@ -18,6 +18,8 @@ from spinbook.kernel.timeline_picture import moving_timeline, span_of, still_tim
 _APPEAR_S = 20.0
 #: What was sent just before the recorder is asked may still be on its way (s).
 _LATE_S = 0.3
+#: How long the recorder may take in what has arrived, and how long to end after SIGTERM (s).
+_STOP_GRACE = (10.0, 1.0)
 
 
 class Timeline:
@@ -52,8 +54,8 @@ class Timeline:
     def end(self) -> Happenings:
         """Stop recording. Returns what has happened, in the order of the names."""
         time.sleep(_LATE_S)
-        self._process.stop((1.0, 1.0))
-        self._process.wait(3.0)
+        self._process.stop(_STOP_GRACE)
+        self._process.wait(sum(_STOP_GRACE) + 1.0)
         self._read()
         self.close()
         kinds = self._happenings.kinds

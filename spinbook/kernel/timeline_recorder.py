@@ -16,7 +16,9 @@ of an action also wait for its status and feedback, which this does not publish.
 from __future__ import annotations
 
 import json
+import signal
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
@@ -25,7 +27,6 @@ from typing import Any
 import rclpy
 from action_msgs.msg import GoalStatus
 from rclpy.action import get_action_names_and_types
-from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.qos import (
     DurabilityPolicy,
@@ -33,6 +34,7 @@ from rclpy.qos import (
     ReliabilityPolicy,
     qos_profile_services_default,
 )
+from rclpy.signals import SignalHandlerOptions
 
 from spinbook.kernel.reply_reader import ReplyReader
 from spinbook.ros2.cli import CommandError
@@ -211,19 +213,38 @@ def _tell(*line: Any) -> None:
     print(json.dumps(line), flush=True)
 
 
+#: How many messages may have arrived and not been taken in when the recorder is told to stop.
+_MAY_WAIT = 300
+
+
+def _told_to_stop() -> threading.Event:
+    """An event that SIGINT and SIGTERM set. ROS goes on: what has arrived by then is still to be read."""
+    told = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: told.set())
+    return told
+
+
+def record(recorder: TimelineRecorder, told_to_stop: threading.Event) -> None:
+    """Record until told to stop, and then take in what had arrived before: on a busy machine that may be much."""
+    while not told_to_stop.is_set():
+        rclpy.spin_once(recorder, timeout_sec=_LOOK_S)
+        recorder.look()
+    for _ in range(_MAY_WAIT):
+        rclpy.spin_once(recorder, timeout_sec=0)
+        recorder.look()
+
+
 def main() -> None:
     """Record until told to stop."""
-    rclpy.init()
+    told_to_stop = _told_to_stop()
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     try:
         recorder: TimelineRecorder = TimelineRecorder(sys.argv[1:])
         try:
-            while True:
-                rclpy.spin_once(recorder, timeout_sec=_LOOK_S)
-                recorder.look()
+            record(recorder, told_to_stop)
         finally:
             recorder.destroy_node()  # type: ignore[no-untyped-call]
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
     except CommandError as error:
         _tell("error", error.format_message())
     finally:

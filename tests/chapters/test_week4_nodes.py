@@ -152,8 +152,14 @@ def test_a_success_that_nobody_called_so_is_aborted_and_so_is_an_exception(partn
         assert end_of(partner, 1) == (True, GoalStatus.STATUS_ABORTED)
 
 
-def test_the_table_of_times_names_every_section() -> None:
-    text = CHAPTER.read_text(encoding="utf-8")
-    sections = re.findall(r"^## (.+)$", text, re.MULTILINE)
-    timed = re.findall(r"\[([^\]]+)\]\(#", text.split("That is about")[0])
-    assert [section for section in sections if section not in ("Practice", "What comes next")] == timed
+@pytest.mark.parametrize(("left_out", "how_many"), [("", 1), ("cancel_callback=self.on_cancel,", 0)])
+def test_a_server_without_a_cancel_callback_refuses_to_cancel(
+    partner: Partner, tmp_path: Path, left_out: str, how_many: int
+) -> None:
+    with running(tmp_path, with_test_action("second_elbow.py").replace(left_out, "")):
+        client = ActionClient(partner.node, Fibonacci, "/move_elbow")
+        partner.spin_until(client.server_is_ready, "the action server")
+        handle = partner.done(client.send_goal_async(Fibonacci.Goal(order=1000)), "the answer to the goal")
+        answer = partner.done(handle.cancel_goal_async(), "the answer to the request to cancel")
+        client.destroy()
+    assert len(answer.goals_canceling) == how_many

@@ -16,6 +16,7 @@ from playwright.sync_api import Browser
 from spinbook.animation import BEFORE_S
 from spinbook.kernel.plot.drawing import MOST_CURVES, Scale, around, moving_plot
 from spinbook.kernel.plot.quantity import Recording
+from spinbook.kernel.plot_cell import RecordingTime
 
 JOINTS = ["left_elbow", "right_elbow", "<b>&"]
 
@@ -91,3 +92,22 @@ def test_in_a_browser_the_window_grows_as_time_went_by(browser: Browser, tmp_pat
         shown.page.emulate_media(reduced_motion="reduce")
         assert shown.page.evaluate(_WINDOW, 0) == [1, 0]
         assert shown.faults == []
+
+
+def test_the_seconds_count_from_the_first_sample_and_a_slow_start_is_no_silence() -> None:
+    recording, time = Recording(), RecordingTime(seconds=3.0, now=0.0)
+    assert not time.is_over(recording, 25.0), "the recorder has not started yet"
+    recording.take(['["looking"]'])
+    assert not time.is_over(recording, 26.0)
+    assert not time.is_over(recording, 32.0), "a topic may take its time to appear"
+    recording.take(['["sample", "/tilt", "tilt", "rad", "", 5.0, 0.1]'])
+    assert not time.is_over(recording, 32.5)
+    assert not time.is_over(recording, 35.0)
+    assert time.is_over(recording, 35.6)
+
+
+def test_a_recorder_that_hears_nothing_is_given_up() -> None:
+    recording, time = Recording(), RecordingTime(seconds=3.0, now=0.0)
+    recording.take(['["looking"]'])
+    assert not time.is_over(recording, 1.0)
+    assert time.is_over(recording, 8.5)

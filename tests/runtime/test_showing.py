@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+import os
+import socket
+import sys
+import time
 from dataclasses import dataclass
+from pathlib import Path
 
+from spinbook.kernel.process import KeptProcess
 from spinbook.kernel.showing import Bound, Countdown
+from spinbook.ros2.participants import participants, participates
 
 
 @dataclass
@@ -46,3 +53,39 @@ def test_a_program_that_neither_prints_nor_joins_does_not_hold_the_cell_for_ever
     assert not countdown.is_over(False)
     machine.now = 60.0
     assert countdown.is_over(False)
+
+
+#: Binds the second discovery port of a domain, as a participant does, and says so.
+BINDS = """
+import socket, sys, time
+bound = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+bound.bind(("127.0.0.1", int(sys.argv[1])))
+print("bound", flush=True)
+time.sleep(60)
+"""
+
+
+def started(tmp_path: Path, *argv: str) -> KeptProcess:
+    """A process that has printed its first line."""
+    process = KeptProcess([sys.executable, "-u", "-c", *argv], os.environ, tmp_path)
+    while process.status.running and not process.read_all()[0]:
+        time.sleep(0.01)
+    return process
+
+
+def test_only_a_process_itself_and_what_it_starts_join_a_domain_for_it(ros_domain: int, tmp_path: Path) -> None:
+    first_port = 7400 + 250 * ros_domain + 10
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as somebody_else:
+        somebody_else.bind(("127.0.0.1", first_port))
+        starts_it = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {BINDS!r}, *sys.argv[1:]])"
+        idle = started(tmp_path, "import time; print('up', flush=True); time.sleep(60)")
+        joined = started(tmp_path, starts_it, str(first_port + 2))
+        try:
+            assert participants(ros_domain) == 2
+            assert not participates(ros_domain, idle.descendants())
+            assert participates(ros_domain, joined.descendants())
+            assert participates(ros_domain, [os.getpid()])
+        finally:
+            idle.close()
+            joined.close()
+    assert not participates(ros_domain, [os.getpid()])

@@ -184,6 +184,8 @@ class Recording:
     waiting: list[str] = field(default_factory=list)
     published: list[str] = field(default_factory=list)
     error: str | None = None
+    is_looking: bool = False
+    """Whether the recorder takes part in ROS yet."""
 
     def take(self, lines: Iterable[str]) -> None:
         """Take in lines that the recorder printed; whatever else a library printed among them is passed over."""
@@ -198,6 +200,8 @@ class Recording:
                 curve = self.curves.setdefault(quantity, Curve(quantity))
                 curve.times.append(when)
                 curve.values.append(value)
+            elif kind == "looking":
+                self.is_looking = True
             elif kind == "waiting":
                 self.waiting, self.published = rest
             elif kind == "error":

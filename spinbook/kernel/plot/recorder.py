@@ -2,8 +2,8 @@
 
     python -m spinbook.kernel.plot.recorder PATH …
 
-Lines: ["waiting", [paths not found yet], [topics there are]], ["sample", topic, kind, unit, label, time (s), value],
-["error", words].
+Lines: ["looking"] once it takes part in ROS, ["waiting", [paths not found yet], [topics there are]],
+["sample", topic, kind, unit, label, time (s), value], ["error", words].
 A process and not a thread: the kernel then needs no rclpy, and its Stop button can't break one.
 """
 
@@ -39,6 +39,7 @@ class Recorder(Node):
         super().__init__("spinbook_plot", start_parameter_services=False)
         self._missing = list(paths)
         self._subscribed: set[tuple[str, str]] = set()
+        _tell("looking")
         self._look()
         self.create_timer(0.05, self._look)
 
