@@ -8,7 +8,7 @@ import dataclasses
 import hashlib
 import json
 import re
-from collections.abc import Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,15 +24,19 @@ from grader.submission.reading import of_source
 
 @dataclass(frozen=True)
 class Failure:
-    """How a check fails. `text` is the finding word for word, `kind` the same without what is each program's own."""
+    """How a check fails. `text` is the finding word for word, `kind` the same without what is each program's own.
+
+    `exact` says whether the value that came is one that hardly another mistake gives: a number of three digits or more.
+    """
 
     text: str
     kind: str
+    exact: bool = False
 
     @property
-    def bare(self) -> bool:
-        """Whether `kind` says no more than that some value is not the expected one."""
-        return bool(BARE.fullmatch(self.kind))
+    def telling(self) -> bool:
+        """Whether `kind` says what is wrong, and not only that some value is not the expected one."""
+        return not COMPARISON.fullmatch(self.kind)
 
 
 @dataclass(frozen=True)
@@ -56,8 +60,14 @@ class Signature:
 #: "Message 3 of 16 (0.30 s after the start; one in three messages is lost), left_elbow: ", or what stands before a
 #: finding that is about no message of ours: "At 2.00 s (a goal, canceled), goal 1 for /count (order 3): "
 WHERE = re.compile(r"^(Message \d+ of \d+|At [\d.]+ s|Before the start) \([^)]*\)(, [^:]*)?: |^In “[^”]*”(, [^:]*)?: ")
+GUESS = re.compile(r" Is \S+ a misspelling of \S+\?")
 ENDED = re.compile(r"\b([A-Z]\w*(?:Error|Exception|Interrupt))\b.* in line \d+")
-BARE = re.compile(r"expected \S+ ⟨expected⟩( \S+)?, got ⟨got⟩( \S+)?\.|no \S+ was expected, got ⟨got⟩\.")
+#: One sentence in which something was expected, or was not.
+COMPARISON = re.compile(r"[^.]*\b(expected|must be|must have|came|got|never published|published nothing)\b[^.]*\.")
+NUMBER = re.compile(r"(?<![\w.])-?\d+(\.\d+)?(e[+-]?\d+)?(?![\w.]*\w)")
+DIGITS = re.compile(r"[1-9](?:[\d.]*[1-9])?")
+#: Of so many significant digits is a value that hardly two mistakes share.
+ENOUGH_DIGITS = 3
 
 
 def failures_of(grade: Grade) -> dict[str, Failure]:
@@ -80,17 +90,26 @@ def failure_of(finding: Finding) -> Failure:
     kind = WHERE.sub("", finding.text)
     for value, name in ((finding.expected, "expected"), (finding.got, "got")):
         if value:
-            kind = re.sub(rf"(?<![\w.]){re.escape(value)}(?![\w.]\w)", f"⟨{name}⟩", kind, count=1)
-    return Failure(finding.text, re.sub(r" \([^)]*\)", "", kind))
+            count = 1 if NUMBER.match(value) else 0
+            kind = re.sub(rf"(?<![\w.]){re.escape(value)}(?![\w.]\w)", f"⟨{name}⟩", kind, count=count)
+    kind = NUMBER.sub("⟨number⟩", re.sub(r" \([^)]*\)", "", GUESS.sub("", kind)))
+    return Failure(finding.text, kind, _digits(finding.got) >= ENOUGH_DIGITS)
 
 
-#: How well a submission's failure fits a signature's: the same words, the same kind, another value where one was
-#: expected, or only the same check.
-SAME, SAME_KIND, ANOTHER_VALUE, SAME_CHECK = 1.0, 0.75, 0.5, 0.25
+def _digits(value: str) -> int:
+    """How many significant digits the first number in `value` has."""
+    number = NUMBER.search(value)
+    found = DIGITS.search(number[0].partition("e")[0]) if number else None
+    return len(found[0].replace(".", "")) if found else 0
 
-#: How well all of a signature's failures have to fit, on average. Less will do where the submission fails just those
-#: checks, two at least.
-FITS, FITS_ALL = 0.6, 0.5
+
+#: How well a submission's failure fits a signature's: the same words that tell, or with a value that hardly another
+#: mistake gives; the same words; the same kind of words that tell; or a comparison of two other values.
+SAME, SAME_WORDS, SAME_KIND, OTHER_VALUE = 1.0, 0.8, 0.75, 0.25
+
+#: How well all of a signature's failures have to fit, on average: where the submission fails just those checks, and
+#: where it fails others, too.
+FITS, FITS_AMONG_OTHERS = 0.7, 0.9
 
 
 @dataclass(frozen=True)
@@ -119,7 +138,7 @@ def grouped(entries: Sequence[Entry], signatures: Sequence[Signature]) -> Miscon
     other: list[Entry] = []
     for entry in entries:
         failed = failures_of(entry.grade)
-        made = _mistakes(failed, signatures)
+        made = mistakes_in(failed, _blocked(entry.grade), signatures)
         for number in made:
             found.setdefault(number, []).append(entry)
         if failed and not made:
@@ -128,38 +147,51 @@ def grouped(entries: Sequence[Entry], signatures: Sequence[Signature]) -> Miscon
     return Misconceptions(tuple(sorted(groups, key=lambda group: -len(group.entries))), tuple(other))
 
 
-def _mistakes(failed: dict[str, Failure], signatures: Sequence[Signature]) -> list[int]:
-    """Numbers of the signatures that explain `failed`.
+def _blocked(grade: Grade) -> frozenset[str]:
+    return frozenset(verdict.name for verdict in grade.verdicts if verdict.status == "blocked")
 
-    The one that explains most comes first; then what it explains is set aside, and the rest is looked at again.
+
+def mistakes_in(failed: Mapping[str, Failure], blocked: Set[str], signatures: Sequence[Signature]) -> list[int]:
+    """Numbers of the signatures that explain how a submission fails, the one that explains most first.
+
+    What one explains is set aside, and the rest is looked at again. Where two explain the same equally well, neither
+    is named; and where something is left unexplained, only those are that fit nearly word for word: more often it is
+    a mistake that nobody has listed.
     """
-    left, made = dict(failed), []
+    left, made = set(failed), dict[int, float]()
     while left:
-        scores = {number: _score(left, signature) for number, signature in enumerate(signatures) if number not in made}
-        best = max(scores, key=lambda number: scores[number], default=None)
-        if best is None or scores[best] == 0:
+        scores = {number: _score(failed, left, blocked, one) for number, one in enumerate(signatures)}
+        ranking = sorted((score, -number) for number, score in scores.items() if score[0] and number not in made)
+        if not ranking or (len(ranking) > 1 and ranking[-1][0] == ranking[-2][0]):
             break
-        made.append(best)
-        for name in signatures[best].failures:
-            left.pop(name, None)
-    return made
+        (_, fit), number = ranking[-1]
+        made[-number] = fit
+        left -= signatures[-number].failures.keys()
+    return [number for number, fit in made.items() if fit >= FITS_AMONG_OTHERS or not left]
 
 
-def _score(failed: dict[str, Failure], signature: Signature) -> float:
-    """How much of `failed` a signature explains, 0 where it does not fit."""
-    fits = [_fit(failed.get(name), failure) for name, failure in signature.failures.items()]
-    enough = FITS_ALL if len(fits) > 1 and failed.keys() == signature.failures.keys() else FITS
-    return sum(fits) if sum(fits) / len(fits) >= enough else 0.0
+def _score(
+    failed: Mapping[str, Failure], left: Set[str], blocked: Set[str], signature: Signature
+) -> tuple[float, float]:
+    """How much of what is `left` a signature explains, and how well it fits on average; zeros where it does not.
+
+    A check that can't be judged speaks neither for nor against it; nor does one that another mistake explains, if
+    that is not the most of them.
+    """
+    judged = [name for name in signature.failures if name not in blocked and (name in left or name not in failed)]
+    if not judged or 2 * len(judged) < len(signature.failures):
+        return 0.0, 0.0
+    fits = [_fit(failed.get(name), signature.failures[name]) for name in judged]
+    average = sum(fits) / len(fits)
+    return (sum(fits), average) if average >= FITS else (0.0, 0.0)
 
 
 def _fit(failure: Failure | None, known: Failure) -> float:
-    if failure is None:
+    if failure is None or failure.kind != known.kind:
         return 0.0
     if failure.text == known.text:
-        return SAME
-    if failure.kind == known.kind:
-        return ANOTHER_VALUE if known.bare else SAME_KIND
-    return SAME_CHECK
+        return SAME if known.telling or known.exact else SAME_WORDS
+    return SAME_KIND if known.telling else OTHER_VALUE
 
 
 #: Gradings at once. Each has several spins at once already.

@@ -97,6 +97,7 @@ class Panel:
 def feedback_plot(grade: Grade, exercise: Exercise) -> str | None:
     """The plot as SVG text; None where the node published nothing that can be drawn, or nothing was recorded.
 
+    None also for a node that fails checks and whose curves agree with the solution's: its fault is not in the picture.
     Drawn is the scenario of the first public check that failed, or else the first scenario, which all public checks
     may show. A hidden check's scenario is never drawn.
     """
@@ -113,6 +114,8 @@ def feedback_plot(grade: Grade, exercise: Exercise) -> str | None:
     except (KeyError, TypeError):  # messages of this exercise have no names to part them by
         return None
     if not any(curve.got for curve in drawn):
+        return None
+    if not grade.full_marks and not any(curve.first_wrong for curve in drawn):
         return None
     times = [at for curve in drawn for line in (curve.expected, curve.got) for at, _ in line]
     start, end = min(times), max(times)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import difflib
+import sys
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -155,6 +157,9 @@ def _wait_until_ready(graph: Graph, client: Any, name: str, wanted: str) -> None
     """Wait without end for the service. Raises `CommandError` when it turns out to be of another type."""
     if not client.service_is_ready():
         print("waiting for service to become available...", flush=True)
+        graph.settle(client.service_is_ready)
+        if not client.service_is_ready() and (alike := _alike(graph, name)):
+            print(f"There is no service '{name}' yet. Did you mean {alike}? Ctrl-C ends the wait.", file=sys.stderr)
 
     def ready_or_never() -> bool:
         types = next((found.types for found in graph.services() if found.name == name), (wanted,))
@@ -171,6 +176,12 @@ def _wait_until_ready(graph: Graph, client: Any, name: str, wanted: str) -> None
     for node in graph.nodes():
         if name in dict(graph.node.get_service_names_and_types_by_node(node.name, node.namespace)):
             graph.wait_until_known(node.full_name)
+
+
+def _alike(graph: Graph, name: str) -> str:
+    """The services whose names look like `name`, with 'or'; empty where there are none."""
+    names = [found.name for found in graph.services() if found.name != name]
+    return " or ".join(difflib.get_close_matches(name, names, n=2, cutoff=0.75))
 
 
 def _visible(graph: Graph, include_hidden: bool) -> list[Named]:

@@ -7,7 +7,7 @@ import re
 
 from spinbook.turtlesim.canvas import Canvas
 from spinbook.turtlesim.events import Event, Killed, LogLine, Severity, Spawned
-from spinbook.turtlesim.geometry import CENTRE, single
+from spinbook.turtlesim.geometry import CENTRE, SIDE, single
 from spinbook.turtlesim.trail import Track, Trail
 from spinbook.turtlesim.turtle import AbsoluteTeleport, RelativeTeleport, Turtle
 
@@ -43,15 +43,16 @@ class World:
         if refusal := _refusal("spawn", x, y, theta):
             return refusal
         if name and not _NAME.fullmatch(name):
-            text = f"[{name}] can't be the name of a turtle: topics begin with it (letters, digits and _)"
-            return [LogLine(Severity.ERROR, text)]
+            text = f"[{name}] can't be the name of a turtle: topics begin with it. "
+            return [LogLine(Severity.ERROR, text + "Begin with a letter, and use letters, digits and _ only.")]
         if name in self.turtles:
-            return [LogLine(Severity.ERROR, f"A turtle named [{name}] already exists")]
+            text = f"A turtle named [{name}] already exists. Choose another name, or call /kill with this one first."
+            return [LogLine(Severity.ERROR, text)]
         name = name or self._free_name()
         self.turtles[name] = Turtle(name, x, y, theta)
         self.tracks.pop(name, None)
         text = f"Spawning turtle [{name}] at x=[{x:f}], y=[{y:f}], theta=[{theta:f}]"
-        return [Spawned(name), LogLine(Severity.INFO, text)]
+        return [Spawned(name), LogLine(Severity.INFO, text), *_outside(name, x, y)]
 
     def _free_name(self) -> str:
         while True:
@@ -62,7 +63,9 @@ class World:
     def kill(self, name: str) -> list[Event]:
         """Take a turtle away; what it drew stays."""
         if name not in self.turtles:
-            return [LogLine(Severity.ERROR, f"Tried to kill turtle [{name}], which does not exist")]
+            there = ", ".join(sorted(self.turtles)) or "none"
+            text = f"Tried to kill turtle [{name}], which does not exist. Turtles that do: {there}."
+            return [LogLine(Severity.ERROR, text)]
         events = self.turtles[name].abort_rotation(f"Turtle [{name}] is gone. Aborting its rotation goal")
         del self.turtles[name]
         return [*events, Killed(name)]
@@ -103,7 +106,7 @@ class World:
         if refusal := _refusal(f"{turtle}/teleport_absolute", x, y, theta):
             return refusal
         self.turtles[turtle].teleport(AbsoluteTeleport(x, y, theta))
-        return []
+        return _outside(turtle, x, y)
 
     def teleport_relative(self, turtle: str, linear: float, angular: float) -> list[Event]:
         """Turn a turtle by `angular`, then move it by `linear`, at the next tick."""
@@ -147,9 +150,22 @@ class World:
         track.add(self._ticks, turtle.x, turtle.y, turtle.theta, turtle.pen)
 
 
+def _outside(turtle: str, x: float, y: float) -> list[Event]:
+    """A warning where a turtle was asked to a place that is not in the window, else nothing."""
+    if 0 <= x <= SIDE and 0 <= y <= SIDE:
+        return []
+    text = f"[{turtle}] stops at the edge: x={x:g}, y={y:g} is outside. Choose both between 0 and {SIDE:.2f}."
+    return [LogLine(Severity.WARN, text)]
+
+
 def _refusal(what: str, *numbers: float) -> list[Event]:
     """A warning where a number is infinite or none at all, else nothing."""
     if all(math.isfinite(number) for number in numbers):
         return []
     told = ", ".join(f"{number:f}" for number in numbers)
-    return [LogLine(Severity.WARN, f"Ignoring a request for {what} with numbers that are not finite: {told}")]
+    return [
+        LogLine(
+            Severity.WARN,
+            f"Ignoring a request for {what} with numbers that are not finite: {told}. Pass finite numbers.",
+        )
+    ]

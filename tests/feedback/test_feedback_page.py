@@ -29,6 +29,7 @@ def test_a_failed_public_check_tells_what_was_expected_what_came_when_and_where(
 ) -> None:
     shown = text(page_of(graded["position_for_velocity"], exercise))
     assert "Begin here The first check that your node does not pass: Each joint's velocity" in shown
+    assert shown.index("Begin here") < shown.index("Checks ") < shown.index("Your node and the solution")
     assert "expected 0.499167 rad/s came 0.0499167 rad/s when 0.10 s message 2 which left_shoulder_pitch" in shown
     assert "Every velocity is the position of the message that arrived, unchanged." in shown
     assert "Hint: (position now - position before)" in shown
@@ -55,10 +56,14 @@ def test_of_a_hidden_check_only_title_points_outcome_and_hint_are_told(
             assert not re.search(rf"(?<![\w.]){re.escape(secret)}(?![\w.])", text(page)), secret
 
 
-def test_the_plot_never_shows_a_hidden_scenario(graded: dict[str, Grade], exercise: Exercise) -> None:
-    plot = feedback_plot(graded["joints_by_index"], exercise)
+def test_the_plot_shows_a_public_scenario_only_and_nothing_where_nothing_differs_in_it(
+    graded: dict[str, Grade], exercise: Exercise
+) -> None:
+    assert feedback_plot(graded["joints_by_index"], exercise) is None, "its faults are in hidden scenarios"
+    assert "Your node and the solution" not in page_of(graded["joints_by_index"], exercise)
+    plot = feedback_plot(graded["solution"], exercise)
     assert plot
-    assert "over 9.9 s" in plot, "the public scenario, in which this mistake does no harm"
+    assert "over 9.9 s" in plot, "the public scenario"
     assert "They agree everywhere." in plot
 
 

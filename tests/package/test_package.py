@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
+from pathlib import Path
 
 from course_folder import CourseFolder
 
@@ -60,6 +61,30 @@ def test_no_line_of_what_is_written_is_too_long_for_ament_flake8(course: CourseF
         [sys.executable, "setup.py", "--description"], cwd=folder, capture_output=True, text=True, check=True
     )
     assert said.stdout.strip() == description.strip()
+
+
+#: What ament_flake8 looks at with the plugins that ROS 2 Jazzy installs (builtins, comprehensions, docstrings, import
+#: order, quotes), and what ament_pep257 does, in the words of ruff: both leave the same rules out.
+AMENT_RULES = (
+    *("--isolated", "--line-length", "99", "--select", "E,W,F,A,C4,D,I001,Q"),
+    *("--ignore", "D100,D101,D102,D103,D104,D105,D106,D107,D203,D212,D404"),
+    *("--config", "lint.isort.force-sort-within-sections=true", "--config", "lint.isort.order-by-type=false"),
+    *("--config", 'lint.flake8-quotes.inline-quotes="single"'),
+)
+
+
+def test_the_course_s_own_package_keeps_the_rules_of_ament_flake8_and_ament_pep257(tmp_path: Path) -> None:
+    course = Path(__file__).parents[2]
+    said = subprocess.run(
+        [sys.executable, "-m", "spinbook", "package", "--course", str(course), "--workspace", str(tmp_path)],
+        capture_output=True,
+        text=True,
+    )
+    assert said.returncode == 0, said.stderr
+    (folder,) = tmp_path.glob("src/*/setup.py")
+    ruff = [sys.executable, "-m", "ruff", "check", "--no-cache", *AMENT_RULES, str(folder.parent)]
+    found = subprocess.run(ruff, capture_output=True, text=True)
+    assert found.returncode == 0, found.stdout
 
 
 def test_package_xml_names_what_the_modules_import(course: CourseFolder) -> None:

@@ -73,6 +73,15 @@ def test_service_call_prints_request_and_response(standing: Robot, terminal: Ter
     assert terminal.ros2("service", "find", "std_srvs/srv/SetBool").out == "/stand_up\n"
 
 
+def test_a_misspelled_service_is_waited_for_with_the_right_name_in_sight(standing: Robot, terminal: Terminal) -> None:
+    standing("service")
+    running = terminal.start("service", "call", "/stand_op", "std_srvs/srv/SetBool")
+    assert running.process.stderr is not None
+    told = running.process.stderr.readline()
+    assert told == "There is no service '/stand_op' yet. Did you mean /stand_up? Ctrl-C ends the wait.\n"
+    running.stop()
+
+
 def test_a_service_of_another_type_is_not_waited_for(standing: Robot, terminal: Terminal) -> None:
     standing("service")
     answer = terminal.ros2("service", "call", "/stand_up", "std_srvs/srv/Trigger")

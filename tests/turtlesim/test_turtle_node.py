@@ -279,8 +279,9 @@ def test_a_name_that_is_taken_or_unknown_is_told_in_the_log(turtlesim: Running, 
     outside.call(Kill, "/kill", Kill.Request(name="eve"))
     outside.until(lambda: len(turtlesim.log) >= 5, "two lines about them")
     assert turtlesim.log[3:] == [
-        "[ERROR] [turtlesim]: A turtle named [turtle2] already exists",
-        "[ERROR] [turtlesim]: Tried to kill turtle [eve], which does not exist",
+        "[ERROR] [turtlesim]: A turtle named [turtle2] already exists. "
+        "Choose another name, or call /kill with this one first.",
+        "[ERROR] [turtlesim]: Tried to kill turtle [eve], which does not exist. Turtles that do: turtle1, turtle2.",
     ]
 
 

@@ -68,7 +68,8 @@ def test_the_number_of_a_killed_turtle_is_not_used_again(world: World) -> None:
 
 
 def test_a_name_in_use_is_an_error_and_spawns_nothing(world: World) -> None:
-    assert lines(world.spawn(1, 1, 0, "turtle1")) == [("error", "A turtle named [turtle1] already exists")]
+    told = "A turtle named [turtle1] already exists. Choose another name, or call /kill with this one first."
+    assert lines(world.spawn(1, 1, 0, "turtle1")) == [("error", told)]
     assert not any(isinstance(event, Spawned) for event in world.spawn(1, 1, 0, "turtle1"))
 
 
@@ -77,12 +78,25 @@ def test_a_name_that_no_topic_can_have_is_refused(world: World, name: str) -> No
     (line,) = world.spawn(1, 1, 0, name)
     assert isinstance(line, LogLine)
     assert line.severity.value == "error"
+    assert line.text.endswith("Begin with a letter, and use letters, digits and _ only.")
     assert list(world.turtles) == ["turtle1"]
 
 
-def test_killing_a_turtle_that_does_not_exist_is_an_error(world: World) -> None:
-    told = [("error", "Tried to kill turtle [bob], which does not exist")]
+def test_killing_a_turtle_that_does_not_exist_is_an_error_that_says_which_do(world: World) -> None:
+    told = [("error", "Tried to kill turtle [bob], which does not exist. Turtles that do: turtle1.")]
     assert lines(world.kill("bob")) == told
+    world.kill("turtle1")
+    assert lines(world.kill("bob"))[0][1].endswith("Turtles that do: none.")
+
+
+def test_a_place_outside_the_window_is_a_warning_that_says_what_is_inside(world: World) -> None:
+    told = "[turtle1] stops at the edge: x=99, y=-1 is outside. Choose both between 0 and 11.09."
+    assert lines(world.teleport_absolute("turtle1", 99, -1, 0)) == [("warn", told)]
+    assert lines(world.teleport_absolute("turtle1", 0, 11.0, 0)) == []
+    assert lines(world.spawn(12, 1, 0, "bob"))[1] == (
+        "warn",
+        told.replace("turtle1", "bob").replace("99, y=-1", "12, y=1"),
+    )
 
 
 def test_turtles_tick_in_the_order_of_their_names(world: World) -> None:
