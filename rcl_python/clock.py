@@ -199,10 +199,9 @@ class Timer(Destroyable):
         now = self.clock.now()
         self._last = now
         self._next += self.period
-        if self._next < now:
-            # Periods that have passed meanwhile are left out.
-            behind = now - self._next
-            self._next = now if not self.period else self._next + self.period * (1 + (behind - 1) // self.period)
+        if self._next <= now:
+            # Periods that have passed meanwhile are left out; what would be due at this very moment has passed, too.
+            self._next = now if not self.period else self._next + self.period * (1 + (now - self._next) // self.period)
 
     def cancel_timer(self) -> None:
         """Let it come no more."""

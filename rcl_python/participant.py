@@ -194,6 +194,8 @@ class Participant:
         self.graph = Graph()
         self.local: dict[str, Endpoint] = {}
         self.on_signal: Callable[[str], None] = lambda name: None
+        self.overhearing: list[Callable[[Frame, bytes], None]] = []
+        """Who gets each response that has come, to whomever it goes."""
         self._numbers = itertools.count(1)
         self._joined = False
 
@@ -345,6 +347,11 @@ class Participant:
         for mine in self._here(frame["to"]):
             mine.get(Arrival(data, frame["sent"], self.link.system(), frame["n"], frame["from"]))
 
+    def _on_response(self, frame: Frame, data: bytes) -> None:
+        for hear in self.overhearing:
+            hear(frame, data)
+        self._on_exchange(frame, data)
+
     def _on_exchange(self, frame: Frame, data: bytes) -> None:
         for mine in self._here(frame["to"]):
             mine.inbox.append(Arrival(data, frame["sent"], self.link.system(), frame["n"], frame["from"]))
@@ -365,7 +372,7 @@ _HANDLERS: dict[str, Callable[[Participant, Frame, bytes], None]] = {
     "bye": Participant._on_bye,
     "message": Participant._on_message,
     "request": Participant._on_exchange,
-    "response": Participant._on_exchange,
+    "response": Participant._on_response,
     "signal": Participant._on_signal,
 }
 

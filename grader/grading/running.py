@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import threading
 from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 from grader.exercise import Exercise
 from grader.grading.grade import Options
-from grader.recording import Ending, Recording
+from grader.recording import Recording
+from grader.recording.recording import likewise
 from grader.sandbox import Isolation, Middleware, MiddlewareUnavailable, Program, choose_middleware
 from grader.scenario import Companion, Scenario
+from grader.scenario.command_line import ARGUMENTS, arguments
 from grader.submission import Submission
 from grader.workers import WorkerPool
 from grader.workers.jobs import RunJob
@@ -111,9 +111,6 @@ class WorkStealing:
             self._changed.notify_all()
 
 
-#: How every program is started.
-ARGUMENTS = ("--ros-args", "-p", "use_sim_time:=true")
-
 #: What a submission may publish in all scenarios together (bytes), of which each gets an equal part, but not less than
 #: this. As Python's objects, in the memory of the grader, it takes about ten times as much.
 MOST_BYTES, LEAST_BYTES = 24_000_000, 1_000_000
@@ -158,7 +155,7 @@ class ScenarioRunner:
             try:
                 first = spins.recording(self.scenarios[0].name)
                 if first.ending.outcome != "completed":
-                    return {scenario.name: _likewise(first, scenario) for scenario in self.scenarios}
+                    return {scenario.name: likewise(first, scenario.name) for scenario in self.scenarios}
                 self.workers.prepare_to_judge()
                 return {scenario.name: spins.recording(scenario.name) for scenario in self.scenarios}
             finally:
@@ -206,37 +203,5 @@ class ScenarioRunner:
         )
 
 
-def _likewise(first: Recording, scenario: Scenario) -> Recording:
-    if first.scenario == scenario.name:
-        return first
-    return Recording(
-        scenario.name, (), (), first.nodes, (), "none", False, Ending(first.ending.outcome, first.ending.story)
-    )
-
-
 def _companion(one: Companion) -> Program:
     return Program(one.file, {one.file: one.text.encode()}, (*one.arguments, *ARGUMENTS), STUDENT_ENVIRONMENT)
-
-
-def arguments(scenario: Scenario) -> tuple[str, ...]:
-    """What follows the program's name on its command line in a scenario."""
-    found = [*scenario.arguments, *ARGUMENTS]
-    for name, value in scenario.parameters.items():
-        found += ["-p", f"{name}:={_yaml(value)}"]
-    for name, to in scenario.remappings.items():
-        found += ["-r", f"{name}:={to}"]
-    if scenario.namespace:
-        found += ["-r", f"__ns:={scenario.namespace}"]
-    return tuple(found)
-
-
-def _yaml(value: Any) -> str:
-    """A parameter's value on a command line, such as `2.0`, `true` or `["a", "b"]`."""
-    if isinstance(value, (list, tuple)):
-        return f"[{', '.join(_yaml(one) for one in value)}]"
-    if isinstance(value, float):
-        text = repr(value)
-        special = {"nan": ".nan", "inf": ".inf", "-inf": "-.inf"}
-        # A number with an exponent needs a point to be one in YAML 1.1.
-        return special.get(text, text if "." in text or "e" not in text else text.replace("e", ".0e"))
-    return json.dumps(value)

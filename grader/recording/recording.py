@@ -127,6 +127,14 @@ class Recording:
         return tuple(sorted(found, key=lambda event: event.at))
 
 
+def likewise(first: Recording, scenario: str) -> Recording:
+    """The recording of a scenario that is not spun, because the `first` one has ended before its time."""
+    if first.scenario == scenario:
+        return first
+    ending = Ending(first.ending.outcome, first.ending.story)
+    return Recording(scenario, (), (), first.nodes, (), "none", False, ending)
+
+
 def _of_goal(goal: Goal) -> list[Event]:
     name = f"{goal.action} {goal.number}"
     found = [Event(goal.at, f"goal {name}", goal)]

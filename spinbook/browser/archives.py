@@ -30,14 +30,19 @@ _SPINBOOK = (
     "ros2",
     "kernel/__init__.py",
     "kernel/entry.py",
+    "kernel/timeline.py",
+    "kernel/timeline_picture.py",
+    "kernel/timeline_recorder.py",
+    "kernel/plot",
+    "animation.py",
     "turtlesim",
     "browser",
     "graph",
     "chapter/__init__.py",
     "chapter/terminal.py",
 )
-#: What of the grader judges recordings; the rest starts and confines programs.
-_GRADER = ("__init__.py", "checking", "exercise", "recording", "scenario", "report")
+#: What of the grader runs scenarios and judges recordings; the rest starts and confines programs.
+_GRADER = ("__init__.py", "checking", "exercise", "recording", "runner", "scenario", "report")
 _INDEXED = ("rosidl_interfaces", "packages")
 _TEXTS = (".msg", ".srv", ".action")
 
@@ -54,6 +59,7 @@ def ros_archive() -> bytes:
     root = Path(spinbook.__file__).parent
     for part in _SPINBOOK:
         files |= _part(root / part, f"spinbook/{part}")
+    files["spinbook/kernel/reply_reader.py"] = (root / "browser" / "in_page" / "replies.py").read_bytes()
     files["numpy.py"] = (root / "browser" / "numpy_standin" / "numpy.py").read_bytes()
     files |= _messages_as_fields(root.parent / "grader")
     files |= dict(_python_files(root.parent / "grader" / "recording", "grader/recording"))
@@ -93,7 +99,9 @@ def check_archive(exercises: Mapping[str, bytes]) -> bytes:
     root = Path(spinbook.__file__).parent.parent / "grader"
     for part in _GRADER:
         files |= _part(root / part, f"grader/{part}")
-    return zipped({**files, **_messages_as_fields(root), **exercises})
+    files |= _part(root.parent / "rmw_lockstep" / "__init__.py", "rmw_lockstep/__init__.py")
+    files |= _part(root.parent / "rmw_lockstep" / "hub", "rmw_lockstep/hub")
+    return zipped({**_messages_as_fields(root), **files, **exercises})
 
 
 def _messages_as_fields(grader: Path) -> dict[str, bytes]:

@@ -10,13 +10,15 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 from itertools import chain
-
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING
 
 from spinbook.animation import Cycle, coord, on_paper
 from spinbook.kernel.plot.drawing import Scale
 from spinbook.kernel.timeline import Lane, Mark, Span, in_words
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 #: What took longer (s) is shown so many times as fast that it takes no longer.
 LONGEST_S = 20.0
@@ -201,6 +203,9 @@ def _moving(cycle: Cycle, height: float) -> str:
 
 def still_timeline(lanes: Sequence[Lane], title: str = "") -> Figure:
     """The same as a figure of matplotlib. Time counts from the first event."""
+    # Web pages draw the other one, and have no matplotlib.
+    from matplotlib.figure import Figure
+
     start, _ = span_of(lanes)
     figure = Figure(figsize=(8, 0.9 + 0.75 * len(lanes)), layout="constrained")
     axes = figure.subplots()

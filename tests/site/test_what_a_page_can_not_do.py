@@ -41,8 +41,9 @@ def run(cell: Locator, code: str) -> Locator:
 
 
 SENTENCES = {
-    "import threading\nthreading.Thread(target=print).start()": "This program starts a thread",
-    "from concurrent.futures import ThreadPoolExecutor\nThreadPoolExecutor().submit(print)": "a web page has none",
+    # Threads it has: they take turns.
+    "import threading\nthreading.Thread(target=print, args=('from a thread',)).start()": "from a thread",
+    "from concurrent.futures import ThreadPoolExecutor\nThreadPoolExecutor().submit(lambda: 6 * 7).result()": "42",
     "import numpy as np\nnp.linspace(0, 1)": "a web page does not have numpy",
     "import matplotlib.pyplot": "This program imports matplotlib, which a web page does not have.",
     "import subprocess\nsubprocess.run(['ls'])": "This program starts another one, which a web page can't.",

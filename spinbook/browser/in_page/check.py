@@ -13,20 +13,23 @@ from typing import Any
 from grader.checking.verdict import Verdict
 from grader.exercise import Exercise, load
 from grader.recording import Recording
+from grader.recording.recording import likewise
 from grader.recording.store import from_plain
 from grader.scenario import Message, Scenario
-from spinbook.browser.in_page.rig import Program, Rig
+from grader.scenario.store import from_plain as scenario_from_plain
+from spinbook.browser.in_page import rig
+from spinbook.browser.in_page.rig import Program
 
 _ARCHIVE = Path("/check.zip")
 _FOLDER = Path("/exercises")
 _CANNOT = {
     "numpy": "Your program imports numpy, which a web page does not have. Check it in the notebook.",
-    "threading": "Your program uses threads, which a web page does not have. Check it in the notebook.",
-    "concurrent": "Your program uses threads, which a web page does not have. Check it in the notebook.",
+    "threading": "Your program uses threads, which a check in a web page can't follow. Check it in the notebook.",
+    "concurrent": "Your program uses threads, which a check in a web page can't follow. Check it in the notebook.",
     "asyncio": "Your program uses asyncio, which needs the browser for itself. Check it in the notebook.",
     "multiprocessing": "Your program starts processes, which a web page can't. Check it in the notebook.",
 }
-_MORE_THAN_TOPICS = "This exercise has more than topics in it, which a web page can't check. Check it in the notebook."
+_SEVERAL = "This exercise has several programs, which a web page can't check together. Check it in the notebook."
 _THREADED = "MultiThreadedExecutor"
 
 
@@ -36,9 +39,9 @@ def check(name: str, source: str) -> str:
     if hindrance:
         return json.dumps({"problem": hindrance})
     exercise = load(_unpacked(name)).public()
-    if not can_be_run(exercise):
-        return json.dumps({"problem": _MORE_THAN_TOPICS})
     scenarios, references, hidden = public_part(exercise)
+    if exercise.programs or any(scenario.companions for scenario in scenarios):
+        return json.dumps({"problem": _SEVERAL})
     recordings = record(exercise, scenarios, Program(exercise.file_name, source))
     return json.dumps(shown(verdicts(exercise, scenarios, recordings, references), recordings, hidden))
 
@@ -72,24 +75,31 @@ def _unpacked(name: str) -> Path:
     return folder
 
 
-def can_be_run(exercise: Exercise) -> bool:
-    """Whether the rig of a page can do what the public scenarios say: publish messages, and nothing else."""
-    return bool(json.loads(exercise.public_file.read_text(encoding="utf-8"))["format"] == 1)
-
-
 def public_part(exercise: Exercise) -> tuple[list[Scenario], dict[str, Recording], dict[str, Any]]:
     """The scenarios, the solution's recordings of them, and what stays hidden, from public.json."""
     entries = json.loads(exercise.public_file.read_text(encoding="utf-8"))
-    scenarios = [
-        Scenario(**{**item, "messages": tuple(Message(**message) for message in item["messages"])})
-        for item in entries["scenarios"]
-    ]
+    scenarios = [_scenario(item) for item in entries["scenarios"]]
     return scenarios, from_plain(entries["expected"]), entries["hidden"]
 
 
+def _scenario(entries: dict[str, Any]) -> Scenario:
+    """A scenario as public.json has it: one that only publishes in a form of its own."""
+    if "is" in entries:
+        found: Scenario = scenario_from_plain(entries)
+        return found
+    return Scenario(**{**entries, "messages": tuple(Message(**message) for message in entries["messages"])})
+
+
 def record(exercise: Exercise, scenarios: list[Scenario], program: Program) -> dict[str, Recording]:
-    """Run the program through each scenario."""
-    return {scenario.name: Rig(exercise, scenario, program).run() for scenario in scenarios}
+    """Run the program through each scenario; the first decides whether it works at all, as in the grader."""
+    first, *others = scenarios
+    found = {first.name: rig.run(exercise, first, program)}
+    works = found[first.name].ending.outcome == "completed"
+    for scenario in others:
+        found[scenario.name] = (
+            rig.run(exercise, scenario, program) if works else likewise(found[first.name], scenario.name)
+        )
+    return found
 
 
 def verdicts(

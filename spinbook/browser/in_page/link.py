@@ -1,7 +1,7 @@
 """How a process in a web worker reaches the others: through the page, which is the hub.
 
-Waiting is a promise, awaited on the program's own stack (JavaScript Promise Integration, JSPI), so that a program
-blocks in `rclpy.spin` while the worker's event loop goes on.
+Waiting is a promise, awaited on the program's own stack (see threads.py), so that a program blocks in `rclpy.spin`
+while the worker's event loop goes on.
 """
 
 from __future__ import annotations
@@ -13,19 +13,28 @@ from collections.abc import Iterator
 from typing import Any, SupportsFloat
 
 from rcl_python.link import Frame
+from spinbook.browser.in_page import threads
 
 #: A program that never waits lets others in after this (s).
 _BREATH_S = 0.02
+
+
+class _Told(threading.Condition):
+    """A condition that also tells who waits for the page."""
+
+    def notify_all(self) -> None:
+        super().notify_all()
+        threads.changed()
 
 
 class PageLink:
     """The link of one worker. `page` is the worker's JavaScript side (worker.js)."""
 
     def __init__(self, page: Any) -> None:
-        from pyodide.ffi import run_sync, to_js  # type: ignore[import-not-found]
+        from pyodide.ffi import to_js  # type: ignore[import-not-found]
 
-        self.lock = threading.Condition(threading.RLock())
-        self._page, self._await, self._to_js = page, run_sync, to_js
+        self.lock = _Told(threading.RLock())
+        self._page, self._to_js = page, to_js
         self._breathed = time.monotonic()
 
     def send(self, frame: Frame, data: bytes = b"") -> None:
@@ -38,9 +47,16 @@ class PageLink:
             yield json.loads(item.head), item.data.to_bytes() if item.data else b""
 
     def wait(self, nanoseconds: int | None) -> None:
-        """Wait for a frame, or for this long."""
+        """Wait for a frame, for another thread, or for this long."""
+        held = self.lock._release_save()  # type: ignore[attr-defined]
+        try:
+            self._pause(nanoseconds)
+        finally:
+            self.lock._acquire_restore(held)  # type: ignore[attr-defined]
+
+    def _pause(self, nanoseconds: int | None) -> None:
         self._breathed = time.monotonic()
-        self._await(self._page.wait(-1 if nanoseconds is None else nanoseconds / 1e6))
+        threads.pause(-1 if nanoseconds is None else nanoseconds / 1e6, True)
 
     def breathe(self) -> None:
         """Let frames in, if none could come for a while."""
@@ -61,5 +77,12 @@ class PageLink:
 
         until = time.monotonic() + float(seconds)
         while (left := until - time.monotonic()) > 0:
-            self.wait(int(left * 1e9))
+            self._pause(int(left * 1e9))
             participant.current().pump()
+
+    def heed(self) -> None:
+        """Do what the signals that have come ask for."""
+        from rcl_python import participant
+
+        while (name := self._page.signal()) is not None:
+            participant.current().on_signal(name)

@@ -15,13 +15,10 @@ from typing import Any
 
 import rcl_python
 from rcl_python import logs, participant
+from spinbook.browser.in_page import threads
 from spinbook.browser.in_page.link import PageLink
 
 _FAILED, _INTERRUPTED = 1, 130
-_NO_THREADS = (
-    "This program starts a thread, and a web page has none. It runs in a notebook and in the grader; "
-    "here, do the same with a timer."
-)
 _NO_NUMPY = "This program imports {name}, which a web page does not have. It runs in a notebook and in the grader."
 _NO_MEMORY = "This program needs more memory than a web page has. It runs in a notebook."
 _NO_PROCESSES = "This program starts another one, which a web page can't. It runs in a notebook."
@@ -31,26 +28,17 @@ _ABSENT = ("numpy", "matplotlib", "scipy", "cv2", "pandas")
 
 def open_process(page: Any, identity: str) -> None:
     """Get ready: join the graph, and let waiting be what a page can do."""
+    threads.use(page, lambda: link.heed())
     link = PageLink(page)
     participant.use(link, identity)
     time.sleep = link.sleep  # type: ignore[assignment]
     logs.write = lambda line: print(line, file=sys.stderr)
     rcl_python.install()
-    _refuse_threads()
     builtins.input = _refuse_input
 
 
 def _refuse_input(prompt: object = "") -> str:
     raise RuntimeError(_NO_INPUT)
-
-
-def _refuse_threads() -> None:
-    import threading
-
-    def start(self: threading.Thread) -> None:
-        raise RuntimeError(_NO_THREADS)
-
-    threading.Thread.start = start  # type: ignore[method-assign]
 
 
 def import_rclpy() -> None:
@@ -69,7 +57,15 @@ def run_program(source: str, file: str, args: Sequence[str], environment: Mappin
     sys.argv = [file, *args]
     # Tracebacks show lines of the program, which lies in no file.
     linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
-    return status_of(lambda: exec(compile(source, file, "exec"), main.__dict__))
+    return status_of(lambda: _to_its_end(source, file, main))
+
+
+def _to_its_end(source: str, file: str, main: types.ModuleType) -> None:
+    """Run a program, and wait for the threads that it leaves behind."""
+    try:
+        exec(compile(source, file, "exec"), main.__dict__)
+    finally:
+        threads.wait_for_all()
 
 
 def status_of(program: Any) -> int:

@@ -3,7 +3,7 @@ import { editing } from "./editing.js";
 import { button, element } from "./elements.js";
 
 const LINES = 500;
-const KINDS = ["node", "shell", "snippet", "interface"];
+const KINDS = ["node", "shell", "snippet", "interface", "package_file"];
 
 export const cells = new Map();
 // What each node has printed, for %log.

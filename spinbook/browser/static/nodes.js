@@ -1,6 +1,7 @@
 // The nodes of a page: started by their cells or by `ros2 run`, listed and stopped as a notebook does it.
 import { cellOf, logs } from "./cell.js";
 import { failure } from "./elements.js";
+import { files } from "./workspace.js";
 import { Process, named } from "./processes.js";
 import { turtle } from "./turtle.js";
 
@@ -9,18 +10,20 @@ const TURTLESIM =
   "from spinbook.turtlesim.node import main\nsys.exit(main())\n";
 // What `ros2 run` of a turtlesim_node shows before the cell goes on (s).
 const SHOWN_S = 3;
+// The longest that `%log --until` waits (s).
+const LOG_S = 30;
 
 // Every node that was started and not stopped since, by name, in order.
-const started = new Map();
+export const started = new Map();
 
 // Start a program as a node; its process, once it runs.
 async function start(name, into, program, file, args) {
-  await named(name)?.stop();
+  await (started.get(name)?.running ? started.get(name) : named(name))?.stop();
   logs.delete(name);
   started.delete(name);
   const process = new Process(name, into.hears(name));
   started.set(name, process);
-  into.ended = process.program(program, file, args).then(
+  into.ended = process.program(program, file, args, files()).then(
     (status) => {
       into.say(ending(name, status, process));
       if (status) into.failed = true;
@@ -46,12 +49,17 @@ export async function runNode(cell, into = cell, args = []) {
 
 // `ros2 run PACKAGE EXECUTABLE …`: a node of this page, or turtlesim.
 export async function runExecutable(cell, [, , pack, executable, ...args]) {
+  const name = args.map((word) => /^__(?:node|name):=(.*)/.exec(word)?.[1]).find(Boolean);
   if (executable === "turtlesim_node") {
-    await start(executable, cell, TURTLESIM, "turtlesim_node.py", args);
+    await start(name ?? executable, cell, TURTLESIM, "turtlesim_node.py", args);
     await cell.shows(SHOWN_S);
     return cell.say("turtlesim_node runs. Look at it with %turtle.");
   }
   const wanted = cellOf(executable, `${pack}/${executable}`);
+  if (wanted && name) {
+    await start(name, cell, wanted.program, wanted.file, args);
+    return void (await Promise.race([cell.shows(SHOWN_S), cell.ended]));
+  }
   if (!wanted) return cell.fail(`There is no node ${executable} on this page.`);
   await runNode(wanted, cell, args);
   await Promise.race([cell.shows(SHOWN_S), cell.ended]);
@@ -65,9 +73,33 @@ export function showNodes(cell) {
   }
 }
 
-export function showLog(cell, [name]) {
+// What a program is that a launch file names: its text and its file.
+export function programOf(pack, executable) {
+  if (executable === "turtlesim_node") return { source: TURTLESIM, file: "turtlesim_node.py" };
+  const cell = cellOf(executable, `${pack}/${executable}`);
+  return cell && { source: cell.program, file: cell.file };
+}
+
+// `%log NAME [--until TEXT] [--seconds N]`
+export async function showLog(cell, args) {
+  const [name] = args;
   if (!started.has(name) && !logs.has(name)) return refuse(cell, name);
+  const value = (option) => (args.includes(option) ? args[args.indexOf(option) + 1] : undefined);
+  const text = value("--until");
+  if (text && !(await logHolds(name, text, Number(value("--seconds") ?? LOG_S)))) {
+    cell.print(`The text ${text} did not come.`);
+  }
   for (const line of logs.get(name) ?? []) cell.print(line);
+}
+
+// Resolves when a log holds a text (true), or when the time is up or the node has ended.
+async function logHolds(name, text, seconds) {
+  const end = Date.now() + 1000 * seconds;
+  const holds = () => (logs.get(name) ?? []).some((line) => line.includes(text));
+  while (!holds() && Date.now() < end && started.get(name)?.running) {
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+  return holds();
 }
 
 function refuse(cell, name) {

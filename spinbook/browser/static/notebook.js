@@ -1,13 +1,17 @@
 // Plain cells, terminals and interfaces. They share one process, which starts with the first of them.
 import { graph } from "./graph.js";
 import { runExecutable, showLog, showNodes, showTurtle, stop } from "./nodes.js";
+import { launch } from "./launch.js";
 import { plot } from "./plot.js";
 import { Process, environment } from "./processes.js";
+import { timeline } from "./timeline.js";
+import { files, keep } from "./workspace.js";
 
 const LOOK_S = 6;
 const GRAPH_S = 2.5;
 const LONGEST_S = 60;
 const ENDLESS = /^ros2 (topic (echo|hz|bw|delay|pub)|service echo)\b/;
+const SHOWS_ONLY = / (-s|--show-arg(ument)?s|-h|--help)( |$)/;
 const BOUNDED = / (--once|-1|--times|-t) /;
 
 let shared = null;
@@ -66,15 +70,19 @@ function parts(source) {
       continue;
     }
     finish();
-    found.push({ magic: line.slice(1).trim().split(/\s+/) });
+    found.push({ magic: wordsOf(line.slice(1)) });
   }
   finish();
   return found;
 }
 
+// The words of a line, quoted as in a shell.
+const wordsOf = (line) => (line.match(/"[^"]*"|'[^']*'|\S+/g) ?? []).map((word) => word.replace(/^(["'])(.*)\1$/, "$2"));
+
 async function magic(cell, process, [word, ...args]) {
   const known = { nodes: showNodes, log: showLog, stop, turtle: showTurtle, env: setVariable };
   if (word in known) await known[word](cell, args);
+  else if (word === "timeline") await timeline(cell, process, args);
   else if (word === "plot") await drawPlot(cell, process, args);
   else if (word === "graph") await drawGraph(cell, process, args);
   else if (word === "ros2") await runCommand(cell, process, { kind: "ros2", words: ["ros2", ...args], text: `ros2 ${args.join(" ")}` });
@@ -126,6 +134,7 @@ async function runCommand(cell, process, command) {
   else if (kind === "rqt_plot") await drawPlot(cell, process, words.slice(1));
   else if (kind === "colcon") cell.print("colcon is not needed in a page: `ros2 run` finds the page's nodes as they are.");
   else if (kind === "ros2" && words[1] === "run") await runExecutable(cell, words);
+  else if (kind === "ros2" && words[1] === "launch" && !SHOWS_ONLY.test(text)) await launch(cell, process, text);
   else if (kind === "ros2") await bounded(cell, process, text);
 }
 
@@ -141,11 +150,16 @@ async function bounded(cell, process, line) {
   const timer = setTimeout(interrupt, 1000 * seconds);
   if (endless && cell.until) cell.seen.then(interrupt);
   try {
-    const status = await busy(cell, process, "command", { source: line });
+    const status = await busy(cell, process, "command", { source: line, files: files() });
     if (interrupted && status !== null) cell.failed = false;
   } finally {
     clearTimeout(timer);
   }
+}
+
+export async function runFile(cell) {
+  cell.print(`Wrote ${keep(cell.file, cell.source)}`);
+  cell.say("");
 }
 
 export async function runInterface(cell) {

@@ -3,12 +3,12 @@ import { bar } from "./bar.js";
 import { cellAt } from "./cell.js";
 import { download } from "./download.js";
 import { announce, failure, hindrance, style } from "./elements.js";
-import { runInterface, runPlain, runTerminal } from "./notebook.js";
+import { runFile, runInterface, runPlain, runTerminal } from "./notebook.js";
 import { runNode } from "./nodes.js";
 
 // As long as a notebook shows a node's log before it goes on (s).
 const NODE_S = 3;
-const RUNNABLE = "main .cell:is(.cell-node, .cell-shell, .cell-snippet, .cell-interface)";
+const RUNNABLE = "main .cell:is(.cell-node, .cell-shell, .cell-snippet, .cell-interface, .cell-package_file)";
 
 const nodesOf = () => [...document.querySelectorAll(RUNNABLE)];
 
@@ -19,7 +19,7 @@ export function open() {
   nodesOf().forEach(cellAt);
 }
 
-const runs = { shell: runTerminal, snippet: runPlain, interface: runInterface };
+const runs = { shell: runTerminal, snippet: runPlain, interface: runInterface, package_file: runFile };
 
 // Run one cell. Resolves when a plain cell or a command has ended, or when a node has started.
 export async function run(node) {

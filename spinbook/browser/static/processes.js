@@ -25,7 +25,9 @@ function route(from, head, data) {
   const frame = JSON.parse(head);
   const wanted = frame.to ? new Set(frame.to.map(processOf)) : null;
   for (const process of all.values()) {
-    if (process !== from && (!wanted || wanted.has(process.identity))) {
+    // Who overhears gets all answers.
+    const overhears = process.overhears && frame.op === "response";
+    if (process !== from && (!wanted || wanted.has(process.identity) || overhears)) {
       process.worker.postMessage({ op: "frame", head, data });
     }
   }
@@ -75,7 +77,7 @@ export class Process {
   }
 
   signal(name) {
-    this.worker.postMessage({ op: "frame", head: JSON.stringify({ op: "signal", name }) });
+    this.worker.postMessage({ op: "signal", name });
   }
 
   // As Ctrl-C; what does not end then is ended.
@@ -90,12 +92,12 @@ export class Process {
   }
 
   // Run a program to its end; its exit status, or null if it had to be ended.
-  async program(source, file, args = []) {
+  async program(source, file, args = [], files = undefined) {
     this.running = true;
     changed();
     this.ended = this.ready
       .then(() => this.#watch())
-      .then(() => this.call("program", { source, file, args, environment }))
+      .then(() => this.call("program", { source, file, args, environment, files }))
       .finally(() => this.end());
     return this.ended;
   }

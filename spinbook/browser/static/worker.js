@@ -3,7 +3,8 @@ import { loadPyodide } from "./pyodide.mjs";
 
 const inbox = [];
 const keys = [];
-let wake = null;
+const signals = [];
+const waiting = new Set();
 
 // What in_page/link.py calls: frames out, frames in, and waiting, which is a promise.
 const page = {
@@ -11,19 +12,24 @@ const page = {
   receive: () => inbox.shift(),
   key: () => keys.shift(),
   picture: (text) => self.postMessage({ op: "picture", text }),
-  wait: (ms) =>
+  signal: () => signals.shift(),
+  wait: (ms, forFrames) =>
     new Promise((resolve) => {
       // Even a wait for nothing lets the event loop turn.
-      if (inbox.length > 0 || ms === 0) return void setTimeout(resolve, 0);
-      wake = resolve;
-      if (ms > 0) setTimeout(() => wake === resolve && arrived(), ms);
+      if (ms === 0 || (forFrames && inbox.length > 0)) return void setTimeout(resolve, 0);
+      waiting.add(resolve);
+      if (ms > 0) setTimeout(() => waiting.delete(resolve) && resolve(), ms);
     }),
+  wake: arrived,
+  // A thread: a function that runs on a stack of its own.
+  spawn: (run) => void setTimeout(() => run.callPromising().finally(() => run.destroy())),
 };
 
+// Let all threads that wait look again.
 function arrived() {
-  const resolve = wake;
-  wake = null;
-  resolve?.();
+  const all = [...waiting];
+  waiting.clear();
+  all.forEach((resolve) => resolve());
 }
 
 const print = (stream) => (text) => self.postMessage({ op: "output", stream, text });
@@ -73,16 +79,32 @@ const does = {
     ready = start(identity);
     return ready.then(() => null);
   },
-  program: async ({ source, file, args, environment }) => {
+  program: async ({ source, file, args, environment, files }) => {
     const { py, process } = await ready;
+    await put(py, files);
     return await process.run_program.callPromising(source, file, py.toPy(args), py.toPy(environment));
   },
   environment: async ({ environment }) => (await cells()).set_environment((await ready).py.toPy(environment)),
   python: async ({ source }) => (await cells()).run_python.callPromising(source),
-  command: async ({ source }) => {
+  command: async ({ source, files }) => {
     const { py } = await ready;
     await shares(py);
+    await put(py, files);
     return (await cells()).run_command.callPromising(source);
+  },
+  launch: async ({ source, files }) => {
+    const { py } = await ready;
+    await shares(py);
+    await put(py, files);
+    return JSON.parse(await py.pyimport("spinbook.browser.in_page.launching").plan.callPromising(source));
+  },
+  timeline: async ({ names }) => {
+    const { py } = await ready;
+    return py.pyimport("spinbook.browser.in_page.timeline").record.callPromising(py.toPy(names));
+  },
+  drawn: async ({ names, lines, title }) => {
+    const { py } = await ready;
+    return JSON.parse(py.pyimport("spinbook.browser.in_page.timeline").drawn(py.toPy(names), py.toPy(lines), title));
   },
   commands: async ({ source }) => JSON.parse((await cells()).commands(source)),
   define: async ({ name, text }) => {
@@ -119,6 +141,15 @@ async function pictures() {
   return py.pyimport("spinbook.browser.in_page.node_graph");
 }
 
+// The files of the chapter's package, where programs look for them; and those of a launch.
+async function put(py, { pack, texts, more } = { texts: {} }) {
+  if (Object.keys(texts).length) py.pyimport("spinbook.browser.in_page.workspace").put(py.toPy(texts), pack);
+  for (const [path, text] of Object.entries(more ?? {})) {
+    py.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
+    py.FS.writeFile(path, text);
+  }
+}
+
 // What interfaces there are, and their files: unpacked when the first command or check runs.
 function shares(py) {
   py.shared ??= unpackShares(py);
@@ -134,6 +165,11 @@ async function unpackShares(py) {
 self.onmessage = async ({ data: message }) => {
   if (message.op === "frame") {
     inbox.push({ head: message.head, data: message.data });
+    arrived();
+    return;
+  }
+  if (message.op === "signal") {
+    signals.push(message.name);
     arrived();
     return;
   }

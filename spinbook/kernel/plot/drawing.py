@@ -9,11 +9,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from html import escape
 from itertools import pairwise
-
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING
 
 from spinbook.animation import Cycle, coord, on_paper, thinned
 from spinbook.kernel.plot.quantity import Curve, Recording
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 #: Told apart in grey and by readers who do not see red and green alike (after Okabe and Ito, 2008).
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
@@ -22,6 +24,9 @@ _DASHES = ["-", "--", "-.", ":"]
 
 def draw(recording: Recording, title: str = "") -> Figure:
     """A figure of what was recorded. Time counts from the first sample."""
+    # Web pages read other parts of this module, and have no matplotlib.
+    from matplotlib.figure import Figure
+
     shown = panels(recording)
     figure = Figure(figsize=(8, 1.2 + 2.6 * len(shown)), layout="constrained")
     axes = figure.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]

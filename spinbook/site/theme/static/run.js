@@ -2,7 +2,7 @@
 "use strict";
 
 (() => {
-  const places = [...document.querySelectorAll("main .cell:is(.cell-node, .cell-shell, .cell-snippet, .cell-interface)")];
+  const places = [...document.querySelectorAll("main .cell:is(.cell-node, .cell-shell, .cell-snippet, .cell-interface, .cell-package_file)")];
   const load = (name) => import(new URL(`${document.documentElement.dataset.root}run/${name}`, location.href));
 
   function add(place, module, text, label, act) {

@@ -1,0 +1,139 @@
+"""The grader's hub in a page: the program is in the same interpreter, and turns are taken instead of sockets read.
+
+What happens, and when, is decided by the grader's own code (grader/runner, rmw_lockstep/hub). Here are only its two
+ends of the connection: `PageHub` and `PageConnection` on the hub's side, `Turns` between them and the program.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable
+
+from rmw_lockstep.hub import BEGIN, EPOCH, Hub, Limits
+from rmw_lockstep.hub.frames import Hello, Idle
+from rmw_lockstep.hub.limits import Use
+from rmw_lockstep.hub.link import Link
+from rmw_lockstep.hub.router import Router
+
+#: The number of the program among the processes of its run.
+PROGRAM = 1
+
+
+class Over(BaseException):
+    """Raised in the program when its run has ended. No program catches it by mistake."""
+
+
+class Turns:
+    """Two threads that never run at the same time: the program's and the hub's."""
+
+    def __init__(self) -> None:
+        self._program, self._hub = threading.Semaphore(0), threading.Semaphore(0)
+        self.is_over = False
+        """Whether the program is to end now, as one that is killed."""
+        self.has_ended = False
+        self.fault: BaseException | None = None
+        """What went wrong in the hub's code while it took what the program sent."""
+        self.signal = ""
+        """A signal that the program gets when it goes on."""
+
+    def let_program_go_on(self) -> None:
+        """The hub waits until the program has nothing left to do, or has ended. Raises what went wrong meanwhile."""
+        if not self.has_ended:
+            self._program.release()
+            self._hub.acquire()
+        fault, self.fault = self.fault, None
+        if fault is not None:
+            raise fault
+
+    def wait_for_first(self) -> None:
+        """The program waits until it may begin."""
+        self._program.acquire()
+
+    def let_hub_go_on(self) -> None:
+        """The program waits until something happens. Raises `Over`."""
+        if not self.is_over:
+            self._hub.release()
+            self._program.acquire()
+        if self.is_over:
+            raise Over
+
+    def end(self) -> None:
+        """The program has ended."""
+        self.has_ended = True
+        self._hub.release()
+
+
+class PageConnection(Link):
+    """The hub's end of the connection to the program."""
+
+    def __init__(self, use: Use) -> None:
+        self.queued: deque[bytes] = deque()
+        # There is no socket: what is queued is taken out by the program's side.
+        super().__init__(None, PROGRAM, use)  # type: ignore[arg-type]
+        self.hello = Hello(1, PROGRAM, 0, True)
+
+    def _peer(self) -> tuple[int, int]:
+        return 0, 0  # no process of this machine has the number 0
+
+    def queue(self, frame: bytes) -> None:
+        """Put a frame where the program finds it."""
+        self.queued.append(frame)
+        self.sent += 1
+        self.idle = None
+
+    def flush(self) -> None:
+        """Nothing is on its way."""
+
+    def close(self) -> None:
+        """There is nothing to close."""
+
+    def rests(self, now: int, until: int | None, in_ros: bool) -> None:
+        """The program has nothing left to do before `until` (ns), or before something comes."""
+        next_ = -1 if until is None else until
+        self.believe(Idle(self.handled, now, next_, int(in_ros), int(not in_ros), 0, 0, 1, ()))
+
+
+class PageHub(Hub):
+    """The hub of one run."""
+
+    def __init__(self, turns: Turns, limits: Limits | None = None) -> None:
+        self._turns = turns
+        self._use = Use(limits or Limits())
+        self._until, self._epoch, self._instant = BEGIN, EPOCH, BEGIN
+        self._standstills, self._awaited, self._runs = 0, False, {}
+        self.main: int | None = None
+        self.mains: set[int] = set()
+        self.patience: Callable[[], None] = lambda: None
+        self.before_end: Callable[[], None] = lambda: None
+        self._router = Router(self._use, lambda: EPOCH + self._until, EPOCH)
+        self._use.connection(0)
+        self.connection = PageConnection(self._use)
+        self._router.links.append(self.connection)
+
+    @property
+    def router(self) -> Router:
+        """What takes the program's frames."""
+        return self._router
+
+    def pause(self) -> None:
+        """Let the program go on, and see whether it takes too long."""
+        self._take()
+        self.patience()
+
+    def drain(self, at_most_s: float = 1.0) -> None:
+        """Whatever the program has sent was taken at once."""
+
+    def _take(self) -> None:
+        self._turns.let_program_go_on()
+        if self._turns.has_ended:
+            if self.connection in self.links:
+                self.before_end()
+                self._router.forget(self.connection)
+            self.patience()
+
+    def _flush(self) -> None:
+        """Nothing is on its way."""
+
+    def _accept(self) -> bool:
+        return False

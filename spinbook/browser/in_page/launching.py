@@ -1,0 +1,47 @@
+"""`ros2 launch` in a page: the launch file is read here, and the page starts what it describes."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+from spinbook.ros2.launch import command, processes
+from spinbook.ros2.launch.processes import ProcessToStart
+
+_planned: list[dict[str, Any]] = []
+
+
+class _Planned:
+    """In the place of `Launched`: notes what is to be started."""
+
+    def run(self, steps: Sequence[ProcessToStart | str]) -> int:
+        """Note the steps, with the parameter files that were made for them, which are gone afterwards."""
+        _planned[:] = map(_step, steps)
+        return 0
+
+
+def _step(step: ProcessToStart | str) -> dict[str, Any]:
+    if isinstance(step, str):
+        return {"say": step}
+    package, executable, *args = step.argv
+    files = {word: Path(word).read_text(encoding="utf-8") for word in args if word.endswith((".yaml", ".yml"))}
+    return {"package": package, "executable": executable, "args": args, "files": files}
+
+
+def _as_it_is(package: str, executable: str, cwd: Path) -> SimpleNamespace:
+    """The page knows its nodes by their names."""
+    return SimpleNamespace(argv=(package, executable), env={})
+
+
+def plan(line: str) -> str:
+    """What `ros2 launch …` is to start, as JSON: its exit status and the steps. Errors are printed."""
+    from spinbook.browser.in_page.cells import run_command
+
+    command.Launched = _Planned  # type: ignore[misc, assignment]
+    processes.find = _as_it_is  # type: ignore[assignment]
+    _planned.clear()
+    status = run_command(line)
+    return json.dumps({"status": status, "steps": _planned})

@@ -1,0 +1,255 @@
+"""The program's end of the connection to a page's hub: what rcl_python says and hears, as frames of PROTOCOL.md.
+
+Time is what the hub grants. The program waits in one place only, and that it waits means that it has nothing left to
+do: then it is the hub's turn.
+"""
+
+from __future__ import annotations
+
+import struct
+import threading
+from collections.abc import Callable, Iterator
+from typing import SupportsFloat
+
+from rcl_python import participant
+from rcl_python import qos as quality
+from rcl_python.context import interrupt
+from rcl_python.graph import CLIENT, PUBLISHER, SERVICE, SUBSCRIPTION
+from rcl_python.link import Frame
+from rmw_lockstep.hub import EPOCH, frames
+from rmw_lockstep.hub.qos import AUTOMATIC, INFINITE, Qos
+from rmw_lockstep.hub.router import NO_HASH
+from spinbook.browser.in_page.hub import PROGRAM, Over, PageHub, Turns
+
+_KINDS = (PUBLISHER, SUBSCRIPTION, SERVICE, CLIENT)
+_HEADER = 5
+_DATA, _CALL = struct.Struct("<QQqQqI"), struct.Struct("<QqqQqI")
+_IN_DATA, _IN_REQUEST, _IN_RESPONSE = struct.Struct("<QQq"), struct.Struct("<QQqq"), struct.Struct("<Qqq")
+_TIME = struct.Struct("<qB")
+_BARRIER, _TIME_KIND = ord("|"), ord("T")
+#: A program that only looks and never waits is done after so many looks.
+_LOOKS = 4
+_THREAD = 1
+
+
+class ProgramLink:
+    """The link of a program whose whole world is a page's hub."""
+
+    def __init__(self, hub: PageHub, turns: Turns) -> None:
+        self.lock = threading.Condition(threading.RLock())
+        self._hub, self._turns, self._connection = hub, turns, hub.connection
+        self._now = hub.now
+        self._looks = self._number = 0
+
+    # --- out
+
+    def send(self, frame: Frame, data: bytes = b"") -> None:
+        """Hand a frame to the hub, which takes it at once."""
+        if self._turns.is_over:
+            return
+        for kind, payload in _encoded(frame, data, self._connection.handled, self._now):
+            try:
+                self._hub.router.handle(self._connection, ord(kind), payload)
+            except Exception as fault:
+                self._turns.fault = fault
+                self._turns.let_hub_go_on()
+
+    # --- in
+
+    def receive(self) -> Iterator[tuple[Frame, bytes]]:
+        """Yield what has come, up to where time goes on."""
+        queued = self._connection.queued
+        while queued and queued[0][4] not in (_BARRIER, _TIME_KIND):
+            frame = queued.popleft()
+            self._connection.handled += 1
+            self._number += 1
+            found = _decoded(frame[4], frame[_HEADER:], self._number)
+            if found:
+                yield found
+
+    # --- time
+
+    def wait(self, nanoseconds: int | None) -> None:
+        """The program has nothing left to do."""
+        self._rest(nanoseconds, in_ros=True)
+
+    def sleep(self, seconds: SupportsFloat) -> None:
+        """Do what time.sleep does, by the hub's time."""
+        until = self._now + round(float(seconds) * 1e9)
+        while self._now < until:
+            self._rest(until - self._now, in_ros=False)
+            participant.current().pump()
+
+    def _rest(self, nanoseconds: int | None, in_ros: bool) -> None:
+        self._looks = 0
+        until = None if nanoseconds is None else self._now + nanoseconds
+        while not self._goes_on(until):
+            self._connection.rests(self._now, until, in_ros)
+            self._turns.let_hub_go_on()
+            if self._turns.signal:
+                self._heed()
+                return
+
+    def _heed(self) -> None:
+        name, self._turns.signal = self._turns.signal, ""
+        interrupt(name)
+
+    def _goes_on(self, until: int | None) -> bool:
+        """Whether there is anything to take in, or the time has come; time goes on as far as it was granted."""
+        queued = self._connection.queued
+        while queued:
+            if queued[0][4] == _TIME_KIND:
+                granted, _ = _TIME.unpack(queued[0][_HEADER:])
+                if until is not None and until <= granted:
+                    self._now = max(self._now, until)
+                    return True
+                self._now = max(self._now, granted)
+            elif queued[0][4] != _BARRIER:
+                return True
+            queued.popleft()
+            self._connection.handled += 1
+        return False
+
+    def breathe(self) -> None:
+        """A program that looks again and again without waiting waits."""
+        self._looks += 1
+        if self._looks > _LOOKS:
+            self._rest(None, in_ros=True)
+
+    def steady(self) -> int:
+        """What the hub says that the time is (ns)."""
+        return self._now
+
+    def system(self) -> int:
+        """What the hub's calendar says (ns since the epoch)."""
+        return EPOCH + self._now
+
+    def run(self, main: Callable[[], None]) -> None:
+        """Run the program to its end, or until its run is over."""
+        try:
+            self._turns.wait_for_first()
+            if not self._turns.is_over:
+                main()
+        except Over:
+            pass
+        finally:
+            self._turns.end()
+
+
+# --- frames
+
+
+def _encoded(frame: Frame, data: bytes, handled: int, now: int) -> Iterator[tuple[str, bytes]]:
+    """What the hub is told: kind and payload of each frame."""
+    op = frame["op"]
+    if op == "hello":
+        yield "J", b""
+    elif op == "node":
+        yield "N", frames.to_node(frames.Node(_id(frame["key"]), frame["name"], frame["namespace"]))[_HEADER:]
+    elif op == "endpoint":
+        yield "E", frames.to_end_point(_end_point(frame))[_HEADER:]
+    elif op == "node_gone":
+        yield "n", frames.to_gone(b"n", _id(frame["key"]))[_HEADER:]
+    elif op == "endpoint_gone":
+        yield "e", frames.to_gone(b"e", _id(frame["gid"]))[_HEADER:]
+    elif op == "message":
+        only = _id(frame["to"][0]) if len(frame["to"]) == 1 else 0
+        yield "D", _DATA.pack(_id(frame["from"]), only, frame["sent"], handled, now, _THREAD) + data
+    elif op == "request":
+        yield "Q", _CALL.pack(_id(frame["from"]), frame["n"], frame["sent"], handled, now, _THREAD) + data
+    elif op == "response":
+        yield "R", _CALL.pack(_id(frame["to"][0]), frame["n"], frame["sent"], handled, now, _THREAD) + data
+
+
+def _id(key: str) -> int:
+    process, _, number = key.rpartition(".")
+    return int(process) << 32 | int(number)
+
+
+def _key(number: int) -> str:
+    return f"{number >> 32}.{number & 0xFFFFFFFF}"
+
+
+def _end_point(frame: Frame) -> frames.EndPoint:
+    given = frame["qos"]
+    qos = Qos(
+        given["history"] or quality.KEEP_LAST,
+        given["depth"],
+        given["reliability"],
+        given["durability"],
+        given["liveliness"] or AUTOMATIC,
+        given["deadline"] or INFINITE,
+        given["lifespan"] or INFINITE,
+        given["lease"] or INFINITE,
+    )
+    kind = _KINDS.index(frame["kind"])
+    return frames.EndPoint(
+        _id(frame["gid"]), kind, _id(frame["node"]), frame["topic"], frame["type"], NO_HASH, qos
+    )  # fmt: skip
+
+
+def _decoded(kind: int, payload: bytes, number: int) -> tuple[Frame, bytes] | None:
+    """What rcl_python is told, if anything."""
+    decode = _DECODERS.get(chr(kind))
+    return decode(payload, number) if decode else None
+
+
+def _node(payload: bytes, number: int) -> tuple[Frame, bytes]:
+    node = frames.node(payload)
+    plain = {"key": _key(node.id), "name": node.name, "namespace": node.namespace, "domain": 0, "enclave": "/"}
+    return {"op": "node", **plain}, b""
+
+
+def _new_end_point(payload: bytes, number: int) -> tuple[Frame, bytes]:
+    end = frames.end_point(payload)
+    qos = end.qos
+    profile = quality.Profile(
+        qos.history, qos.depth, qos.reliability, qos.durability, qos.lifespan, qos.deadline, qos.liveliness, qos.lease
+    )
+    names = {"gid": _key(end.id), "node": _key(end.node), "topic": end.name, "type": end.type}
+    return {"op": "endpoint", **names, "kind": _KINDS[end.kind], "qos": vars(profile), "domain": 0}, b""
+
+
+def _gone(op: str, name: str) -> Callable[[bytes, int], tuple[Frame, bytes]]:
+    return lambda payload, number: ({"op": op, name: _key(frames.identity(payload))}, b"")
+
+
+def _message(payload: bytes, number: int) -> tuple[Frame, bytes]:
+    publisher, only, sent = _IN_DATA.unpack_from(payload)
+    source = _key(publisher)
+    to = [_key(only)] if only else _readers(source)
+    return {"op": "message", "from": source, "to": to, "sent": sent, "n": number}, payload[_IN_DATA.size :]
+
+
+def _readers(source: str) -> list[str]:
+    return [gid for gid, mine in participant.current().local.items() if source in mine.matched]
+
+
+def _request(payload: bytes, number: int) -> tuple[Frame, bytes]:
+    server, client, asked, sent = _IN_REQUEST.unpack_from(payload)
+    frame = {"op": "request", "from": _key(client), "to": [_key(server)], "sent": sent, "n": asked}
+    return frame, payload[_IN_REQUEST.size :]
+
+
+def _response(payload: bytes, number: int) -> tuple[Frame, bytes]:
+    client, asked, sent = _IN_RESPONSE.unpack_from(payload)
+    frame = {"op": "response", "from": "", "to": [_key(client)], "sent": sent, "n": asked}
+    return frame, payload[_IN_RESPONSE.size :]
+
+
+_DECODERS: dict[str, Callable[[bytes, int], tuple[Frame, bytes]]] = {
+    "N": _node,
+    "E": _new_end_point,
+    "n": _gone("node_gone", "key"),
+    "e": _gone("endpoint_gone", "gid"),
+    "D": _message,
+    "Q": _request,
+    "R": _response,
+}
+
+
+def join(hub: PageHub, turns: Turns) -> ProgramLink:
+    """Connect this interpreter's rcl_python to the hub."""
+    link = ProgramLink(hub, turns)
+    participant.use(link, str(PROGRAM))
+    return link

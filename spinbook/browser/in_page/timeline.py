@@ -1,0 +1,32 @@
+"""`%timeline` in a page: a process of its own records, and the page's other one draws."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterable, Sequence
+
+
+def record(names: Sequence[str]) -> None:
+    """Print every event of these services, actions and topics, until told to end."""
+    from spinbook.kernel import timeline_recorder
+
+    sys.argv = ["timeline", *names]
+    timeline_recorder.main()
+
+
+def drawn(names: Sequence[str], lines: Iterable[str], title: str) -> str:
+    """The picture of what was recorded, as JSON: `picture`, `words` and `problem`, which is "" if all is well."""
+    from spinbook.kernel.timeline import Happenings, in_words, lanes
+    from spinbook.kernel.timeline_picture import moving_timeline, span_of
+
+    happenings = Happenings()
+    happenings.take(lines)
+    kinds = happenings.kinds
+    happenings.kinds = {name: kinds[name] for name in names if name in kinds}
+    found = lanes(happenings)
+    if happenings.error or not any(lane.marks for lane in found):
+        nothing = f"Nothing has happened on {', '.join(names)} since `%timeline --record`."
+        return json.dumps({"picture": "", "words": "", "problem": happenings.error or nothing})
+    words = in_words(found, span_of(found)[0])
+    return json.dumps({"picture": moving_timeline(found, title), "words": words, "problem": ""})

@@ -1,0 +1,83 @@
+// `ros2 launch`: several nodes under one name, whose lines begin with theirs; one Stop ends them all.
+import { logs } from "./cell.js";
+import { programOf, started } from "./nodes.js";
+import { Process } from "./processes.js";
+import { files } from "./workspace.js";
+
+const SHOWN_S = 3;
+
+class Launch {
+  constructor(name, cell) {
+    this.name = name;
+    this.hears = cell.hears(name);
+    this.parts = [];
+    this.status = 0;
+    this.over = new Promise((resolve) => (this.finish = resolve));
+  }
+
+  get running() {
+    return this.parts.some((part) => part.running);
+  }
+
+  print(text) {
+    this.hears.output(text, "stdout");
+  }
+
+  begin(steps) {
+    for (const step of steps) {
+      if ("say" in step) this.print(`[INFO] [launch.user]: ${step.say}`);
+      else this.#start(step);
+    }
+    if (this.parts.length === 0) this.finish();
+  }
+
+  #start({ package: pack, executable, args, files: more }) {
+    const number = this.parts.length + 1;
+    const name = `${executable}-${number}`;
+    const { source, file } = programOf(pack, executable);
+    const part = new Process(name, { ...this.hears, output: (text) => this.print(`[${name}] ${text}`) });
+    this.parts.push(part);
+    this.print(`[INFO] [${name}]: process started with pid [${number}]`);
+    part.program(source, file, args, files(more)).then(
+      (status) => this.#ended(name, number, status),
+      (error) => this.#ended(name, number, error.message),
+    );
+  }
+
+  #ended(name, number, status) {
+    if (status === 0) this.print(`[INFO] [${name}]: process has finished cleanly [pid ${number}]`);
+    else {
+      this.print(`[ERROR] [${name}]: process has died [pid ${number}, exit code ${status ?? -9}]`);
+      if (!this.interrupted) this.status = 1;
+    }
+    if (!this.running) this.finish();
+  }
+
+  // As Ctrl-C does, for all of them.
+  async stop() {
+    if (!this.running) return;
+    this.interrupted = true;
+    this.print("[WARNING] [launch]: user interrupted with ctrl-c (SIGINT)");
+    await Promise.all(this.parts.map((part) => part.running && part.stop()));
+    await this.over;
+  }
+}
+
+const FILE = /([^/\s]+?)[._]launch\.(py|ya?ml|xml)\b/;
+
+// Run `ros2 launch …`. Resolves when its output has been shown for as long as the chapter shows it.
+export async function launch(cell, process, line) {
+  const name = FILE.exec(line)?.[1].split(".")[0] ?? "launch";
+  await started.get(name)?.stop();
+  logs.delete(name);
+  const { status, steps } = (await process.call("launch", { source: line, files: files() })) ?? { status: 1 };
+  if (status) return void (cell.failed = true);
+  const unknown = steps.find((step) => step.executable && !programOf(step.package, step.executable));
+  if (unknown) return cell.fail(`There is no node ${unknown.executable} on this page.`);
+  const launched = new Launch(name, cell);
+  started.set(name, launched);
+  launched.begin(steps);
+  cell.say(`${name} runs.`);
+  launched.over.then(() => cell.say(`${name} ended with ${launched.status}.`));
+  await Promise.race([cell.shows(SHOWN_S), launched.over]);
+}

@@ -1,0 +1,62 @@
+// `%timeline`: records services, actions and topics while other cells run, and draws what happened.
+import { element } from "./elements.js";
+import { Process } from "./processes.js";
+
+// How long names are waited for, and what may still be on its way at the end (ms).
+const APPEAR_MS = 20_000;
+const LATE_MS = 300;
+
+let recording = null;
+
+const after = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+
+async function begin(cell, names) {
+  recording?.process.end();
+  const lines = [];
+  const found = new Set();
+  let all = null;
+  const appeared = new Promise((resolve) => (all = resolve));
+  const hear = (line) => {
+    lines.push(line);
+    const [kind, name] = line.startsWith("[") ? JSON.parse(line) : [];
+    if (kind === "found") found.add(name);
+    if (kind === "error" || names.every((each) => found.has(each))) all();
+  };
+  const process = new Process("timeline", { output: (text, stream) => stream === "stdout" && hear(text) });
+  process.overhears = true;
+  recording = { process, names, lines };
+  await process.ready;
+  process.call("timeline", { names });
+  await Promise.race([appeared, after(APPEAR_MS)]);
+  cell.print(`Recording ${names.join(", ")}. %timeline draws what happens from now on.`);
+  const missing = names.filter((name) => !found.has(name));
+  if (missing.length) cell.print(`Not there yet: ${missing.join(", ")}.`);
+}
+
+function dress(rules) {
+  const sheet = new CSSStyleSheet();
+  sheet.replaceSync(rules);
+  document.adoptedStyleSheets.push(sheet);
+}
+
+async function show(cell, process, title) {
+  if (!recording) return cell.fail("Nothing is being recorded. Begin with: %timeline --record /NAME");
+  const { names, lines, process: recorder } = recording;
+  recording = null;
+  await after(LATE_MS);
+  recorder.end();
+  const { picture, words, problem } = await process.call("drawn", { names, lines, title });
+  if (problem) return cell.fail(problem);
+  const figure = element("figure", { className: "live-timeline" });
+  // Drawn by Spinbook's own code, which escapes names. Its style goes where the page's policy allows it.
+  figure.innerHTML = picture.replace(/<style>(.*?)<\/style>/gs, (_, rules) => (dress(rules), ""));
+  figure.dataset.words = words;
+  cell.shown?.append(figure);
+}
+
+export async function timeline(cell, process, args) {
+  const value = (option) => (args.includes(option) ? args.slice(args.indexOf(option) + 1) : []);
+  const until = (words) => words.slice(0, Math.max(0, words.findIndex((word) => word.startsWith("--"))) || undefined);
+  if (args.includes("--record")) await begin(cell, until(value("--record")));
+  else await show(cell, process, value("--title")[0] ?? "");
+}
