@@ -8,10 +8,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from grader.classroom.deadline import OverridesError
-from grader.classroom.handed_in import SubmissionsError
 from grader.classroom.request import ClassRequest, NoCluster
-from grader.classroom.results import Busy
 from grader.exercise import Exercise, ExerciseError, load
 from grader.exercise.loading import NoExercise, find
 from grader.grading import Grade, Options, grading_of
@@ -138,7 +135,7 @@ def grade(
             raise click.UsageError(f"{submission}: to grade a class, say with --out where the results go.")
         handed_in = read(submission, found)
         result = _graded(found, handed_in, options)
-    except (NoSubmission, SubmissionsError, OverridesError, Busy, NoCluster) as error:
+    except NoSubmission as error:
         raise click.UsageError(str(error)) from None
     except ExerciseError as error:
         _stop(f"The exercise is at fault, not the submission.\n{error}")
@@ -155,9 +152,16 @@ def grade(
 
 
 def _class(exercise: Exercise, order: ClassRequest) -> int:
+    """Grade a class. What that needs is imported here: a single submission's grade comes sooner without."""
     from grader.classroom.class_run import grade_class
+    from grader.classroom.deadline import OverridesError
+    from grader.classroom.handed_in import SubmissionsError
+    from grader.classroom.results import Busy
 
-    return grade_class(exercise, order, Console(soft_wrap=False, highlight=False))
+    try:
+        return grade_class(exercise, order, Console(soft_wrap=False, highlight=False))
+    except (SubmissionsError, OverridesError, Busy, NoCluster) as error:
+        raise click.UsageError(str(error)) from None
 
 
 def _graded(exercise: Exercise, submission: Submission, options: Options) -> Grade:

@@ -51,6 +51,12 @@ def interfaces(prefixes: Iterable[Path]) -> dict[str, frozenset[str]]:
     return {package: _listed(marker) for package, marker in resources("rosidl_interfaces", prefixes).items()}
 
 
+def interfaces_of(package: str, prefixes: Iterable[Path]) -> frozenset[str]:
+    """The interfaces of one package as `msg/String`, in the first prefix that has any; empty where none has."""
+    markers = (prefix / RESOURCES / "rosidl_interfaces" / package for prefix in prefixes)
+    return next((_listed(marker) for marker in markers if marker.is_file()), frozenset())
+
+
 def definitions_of(package: str, prefix: Path) -> dict[str, str]:
     """Path such as `msg/String.msg` -> text, of the definitions that an installed package keeps."""
     share = prefix / "share" / package

@@ -41,7 +41,7 @@ def load_pytest() -> None:
     """Have pytest import all that it is made of, by a session without a test: it does that as it starts, once in a
     process. One that is forked from this one has it, and judges in two thirds of the time."""
     with contextlib.suppress(OSError), tempfile.TemporaryDirectory() as empty:  # without a folder, it goes without
-        _session("--capture=no", "--rootdir", empty, empty)
+        _session(Path(empty), "--capture=no", empty)
 
 
 def run_pytest(exercise: Exercise, runs: Mapping[str, Run | None], checks: Checks) -> None:
@@ -53,7 +53,8 @@ def run_pytest(exercise: Exercise, runs: Mapping[str, Run | None], checks: Check
         raise ExerciseError(exercise.folder / "checks.py", "there is no such file", "Write at least one check.")
     checks.scenarios = tuple(runs)
     code = _session(
-        *("--import-mode=importlib", "--rootdir", str(exercise.folder), "-o", "python_files=*.py", "--capture=fd"),
+        exercise.folder,
+        *("--import-mode=importlib", "-o", "python_files=*.py", "--capture=fd"),
         *(str(file) for file in exercise.check_files),
         plugins=[checks, fixtures_of(runs)],
     )
@@ -64,10 +65,14 @@ def run_pytest(exercise: Exercise, runs: Mapping[str, Run | None], checks: Check
         raise ExerciseError(file, f"pytest ended with {pytest.ExitCode(code).name}", "Are there any checks in it?")
 
 
-def _session(*arguments: str, plugins: Sequence[object] = ()) -> int:
-    """Run pytest so that it changes no module, reads no settings, prints nothing and leaves out what is not needed."""
+def _session(folder: Path, *arguments: str, plugins: Sequence[object] = ()) -> int:
+    """Run pytest so that it changes no module, reads no settings, prints nothing and leaves out what is not needed.
+
+    It reads no conftest.py above `folder`, and doesn't look at what else lies there: that may be anybody's.
+    """
     alone = (
-        *("--assert=plain", "-c", os.devnull, "-p", "no:cacheprovider", "-p", "no:terminal"),
+        *("--assert=plain", "-c", os.devnull, "--rootdir", str(folder), "--confcutdir", str(folder)),
+        *("-p", "no:cacheprovider", "-p", "no:terminal"),
         *("-p", "no:unraisableexception"),  # which looks for garbage at the end, for longer than the checks take
     )
     with _nothing_from_outside(), contextlib.redirect_stdout(io.StringIO()):

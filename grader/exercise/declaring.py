@@ -117,11 +117,11 @@ class Table:
         if not re.fullmatch(rf"[a-z][a-z0-9_]*/{kind}/[A-Z][A-Za-z0-9]*", value):
             self.fault("type", f"type = {value!r}", f"Write a type as {example!r}.")
         package, _, rest = value.partition("/")
-        known = prefixes.interfaces(prefixes.installed())
-        if package not in known:
+        known = prefixes.interfaces_of(package, prefixes.installed())
+        if not known:
             fix = f"If the course defines it: spinbook build. If Spinbook brings it: spinbook interfaces add {package}."
             self.fault("type", f"type = {value!r}: the package {package} is not installed here", fix)
-        if rest not in known[package]:
+        if rest not in known:
             fix = "Look at its name. If the course has just defined it: spinbook build."
             self.fault("type", f"type = {value!r}: the package {package} has no {rest}", fix)
         return value

@@ -112,6 +112,8 @@ def grading_of(exercise: Exercise, options: Options, workers: WorkerPool) -> Gra
     In a student's copy, or with `exercise.public()`, only the public checks judge: a self-check. The code that runs is
     one's own then, so that it may run where nothing can be kept apart, too; the grade's `isolation` says so.
     """
+    used = [*(topic.type for topic in exercise.topics), *(one.type for one in exercise.endpoints)]
+    workers.prepare_types(type_name.rpartition("/")[0].replace("/", ".") for type_name in used)
     if exercise.public_only or (exercise.solution_folder is None and exercise.public_file.exists()):
         isolation = _isolation_of_ones_own(options)
         public = public_part(exercise.public(), options, isolation, workers)

@@ -10,9 +10,8 @@ import json
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from grader.checking.judging import Listed
 from grader.exercise import Exercise, ExerciseError
 from grader.grading.grade import Options
 from grader.grading.reference import reference
@@ -27,6 +26,9 @@ from grader.scenario.store import from_plain as from_plain_scenario
 from grader.scenario.store import plain as plain_scenario
 from grader.workers import WorkerPool
 from grader.workers.jobs import ListJob
+
+if TYPE_CHECKING:
+    from grader.checking.judging import Listed  # it imports pytest, which the process that judges has
 
 #: Changes when older versions can't read the file any more. Format 1 had messages only.
 FORMAT = 2

@@ -12,7 +12,6 @@ from functools import cache
 from importlib import metadata
 from pathlib import Path
 
-from grader.checking.proofreading import line_with, points_that_do_not_add_up, same_name_twice
 from grader.checking.verdict import Verdict
 from grader.exercise import Exercise, ExerciseError
 from grader.exercise.starter import MarkError, starter
@@ -140,6 +139,8 @@ def _made(runner: ScenarioRunner) -> dict[str, Recording]:
 
 
 def _prove(runner: ScenarioRunner, recordings: dict[str, Recording]) -> None:
+    from grader.checking.proofreading import line_with, points_that_do_not_add_up, same_name_twice
+
     exercise = runner.exercise
     titles = {scenario.name: scenario.title for scenario in runner.scenarios}
     verdicts: tuple[Verdict, ...] = runner.workers.do(JudgeJob(exercise, recordings, recordings, titles))

@@ -9,6 +9,7 @@ import gc
 import importlib
 import importlib.machinery
 import io
+import linecache
 import os
 import pickle
 import signal
@@ -140,8 +141,7 @@ def main(arguments: list[str]) -> None:
     requests, middleware, modules = int(arguments[0]), Middleware(arguments[1]), arguments[2:]
     os.chdir("/")
     fault = _load(modules, middleware)
-    filesystem.system()  # found once, not in every fork
-    filesystem.interpreter()
+    _prepare_for_forks()
     gc.collect()
     gc.freeze()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -149,6 +149,16 @@ def main(arguments: list[str]) -> None:
     job = serve(requests, fault)
     if job is not None:
         run_program(job.program, job.place)
+
+
+def _prepare_for_forks() -> None:
+    """Finds out once what every fork would have to find out for itself."""
+    filesystem.system()
+    filesystem.interpreter()
+    with contextlib.suppress(Exception):  # an rclpy whose logger works in another way
+        # The logger looks at the file of every module when it is first asked for a caller: half a step's time each.
+        importlib.import_module("rclpy.impl.rcutils_logger").CallerId()
+    linecache.cache.pop(__file__, None)
 
 
 def serve(requests: int, fault: str | None) -> Request | None:

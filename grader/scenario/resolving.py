@@ -53,6 +53,7 @@ class Resolver:
     def __init__(self, exercise: Exercise, scenario: Scenario) -> None:
         self._exercise, self._scenario = exercise, scenario
         self._topics = {topic.name: topic.type for topic in (*exercise.outputs, *exercise.inputs)}
+        self._known: dict[str, frozenset[str]] = {}
 
     def scenario(self) -> Scenario:
         """See `resolved`."""
@@ -112,11 +113,16 @@ class Resolver:
             told = f"{type_name!r} is the type of {article} {_KINDS[found['kind']]}, but {name} needs that of a "
             self._fault(given.line, told + _KINDS[kind], fix)
         package, _, rest = type_name.partition("/")
-        known = prefixes.interfaces(prefixes.installed())
-        if rest not in known.get(package, ()):
+        if rest not in self._interfaces_of(package):
             fix = "Look at its name. If the course has just defined it: spinbook build."
             self._fault(given.line, f"there is no type {type_name} here", fix)
         return replace(given, type=type_name) if not isinstance(given, (Server, ActionServer)) else given
+
+    def _interfaces_of(self, package: str) -> frozenset[str]:
+        """Looked up once for all messages of a scenario: it reads files."""
+        if package not in self._known:
+            self._known[package] = prefixes.interfaces_of(package, prefixes.installed())
+        return self._known[package]
 
     def _type_of(self, name: str, endpoints: Sequence[Endpoint]) -> str | None:
         return next((one.type for one in endpoints if one.name == name), None)

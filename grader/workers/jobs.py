@@ -93,7 +93,6 @@ class RunJob:
         )
 
     def _over_fast_dds(self, fork_server: ForkServer, ready: Callable[[], None]) -> Recording:
-        pass
         from grader.runner.fastdds.run import run
 
         fork_server.prepare(self.middleware)  # before, so that it stays outside of what is entered now

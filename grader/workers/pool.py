@@ -9,7 +9,7 @@ import socket
 import subprocess
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -122,7 +122,7 @@ STUDENT_ENVIRONMENT = {
 }
 
 
-PREPARE_TO_JUDGE, PROCESS = b"p", b"j"
+PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS = b"p", b"t", b"j"
 
 
 class WorkerPool:
@@ -163,10 +163,18 @@ class WorkerPool:
         """A process that does one job after another."""
         return Worker(self._process)
 
+    def prepare_types(self, modules: Iterable[str]) -> None:
+        """Let the worker load modules of message types, such as `sensor_msgs.msg`, for all the jobs to come."""
+        for module in sorted(set(modules)):
+            self._command(PREPARE_TYPES + module.encode())
+
     def prepare_to_judge(self) -> None:
         """Let the worker import what judging needs, while spins are still running."""
+        self._command(PREPARE_TO_JUDGE)
+
+    def _command(self, command: bytes) -> None:
         with self._lock, contextlib.suppress(OSError):  # a worker that died is started again with the next job
-            self._control.send(PREPARE_TO_JUDGE)
+            self._control.send(command)
 
     def _process(self) -> Connection:
         """A connection to a new process that does jobs. Raises OSError where there is none to be had."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import gc
+import importlib
 import multiprocessing.connection
 import os
 import queue
@@ -19,27 +20,29 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from grader.exercise import ExerciseError
 from grader.sandbox import ForkServer, Middleware, filesystem, middleware
 from grader.sandbox.zygote import fork
-from grader.workers.pool import PREPARE_TO_JUDGE, PROCESS, PROFILE
-from interface_compiler import activation
+from grader.workers.pool import PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, PROFILE
 
 if TYPE_CHECKING:
     from grader.workers.jobs import Job
     from grader.workers.pool import Connection
 
 
-#: Whose compiled support the rig uses in every spin; loading it takes half as long as a short scenario.
-PACKAGES = (
-    *("rcl_interfaces.msg", "rcl_interfaces.srv", "type_description_interfaces.srv", "builtin_interfaces.msg"),
-    *("rosgraph_msgs.msg", "std_msgs.msg", "sensor_msgs.msg", "geometry_msgs.msg"),
-)
-
-
 def preload() -> None:
-    """Load message types, look at the file system, and leave the memory as it is shared best with forks."""
-    for package in (*PACKAGES, *(f"{name}.msg" for name in activation.active_packages())):
-        middleware.load_type_support(package)
+    """Import what runs a program, look at the file system, and leave the memory as it is shared best with forks."""
+    importlib.import_module("grader.runner.run")
     filesystem.mounts((PROFILE,), (), 0)
     _share()
+
+
+@functools.cache
+def preload_types(module: str) -> None:
+    """The same for a module of message types, such as `sensor_msgs.msg`, and its compiled support."""
+    middleware.load_type_support(module)
+    _share()
+
+
+#: In bytes. The longest is the name of a module.
+LONGEST_COMMAND = 1024
 
 
 @functools.cache
@@ -64,17 +67,17 @@ def main() -> None:
     """Serve jobs until the other end of the control socket is closed."""
     control = socket.socket(fileno=int(sys.argv[1]))
     with ForkServer([Middleware(name) for name in sys.argv[2:]]) as fork_server:
-        pass
-
         preload()
         working: set[int] = set()
         while True:
-            command, descriptors, _, _ = socket.recv_fds(control, 16, 1)
+            command, descriptors, _, _ = socket.recv_fds(control, LONGEST_COMMAND, 1)
             _reap(working)
             if not command:
                 break
             if command == PREPARE_TO_JUDGE:
                 preload_judging()
+            elif command.startswith(PREPARE_TYPES):
+                preload_types(command.removeprefix(PREPARE_TYPES).decode())
             elif command == PROCESS:
                 pid = fork()
                 if pid == 0:
