@@ -25,7 +25,7 @@ class Qos:
 
 @dataclass(frozen=True)
 class Elements:
-    """What the elements of a message's lists are `called`, such as a joint; the list `named_by` has their names."""
+    """What one element of a message's lists is `called`, such as a wheel; the list `named_by` has their names."""
 
     called: str
     named_by: str
@@ -36,7 +36,7 @@ class Topic:
     """One topic of the student's program, seen from the program.
 
     `name` begins with a slash, `type` is written `package/msg/Name`. `units` gives the unit of a field, such as
-    `{"velocity": "rad/s"}`. `depth`, `reliability` and `durability` are what the task asks for.
+    `{"x": "m"}`. `depth`, `reliability` and `durability` are what the task asks for.
     """
 
     name: str
@@ -98,7 +98,8 @@ class Exercise:
     `task` is the text for the student, in Markdown. `points` is what all checks give together.
     `solution_folder` holds the author's solution, and is None in a student's copy of the course. With `public_only` the
     hidden checks are left out, as in a student's copy. `programs` are the several programs in one submission, if it
-    has any; `class_name` and `node_name` are then those of the first.
+    has any; `class_name` and `node_name` are then those of the first. `advice` maps the name of an exception, such as
+    "KeyError", to a sentence for students whose program ended with it.
     """
 
     name: str
@@ -116,6 +117,7 @@ class Exercise:
     parameters: tuple[Parameter, ...] = ()
     programs: tuple[ProgramFile, ...] = ()
     reference_node: str = REFERENCE_NODE
+    advice: dict[str, str] = field(default_factory=dict)
 
     @property
     def scenarios_file(self) -> Path:
@@ -151,6 +153,11 @@ class Exercise:
     def outputs(self) -> tuple[Topic, ...]:
         """The topics that the node publishes."""
         return tuple(topic for topic in self.topics if topic.direction == "publish")
+
+    @property
+    def element_name(self) -> str:
+        """What one element of the published lists is called."""
+        return next((topic.elements.called for topic in self.outputs if topic.elements), "element")
 
     @property
     def services(self) -> tuple[Endpoint, ...]:

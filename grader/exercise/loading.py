@@ -51,6 +51,7 @@ def load(folder: Path | str) -> Exercise:
         parameters=parameters(entries, file),
         programs=parts,
         reference_node=top.text("reference_node", REFERENCE_NODE),
+        advice=top.texts("advice", '{ KeyError = "What if a key is missing?" }'),
     )
     if not exercise.topics and not exercise.endpoints and not exercise.parameters:
         fix = "Declare each topic under [[subscribe]] or [[publish]], and services, actions and parameters likewise."

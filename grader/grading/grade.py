@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from grader.checking.verdict import Verdict
+from grader.exercise import Exercise
 from grader.recording import Ending, Recording
 from grader.sandbox import Isolation, Limits, Middleware
 
@@ -92,15 +93,21 @@ ADVICE = (
         "A node has no network while it is graded, and needs none: it talks over ROS 2 alone.",
     ),
     (re.compile(r"NameError"), "Is the name spelled as where it was made, and made before it is used?"),
-    (re.compile(r"ZeroDivisionError"), "What if two messages have the same stamp?"),
-    (re.compile(r"KeyError|IndexError"), "What if a joint is in this message and was not in the one before?"),
+    (re.compile(r"ZeroDivisionError"), "When is the number that this line divides by zero?"),
+    (re.compile(r"KeyError|IndexError"), "When is this key or index missing?"),
     (re.compile(r"AttributeError: 'NoneType'"), "What does it hold before the first message has arrived?"),
 )
 
 
-def message_of(ending: Ending) -> str:
-    """The story of an ending, with advice where there is one; empty when all went well."""
+def message_of(ending: Ending, exercise: Exercise) -> str:
+    """Return how a run ended, with advice if there is any; empty when all went well.
+
+    The exercise's own advice goes before the advice that fits every program.
+    """
     story = ending.story
+    for exception, advice in exercise.advice.items():
+        if re.search(rf"\b{re.escape(exception)}\b", story):
+            return f"{story} {advice}"
     if missing := MISSING.search(story):
         return f"{story} There is no module {missing[1]} here. There are Python's own modules, {AVAILABLE}."
     if no_name := NO_NAME.search(story):

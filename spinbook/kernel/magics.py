@@ -219,7 +219,7 @@ class SpinbookMagics(Magics):
     def plot(self, line: str) -> None:
         """%plot TOPIC/FIELD[i] …: draw what topics carry, as rqt_plot would."""
         reader = LineReader("%plot", "Record topics for a while and draw them; live where somebody watches.")
-        reader.add_argument("what", nargs="+", metavar="TOPIC/FIELD[i]", help="such as /joint_commands/position[0]")
+        reader.add_argument("what", nargs="+", metavar="TOPIC/FIELD[i]", help="such as /turtle1/pose/x")
         reader.add_argument("--seconds", type=float, default=COMMAND_SECONDS, help="how long to record")
         reader.add_argument("--title", default="", help="stands above the plot")
         if given := reader.read(line):

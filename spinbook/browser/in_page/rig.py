@@ -111,7 +111,7 @@ class Rig:
 
     def _build(self) -> None:
         rig = self._here.add_node("rig", "/", 0, "/")
-        reference = self._here.add_node("joint_command_publisher", "/", 0, "/")
+        reference = self._here.add_node(self._exercise.reference_node, "/", 0, "/")
         self._clock = self._publisher(rig, "/clock", "rosgraph_msgs/msg/Clock")
         self._publishers: dict[tuple[str, int], Endpoint] = {}
         for message in self._scenario.messages:
