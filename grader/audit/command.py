@@ -145,8 +145,8 @@ def _audited(
 
 
 def _problem(error: ExerciseError) -> Problem:
-    place = f"{error.file}:{error.line}" if error.line else f"{error.file}"
-    return Problem(place, error.file.parent.name, error.found, error.fix)
+    problem = error.problem
+    return Problem(problem.place, problem.file.parent.name, problem.found, problem.fix)
 
 
 def _folder(exercise: str) -> Path:

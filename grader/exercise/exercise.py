@@ -6,6 +6,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
+from grader.problem import Problem
+
 Direction = Literal["subscribe", "publish"]
 Reliability = Literal["reliable", "best_effort"]
 Durability = Literal["volatile", "transient_local"]
@@ -183,15 +185,14 @@ class Exercise:
 class ExerciseError(Exception):
     """Raised before any student is graded, when an exercise can't be used as its author wrote it.
 
-    `found` says what stands in the file, `fix` what was expected and what to do. `line` counts from 1, and is
-    None where the whole file is meant.
+    `found` says what is in the file, `fix` what was expected and what to do. `line` counts from 1, and is None if the
+    whole file is meant.
     """
 
     def __init__(self, file: Path, found: str, fix: str, line: int | None = None) -> None:
-        self.file, self.line, self.found, self.fix = file, line, found, fix
-        place = f"{file}:{line}" if line is not None else f"{file}"
-        super().__init__(f"{place}: {found}\n    {fix}")
+        self.problem = Problem(file, line, found, fix)
+        super().__init__(f"{self.problem.place}: {found}\n    {fix}")
 
     def __reduce__(self) -> tuple[type[ExerciseError], tuple[Path, str, str, int | None]]:
-        """Keep all four parts when the error crosses from one process to another."""
-        return ExerciseError, (self.file, self.found, self.fix, self.line)
+        """Keep the problem when the error crosses from one process to another."""
+        return ExerciseError, (self.problem.file, self.problem.found, self.problem.fix, self.problem.line)

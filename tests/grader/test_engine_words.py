@@ -120,7 +120,7 @@ def test_advice_that_is_no_text_is_refused_with_its_line(tmp_path: Path) -> None
     with pytest.raises(ExerciseError) as error:
         load(file.parent)
 
-    assert error.value.line == lines.splitlines().index("[advice]") + 1
+    assert error.value.problem.line == lines.splitlines().index("[advice]") + 1
     assert "Give a table of texts, such as advice = { KeyError = " in str(error.value)
 
 
