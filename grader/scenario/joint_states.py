@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 from grader.scenario.scenario import SECOND, START, Message
-from grader.scenario.times import every
+from grader.scenario.times import every, later
 
 #: A humanoid's six arm joints and their positions (rad) `t` seconds after the start.
 ARM_SWING: dict[str, Callable[[float], float]] = {
@@ -76,12 +76,8 @@ def shuffled(stream: Stream, seed: int) -> Stream:
 
 def late(stream: Stream, most: float, seed: int) -> Stream:
     """Each message comes up to `most` s later than its stamp says, none before the one that was stamped earlier."""
-    chance = random.Random(f"late {seed}")
-    result, at = [], 0
-    for sample in stream:
-        at = max(at, sample.at + round(chance.uniform(0.1, 1.0) * most * SECOND))
-        result.append(replace(sample, at=at))
-    return tuple(result)
+    instants = later([sample.at for sample in stream], most, seed)
+    return tuple(replace(sample, at=at) for sample, at in zip(stream, instants, strict=True))
 
 
 def without(stream: Stream, joint: str, first: int, last: int) -> Stream:
