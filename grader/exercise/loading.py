@@ -69,7 +69,7 @@ def _main_program(top: Table, parts: tuple[ProgramFile, ...]) -> tuple[str, str,
     for key in ("class", "node"):
         if key in top.entries:
             top.fault(
-                key, f"{key} stands next to [[program]]", f"With several programs, write {key} in each [[program]]."
+                key, f"{key} is given next to [[program]]", f"With several programs, write {key} in each [[program]]."
             )
     return file_name, parts[0].class_name, parts[0].node
 

@@ -264,7 +264,7 @@ def _why_static(fence: Fence, code: PythonCode) -> str:
     if code.is_launch_file:
         return "it is a launch file"
     if fence.title and re.fullmatch(r"[\w./-]+\.(?!py$)[a-z]{1,6}", fence.title):
-        return f"`{fence.title}` is no Python file"
+        return f"`{fence.title}` is not a Python file"
     return ""
 
 

@@ -60,7 +60,7 @@ _CELL_KEYS = ("spinbook", "tags")
 
 _HELP = """\
 # It says "No module named 'spinbook'"? Choose the handout's .venv as this notebook's kernel,
-# or do step 1 of README.md. In Colab: README.md tells how.
+# or do step 1 of README.md. In Colab: README.md says how.
 """
 
 

@@ -157,7 +157,7 @@ def _drawn(
         drawings.pictures = draw(list(drawings.codes), course.build_folder / ".cache" / "drawings")
     except CanNotDrawError as error:
         found = f"mermaid drawings are shown in words, because {error}."
-        fix = "Everything else is as it should be; build the site again when that is fixed."
+        fix = "Everything else is fine. Fix this, then build the site again."
         contents.problems.append(Problem(course.chapters[0], None, found, fix, Severity.WARNING))
     return drawings
 
@@ -230,7 +230,7 @@ def _ran(course: Course, chapter: Chapter) -> Ran:
     try:
         return Ran.read(file)
     except (OSError, ValueError, KeyError):
-        found = "it has not been run yet, so that there are no outputs to show."
+        found = "it has not been run yet, so there are no outputs to show."
         raise SpinbookError(Problem(chapter.file, None, found, "Run it: spinbook build --execute")) from None
 
 
