@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from grader.checking.judging import Listed, listed
+from grader.child_process import run_program
 from grader.exercise import Exercise, ExerciseError, load
 from grader.exercise.starter import MarkError, starter
 from grader.problem import Problem
@@ -27,7 +28,7 @@ def problems_of(folder: Path) -> tuple[Problem, ...]:
     """Everything that is wrong in the files of the exercise in `folder`, as far as it shows without running a node."""
     command = [sys.executable, "-m", "grader.checking.proofreading", str(folder)]
     try:
-        run = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+        run = run_program(command, PATIENCE_S)
         entries = json.loads(run.stdout.splitlines()[-1])
     except subprocess.TimeoutExpired:
         found = f"reading its Python files takes more than {PATIENCE_S} s"
