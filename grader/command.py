@@ -41,7 +41,7 @@ FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
 @click.option(
     "--middleware",
     type=click.Choice([middleware.value for middleware in Middleware]),
-    help="Over which the node talks to the grader.  [default: lockstep, the grader's own, where it can be had]",
+    help="The middleware between the node and the grader.  [default: lockstep, the grader's own, if available]",
 )
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="A class: the folder of the results.")
 @click.option("--jobs", type=click.IntRange(1, 64), help="A class: how many submissions to grade at once.")
@@ -87,7 +87,7 @@ def grade(
     yes: bool,
     publish: bool,
 ) -> None:
-    """Grade one SUBMISSION for an EXERCISE, or a whole class: spin the node, and say what is right and wrong.
+    """Grade one SUBMISSION for an EXERCISE, or a whole class: run the node, and say what is right and what is wrong.
 
     The node is started as its own process, in a sandbox, and not changed. Reference publishers send it messages
     under a simulated clock; what it publishes is compared with what the solution publishes.

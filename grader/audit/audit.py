@@ -254,6 +254,6 @@ def _low_score(exercise: Exercise, mutants: tuple[MutantResult, ...]) -> list[Pr
     score = score_of(mutants)
     if score >= LEAST_SCORE:
         return []
-    told = f"{score:.1%} of the mutants that can be told from the solution are caught"
+    told = f"{score:.1%} of the mutants that differ from the solution are caught"
     fix = f"At least {LEAST_SCORE:.0%} are to be: add checks for what survives."
     return [Problem(str(exercise.folder), exercise.name, told, fix)]

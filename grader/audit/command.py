@@ -34,9 +34,9 @@ PROVED, TO_FIX, OUR_FAULT, STOPPED = 0, 1, 3, 130
 @click.option(
     "--middleware",
     type=click.Choice([middleware.value for middleware in Middleware]),
-    help="Over which nodes talk to the grader.  [default: lockstep, the grader's own, where it can be had]",
+    help="The middleware between nodes and the grader.  [default: lockstep, the grader's own, if available]",
 )
-@click.option("--parallel", type=click.IntRange(1, 64), help="How many spins run at once.  [default: twice the cores]")
+@click.option("--parallel", type=click.IntRange(1, 64), help="How many runs at once.  [default: twice the cores]")
 def audit(
     exercises: tuple[str, ...],
     quick: bool,
@@ -152,8 +152,8 @@ def _audited(
 
 
 def _problem(error: ExerciseError) -> Problem:
-    place = f"{error.file}:{error.line}" if error.line else f"{error.file}"
-    return Problem(place, error.file.parent.name, error.found, error.fix)
+    problem = error.problem
+    return Problem(problem.place, problem.file.parent.name, problem.found, problem.fix)
 
 
 def _folder(exercise: str) -> Path:

@@ -18,7 +18,7 @@ else:
 
 NOW = {
     "caught": "a check catches it now",
-    "equivalent": "nothing of it can be told from the solution any more",
+    "equivalent": "nothing distinguishes it from the solution any more",
     "gone": "there is no such mutant any more",
 }
 
@@ -97,7 +97,7 @@ def problems_of_survivors(exercise: Exercise, results: tuple[MutantResult, ...])
             f"no check catches the mutant {result.mutant.id}: {result.mutant.what}",
             QUESTION.format(file.name, result.mutant.id),
             result.mutant.diff,
-            f"It can be told from the solution: {result.evidence}.",
+            f"It differs from the solution: {result.evidence}.",
         )
         for result in results
         if result.fate == "survived"

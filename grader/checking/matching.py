@@ -285,7 +285,7 @@ def must_answer_at_once(run: Run, within: float) -> None:
         for answer in exchange.answers if exchange.expected else ():
             if is_late(exchange, answer, within):
                 late = delay(run, exchange, answer)
-                told = f"an answer was expected at once; it came {late}.{in_general(run)}"
+                told = f"an answer was expected at once; it arrived {late}.{in_general(run)}"
                 run.wrong(exchange, told, "", "an answer at once", late)
 
 
@@ -333,7 +333,7 @@ def must_be_silent(exchanges: list[Exchange], run: Run) -> None:
 def _answer(run: Run, exchange: Exchange) -> Message:
     if not exchange.answers:
         late, general = how_late(run, exchange), in_general(run)
-        told = f"an answer was expected at once; it came {late}." if late else "an answer was expected, got none."
+        told = f"an answer was expected at once; it arrived {late}." if late else "an answer was expected, got none."
         told += general or _never(run)
         if not exchange.sent.heard and run.subscriptions(exchange.sent.topic):
             told += f" Your node did not subscribe to {exchange.sent.topic} yet: create the subscription in __init__."

@@ -77,8 +77,8 @@ class Checks:
             found = f"{item.name} asks for the scenario {missing}, which scenarios.py does not have"
             fix = f"Its scenarios are: {', '.join(self.scenarios)}."
         elif unknown := [name for name in mark.depends if name not in self._marks]:
-            found = f"{item.name} depends on {unknown[0]}, which no check above it is called"
-            fix = "A check may depend on those that stand before it; public checks come before hidden ones."
+            found = f"{item.name} depends on {unknown[0]}, but no check above it has that name"
+            fix = "A check can depend only on checks above it. Public checks come before hidden ones."
         else:
             return mark
         raise ExerciseError(item.path, found, fix, line)

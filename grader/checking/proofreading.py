@@ -1,6 +1,6 @@
 """Reads an exercise as its author would have it read: everything that is wrong in its files, before anything is run.
 
-`faults_of` does so in a process of its own, as scenarios.py and the files of checks are imported for it.
+`problems_of` does so in a process of its own, as scenarios.py and the files of checks are imported for it.
 """
 
 from __future__ import annotations
@@ -14,27 +14,29 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from grader.checking.judging import Listed, listed
+from grader.child_process import run_program
 from grader.exercise import Exercise, ExerciseError, load
 from grader.exercise.starter import MarkError, starter
+from grader.problem import Problem
 from grader.scenario.declared import declared
 
 #: Seconds after which files that are only imported must have been read.
 PATIENCE_S = 60
 
 
-def faults_of(folder: Path) -> tuple[ExerciseError, ...]:
+def problems_of(folder: Path) -> tuple[Problem, ...]:
     """Everything that is wrong in the files of the exercise in `folder`, as far as it shows without running a node."""
     command = [sys.executable, "-m", "grader.checking.proofreading", str(folder)]
     try:
-        run = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+        run = run_program(command, PATIENCE_S)
         entries = json.loads(run.stdout.splitlines()[-1])
     except subprocess.TimeoutExpired:
         found = f"reading its Python files takes more than {PATIENCE_S} s"
-        return (ExerciseError(folder, found, "They must only define."),)
+        return (Problem(folder, None, found, "They must only define."),)
     except (ValueError, IndexError):
         last = (run.stderr.strip().splitlines() or ["no message"])[-1]
-        return (ExerciseError(folder, f"its Python files can't be read: {last}", "They must only define."),)
-    return tuple(ExerciseError(Path(file), found, fix, line) for file, found, fix, line in entries)
+        return (Problem(folder, None, f"its Python files can't be read: {last}", "They must only define."),)
+    return tuple(Problem(Path(file), line, found, fix) for file, line, found, fix in entries)
 
 
 def faults(folder: Path) -> Iterator[ExerciseError]:
@@ -129,4 +131,5 @@ def _of_mistakes(exercise: Exercise, checks: tuple[Listed, ...]) -> Iterator[Exe
 
 
 if __name__ == "__main__":
-    print(json.dumps([(str(e.file), e.found, e.fix, e.line) for e in faults(Path(sys.argv[1]))]))
+    problems = [error.problem for error in faults(Path(sys.argv[1]))]
+    print(json.dumps([(str(one.file), one.line, one.found, one.fix) for one in problems]))

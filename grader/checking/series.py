@@ -165,7 +165,7 @@ def _of_rate(ratio: float, hz: float, rate: float) -> str:
 
 def _of_stamps(stamps: Sequence[int]) -> str:
     if not any(stamps):
-        return "Every stamp is 0: nobody filled it in."
+        return "Every stamp is 0: your node never fills it in."
     if all(stamp > COMPUTER_STAMP * SECOND for stamp in stamps):
         return "Every stamp is the computer's time. Take the time from the node's clock: self.get_clock().now()."
     if len(stamps) > 2 and len(set(stamps)) == 1:

@@ -77,7 +77,7 @@ class TrajectoryChecks(Recorded):
             self.wrong_at(_ns(reached), told, "", wanted, f"after {reached - start:.2f} s")
         at, closest = min(way, key=lambda one: math.dist(one[1], goal))
         distance = math.dist(closest, goal)
-        told = f"it was expected {wanted}; it came no closer than {_measure(distance, unit)}."
+        told = f"it was expected {wanted}; the closest it got was {_measure(distance, unit)}."
         self.wrong_at(_ns(at), told, "", wanted, _measure(distance, unit), _of_way(way, goal))
 
     def _beyond(

@@ -145,9 +145,9 @@ def overrides_in(file: Path, students: set[str]) -> dict[str, tuple[Override, ..
 def _override(row: dict[str, str], place: str, students: set[str]) -> Override:
     student, points, due = row["student"], row.get("points", ""), row.get("due", "")
     if student not in students:
-        raise OverridesError(f"{place}: nobody is called {student!r}. Write the name of a folder in the results.")
+        raise OverridesError(f"{place}: no student is called {student!r}. Write the name of a folder in the results.")
     if not row["reason"]:
-        raise OverridesError(f"{place}: there is no reason. Write it down; the student will read it.")
+        raise OverridesError(f"{place}: the reason is missing. Write one: the student will read it.")
     if bool(points) == bool(due):
         raise OverridesError(f"{place}: points = {points!r}, due = {due!r}. Give one of the two.")
     if due:

@@ -85,7 +85,7 @@ def by_assignment(files: list[File], root: str, exercise: str) -> Sorted | None:
     found, skipped = [], [Skipped(f"*/{name}", "another assignment") for name in sorted(assignments - {wanted})]
     for file, parts in inside:
         if len(parts) < 3:
-            skipped.append(Skipped(file.name, "it lies in no STUDENT/ASSIGNMENT folder"))
+            skipped.append(Skipped(file.name, "it is not in a STUDENT/ASSIGNMENT folder"))
         elif parts[1] == wanted and parts[2:] != (TIMESTAMP,):
             date = dates.get(parts[0])
             dated = replace(file, submitted=date, submitted_from=TIMESTAMP) if date else file

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import click
 
-from grader.exercise import Exercise, ExerciseError, load
-from grader.exercise.loading import NoExercise, find
-from grader.gradescope.command import NoSource, autograder_files
+from grader.exercise import Exercise, load
+from grader.exercise.loading import find
+from grader.gradescope.command import author_errors, autograder_files, isolation_option
 from grader.sandbox import Isolation
 
 #: For a repository without Classroom 50: where the folder that this command writes is a private repository.
@@ -45,12 +44,8 @@ jobs:
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("exercise")
 @click.option("--out", type=click.Path(path_type=Path), help="The folder to write.  [default: EXERCISE-classroom50]")
-@click.option(
-    "--isolation",
-    type=click.Choice([level.value for level in Isolation]),
-    help="How students' nodes are kept apart on the runner.  [default: the strongest that works there]",
-)
-def classroom50(exercise: str, out: Path | None, isolation: str | None) -> None:
+@isolation_option
+def classroom50(exercise: str, out: Path | None, isolation: Isolation | None) -> None:
     """Write the autograder of an EXERCISE for Classroom 50, or for GitHub Actions in any repository.
 
     Classroom 50: copy what is in the folder to CLASSROOM/autograders/ASSIGNMENT/ of your organization's repository
@@ -63,14 +58,9 @@ def classroom50(exercise: str, out: Path | None, isolation: str | None) -> None:
 
     Exit codes: 0 written, 2 wrong usage, 3 the exercise is at fault.
     """
-    try:
+    with author_errors():
         found = load(find(exercise, Path.cwd()))
-        files = _files(found, Isolation(isolation) if isolation else None)
-    except (NoExercise, NoSource) as error:
-        raise click.UsageError(str(error)) from None
-    except ExerciseError as error:
-        click.echo(str(error), err=True)
-        sys.exit(3)
+        files = _files(found, isolation)
     folder = out or Path(f"{found.name}-classroom50")
     for name, content in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)

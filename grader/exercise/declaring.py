@@ -34,7 +34,7 @@ DEADLINE = "deadline"
 
 #: The keys of exercise.toml, of its tables, and whether a table's key has to be there.
 KEYS: dict[str, dict[str, bool]] = {
-    "": dict.fromkeys(("title", "points", "file", "class", "node", "reference_node"), False),
+    "": dict.fromkeys(("title", "points", "file", "class", "node", "reference_node", "advice"), False),
     **{
         direction: {
             "topic": True,
@@ -127,10 +127,14 @@ class Table:
         return value
 
     def units(self) -> dict[str, str]:
-        """The unit of each field."""
-        value = self.entries.get("units", {})
-        if not isinstance(value, dict) or not all(isinstance(unit, str) for unit in value.values()):
-            self.fault("units", f"units = {value!r}", 'Give a table of texts, such as units = { velocity = "rad/s" }.')
+        """Return the unit of each field."""
+        return self.texts("units", '{ x = "m" }')
+
+    def texts(self, key: str, example: str) -> dict[str, str]:
+        """Return a table whose values are all texts."""
+        value = self.entries.get(key, {})
+        if not isinstance(value, dict) or not all(isinstance(text, str) for text in value.values()):
+            self.fault(key, f"{key} = {value!r}", f"Give a table of texts, such as {key} = {example}.")
         return value
 
 
@@ -171,7 +175,7 @@ def _elements(table: Table) -> Elements | None:
     if value is None:
         return None
     if not isinstance(value, dict) or set(value) != {"called", "named_by"}:
-        table.fault("elements", f"elements = {value!r}", 'Write elements = { called = "joint", named_by = "name" }.')
+        table.fault("elements", f"elements = {value!r}", 'Write elements = { called = "wheel", named_by = "name" }.')
     return Elements(str(value["called"]), str(value["named_by"]))
 
 
@@ -217,12 +221,17 @@ def programs(entries: dict[str, Any], file: Path) -> tuple[ProgramFile, ...]:
 
 
 def line_of(file: Path, kind: str, number: int, key: str) -> int | None:
-    """The line of `key` in table `number` (from 0) of this kind; of its header without a key, or when it is nowhere."""
+    """Return the line of `key` in table `number` (from 0) of this kind.
+
+    Without a key, or if the key is missing, it is the line of the table's header. A key on top may be a table itself.
+    """
     header: int | None = None
     here, count = "", -1
     for index, line in enumerate(file.read_text(encoding="utf-8").splitlines(), start=1):
         if found := re.match(r"\s*\[\[?\s*([A-Za-z_]+)", line):
             here = found[1]
+            if not kind and here == key:
+                return index
             count += here == kind
             if here == kind and count == number:
                 header = index

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
+from grader.problem import Problem
+
 Direction = Literal["subscribe", "publish"]
 Reliability = Literal["reliable", "best_effort"]
 Durability = Literal["volatile", "transient_local"]
@@ -25,7 +27,7 @@ class Qos:
 
 @dataclass(frozen=True)
 class Elements:
-    """What the elements of a message's lists are `called`, such as a joint; the list `named_by` has their names."""
+    """What one element of a message's lists is `called`, such as a wheel; the list `named_by` has their names."""
 
     called: str
     named_by: str
@@ -36,7 +38,7 @@ class Topic:
     """One topic of the student's program, seen from the program.
 
     `name` begins with a slash, `type` is written `package/msg/Name`. `units` gives the unit of a field, such as
-    `{"velocity": "rad/s"}`. `depth`, `reliability` and `durability` are what the task asks for.
+    `{"x": "m"}`. `depth`, `reliability` and `durability` are what the task asks for.
     """
 
     name: str
@@ -98,7 +100,8 @@ class Exercise:
     `task` is the text for the student, in Markdown. `points` is what all checks give together.
     `solution_folder` holds the author's solution, and is None in a student's copy of the course. With `public_only` the
     hidden checks are left out, as in a student's copy. `programs` are the several programs in one submission, if it
-    has any; `class_name` and `node_name` are then those of the first.
+    has any; `class_name` and `node_name` are then those of the first. `advice` maps the name of an exception, such as
+    "KeyError", to a sentence for students whose program ended with it.
     """
 
     name: str
@@ -116,6 +119,7 @@ class Exercise:
     parameters: tuple[Parameter, ...] = ()
     programs: tuple[ProgramFile, ...] = ()
     reference_node: str = REFERENCE_NODE
+    advice: dict[str, str] = field(default_factory=dict)
 
     @property
     def scenarios_file(self) -> Path:
@@ -153,6 +157,11 @@ class Exercise:
         return tuple(topic for topic in self.topics if topic.direction == "publish")
 
     @property
+    def element_name(self) -> str:
+        """What one element of the published lists is called."""
+        return next((topic.elements.called for topic in self.outputs if topic.elements), "element")
+
+    @property
     def services(self) -> tuple[Endpoint, ...]:
         """The services that the program serves."""
         return tuple(one for one in self.endpoints if one.role == "service")
@@ -176,15 +185,14 @@ class Exercise:
 class ExerciseError(Exception):
     """Raised before any student is graded, when an exercise can't be used as its author wrote it.
 
-    `found` says what stands in the file, `fix` what was expected and what to do. `line` counts from 1, and is
-    None where the whole file is meant.
+    `found` says what is in the file, `fix` what was expected and what to do. `line` counts from 1, and is None if the
+    whole file is meant.
     """
 
     def __init__(self, file: Path, found: str, fix: str, line: int | None = None) -> None:
-        self.file, self.line, self.found, self.fix = file, line, found, fix
-        place = f"{file}:{line}" if line is not None else f"{file}"
-        super().__init__(f"{place}: {found}\n    {fix}")
+        self.problem = Problem(file, line, found, fix)
+        super().__init__(f"{self.problem.place}: {found}\n    {fix}")
 
     def __reduce__(self) -> tuple[type[ExerciseError], tuple[Path, str, str, int | None]]:
-        """Keep all four parts when the error crosses from one process to another."""
-        return ExerciseError, (self.file, self.found, self.fix, self.line)
+        """Keep the problem when the error crosses from one process to another."""
+        return ExerciseError, (self.problem.file, self.problem.found, self.problem.fix, self.problem.line)

@@ -51,6 +51,7 @@ def load(folder: Path | str) -> Exercise:
         parameters=parameters(entries, file),
         programs=parts,
         reference_node=top.text("reference_node", REFERENCE_NODE),
+        advice=top.texts("advice", '{ KeyError = "What if a key is missing?" }'),
     )
     if not exercise.topics and not exercise.endpoints and not exercise.parameters:
         fix = "Declare each topic under [[subscribe]] or [[publish]], and services, actions and parameters likewise."
@@ -68,7 +69,7 @@ def _main_program(top: Table, parts: tuple[ProgramFile, ...]) -> tuple[str, str,
     for key in ("class", "node"):
         if key in top.entries:
             top.fault(
-                key, f"{key} stands next to [[program]]", f"With several programs, write {key} in each [[program]]."
+                key, f"{key} is given next to [[program]]", f"With several programs, write {key} in each [[program]]."
             )
     return file_name, parts[0].class_name, parts[0].node
 

@@ -47,7 +47,7 @@ def starter(source: str) -> str:
     try:
         ast.parse(result)
     except SyntaxError as error:
-        raise MarkError(error.lineno or 1, f"the starter made from this is no Python: {error.msg}") from None
+        raise MarkError(error.lineno or 1, f"the starter made from this is not valid Python: {error.msg}") from None
     return result
 
 

@@ -14,6 +14,7 @@ def to_toml(exercise: Exercise) -> str:
     if not exercise.programs:
         top |= {"class": exercise.class_name, "node": exercise.node_name}
     top["reference_node"] = "" if exercise.reference_node == REFERENCE_NODE else exercise.reference_node
+    top["advice"] = exercise.advice
     tables = [_lines(top)]
     tables += [_table("program", _program(one)) for one in exercise.programs]
     tables += [_table(one.direction, _topic(one)) for one in exercise.topics]

@@ -7,6 +7,7 @@ import shlex
 import sys
 import zipfile
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import click
@@ -114,15 +115,32 @@ def _add(archive: zipfile.ZipFile, name: str, content: bytes, mode: int) -> None
     archive.writestr(entry, content)
 
 
+#: What the autograders of all platforms take.
+isolation_option = click.option(
+    "--isolation",
+    type=click.Choice([level.value for level in Isolation]),
+    callback=lambda context, option, value: Isolation(value) if value else None,
+    help="How students' nodes are kept apart where they are graded.  [default: the strongest that works there]",
+)
+
+
+@contextmanager
+def author_errors() -> Iterator[None]:
+    """End the command with the right exit code when an exercise can't be bundled: 2 wrong usage, 3 the exercise."""
+    try:
+        yield
+    except (NoExercise, NoSource) as error:
+        raise click.UsageError(str(error)) from None
+    except ExerciseError as error:
+        click.echo(str(error), err=True)
+        sys.exit(3)
+
+
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("exercise")
 @click.option("--out", type=click.Path(path_type=Path), help="The zip to write.  [default: EXERCISE-gradescope.zip]")
-@click.option(
-    "--isolation",
-    type=click.Choice([level.value for level in Isolation]),
-    help="How students' nodes are kept apart in the container.  [default: the strongest that works there]",
-)
-def gradescope(exercise: str, out: Path | None, isolation: str | None) -> None:
+@isolation_option
+def gradescope(exercise: str, out: Path | None, isolation: Isolation | None) -> None:
     """Write the autograder that Gradescope runs for an EXERCISE, as one zip to upload.
 
     It holds setup.sh, which installs the grader and ROS 2 when Gradescope builds its container (Ubuntu 22.04 or newer),
@@ -131,13 +149,8 @@ def gradescope(exercise: str, out: Path | None, isolation: str | None) -> None:
 
     Exit codes: 0 written, 2 wrong usage, 3 the exercise is at fault.
     """
-    try:
-        content = bundle(load(find(exercise, Path.cwd())), Isolation(isolation) if isolation else None)
-    except (NoExercise, NoSource) as error:
-        raise click.UsageError(str(error)) from None
-    except ExerciseError as error:
-        click.echo(str(error), err=True)
-        sys.exit(3)
+    with author_errors():
+        content = bundle(load(find(exercise, Path.cwd())), isolation)
     file = out or Path(f"{exercise.rstrip('/').split('/')[-1]}-gradescope.zip")
     try:
         file.write_bytes(content)

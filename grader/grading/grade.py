@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from grader.checking.verdict import Verdict
+from grader.exercise import Exercise
 from grader.recording import Ending, Recording
 from grader.sandbox import Isolation, Limits, Middleware
 
@@ -83,26 +84,34 @@ NO_NAME = re.compile(r"ImportError: cannot import name '([^']+)' from '([^']+)'"
 ADVICE = (
     (
         re.compile(r"IndentationError|TabError"),
-        "Compare the spaces at the beginning of this line with its neighbours'.",
+        "Compare the indentation of this line with the lines around it.",
     ),
     (re.compile(r"SyntaxError: .*non-utf-8|SyntaxError: \(unicode", re.IGNORECASE), "Save the file as UTF-8."),
-    (re.compile(r"SyntaxError"), "Python can't read this line; look at the end of the line before it, too."),
+    (re.compile(r"SyntaxError"), "Python can't read this line. Look at the end of the line before it, too."),
     (
         re.compile(r"Address family not supported"),
-        "A node has no network while it is graded, and needs none: it talks over ROS 2 alone.",
+        "A node has no network while it is graded and needs none: it communicates over ROS 2 only.",
     ),
-    (re.compile(r"NameError"), "Is the name spelled as where it was made, and made before it is used?"),
-    (re.compile(r"ZeroDivisionError"), "What if two messages have the same stamp?"),
-    (re.compile(r"KeyError|IndexError"), "What if a joint is in this message and was not in the one before?"),
+    (re.compile(r"NameError"), "Is the name spelled as in its definition, and defined before this line?"),
+    (re.compile(r"ZeroDivisionError"), "When is the number that this line divides by zero?"),
+    (re.compile(r"KeyError|IndexError"), "When is this key or index missing?"),
     (re.compile(r"AttributeError: 'NoneType'"), "What does it hold before the first message has arrived?"),
 )
 
 
-def message_of(ending: Ending) -> str:
-    """The story of an ending, with advice where there is one; empty when all went well."""
+def message_of(ending: Ending, exercise: Exercise) -> str:
+    """Return how a run ended, with advice if there is any; empty when all went well.
+
+    The exercise's own advice goes before the advice that fits every program.
+    """
     story = ending.story
+    for exception, advice in exercise.advice.items():
+        if re.search(rf"\b{re.escape(exception)}\b", story):
+            return f"{story} {advice}"
     if missing := MISSING.search(story):
-        return f"{story} There is no module {missing[1]} here. There are Python's own modules, {AVAILABLE}."
+        return (
+            f"{story} The module {missing[1]} is not available here. Available are Python's own modules, {AVAILABLE}."
+        )
     if no_name := NO_NAME.search(story):
         return f"{story} The module {no_name[2]} has no {no_name[1]}. Is the name spelled right?"
     for pattern, advice in ADVICE:

@@ -57,7 +57,7 @@ class Grading:
             return self._grade(submission, recordings, verdicts, "host-error", told, began)
         first = recordings[self.runner.scenarios[0].name].ending
         outcome: Outcome = "graded" if first.outcome == "completed" else first.outcome
-        return self._grade(submission, recordings, verdicts, outcome, message_of(first), began)
+        return self._grade(submission, recordings, verdicts, outcome, message_of(first, self.runner.exercise), began)
 
     def _recordings(self, submission: Submission) -> dict[str, Recording]:
         if submission.program:

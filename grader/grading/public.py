@@ -55,7 +55,7 @@ def public_part(exercise: Exercise, options: Options, isolation: Isolation, work
     used = {name for check in checks if not check.hidden for name in check.fixtures}
     scenarios = tuple(scenario for scenario in declared(exercise, options.seed) if scenario.name in used)
     if not scenarios:
-        found = "there is no check that students may read and that spins a scenario"
+        found = "no public check uses a scenario"
         raise ExerciseError(exercise.folder / "checks.py", found, "Write one: students check their own work with it.")
     references = reference(ScenarioRunner(exercise.public(), scenarios, isolation, options, workers))
     hidden = [check for check in checks if check.hidden]

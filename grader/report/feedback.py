@@ -92,7 +92,7 @@ HEADLINES: dict[Outcome, tuple[str, str]] = {
     "graded": ("", ""),
     "did-not-start": (
         "Your program did not start",
-        "It ended before there was a node, so no check could be passed.",
+        "It ended before it created a node, so no check could be passed.",
     ),
     "crashed": (
         "Your program crashed",
@@ -109,7 +109,7 @@ HEADLINES: dict[Outcome, tuple[str, str]] = {
     ),
     "host-error": (
         "This could not be graded, and that is not your fault",
-        "The machine or the grader was at fault. This is no score, and it costs you nothing.",
+        "The machine or the grader was at fault. This is not a score, and it costs you no points.",
     ),
 }
 
@@ -120,14 +120,17 @@ def advice(grade: Grade, exercise: Exercise) -> Advice | None:
     if not headline:
         return None
     line = f" Look at line {grade.line} first." if grade.line else ""
-    printed = " What your program printed stands below." if grade.log.strip() else ""
+    printed = " What your program printed is shown below." if grade.log.strip() else ""
     again = f"Run it yourself: python3 {exercise.file_name}"
     steps: dict[Outcome, tuple[str, ...]] = {
         "did-not-start": (f"Read the message above.{line}{printed}", f"{again}. It must start without an error."),
-        "crashed": (f"Read the message above.{line}{printed}", f"{again}, with the chapter's publisher beside it."),
+        "crashed": (
+            f"Read the message above.{line}{printed}",
+            f"{again}, with a publisher in another terminal.",
+        ),
         "timed-out": (
             "Look for a loop without an end, for a sleep in a callback, and for a missing rclpy.spin(node).",
-            f"{again}, with the chapter's publisher beside it. It must answer each message at once.",
+            f"{again}, with a publisher in another terminal. It must answer each message at once.",
         ),
         "over-limit": (
             "Look for what is made over and over: messages, lists that grow, files, threads, processes.",

@@ -2,79 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
-from grader.checking import Run
-from grader.checking.comparator import equal
-from grader.checking.run import Message
 from grader.exercise import Exercise
-from grader.exercise.exercise import Elements
 from grader.grading import Grade
+from grader.report.curves import Curve, Point, curves, drawn_quantity
 from grader.report.pages import template
-
-#: (seconds after the scenario's start, value)
-Point = tuple[float, float]
-
-#: The highest value that is drawn, and how many joints are.
-HIGHEST, MOST = 1e9, 24
-
-
-@dataclass(frozen=True)
-class Curve:
-    """One joint. Values that are not finite are left out of `expected` and `got`, but count as wrong where they came.
-
-    `first_wrong` is the first point that differs from the solution, at the value that came; where none came or none
-    that can be drawn, at the solution's.
-    """
-
-    joint: str
-    expected: tuple[Point, ...]
-    got: tuple[Point, ...]
-    first_wrong: Point | None
-
-
-def curves(grade: Grade, exercise: Exercise, scenario: str, field: str, per: str = "name") -> tuple[Curve, ...]:
-    """The curves of `field` in one scenario that is in the grade's recordings: a curve for each name in `per`.
-
-    Where the field is a single number, there is one curve, called as the field.
-    """
-    run = Run(exercise, grade.recordings[scenario], grade.references[scenario])
-    expected: dict[str, list[Point]] = {}
-    got: dict[str, list[Point]] = {}
-    for exchange in run.exchanges:
-        for lines, messages in ((expected, exchange.expected), (got, exchange.answers)):
-            for message in messages:
-                for joint, value in _values(message, per, field).items():
-                    lines.setdefault(str(joint), []).append((exchange.sent.at, _number(value)))
-    joints = [*expected, *(joint for joint in got if joint not in expected)][:MOST]
-    return tuple(_curve(joint, expected.get(joint, []), got.get(joint, [])) for joint in joints)
-
-
-def _curve(joint: str, expected: list[Point], got: list[Point]) -> Curve:
-    return Curve(joint, _drawable(expected), _drawable(got), _first_difference(dict(expected), dict(got)))
-
-
-def _first_difference(right: dict[float, float], came: dict[float, float]) -> Point | None:
-    for at in sorted({*right, *came}):
-        if at not in right or at not in came or not equal(came[at], right[at], 1e-6):
-            shown = next((v for v in (came.get(at), right.get(at)) if v is not None and abs(v) < HIGHEST), 0.0)
-            return at, shown
-    return None
-
-
-def _values(message: Message, per: str, field: str) -> dict[str, object]:
-    value = message.value(field)
-    return {field: value} if isinstance(value, (int, float)) else message.by(per, field)
-
-
-def _number(value: object) -> float:
-    return float(value) if isinstance(value, (int, float)) else math.nan
-
-
-def _drawable(points: list[Point]) -> tuple[Point, ...]:
-    return tuple(point for point in points if abs(point[1]) < HIGHEST)
-
 
 #: In units of the picture, which is drawn as wide as its page allows.
 WIDTH, LEFT, RIGHT, HEIGHT, GAP, TOP, BOTTOM = 500, 52, 8, 80, 34, 52, 12
@@ -82,9 +15,9 @@ WIDTH, LEFT, RIGHT, HEIGHT, GAP, TOP, BOTTOM = 500, 52, 8, 80, 34, 52, 12
 
 @dataclass(frozen=True)
 class Panel:
-    """One joint: where its panel begins, its two lines, the ends of its axis, and the first wrong point, if any."""
+    """One element: where its panel begins, its two lines, the ends of its axis, and the first wrong point, if any."""
 
-    joint: str
+    element: str
     top: float
     expected: str
     got: str
@@ -104,16 +37,9 @@ def feedback_plot(grade: Grade, exercise: Exercise) -> str | None:
     scenario = _scenario(grade)
     if grade.outcome != "graded" or scenario is None:
         return None
-    topic = next((topic for topic in exercise.outputs if topic.units), None)
-    if topic is None:
-        return None
-    field, unit = next(iter(topic.units.items()))
-    elements = topic.elements or Elements("value", "name")
-    try:
-        drawn = curves(grade, exercise, scenario, field, elements.named_by)
-    except (KeyError, TypeError):  # messages of this exercise have no names to part them by
-        return None
-    if not any(curve.got for curve in drawn):
+    quantity = drawn_quantity(exercise)
+    drawn = curves(grade, exercise, scenario, quantity) if quantity else ()
+    if not quantity or not any(curve.got for curve in drawn):
         return None
     if not grade.full_marks and not any(curve.first_wrong for curve in drawn):
         return None
@@ -121,9 +47,9 @@ def feedback_plot(grade: Grade, exercise: Exercise) -> str | None:
     start, end = min(times), max(times)
     panels = [_panel(i, curve, start, end) for i, curve in enumerate(drawn)]
     return template("report/feedback_plot.svg.j2").render(
-        title=field,
-        unit=unit,
-        said=_said(drawn, field, elements.called, end),
+        title=quantity.field,
+        unit=quantity.unit,
+        said=_said(drawn, quantity.field, quantity.element, end),
         panels=panels,
         width=WIDTH,
         left=LEFT,
@@ -152,7 +78,7 @@ def _panel(number: int, curve: Curve, start: float, end: float) -> Panel:
         return _x(point[0], start, end), round(top + HEIGHT * (1 - share), 1)
 
     return Panel(
-        joint=curve.joint,
+        element=curve.element,
         top=top,
         expected=_line([place(point) for point in curve.expected]),
         got=_line([place(point) for point in curve.got]),
@@ -183,16 +109,16 @@ def _marks(start: float, end: float) -> list[float]:
 def _said(drawn: tuple[Curve, ...], field: str, called: str, end: float) -> str:
     """The plot in words."""
     wrong = [curve for curve in drawn if curve.first_wrong]
-    alone = drawn[0].joint == field
+    alone = drawn[0].element == field
     names = called if len(drawn) == 1 else f"{called}s"
     of = "" if alone else f" of {len(drawn)} {names}"
     begin = f"The {field}{of} over {end:.3g} s, yours drawn over the solution's. "
     if not wrong:
         return begin + "They agree everywhere."
-    times = [(curve.first_wrong[0], curve.joint) for curve in wrong if curve.first_wrong]
-    at, joint = min(times)
+    times = [(curve.first_wrong[0], curve.element) for curve in wrong if curve.first_wrong]
+    at, element = min(times)
     if alone:
         return begin + f"The first that is wrong is at {at:.2f} s, marked with a cross."
     return (
-        begin + f"{len(wrong)} of them differ; the first that is wrong is {joint} at {at:.2f} s, marked with a cross."
+        begin + f"{len(wrong)} of them differ; the first that is wrong is {element} at {at:.2f} s, marked with a cross."
     )

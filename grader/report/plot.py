@@ -1,9 +1,9 @@
-"""A grade as a picture: the student's velocities over the solution's, a panel a joint."""
+"""A grade as a picture: what the node published over what the solution published, one panel per element."""
 
 from __future__ import annotations
 
 import io
-import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,97 +11,57 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from grader.checking import Run
-from grader.checking.comparator import equal
 from grader.exercise import Exercise
 from grader.files import write_if_changed
 from grader.grading import Grade
+from grader.report.curves import Curve, Point, Quantity, curves, drawn_quantity
 from grader.report.printable import printable
 
 #: The same picture each time: no date in it, and identifiers made from a fixed salt.
 SETTINGS: dict[Any, Any] = {"svg.hashsalt": "spinbook", "svg.fonttype": "none", "font.family": "sans-serif"}
 
-#: The highest value that is drawn.
-HIGHEST = 1e9
 
-Line = dict[str, list[tuple[float, float]]]
-
-
-def draw(grade: Grade, exercise: Exercise, file: Path, scenario: str = "", per: str = "name") -> None:
+def draw(grade: Grade, exercise: Exercise, file: Path, scenario: str = "") -> None:
     """Draw a scenario of the grade into `file` (.svg, .png or .pdf): by default the first that went wrong.
 
-    Each panel shows one joint over simulated time; the first sample that differs is marked. Raises OSError when the
+    Each panel shows one element over simulated time; the first sample that differs is marked. Raises OSError when the
     file can't be written.
     """
-    field, unit = _drawn(exercise)
+    quantity = drawn_quantity(exercise)
     name = scenario or _first_wrong(grade)
     figure = Figure(figsize=(9, 1.2), layout="constrained")
-    if name and name in grade.recordings:
-        run = Run(exercise, grade.recordings[name], grade.references[name])
-        _panels(figure, run, field, unit, per)
+    drawn = curves(grade, exercise, name, quantity) if quantity and name in grade.recordings else ()
+    if quantity and drawn:
+        _panels(figure, drawn, quantity)
     figure.suptitle(f"{exercise.title}: {name or grade.outcome}", fontsize=11)
     _save(figure, file)
 
 
-def _panels(figure: Figure, run: Run, field: str, unit: str, per: str) -> None:
-    expected: Line = {}
-    got: Line = {}
-    for exchange in run.exchanges:
-        for lines, messages in ((expected, exchange.expected), (got, exchange.answers)):
-            for message in messages:
-                for joint, value in message.by(per, field).items():
-                    lines.setdefault(str(joint), []).append((exchange.sent.at, _drawable(value)))
-    joints = [*expected, *(joint for joint in got if joint not in expected)][:24]
-    figure.set_size_inches(9, 1.2 + 1.5 * len(joints))
-    if not joints:
-        return
-    panels = figure.subplots(len(joints), 1, sharex=True, squeeze=False)[:, 0]
-    for panel, joint in zip(panels, joints, strict=True):
-        _panel(panel, joint, expected.get(joint, []), got.get(joint, []))
-        panel.set_ylabel(unit)
+def _panels(figure: Figure, drawn: Sequence[Curve], quantity: Quantity) -> None:
+    figure.set_size_inches(9, 1.2 + 1.5 * len(drawn))
+    panels = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
+    for panel, curve in zip(panels, drawn, strict=True):
+        _panel(panel, curve)
+        panel.set_ylabel(f"{quantity.field}\n({quantity.unit})")
     named = {line.get_label(): line for panel in panels for line in panel.lines}
     figure.legend(list(named.values()), list(named), loc="outside lower center", ncols=3, fontsize=8, frameon=False)
     figure.align_ylabels()
     panels[-1].set_xlabel("simulated time (s)")
 
 
-def _panel(panel: Axes, joint: str, expected: list[tuple[float, float]], got: list[tuple[float, float]]) -> None:
-    panel.set_title(printable(joint, 60), fontsize=9, loc="left", parse_math=False)
-    panel.plot(*_columns(expected), color="#999999", linewidth=3, label="solution")
-    panel.plot(*_columns(got), color="#0b6efd", linewidth=1, marker=".", markersize=3, label="yours")
-    wrong = _first_difference(expected, got)
-    if wrong:
+def _panel(panel: Axes, curve: Curve) -> None:
+    panel.set_title(printable(curve.element, 60), fontsize=9, loc="left", parse_math=False)
+    panel.plot(*_columns(curve.expected), color="#999999", linewidth=3, label="solution")
+    panel.plot(*_columns(curve.got), color="#0b6efd", linewidth=1, marker=".", markersize=3, label="yours")
+    if wrong := curve.first_wrong:
         panel.plot([wrong[0]], [wrong[1]], "x", color="#d00000", markersize=10, markeredgewidth=2, label="first wrong")
         panel.annotate(
             f"{wrong[0]:.2f} s", wrong, color="#d00000", fontsize=8, textcoords="offset points", xytext=(8, 4)
         )
 
 
-def _first_difference(
-    expected: list[tuple[float, float]], got: list[tuple[float, float]]
-) -> tuple[float, float] | None:
-    right, came = dict(expected), dict(got)
-    for at in sorted({*right, *came}):
-        if at not in right or at not in came or not equal(came[at], right[at], 1e-6):
-            shown = came.get(at, math.nan)
-            return at, shown if math.isfinite(shown) else right.get(at, 0.0)
-    return None
-
-
-def _drawable(value: float) -> float:
-    """`value`, or NaN (a gap in the line) where no axis could show it."""
-    return value if isinstance(value, (int, float)) and abs(value) < HIGHEST else math.nan
-
-
-def _columns(points: list[tuple[float, float]]) -> tuple[list[float], list[float]]:
+def _columns(points: Sequence[Point]) -> tuple[list[float], list[float]]:
     return [at for at, _ in points], [value for _, value in points]
-
-
-def _drawn(exercise: Exercise) -> tuple[str, str]:
-    for topic in exercise.outputs:
-        for field, unit in topic.units.items():
-            return field, f"{field}\n({unit})"
-    return "velocity", "velocity"
 
 
 def _first_wrong(grade: Grade) -> str:

@@ -22,7 +22,7 @@ def deserialized(cdr: bytes, kind: Any) -> Any:
     try:
         return deserialize_message(cdr, kind)
     except Exception as error:  # whatever made-up bytes lead to
-        raise Stopped("over-limit", f"Your node published bytes that are no message: {error}") from None
+        raise Stopped("over-limit", f"Your node published bytes that are not a message: {error}") from None
 
 
 def fields_of(cdr: bytes, kind: Any) -> Fields:
@@ -30,4 +30,4 @@ def fields_of(cdr: bytes, kind: Any) -> Fields:
     try:
         return to_fields(deserialize_message(cdr, kind))
     except Exception as error:  # whatever made-up bytes lead to
-        raise Stopped("over-limit", f"Your node published bytes that are no message: {error}") from None
+        raise Stopped("over-limit", f"Your node published bytes that are not a message: {error}") from None

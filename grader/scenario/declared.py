@@ -23,7 +23,7 @@ def declared(exercise: Exercise, seed: int) -> tuple[Scenario, ...]:
     """
     file = exercise.scenarios_file
     if not file.exists():
-        raise ExerciseError(file, "there is no such file", "Declare what the node is spun against in scenarios(seed).")
+        raise ExerciseError(file, "there is no such file", "Declare in scenarios(seed) what the node is run against.")
     found = _returned(exercise, seed)
     if not found or not all(isinstance(scenario, Scenario) for scenario in found):
         raise ExerciseError(file, "scenarios(seed) returns something else", "Return a tuple of Scenario, at least one.")

@@ -12,9 +12,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 from grader.scenario.scenario import SECOND, START, Message
-from grader.scenario.times import every
+from grader.scenario.times import every, later
 
-#: The chapter's six joints and their positions (rad) `t` seconds after the start.
+#: A humanoid's six arm joints and their positions (rad) `t` seconds after the start.
 ARM_SWING: dict[str, Callable[[float], float]] = {
     "left_shoulder_pitch": lambda t: 0.5 * math.sin(t),
     "left_shoulder_roll": lambda t: 0.3 * math.cos(t),
@@ -53,7 +53,7 @@ def moving(joints: dict[str, Callable[[float], float]], times: Iterable[float], 
 
 
 def arm_swing(seconds: float, period: float = 0.1) -> Stream:
-    """What the chapter's JointCommandPublisher publishes."""
+    """Return the stream of two arms that swing, a message every `period` seconds."""
     return moving(ARM_SWING, every(period, seconds))
 
 
@@ -76,12 +76,8 @@ def shuffled(stream: Stream, seed: int) -> Stream:
 
 def late(stream: Stream, most: float, seed: int) -> Stream:
     """Each message comes up to `most` s later than its stamp says, none before the one that was stamped earlier."""
-    chance = random.Random(f"late {seed}")
-    result, at = [], 0
-    for sample in stream:
-        at = max(at, sample.at + round(chance.uniform(0.1, 1.0) * most * SECOND))
-        result.append(replace(sample, at=at))
-    return tuple(result)
+    instants = later([sample.at for sample in stream], most, seed)
+    return tuple(replace(sample, at=at) for sample, at in zip(stream, instants, strict=True))
 
 
 def without(stream: Stream, joint: str, first: int, last: int) -> Stream:
@@ -157,7 +153,7 @@ def changed(stream: Stream, numbers: Iterable[int], change: Callable[[Sample], S
 
 
 def published(stream: Stream, topic: str = "/joint_commands") -> tuple[Message, ...]:
-    """The stream as messages on `topic`, with a velocity of 0 for each joint, as the chapter's publisher has it."""
+    """The stream as messages on `topic`, with a velocity of 0 for each joint."""
     return tuple(
         Message(
             at=sample.at,

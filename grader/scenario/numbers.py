@@ -15,6 +15,7 @@ from typing import Any
 
 from grader.recording.recording import Fields
 from grader.scenario.scenario import SECOND, START, Message
+from grader.scenario.times import later
 
 Stream = tuple[Message, ...]
 
@@ -67,12 +68,8 @@ def lost(stream: Stream, one_in: int, seed: int) -> Stream:
 
 def late(stream: Stream, most: float, seed: int) -> Stream:
     """Each message comes up to `most` s later, none before one that was sent earlier; stamps stay as they are."""
-    chance = random.Random(f"late {seed}")
-    result, at = [], 0
-    for message in stream:
-        at = max(at, message.at + round(chance.uniform(0.1, 1.0) * most * SECOND))
-        result.append(replace(message, at=at))
-    return tuple(result)
+    instants = later([message.at for message in stream], most, seed)
+    return tuple(replace(message, at=at) for message, at in zip(stream, instants, strict=True))
 
 
 def twice(stream: Stream, number: int) -> Stream:

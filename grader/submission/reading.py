@@ -101,7 +101,7 @@ def cells_of(content: bytes, exercise: Exercise) -> list[str]:
         cells = json.loads(content)["cells"]
         codes = [(_exercise(cell), _source(cell)) for cell in cells if cell.get("cell_type") == "code"]
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
-        raise NoCell(f"It is no notebook that can be read: {type(error).__name__}: {error}.") from None
+        raise NoCell(f"It is not a valid notebook: {type(error).__name__}: {error}.") from None
     stem = exercise.file_name.removesuffix(".py")
     magic = re.compile(rf"^%%node\s+{re.escape(stem)}(\.py)?(\s.*)?$", re.MULTILINE)
     definition = re.compile(rf"^class\s+{re.escape(exercise.class_name)}\b", re.MULTILINE)
@@ -282,7 +282,7 @@ def _content(path: Path) -> bytes:
         raise _Unusable(f"It can't be read: {error.strerror}.") from None
     try:
         if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-            raise _Unusable("It is no regular file. Hand in a file.")
+            raise _Unusable("It is not a regular file. Hand in a file.")
         with os.fdopen(descriptor, "rb", closefd=False) as file:
             content = file.read(most + 1)
     finally:

@@ -91,7 +91,7 @@ def _entries(content: bytes) -> tuple[dict[str, bytes], list[str]]:
     try:
         archive = zipfile.ZipFile(io.BytesIO(content))
     except (zipfile.BadZipFile, ValueError, OSError, NotImplementedError) as error:
-        raise NoUpload(f"It is no zip that can be read: {error}. Was the upload cut off? Hand it in again.") from None
+        raise NoUpload(f"It is not a valid zip file: {error}. Was the upload cut off? Hand it in again.") from None
     with archive:
         entries = [entry for entry in archive.infolist() if _is_meant(entry)]
         if len(entries) > MOST_FILES:

@@ -264,7 +264,7 @@ def _why_static(fence: Fence, code: PythonCode) -> str:
     if code.is_launch_file:
         return "it is a launch file"
     if fence.title and re.fullmatch(r"[\w./-]+\.(?!py$)[a-z]{1,6}", fence.title):
-        return f"`{fence.title}` is no Python file"
+        return f"`{fence.title}` is not a Python file"
     return ""
 
 
@@ -279,7 +279,7 @@ def node_name(item: Classified, told: str, file: Path) -> tuple[str, bool, list[
         name = re.sub(r"\W+", "_", stem).strip("_") or "node"
         name = name if name.isidentifier() else f"node_{name}"
         found = f"`{given}` can't be a module: `{stem}` is not a Python name. It is called `{name}` here."
-        fix = "Use letters, digits and underscores, such as joint_publisher.py."
+        fix = "Use letters, digits and underscores, such as my_node.py."
         return name, True, [Problem(file, item.fence.line, found, fix, Severity.WARNING)]
     assert code is not None
     name = code.ros_name if code.ros_name and code.ros_name.isidentifier() else ""

@@ -15,7 +15,7 @@ from interface_compiler import prefixes, shipped, store
 
 #: Attribute -> what it means, for error messages and `docs/writing-chapters.md`.
 ATTRIBUTES = {
-    "title": "the file this code is, such as joint_publisher.py",
+    "title": "the file this code is, such as my_node.py",
     "seconds": "how long the log is shown, or how long each command may run",
     "until": "a text: once the log holds it, the cell is done",
     "raises": "the cell is expected to fail, and failing is the lesson",

@@ -36,12 +36,13 @@ def _parser() -> MarkdownIt:
     md = MarkdownIt("commonmark", {"html": True}).enable("table")
     md.core.ruler.enableOnly(["normalize", "block"])
     for name, is_image in (("link", False), ("image", True)):
-        md.inline.ruler.at(name, _watched(_rule(md, name), is_image))
-    md.inline.ruler.at("html_inline", _watched_html(_rule(md, "html_inline")))
+        md.inline.ruler.at(name, _watched(rule_of(md, name), is_image))
+    md.inline.ruler.at("html_inline", _watched_html(rule_of(md, "html_inline")))
     return md
 
 
-def _rule(md: MarkdownIt, name: str) -> Any:
+def rule_of(md: MarkdownIt, name: str) -> Any:
+    """Return the inline rule of this name."""
     return next(rule.fn for rule in md.inline.ruler.__rules__ if rule.name == name)
 
 
@@ -119,7 +120,7 @@ def linked(text: str, target: Target) -> str:
 
 def _replace(lines: list[str], at: list[int], first: int, content: str, found: list[_Found], target: Target) -> None:
     """Put new targets into the lines of one inline token. `at` is how far each line has been read."""
-    places = list(_places(lines, at, first, content))
+    places = list(places_of(lines, at, first, content))
     for item in sorted(found, key=lambda item: -item.start):
         new = _new(content, item, target)
         row = content.count("\n", 0, item.start)
@@ -132,8 +133,11 @@ def _replace(lines: list[str], at: list[int], first: int, content: str, found: l
         at[number] += len(new) - (item.end - item.start)
 
 
-def _places(lines: list[str], at: list[int], first: int, content: str) -> Iterator[tuple[int, int] | None]:
-    """Where each line of an inline token's content is: (number of the line, column)."""
+def places_of(lines: list[str], at: list[int], first: int, content: str) -> Iterator[tuple[int, int] | None]:
+    """Yield where each line of an inline token's content is: (number of the line, column).
+
+    `first` is the token's first line. `at` is how far each line has been read: it is changed.
+    """
     for row, part in enumerate(content.split("\n")):
         number = first + row
         place = lines[number].find(part, at[number]) if number < len(lines) else -1

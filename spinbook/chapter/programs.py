@@ -56,13 +56,13 @@ class Programs:
             if code.lacking and not joined.amends:
                 names = ", ".join(f"`self.{name}`" for name in list(code.lacking)[:3])
                 verb = "is" if len(code.lacking) == 1 else "are"
-                return _static(item, f"it is a fragment: {names} {verb} set nowhere in it")
+                return _static(item, f"it is a fragment: {names} {verb} never set in it")
             if not code.alone and not _is_file(item):
                 return _static(item, "it is a fragment: nothing makes a node of its class")
         if code.lacking and code.is_complete and not joined.amends:
             self._lacking(item, code)
             if code.fails_at_once:
-                return _static(item, f"`self.{code.fails_at_once}` is set nowhere in it")
+                return _static(item, f"`self.{code.fails_at_once}` is never set in it")
         if missing := missing_imports(_facts(joined, code), self.own, self.interfaces):
             return self._missing(item, missing, joined)
         return self._made(number, item, joined)
@@ -111,7 +111,7 @@ class Programs:
         name = code.fails_at_once or next(iter(code.lacking))
         line = code.lacking[name]
         severity = Severity.NOT_RUN if code.fails_at_once else Severity.WARNING
-        found = f"`self.{name}` is used and set nowhere."
+        found = f"`self.{name}` is used but never set."
         fix = "Set it in `__init__`, or check its name: the node fails where it is used."
         at = item.fence.first_code_line + line - 1
         self.problems.append(Problem(self.file, at, found, fix, severity))

@@ -106,7 +106,7 @@ def _split_front_matter(text: str, file: Path) -> tuple[Mapping[str, Any], str, 
         mark = getattr(error, "problem_mark", None)
         line = 2 + mark.line if mark else 1
         what = getattr(error, "problem", None) or "it can't be read"
-        fix = "Write it as YAML, one `key: value` a line; put a value that holds a colon in quotes."
+        fix = "Write it as YAML, one `key: value` per line; put a value that holds a colon in quotes."
         problem = Problem(file, line, f"the front matter is not YAML: {what}.", fix, Severity.WARNING)
         return _simple_lines(lines[1:end]), body, [problem]
     if not isinstance(front_matter, dict):

@@ -190,7 +190,7 @@ def _read(text: str, line: int) -> Command | NotRunnable:
     if _SHELL_SYNTAX.search(outside_quotes):
         return NotRunnable(text, line, "pipes, `;`, `&` and redirections need a real shell")
     if re.search(r"\.\.\.|…", outside_quotes):
-        return NotRunnable(text, line, "it stands for other commands")
+        return NotRunnable(text, line, "it is an alias for other commands")
     if program == "ros2":
         return _ros2(text, words, line)
     kind = CommandKind.COLCON if program == "colcon" else CommandKind.PLOT

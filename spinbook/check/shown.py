@@ -85,7 +85,7 @@ def as_html(grade: Grade, exercise: Exercise) -> str:
         step=_first_step(grade, exercise),
         log=_end(grade.log),
         log_open=grade.outcome != "graded",
-        rows=_rows(grade),
+        rows=_rows(grade, exercise),
         # As an image an SVG can neither run nor load anything, whatever is in it.
         plot=Markup("data:image/svg+xml;base64,") + base64.b64encode(plot.encode()).decode() if plot else "",
         plot_says=_plot_says(grade),
@@ -110,7 +110,7 @@ def _end(log: str) -> str:
     return as_students_see_it(log).strip()[-LONGEST:]
 
 
-def _rows(grade: Grade) -> list[Row]:
+def _rows(grade: Grade, exercise: Exercise) -> list[Row]:
     rows = []
     for needs, group in groupby(told(grade), key=lambda check: check.needs):
         first, *rest = group
@@ -119,30 +119,30 @@ def _rows(grade: Grade) -> list[Row]:
             before = f"{which} can't be judged before this is right: {' '.join(needs)}"
             rows += [Row(first, before=before), *(Row(check) for check in rest)]
         else:
-            rows += [_row(check, grade) for check in (first, *rest)]
+            rows += [_row(check, grade, exercise) for check in (first, *rest)]
     return rows
 
 
-def _row(check: Told, grade: Grade) -> Row:
+def _row(check: Told, grade: Grade, exercise: Exercise) -> Row:
     if not check.finding:
         return Row(check)
-    return Row(check, *_facts(check.finding, grade))
+    return Row(check, *_facts(check.finding, grade, exercise.element_name))
 
 
-def _facts(finding: Finding, grade: Grade) -> tuple[tuple[tuple[str, str], ...], str]:
+def _facts(finding: Finding, grade: Grade, element: str) -> tuple[tuple[tuple[str, str], ...], str]:
     """What is wrong as label and value, and what of the finding's text they leave out."""
     told = f"got {finding.got}."
     if not (finding.expected and finding.got and told in finding.text):
         return (), finding.text
     before, _, after = finding.text.partition(told)
-    facts = [("expected", finding.expected), ("came", finding.got)]
+    facts = [("expected", finding.expected), ("got", finding.got)]
     if finding.message is not None:
         recording = grade.recordings.get(finding.scenario)
         of = f" of {len(recording.sent)}" if recording else ""
         facts.append(("when", f"{finding.at or 0.0:.2f} s after the start (message {finding.message}{of})"))
         before = ""
     if finding.part:
-        facts.append(("joint", finding.part))
+        facts.append((element, finding.part))
     # "Your subscription has another type. Expected …" keeps its first sentence.
     remark = f"{before.rpartition('Expected ')[0].strip()} {after.strip()}".strip()
     return tuple(facts), remark

@@ -103,13 +103,13 @@ def read_course(root: Path) -> Course:
     except tomllib.TOMLDecodeError as error:
         at = re.search(r"line (\d+)", str(error))
         line = int(at.group(1)) if at else text.count("\n") + 1
-        fix = "Texts stand in quotes, lists in square brackets; see docs/writing-chapters.md."
+        fix = "Put texts in quotes and lists in square brackets; see docs/writing-chapters.md."
         raise SpinbookError(Problem(FILE, line, f"it is not TOML: {error}.", fix)) from None
     problems: list[Problem] = []
     title = _text(data, "title", problems)
     chapters = data.get("chapters")
     if not isinstance(chapters, list) or not chapters or not all(isinstance(c, str) for c in chapters):
-        found = "`chapters` is no list of files."
+        found = "`chapters` is not a list of files."
         problems.append(Problem(FILE, None, found, 'Write for example: chapters = ["chapters/01-start.md"]'))
         chapters = []
     for name in {c for c in chapters if chapters.count(c) > 1}:

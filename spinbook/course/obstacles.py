@@ -11,7 +11,7 @@ from spinbook.problem import Problem, Severity
 #: What a count of each kind is called: group -> words. Any other group is a package.
 _WORDS = {
     "a real shell": (
-        "shell fence needs a real shell (a pipe, or a command that is none of ROS's)",
+        "shell fence needs a real shell (a pipe, or a command that is not ROS's)",
         "shell fences need a real shell",
     ),
     "a file name": ("node has no file name", "nodes have no file name"),

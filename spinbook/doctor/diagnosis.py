@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import importlib
 import json
@@ -13,8 +12,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 
-import psutil
-
+from grader.child_process import run_program
 from spinbook.doctor.finding import Finding, State, missing
 
 
@@ -84,30 +82,20 @@ def diagnose(checks: Sequence[Check], done: Callable[[Finding], None]) -> list[F
 def examine(check: Check) -> Finding:
     """Run one check, whatever happens to it."""
     argv = [sys.executable, "-m", "spinbook.doctor.diagnosis", check.function, check.name]
-    process = subprocess.Popen(
-        argv,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        errors="replace",
-        start_new_session=True,
-    )
     try:
-        out, err = process.communicate(timeout=check.seconds)
+        done = run_program(argv, check.seconds)
     except subprocess.TimeoutExpired:
-        _end_all(process)
         return missing(
             check.name,
             f"no answer within {check.seconds:g} s",
             f"Try it alone, on a machine that is less busy: spinbook doctor {check.word}",
         )
     try:
-        fields = json.loads(out)
+        fields = json.loads(done.stdout)
         return Finding(fields["name"], State(fields["state"]), fields["found"], fields["fix"])
     except (ValueError, KeyError, TypeError):
         return missing(
-            check.name, _how_it_ended(process.returncode, err), "See the message; docs/installing.md may help."
+            check.name, _how_it_ended(done.returncode, done.stderr), "See the message; docs/installing.md may help."
         )
 
 
@@ -115,17 +103,6 @@ def _how_it_ended(code: int, err: str) -> str:
     how = f"signal {-code}" if code < 0 else f"exit code {code}"
     lines = [line.strip() for line in err.splitlines() if line.strip()]
     return f"the check ended with {how}" + (f": {lines[-1]}" if lines else "")
-
-
-def _end_all(process: subprocess.Popen[str]) -> None:
-    """End a check and all that it has started."""
-    with contextlib.suppress(psutil.NoSuchProcess):
-        family = psutil.Process(process.pid).children(recursive=True)
-        for member in family:
-            with contextlib.suppress(psutil.NoSuchProcess):
-                member.kill()
-    process.kill()
-    process.communicate()
 
 
 # A process of its own, because what is examined may end it: rclpy does so where its middleware is not installed.

@@ -13,6 +13,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+from grader.child_process import run_program
 from interface_compiler import prefixes, shipped, toolchain
 from spinbook.doctor.finding import Finding, missing, ok, warning
 from spinbook.ros2.executables import is_built_in, real_ros2
@@ -158,7 +159,7 @@ def examine_browser(name: str) -> Finding:
         if os.geteuid() == 0:
             argv.insert(1, "--no-sandbox")
         try:
-            trial = subprocess.run(argv, capture_output=True, text=True, timeout=_DEADLINE_S, check=False)
+            trial = run_program(argv, _DEADLINE_S)
         except subprocess.TimeoutExpired:
             return warning(name, f"{path} does not answer within {_DEADLINE_S:g} s", _ONLY_TESTS)
     if "spinbook" not in trial.stdout:

@@ -11,7 +11,7 @@ from spinbook.doctor.finding import Finding, missing, ok, warning
 
 _ALLOW = (
     "Install bubblewrap (sudo apt-get install bubblewrap) and allow namespaces (see the finding about them); "
-    "docs/installing.md tells how in a container."
+    "docs/installing.md says how in a container."
 )
 
 

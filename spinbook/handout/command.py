@@ -30,7 +30,7 @@ def command(start: Path) -> None:
     try:
         made = handout(course)
     except HostFault as error:
-        found = f"a solution could not be spun, by a fault of the machine's: {error}"
+        found = f"a solution could not be run because of a fault of this machine: {error}"
         raise SpinbookError(Problem(course.root, None, found, "Try again.")) from None
     folder = course.build_folder / "handout" / made.slug
     archive = folder.with_suffix(".zip")

@@ -118,7 +118,7 @@ def handout(course: Course) -> Handout:
                 copy = exercise_files(exercise, workers)
                 listings.append(_listing(exercise, workers))
             except ExerciseError as error:
-                raise SpinbookError(Problem(error.file, error.line, error.found, error.fix)) from None
+                raise SpinbookError(error.problem) from None
             files |= {f"exercises/{exercise.name}/{name}": content for name, content in copy.items()}
     taught = "\n".join([*_nodes(notebooks), authors_code(files)])
     every = [_load(course, name) for name in sorted(course.exercises)]
@@ -164,7 +164,7 @@ def _load(course: Course, name: str) -> Exercise:
     try:
         return load(course.root / "exercises" / name)
     except ExerciseError as error:
-        raise SpinbookError(Problem(error.file, error.line, error.found, error.fix)) from None
+        raise SpinbookError(error.problem) from None
 
 
 def _listing(exercise: Exercise, workers: WorkerPool) -> Listing:

@@ -120,7 +120,7 @@ def read_book(place: Path) -> Book:
         return _book(root, pages, None, "", root, list(pages.in_folder(root)))
     reader = next((read for name, read in _READERS.items() if contents.name.startswith(name)), None)
     if reader is None:
-        found = "this is no file that says a book's order."
+        found = "this file does not list the chapters of a book."
         raise SpinbookError(Problem(contents, None, found, f"Known are: {', '.join(_READERS)}."))
     title, folder, listed = reader(contents, pages)
     return _book(root, pages, contents, title, folder, listed)

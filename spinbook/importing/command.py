@@ -101,7 +101,7 @@ def import_book(book: Path, title: str | None, package: str | None) -> None:
     course = read_course(read.root)
     click.echo(f"{course.title}: {len(read.chapters)} chapters, in the order of {_shown(read.contents, read.root)}")
     if read.left_out:
-        click.echo(f"Left out, because they are no Markdown or not there: {', '.join(read.left_out)}")
+        click.echo(f"Left out because they are missing or not Markdown: {', '.join(read.left_out)}")
     built = list(build_notebooks(course))
     _report(course, built)
 

@@ -219,9 +219,9 @@ class SpinbookMagics(Magics):
     def plot(self, line: str) -> None:
         """%plot TOPIC/FIELD[i] …: draw what topics carry, as rqt_plot would."""
         reader = LineReader("%plot", "Record topics for a while and draw them; live where somebody watches.")
-        reader.add_argument("what", nargs="+", metavar="TOPIC/FIELD[i]", help="such as /joint_commands/position[0]")
+        reader.add_argument("what", nargs="+", metavar="TOPIC/FIELD[i]", help="such as /turtle1/pose/x")
         reader.add_argument("--seconds", type=float, default=COMMAND_SECONDS, help="how long to record")
-        reader.add_argument("--title", default="", help="stands above the plot")
+        reader.add_argument("--title", default="", help="the title above the plot")
         if given := reader.read(line):
             plot_cell.run(given.what, given.seconds, given.title)
 
@@ -231,7 +231,7 @@ class SpinbookMagics(Magics):
         """%timeline --record NAME …, and later %timeline: draw what happened on services, actions and topics."""
         reader = LineReader("%timeline", "Record services, actions and topics while other cells run, then draw them.")
         reader.add_argument("--record", nargs="+", metavar="NAME", help="begin to record these")
-        reader.add_argument("--title", default="", help="stands above the picture")
+        reader.add_argument("--title", default="", help="the title above the picture")
         given = reader.read(line)
         if given is None:
             return
@@ -257,7 +257,7 @@ class SpinbookMagics(Magics):
     @line_magic
     def graph(self, line: str) -> None:
         """%graph: nodes and topics as they are now, drawn as rqt_graph would."""
-        reader = LineReader("%graph", "Draw who publishes what, who subscribes, and how many messages a second come.")
+        reader = LineReader("%graph", "Draw who publishes and who subscribes, and how many messages per second arrive.")
         reader.add_argument("--seconds", type=float, default=GRAPH_SECONDS, help="how long messages are counted")
         if given := reader.read(line):
             picture_cells.show_graph(given.seconds)

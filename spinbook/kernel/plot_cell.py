@@ -99,4 +99,4 @@ def _nothing_came(recording: Recording, paths: list[str]) -> str:
     there = ", ".join(recording.published) or "none"
     if recording.waiting:
         return f"Nobody publishes {', '.join(recording.waiting)}. Topics with a publisher are: {there}."
-    return f"{', '.join(paths)}: a publisher is there, and no message came."
+    return f"{', '.join(paths)}: there is a publisher, but no message arrived."

@@ -190,7 +190,7 @@ class Session:
         """Put a launch or parameter file into the package. Raises CellFailed for any other path."""
         if not is_package_file(path):
             raise CellFailed(
-                f"`{path}` is no launch or parameter file. Write launch/NAME.launch.py or config/NAME.yaml."
+                f"`{path}` is not a launch or parameter file. Write launch/NAME.launch.py or config/NAME.yaml."
             )
         file = add_file(self.workspace, self.package, path, text.rstrip("\n") + "\n")
         print(f"Wrote {file.relative_to(Path.cwd())}")

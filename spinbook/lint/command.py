@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import click
 
-from grader.checking.proofreading import faults_of
+from grader.checking.proofreading import problems_of
 from spinbook.chapter.chapter import CellKind
 from spinbook.chapter.read import Reading
 from spinbook.chapters import read_all
@@ -70,8 +71,8 @@ def _interfaces(course: Course) -> tuple[Problem, ...]:
 def _exercises(course: Course) -> tuple[Problem, ...]:
     """What is wrong in the course's exercises and their solutions."""
     folders = sorted(file.parent for file in (course.root / "exercises").glob("*/exercise.toml"))
-    faults = [fault for folder in folders for fault in faults_of(folder)]
-    return tuple(Problem(_near(fault.file), fault.line, fault.found, fault.fix) for fault in faults)
+    problems = [problem for folder in folders for problem in problems_of(folder)]
+    return tuple(replace(problem, file=_near(problem.file)) for problem in problems)
 
 
 def _near(file: Path) -> Path:

@@ -104,8 +104,8 @@ def course_modules(course: Course) -> list[Module]:
                 # Shown again, changed: the file as it is in the end.
                 first[cell.name] = (file, cell)
             elif known.whole != cell.whole:
-                found = f"the node `{cell.name}` also stands in {file}:{known.line}, with other code."
-                fix = "Give one of them another file name: the package can hold only one module of a name."
+                found = f"the node `{cell.name}` is also defined in {file}:{known.line}, with other code."
+                fix = "Give one of them another file name: the package can hold only one module with each name."
                 problems.append(Problem(reading.chapter.file, cell.line, found, fix))
     if problems:
         raise SpinbookError(*problems)
@@ -126,6 +126,6 @@ def course_files(course: Course) -> dict[str, str]:
             if file == reading.chapter.file:
                 first[cell.name] = (file, cell)
             elif known.source != cell.source:
-                found = f"the file `{cell.name}` also stands in {file}:{known.line}, with other text."
+                found = f"the file `{cell.name}` is also defined in {file}:{known.line}, with other text."
                 raise SpinbookError(Problem(reading.chapter.file, cell.line, found, "Give one of them another name."))
     return {name: cell.source.rstrip("\n") + "\n" for name, (_, cell) in sorted(first.items())}

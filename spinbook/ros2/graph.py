@@ -272,7 +272,7 @@ def absolute(name: str, what: str = "topic") -> str:
         # The rest tells where in the C source of rcl it was noticed.
         reason = str(error).split("\n")[0].partition(", at /")[0]
         raise CommandError(
-            f"'{name}' is no name for a {what}: {reason}",
+            f"'{name}' is not a valid name for a {what}: {reason}",
             "A name has letters, digits and underscores, in parts divided by '/', as in /left_foot/pressure.",
         ) from None
     return full

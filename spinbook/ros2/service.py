@@ -114,7 +114,9 @@ def info(service_name: str, spin_time: float | None, use_sim_time: bool) -> None
 @click.argument("service_name")
 @click.argument("service_type")
 @click.argument("values", default="{}")
-@click.option("-r", "--rate", type=click.FloatRange(min=0, min_open=True), metavar="N", help="Repeat N times a second.")
+@click.option(
+    "-r", "--rate", type=click.FloatRange(min=0, min_open=True), metavar="N", help="Repeat N times per second."
+)
 @discovery_options
 def call(
     service_name: str, service_type: str, values: str, rate: float | None, spin_time: float | None, use_sim_time: bool

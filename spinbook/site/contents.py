@@ -15,9 +15,9 @@ import nbformat
 from grader.exercise import Exercise, ExerciseError, load, starter
 from spinbook.browser.files import can_run, public_parts, run_files
 from spinbook.chapter.chapter import CellKind, Chapter
+from spinbook.chapter.comments import without_comments
 from spinbook.chapters import read_all
 from spinbook.course.course import Course
-from spinbook.handout.student_copy import without_comments
 from spinbook.problem import Problem, Severity, SpinbookError
 from spinbook.site import page as names
 from spinbook.site.addresses import address_files
@@ -110,7 +110,7 @@ def _copies(exercises: Mapping[str, Exercise]) -> dict[str, dict[str, bytes]]:
     try:
         return {name: public_parts([exercise]) for name, exercise in exercises.items()}
     except ExerciseError as error:
-        raise SpinbookError(Problem(error.file, error.line, error.found, error.fix)) from None
+        raise SpinbookError(error.problem) from None
 
 
 def _chapters(course: Course) -> list[Chapter]:
@@ -157,7 +157,7 @@ def _drawn(
         drawings.pictures = draw(list(drawings.codes), course.build_folder / ".cache" / "drawings")
     except CanNotDrawError as error:
         found = f"mermaid drawings are shown in words, because {error}."
-        fix = "Everything else is as it should be; build the site again when that is fixed."
+        fix = "Everything else is fine. Fix this, then build the site again."
         contents.problems.append(Problem(course.chapters[0], None, found, fix, Severity.WARNING))
     return drawings
 
@@ -230,7 +230,7 @@ def _ran(course: Course, chapter: Chapter) -> Ran:
     try:
         return Ran.read(file)
     except (OSError, ValueError, KeyError):
-        found = "it has not been run yet, so that there are no outputs to show."
+        found = "it has not been run yet, so there are no outputs to show."
         raise SpinbookError(Problem(chapter.file, None, found, "Run it: spinbook build --execute")) from None
 
 

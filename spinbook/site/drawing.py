@@ -23,6 +23,7 @@ from typing import Any
 
 from PIL import Image
 
+from grader.child_process import run_program
 from grader.files import write_if_changed
 from spinbook.build.digest import digest
 
@@ -135,7 +136,7 @@ def _drawn(codes: Sequence[str], script: Path) -> list[dict[str, str] | None]:
         argv = [browser, "--headless", "--disable-gpu", "--dump-dom", "--virtual-time-budget=60000"]
         argv += [f"--user-data-dir={folder}/profile", *(["--no-sandbox"] if os.geteuid() == 0 else []), page.as_uri()]
         try:
-            ran = subprocess.run(argv, capture_output=True, text=True, timeout=_DRAWING_PATIENCE_S)
+            ran = run_program(argv, _DRAWING_PATIENCE_S)
         except (OSError, subprocess.TimeoutExpired) as error:
             raise CanNotDrawError(f"Chromium did not draw ({error})") from None
     answer = re.search(r"DRAWN:([^<:]*):", ran.stdout)

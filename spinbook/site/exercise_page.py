@@ -124,7 +124,7 @@ def _how_to_check(exercise: Exercise) -> str:
     return f"""\
 ## Check your node
 
-Save your node as `{exercise.file_name}`, and let it be spun in the folder of the course:
+Save your node as `{exercise.file_name}`, then run this in the course's folder:
 
 ```bash
 spinbook grade {exercise.name} {exercise.file_name}

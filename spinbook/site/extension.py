@@ -222,7 +222,7 @@ def _mathml(node: nodes.Element, display: str) -> str:
     try:
         return spaced(str(convert(text, display=display)))
     except Exception as error:  # the library raises many kinds, for what an author wrote
-        _LOG.warning("this is no LaTeX that can be read: %s (%s)", text, error, location=node)
+        _LOG.warning("this is not valid LaTeX: %s (%s)", text, error, location=node)
         return f"<code>{node.astext()}</code>"
 
 

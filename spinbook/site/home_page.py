@@ -68,7 +68,7 @@ def home_pictures(runs: list[tuple[Chapter, Ran]]) -> list[Shown]:
     chosen = []
     if plots:
         chosen.append(
-            (max(plots, key=lambda found: len(alternative(found[2], found[1]))), "What a topic carried, as it came")
+            (max(plots, key=lambda found: len(alternative(found[2], found[1]))), "What a topic carried, as it arrived")
         )
     if turtles:
         chosen.append((turtles[-1], "A turtle, driven by a node"))

@@ -7,16 +7,17 @@ import posixpath
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 from urllib.parse import quote
 
 from markdown_it.token import Token
 
+from spinbook.chapter.comments import without_comments
 from spinbook.chapter.fence import directive, parse_info
 from spinbook.chapter.files import is_elsewhere, locate, split
 from spinbook.chapter.flavours import parser
 from spinbook.chapter.links import linked
-from spinbook.handout.student_copy import without_comments
 from spinbook.site.repository import Repository
 
 # Alerts, admonitions, tables and maths are MyST's own matter. What is done here: links lead to pages of the site or
@@ -89,7 +90,6 @@ def _fence(token: Token, lines: list[str], draw: Draw) -> None:
         )
 
 
-_TERM = re.compile(r"^##\s+(.+?)\s*#*$", re.MULTILINE)
 _SHORT = re.compile(r"^(.*?)\s*\(([^)]+)\)$")
 
 
@@ -104,7 +104,8 @@ class Term:
 
 def terms_of(text: str) -> tuple[Term, ...]:
     """The terms of a glossary. `## Quality of service (QoS)` is found in a chapter by both names, and in the plural."""
-    return tuple(_term(match.group(1)) for match in _TERM.finditer(text))
+    tokens = pairwise(parser().parse(text))
+    return tuple(_term(words.content) for token, words in tokens if (token.type, token.tag) == ("heading_open", "h2"))
 
 
 def _term(heading: str) -> Term:

@@ -92,7 +92,7 @@ def _load(course: Course, name: str) -> Exercise:
     try:
         return load(course.root / "exercises" / name)
     except ExerciseError as error:
-        raise SpinbookError(Problem(error.file, error.line, error.found, error.fix)) from None
+        raise SpinbookError(error.problem) from None
 
 
 def _published(contents: Contents) -> dict[str, bytes]:

@@ -7,6 +7,8 @@ import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
+from grader.child_process import run_program
+
 _GITHUB = re.compile(r"https://github\.com/([\w.-]+)/([\w.-]+?)(?:\.git)?/?")
 _GIT_PATIENCE_S = 10
 
@@ -56,7 +58,7 @@ def repository_of(root: Path, url: str) -> Repository:
 def _git(root: Path, *words: str) -> str:
     """What git prints, or "" where there is no git or no repository."""
     try:
-        ran = subprocess.run(["git", *words], cwd=root, capture_output=True, text=True, timeout=_GIT_PATIENCE_S)
+        ran = run_program(["git", *words], _GIT_PATIENCE_S, cwd=root)
     except (OSError, subprocess.TimeoutExpired):
         return ""
     return ran.stdout.strip() if ran.returncode == 0 else ""

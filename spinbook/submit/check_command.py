@@ -14,7 +14,7 @@ from grader.report.terminal import show
 from grader.sandbox import SandboxUnavailable
 from grader.submission import Submission
 from grader.workers import HostFault
-from spinbook.problem import Problem, SpinbookError
+from spinbook.problem import SpinbookError
 from spinbook.submit.choosing import exercise_named, found, given
 
 #: Exit codes, besides click's 2 for usage.
@@ -50,7 +50,7 @@ def _grade(exercise: Exercise, submission: Submission) -> Grade:
     try:
         return grade_submission(exercise.public(), submission)
     except ExerciseError as error:
-        raise SpinbookError(Problem(error.file, error.line, error.found, error.fix)) from None
+        raise SpinbookError(error.problem) from None
     except (HostFault, SandboxUnavailable) as error:
         click.echo(f"The machine or the grader is at fault, not your code: {error}", err=True)
         sys.exit(HOST_FAULT)

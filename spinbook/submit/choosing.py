@@ -21,7 +21,7 @@ def exercise_named(name: str) -> Exercise:
     except NoExercise as error:
         raise click.UsageError(str(error)) from None
     except ExerciseError as error:
-        raise SpinbookError(Problem(error.file, error.line, error.found, error.fix)) from None
+        raise SpinbookError(error.problem) from None
 
 
 def given(file: Path, exercise: Exercise) -> Candidate:

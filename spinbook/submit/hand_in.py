@@ -110,7 +110,7 @@ def self_check(exercise: Exercise, submission: Submission) -> SelfCheck:
     except KeyboardInterrupt:
         return SelfCheck(None, "It was interrupted.")
     except ExerciseError as error:
-        return SelfCheck(None, f"The checks can't run here: {error.found} ({error.file.name}).")
+        return SelfCheck(None, f"The checks can't run here: {error.problem.found} ({error.problem.file.name}).")
     except Exception as error:
         return SelfCheck(None, f"{type(error).__name__}: {error}")
     if grade.outcome == "host-error":

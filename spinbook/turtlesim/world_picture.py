@@ -196,7 +196,9 @@ def _track(told: dict[str, Any]) -> TrackPicture:
     samples = []
     for tick, x, y, theta, pen in told["samples"]:
         if not isinstance(tick, int) or not (pen is None or (isinstance(pen, int) and 0 <= pen < len(pens))):
-            raise ValueError(f"not a picture of a turtles' world: {[tick, x, y, theta, pen]!r} is no sample of a track")
+            raise ValueError(
+                f"not a picture of a turtles' world: {[tick, x, y, theta, pen]!r} is not a sample of a track"
+            )
         drawn = None if pen is None else pens[pen]
         samples.append(Sample(tick, _number(x), _number(y), _number(theta), drawn))
     return TrackPicture(str(told["turtle"]), tuple(samples), bool(told["whole"]))

@@ -19,13 +19,13 @@ _INSTALLS = {"requirements.txt", "environment.yml"}
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("new_handout", required=False, type=click.Path(path_type=Path))
-@click.option("--dry-run", is_flag=True, help="Only tell what would be done.")
+@click.option("--dry-run", is_flag=True, help="Only say what would be done; change nothing.")
 def update(new_handout: Path | None, dry_run: bool) -> None:
     """Bring your folder up to a newer handout, and keep what you wrote.
 
     \b
       spinbook update ../course-handout.zip            the zip or folder that you were given
-      spinbook update ../course-handout.zip --dry-run  tell what would be done, and do nothing
+      spinbook update ../course-handout.zip --dry-run  only say what would be done
 
     Start it in your folder of the course. Save and close your notebooks first. NEW_HANDOUT may be left out where there
     is just one handout's zip in this folder or beside it.
@@ -72,7 +72,7 @@ def _folder(start: Path) -> Path:
             return folder.resolve()
     if any(start.glob("*.ipynb")):
         return start.resolve()
-    found = "this is no folder of a course: there is no notebook in it."
+    found = "this is not a course's folder: there is no notebook in it."
     raise SpinbookError(Problem(start, None, found, "Go to the folder of your notebooks, then start it again."))
 
 
@@ -80,7 +80,7 @@ def _only_handout(folder: Path) -> Path:
     found = [file for place in (folder, folder.parent) for file in sorted(place.glob("*.zip")) if _is_handout(file)]
     if len(found) == 1:
         return found[0]
-    told = f"There are {', '.join(str(file) for file in found)}." if found else "There is no handout's zip here."
+    told = f"There are {', '.join(str(file) for file in found)}." if found else "No zip of a handout was found here."
     raise click.UsageError(f"Which handout? {told} Name it: spinbook update NEW_HANDOUT")
 
 

@@ -108,10 +108,10 @@ def _of_zip(file: Path) -> Files:
             place = PurePosixPath(entry.filename)
             if place.is_absolute() or ".." in place.parts or "\\" in entry.filename or "\0" in entry.filename:
                 found = f"{entry.filename!r} in it leads out of its folder."
-                raise SpinbookError(Problem(file, None, found, "This is no handout. Nothing was changed."))
+                raise SpinbookError(Problem(file, None, found, "This is not a handout. Nothing was changed."))
             if stat.S_ISLNK(entry.external_attr >> 16):
                 found = f"{entry.filename!r} in it is a symbolic link."
-                raise SpinbookError(Problem(file, None, found, "This is no handout. Nothing was changed."))
+                raise SpinbookError(Problem(file, None, found, "This is not a handout. Nothing was changed."))
             with archive.open(entry) as opened:
                 files[place] = opened.read(left + 1)
             left -= len(files[place])

@@ -24,7 +24,7 @@ def read(data: bytes) -> dict[str, Any]:
     if not isinstance(cells, list) or not all(_is_cell(cell) for cell in cells):
         raise NoNotebook("it has no list of cells, as notebooks since 2015 have")
     if not isinstance(notebook.setdefault("metadata", {}), dict):
-        raise NoNotebook("its metadata is no dictionary")
+        raise NoNotebook("its metadata is not a dictionary")
     assert isinstance(notebook, dict)
     return notebook
 

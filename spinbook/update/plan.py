@@ -138,7 +138,7 @@ def _beside(made: Plan, folder: Path, place: PurePosixPath, new: bytes, why: str
     beside = place.with_name(f"{place.stem}.new{place.suffix}")
     if _content(folder / beside) != new:
         made.writes[beside] = new
-    made.tell(place, f"{why}; the new one is beside it: {beside.name}")
+    made.tell(place, f"{why}; the new one is next to it: {beside.name}")
 
 
 def _content(file: Path) -> bytes | None:

@@ -97,7 +97,7 @@ FAULTS: dict[str, tuple[bytes, int, list[str], str]] = {
         b"    def beat(self):\n        self.count += 1\n        print(self.total)\n\n\n"
         b"def main():\n    rclpy.init()\n    rclpy.spin(A('a'))\n```\n",
         11,
-        ["`self.total`", "set nowhere"],
+        ["`self.total`", "never set"],
         WARNING,
     ),
 }
@@ -193,7 +193,7 @@ def test_a_missing_chapter_is_told(course: CourseFolder) -> None:
     ("toml", "words"),
     [
         ("title = ", ["course.toml:1: error", "not TOML"]),
-        ('title = "x"\n[package]\nname = "robot"', ["`chapters` is no list"]),
+        ('title = "x"\n[package]\nname = "robot"', ["`chapters` is not a list"]),
         ('title = "x"\nchapters = ["a.md"]', ["[package]", "name"]),
         ('title = "x"\nchapters = ["a.md"]\n[package]\nname = "My-Robot"', ["My-Robot", "lower-case"]),
         ('title = "x"\nchapters = ["a.md", "a.md"]\n[package]\nname = "robot"', ["listed twice"]),

@@ -65,7 +65,7 @@ def test_the_usual_imports_are_added(tmp_path: Path, used: str) -> None:
     ("code", "why"),
     [
         (TALKER + "        self.pub = my_publisher\n", "`my_publisher`, which nothing above defines"),
-        (TALKER + "        self.create_timer(1.0, self.tick)\n", "`self.tick` is set nowhere"),
+        (TALKER + "        self.create_timer(1.0, self.tick)\n", "`self.tick` is never set"),
         ("class Arm(Node):\n    def __init__(self, name):\n        super().__init__(name)\n", "nothing makes a node"),
         ("    def tick(self):\n        self.count += 1\n", "indented"),
         ("self.create_timer(1.0, self.tick)\n", "`self`"),
@@ -205,7 +205,7 @@ def test_a_node_knows_what_ros2_run_calls_it(tmp_path: Path) -> None:
         ("ros2 pkg create --build-type ament_cmake arm", "C++"),
         ("ros2 topic pub /a nav2_msgs/msg/Route {}", "needs `nav2_msgs`"),
         ("ros2 topic echo /scan", "nothing above makes `/scan`"),
-        ("ros2 topic echo ...", "stands for other commands"),
+        ("ros2 topic echo ...", "is an alias for other commands"),
         ("ros2 run arm hand --ros-args --params-file p.yaml", "reads a file of parameters"),
     ],
 )

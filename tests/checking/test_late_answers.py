@@ -56,7 +56,7 @@ def matches(run: Run) -> None:
 @pytest.mark.parametrize("check", [Run.must_answer, matches])
 def test_an_answer_that_comes_later_is_told_with_its_delay(check: Callable[[Run], None]) -> None:
     received = [answer(n, right(n), later=0.45) for n in range(1, 5)]
-    assert "an answer was expected at once; it came 0.45 s later." in told(received, check)
+    assert "an answer was expected at once; it arrived 0.45 s later." in told(received, check)
 
 
 def test_an_answer_that_comes_with_the_next_message_is_told_as_one_message_late() -> None:

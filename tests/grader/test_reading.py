@@ -87,7 +87,7 @@ def test_a_symbolic_link_is_not_followed(tmp_path: Path, exercise: Exercise) -> 
 
 def test_a_fifo_does_not_hang_the_grader(tmp_path: Path, exercise: Exercise) -> None:
     os.mkfifo(tmp_path / "pipe.py")
-    assert "no regular file" in read(str(tmp_path / "pipe.py"), exercise).problem
+    assert "not a regular file" in read(str(tmp_path / "pipe.py"), exercise).problem
 
 
 @pytest.mark.parametrize("given", ["nowhere.py", "notes.txt", "no_package/no_executable"])

@@ -139,8 +139,8 @@ def scenario_of(folder: Path, step: str = "", more: str = "") -> Scenario:
 def test_a_step_that_can_not_be_is_told_with_its_line(tmp_path: Path, step: str, told: str) -> None:
     with pytest.raises(ExerciseError) as caught:
         scenario_of(tmp_path, step)
-    assert (caught.value.file.name, caught.value.line) == ("scenarios.py", STEP_LINE)
-    assert re.search(told, f"{caught.value.found} {caught.value.fix}"), str(caught.value)
+    assert (caught.value.problem.file.name, caught.value.problem.line) == ("scenarios.py", STEP_LINE)
+    assert re.search(told, f"{caught.value.problem.found} {caught.value.problem.fix}"), str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -165,8 +165,8 @@ def test_so_is_what_is_wrong_with_a_peer(tmp_path: Path, more: str, told: str) -
         return
     with pytest.raises(ExerciseError) as caught:
         scenario_of(tmp_path, more=more)
-    assert caught.value.line
-    assert re.search(told, f"{caught.value.found} {caught.value.fix}"), str(caught.value)
+    assert caught.value.problem.line
+    assert re.search(told, f"{caught.value.problem.found} {caught.value.problem.fix}"), str(caught.value)
 
 
 def test_one_name_for_two_scenarios_is_told_with_the_line_of_the_second(tmp_path: Path) -> None:
@@ -277,5 +277,5 @@ def test_what_is_wrong_in_exercise_toml_is_told_with_its_line(
     assert old in TOML
     with pytest.raises(ExerciseError) as caught:
         load(exercise_in(tmp_path, toml=TOML.replace(old, new, 1)))
-    assert (caught.value.file.name, caught.value.line) == ("exercise.toml", line), str(caught.value)
-    assert re.search(told, f"{caught.value.found} {caught.value.fix}"), str(caught.value)
+    assert (caught.value.problem.file.name, caught.value.problem.line) == ("exercise.toml", line), str(caught.value)
+    assert re.search(told, f"{caught.value.problem.found} {caught.value.problem.fix}"), str(caught.value)

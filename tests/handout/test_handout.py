@@ -18,7 +18,7 @@ from grader.exercise import load
 from handout.conftest import CHAPTER, NOTE, ROOT, HandedOut, append, copy_course
 from interface_compiler.archive import zipped
 from spinbook.handout.leaks import Secret, hidden_names, leaks, secrets
-from spinbook.handout.student_copy import for_students, without_comments
+from spinbook.handout.student_copy import for_students
 
 EXERCISE = ROOT / "exercises" / "joint_velocity"
 SOLUTIONS = ROOT / "solutions" / "joint_velocity"
@@ -262,21 +262,6 @@ def test_what_an_editor_put_into_a_built_notebook_does_not_get_out(tmp_path: Pat
     done = course.spinbook("handout")
     assert done.returncode == 1
     assert f"{built.name}: error: a part of the solution of joint_velocity would be in it" in done.stderr
-
-
-@pytest.mark.parametrize(
-    ("markdown", "shown"),
-    [
-        ("One.\n<!-- note -->\nTwo.", "One.\nTwo."),
-        ("One <!-- note --> two.", "One  two."),
-        ("One.\n<!-- a\n\n```python\nb\n```\n-->\nTwo.", "One.\nTwo."),
-        ("One.\n\n```html\n<!-- shown -->\n```", "One.\n\n```html\n<!-- shown -->\n```"),
-        ("Write `<!-- exercise: x -->` here.", "Write `<!-- exercise: x -->` here."),
-        ("One. <!-- never closed\nTwo.", "One. "),
-    ],
-)
-def test_comments_are_taken_out_of_prose_and_left_in_code(markdown: str, shown: str) -> None:
-    assert without_comments(markdown) == shown
 
 
 def test_a_student_makes_the_same_package_from_the_notebooks_as_the_course_does(

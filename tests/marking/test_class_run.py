@@ -162,7 +162,7 @@ def test_a_mistake_in_the_overrides_is_told_with_its_line(done: SmallClass) -> N
     wishes.write_text("student,points,reason\nana,18,\n")
     code, printed = done.grade("--overrides", str(wishes))
     assert code == 2
-    assert "overrides.csv:2: there is no reason." in printed
+    assert "overrides.csv:2: the reason is missing." in printed
     assert "Traceback" not in printed
 
 

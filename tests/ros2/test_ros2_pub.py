@@ -89,4 +89,4 @@ def test_what_was_typed_wrong_is_said_at_once(
 def test_a_name_that_is_none(terminal: Terminal) -> None:
     answer = terminal.ros2("topic", "pub", "--once", "a b", "std_msgs/msg/Int8")
     assert answer.code == 1
-    assert answer.err.startswith("'a b' is no name for a topic")
+    assert answer.err.startswith("'a b' is not a valid name for a topic")

@@ -33,7 +33,7 @@ def test_a_node_that_is_run_later_leaves_the_files_where_they_are(module_kernel:
 
 def test_any_other_path_is_refused(module_kernel: Kernel) -> None:
     for path in ("../../evil.yaml", "config/../x.yaml", "setup.py"):
-        assert "is no launch or parameter file" in module_kernel.run(f"%%package_file {path}\nx").error
+        assert "is not a launch or parameter file" in module_kernel.run(f"%%package_file {path}\nx").error
 
 
 def test_a_log_is_shown_once_it_holds_what_is_waited_for(module_kernel: Kernel) -> None:

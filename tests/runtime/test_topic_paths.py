@@ -28,5 +28,5 @@ def test_the_longest_topic_that_fits_is_meant(path: str, expected: TopicPath | N
 
 @pytest.mark.parametrize("path", ["/a/position[", "/a/position[x]", "/a/1st"])
 def test_what_is_no_field_is_refused(path: str) -> None:
-    with pytest.raises(ValueError, match="is no field"):
+    with pytest.raises(ValueError, match="is not a field"):
         resolve(path, TOPICS)

@@ -122,7 +122,7 @@ def link() -> bytes:
 @pytest.mark.parametrize(
     ("content", "why"),
     [
-        (b"", "no zip"),
+        (b"", "not a valid zip file"),
         (UPLOAD[: len(UPLOAD) // 2], "cut off"),
         (link(), "symbolic link"),
         (zipped({"joint_velocity.py": bytes(50_000_000)}, zipfile.ZIP_DEFLATED), "more than 4 MB"),

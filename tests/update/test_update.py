@@ -208,7 +208,7 @@ def test_a_folder_that_is_no_course_is_told(tmp_path: Path, monkeypatch: pytest.
     write(tmp_path / "new", OLD)
     (tmp_path / "empty").mkdir()
     monkeypatch.chdir(tmp_path / "empty")
-    assert "no folder of a course" in str(updated("../new").exception)
+    assert "not a course's folder" in str(updated("../new").exception)
     assert json.loads(OLD["week3.ipynb"])["cells"]
 
 

@@ -194,7 +194,7 @@ class Recorder:
             try:
                 fields = to_fields(deserialize_message(data, kind))
             except Exception as error:  # whatever a made-up packet leads to
-                self.too_much = Stopped("over-limit", f"Your node published bytes that are no message: {error}")
+                self.too_much = Stopped("over-limit", f"Your node published bytes that are not a message: {error}")
             else:
                 self.received.append(Received(at, after, topic.name, topic.type, fields))
 

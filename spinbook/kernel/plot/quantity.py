@@ -49,7 +49,7 @@ def _steps(rest: str, path: str) -> tuple[str | int, ...]:
     for part in re.split(r"[/.]", rest) if rest else []:
         match = _STEP.fullmatch(part)
         if not match:
-            raise ValueError(f"`{part}` in `{path}` is no field: write for example /joint_commands/position[0].")
+            raise ValueError(f"`{part}` in `{path}` is not a field. Write for example /joint_commands/position[0].")
         steps.append(match.group(1))
         steps += [int(index) for index in re.findall(r"\d+", match.group(2))]
     return tuple(steps)

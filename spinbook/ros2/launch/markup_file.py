@@ -71,7 +71,7 @@ def _from_yaml(text: str) -> Iterator[Element]:
 
 def _yaml_elements(item: Any) -> Iterator[Element]:
     if not isinstance(item, dict):
-        raise CommandError(f"`{item}` is no element. Write `- node:` and its attributes below.")
+        raise CommandError(f"`{item}` is not an element. Write `- node:` and its attributes below.")
     for kind, inside in item.items():
         yield _yaml_element(str(kind), inside)
 

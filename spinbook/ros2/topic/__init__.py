@@ -7,11 +7,11 @@ from spinbook.ros2.cli import Entry, Menu
 topic = Menu(
     name="topic",
     entries={
-        "bw": Entry("spinbook.ros2.topic.bw:bw", "How many bytes a second a topic carries."),
+        "bw": Entry("spinbook.ros2.topic.bw:bw", "How many bytes per second a topic carries."),
         "delay": Entry("spinbook.ros2.topic.delay:delay", "How old messages are on arrival, by their header."),
         "echo": Entry("spinbook.ros2.topic.echo:echo", "Print the messages of a topic."),
         "find": Entry("spinbook.ros2.topic.find:find", "The topics of a type."),
-        "hz": Entry("spinbook.ros2.topic.hz:hz", "How many messages a second arrive."),
+        "hz": Entry("spinbook.ros2.topic.hz:hz", "How many messages per second arrive."),
         "info": Entry("spinbook.ros2.topic.info:info", "Who publishes and subscribes, with which QoS."),
         "list": Entry("spinbook.ros2.topic.list:list_", "The topics there are."),
         "pub": Entry("spinbook.ros2.topic.pub:pub", "Publish messages."),

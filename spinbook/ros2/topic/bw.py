@@ -20,7 +20,7 @@ WINDOW = 100
 )
 @discovery_options
 def bw(topic_name: str, window: int, spin_time: float | None, use_sim_time: bool) -> None:
-    """How many bytes a second a topic carries; Ctrl-C ends it.
+    """How many bytes per second a topic carries; Ctrl-C ends it.
 
     \b
       ros2 topic bw /joint_commands

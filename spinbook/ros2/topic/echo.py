@@ -37,11 +37,11 @@ LENGTH = 128
     type=click.IntRange(min=0),
     default=LENGTH,
     show_default=True,
-    help="Elements or letters after which '...' stands.",
+    help="Elements or letters to show before '...'.",
 )
 @filter_option
 @click.option("-i", "--include-message-info", is_flag=True, help="Time stamps and numbers of each message.")
-@click.option("--raw", is_flag=True, help="The bytes as they came.")
+@click.option("--raw", is_flag=True, help="The bytes as they arrived.")
 @click.option("--no-lost-messages", is_flag=True, help="Don't report lost messages.")
 @click.option("--lost-messages", is_flag=True, expose_value=False, hidden=True)
 @qos.qos_options("sensor_data")

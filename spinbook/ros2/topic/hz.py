@@ -30,7 +30,7 @@ def hz(
     spin_time: float | None,
     use_sim_time: bool,
 ) -> None:
-    """How many messages a second arrive; Ctrl-C ends it.
+    """How many messages per second arrive; Ctrl-C ends it.
 
     \b
       ros2 topic hz /joint_commands

@@ -33,7 +33,7 @@ CONFIRMATION = 2.0
     default=1.0,
     show_default=True,
     metavar="N",
-    help="Messages a second.",
+    help="Messages per second.",
 )
 @click.option("-p", "--print", "print_nth", type=int, default=1, metavar="N", help="Print every N-th message only.")
 @click.option(

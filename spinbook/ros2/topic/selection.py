@@ -27,7 +27,7 @@ def _compile(context: click.Context, parameter: click.Parameter, text: str | Non
         code = compile(text, "--filter", "eval")
     except (SyntaxError, ValueError) as error:
         raise CommandError(
-            f"--filter {text!r} is no Python expression: {error}", "As in: --filter 'm.data > 3'"
+            f"--filter {text!r} is not a valid Python expression: {error}", "As in: --filter 'm.data > 3'"
         ) from None
 
     def wanted(message: Any) -> bool:

@@ -1,0 +1,46 @@
+"""What is wrong in an author's file, and what to do about it: of chapters, exercises, scenarios and course.toml."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+
+
+class Severity(str, Enum):
+    """An error stops the work; NOT_RUN says that something is shown and not run; a warning stops nothing."""
+
+    ERROR = "error"
+    NOT_RUN = "not run"
+    WARNING = "warning"
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing to fix in one file.
+
+    `found` says what is there, `fix` what was expected and what to do. `line` counts from 1, and is None where the
+    whole file is meant. Problems of one `group` have one cause, such as a package that is not installed: a report
+    counts them. `alone` says that nothing else stands in the way there.
+    """
+
+    file: Path
+    line: int | None
+    found: str
+    fix: str
+    severity: Severity = Severity.ERROR
+    group: str = ""
+    alone: bool = True
+
+    @property
+    def is_error(self) -> bool:
+        """Whether this stops the work."""
+        return self.severity is Severity.ERROR
+
+    @property
+    def place(self) -> str:
+        """The file, with the line if there is one."""
+        return f"{self.file}:{self.line}" if self.line is not None else f"{self.file}"
+
+    def __str__(self) -> str:
+        return f"{self.place}: {self.severity.value}: {self.found}\n    {self.fix}"

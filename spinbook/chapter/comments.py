@@ -1,0 +1,105 @@
+"""Takes HTML comments, in which authors write notes, out of Markdown; what markdown-it finds to be code stays."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator
+from itertools import accumulate
+
+from markdown_it import MarkdownIt
+from markdown_it.rules_inline import StateInline
+
+from spinbook.chapter.flavours import parser
+from spinbook.chapter.links import places_of, rule_of
+
+_BEGIN, _END = "<!--", "-->"
+
+#: A part of a text: where it begins, and where what follows it begins.
+Span = tuple[int, int]
+
+
+def without_comments(markdown: str, *, keep_lines: bool = False) -> str:
+    """Return `markdown` without comments; a comment that never ends goes on to the end of the text.
+
+    A line that held nothing else is left out, or, with `keep_lines`, left empty, so that lines keep their numbers.
+    """
+    if _BEGIN not in markdown:
+        return markdown
+    cuts = list(_comments(markdown, list(_code(markdown))))
+    kept = []
+    for start, line in _numbered(markdown):
+        shown, is_cut = _without(line, start, cuts)
+        if keep_lines or not is_cut or shown.strip():
+            kept.append(shown)
+    return "\n".join(kept)
+
+
+def _comments(markdown: str, code: list[Span]) -> Iterator[Span]:
+    at = 0
+    while (at := markdown.find(_BEGIN, at)) >= 0:
+        if inside := next((end for start, end in code if start <= at < end), 0):
+            at = inside
+            continue
+        end = markdown.find(_END, at)
+        yield at, (at := end + len(_END) if end >= 0 else len(markdown))
+
+
+def _without(line: str, start: int, cuts: list[Span]) -> tuple[str, bool]:
+    """Return what of a line is left, and whether a comment reaches into it."""
+    end = start + len(line)
+    here = [(max(a, start) - start, min(b, end) - start) for a, b in cuts if a <= end and b > start]
+    left, at = "", 0
+    for first, last in here:
+        left += line[at:first]
+        at = last
+    return left + line[at:], bool(here)
+
+
+def _numbered(markdown: str) -> Iterator[tuple[int, str]]:
+    """Yield each line with the place in the text at which it begins."""
+    lines = markdown.split("\n")
+    starts = accumulate((len(line) + 1 for line in lines), initial=0)
+    return zip(starts, lines, strict=False)
+
+
+def _code(markdown: str) -> Iterator[Span]:
+    lines = markdown.split("\n")
+    starts = [start for start, _ in _numbered(markdown)]
+    read_to = [0] * len(lines)
+    for token in parser().parse(markdown):
+        first, last = token.map or (0, 0)
+        if token.type in {"fence", "code_block"}:
+            yield starts[first], starts[last - 1] + len(lines[last - 1]) + 1
+        elif token.type == "inline":
+            places = list(places_of(lines, read_to, first, token.content))
+            for start, end in _code_in_line(token.content):
+                row = token.content.count("\n", 0, start)
+                if place := places[row] if row < len(places) else None:
+                    number, column = place
+                    begin = starts[number] + column + start - (token.content.rfind("\n", 0, start) + 1)
+                    yield begin, begin + end - start
+
+
+def _code_in_line(content: str) -> list[Span]:
+    spans: list[Span] = []
+    md = _inline_parser()
+    md.inline.parse(content, md, {"watched": content, "spans": spans}, [])
+    return spans
+
+
+@functools.cache
+def _inline_parser() -> MarkdownIt:
+    md = MarkdownIt("commonmark", {"html": True})
+    rule = rule_of(md, "backticks")
+
+    def watch(state: StateInline, silent: bool) -> bool:
+        start, known = state.pos, len(state.tokens)
+        if not rule(state, silent):
+            return False
+        is_code = any(token.type == "code_inline" for token in state.tokens[known:])
+        if is_code and state.src == state.env.get("watched"):
+            state.env["spans"].append((start, state.pos))
+        return True
+
+    md.inline.ruler.at("backticks", watch)
+    return md
