@@ -116,10 +116,11 @@ pip() {
 install_pins() {
     # First the pinned setuptools: with it empy is built, the only one of them for which PyPI has no wheel.
     awk '/^[^ #]/ { on = /^setuptools==/ } on' constraints.txt >"$VENV/build-tool.txt"
+    # The pins are all that is needed: pip need not look for more, which it would want hashes of.
     set --
     for lock in $LOCKS; do set -- "$@" -r "$lock"; done
     { pip install --require-hashes --only-binary :all: -r "$VENV/build-tool.txt" &&
-        pip install --require-hashes --only-binary :all: --no-binary empy --no-build-isolation --use-pep517 "$@"; } ||
+        pip install --no-deps --require-hashes --only-binary :all: --no-binary empy --no-build-isolation --use-pep517 "$@"; } ||
         give_up "Dependencies could not be installed."
     pip install --no-deps --no-build-isolation --editable . || give_up "Spinbook itself could not be installed."
 }

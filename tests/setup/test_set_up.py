@@ -23,7 +23,7 @@ def test_first_installs_the_pins_by_hash_and_then_spinbook_itself(checkout: Chec
     assert checkout.calls[0] == "venv .venv"
     build_tool, pins, itself = pips(checkout)
     assert "--require-hashes" in build_tool
-    assert "--require-hashes" in pins
+    assert "--no-deps --require-hashes" in pins
     assert "-r constraints.txt -r constraints-ros.txt" in pins
     assert "--editable ." in itself
 
