@@ -7,23 +7,24 @@ from pathlib import Path
 from xdist.scheduler import LoadScopeScheduling
 from xdist.workermanage import WorkerController
 
-#: The tests of each of these folders share something that is expensive to make: a chapter that has run, a whole site.
-TOGETHER = ("audit", "check", "feedback", "graph", "handout", "interfaces", "site")
+#: All tests of one file run in one worker. So do those of each of these folders, whose files share something that is
+#: expensive to make: a chapter that has run, a whole site, a class that was graded.
+TOGETHER = ("audit", "check", "feedback", "graph", "handout", "interfaces", "marking", "site")
 
-#: In each of these files the tests take long and share little, so that several workers can take part.
-APART = ("build/test_execution.py", "marking/test_class_run.py", "new/test_kinds.py")
-
-#: What takes longest, in that order. It is begun first: begun last, it would leave the other workers without work.
-LONGEST = ("site", "handout", "audit")
+#: What takes longest, in this order. It is begun first: begun last, it would leave the other workers without work.
+LONGEST = (
+    *("site", "audit", "handout", "marking", "interfaces", "course/test_week3_notebook.py", "build/test_execution.py"),
+    *("new/test_kinds.py", "grader/test_course_solutions.py", "hostile/test_through_the_grader.py", "check"),
+    *("sandbox/test_hostile_submissions.py", "sandbox/test_limits.py", "sandbox/test_over_a_hub.py", "feedback"),
+    *("grader/test_outcomes.py", "grader/test_determinism.py", "grader/test_solutions.py", "gradescope", "graph"),
+    *("runtime/test_commands.py", "runtime/test_nodes.py", "turtlesim/test_turtle_node.py", "chapters", "package"),
+)
 
 
 def piece_of(nodeid: str) -> str:
-    """The piece of work that a test belongs to: its folder, its file, or the test alone."""
-    file = Path(nodeid.partition("::")[0])
-    folder, inside = file.parts[-2], "/".join(file.parts[-2:])
-    if folder in TOGETHER:
-        return folder
-    return nodeid if inside in APART else inside
+    """The piece of work that a test belongs to: a folder of `TOGETHER`, or its file."""
+    folder, file = Path(nodeid.partition("::")[0]).parts[-2:]
+    return folder if folder in TOGETHER else f"{folder}/{file}"
 
 
 class ByPiece(LoadScopeScheduling):
@@ -39,5 +40,6 @@ class ByPiece(LoadScopeScheduling):
 
 def _rank(piece: str) -> int:
     """Small for what takes long; pieces of the same rank stay in their order."""
-    name = piece.partition("::")[0]
-    return LONGEST.index(name) if name in LONGEST else len(LONGEST)
+    folder = piece.partition("/")[0]
+    found = [LONGEST.index(name) for name in (piece, folder) if name in LONGEST]
+    return min(found, default=len(LONGEST))

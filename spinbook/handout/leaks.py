@@ -18,6 +18,8 @@ from grader.exercise.starter import BEGIN, END
 #: One line with so many characters besides spaces is no coincidence, nor are so many lines with so many together.
 _ONE_LINE = 40
 _LINES, _CHARACTERS = 3, 40
+#: So many characters of a secret are looked up before the whole of it is compared.
+_PIECE = 8
 
 
 @dataclass(frozen=True)
@@ -196,18 +198,48 @@ def located(files: Mapping[str, bytes], known: list[Secret]) -> Iterator[Leak]:
 
     Of a notebook everything counts: cells, outputs, attachments, and metadata of the whole and of each cell.
     """
+    yield from _located(files, _Search(known))
+
+
+class _Search:
+    """Finds secrets in a text in one pass, however many there are.
+
+    Wherever a secret of n characters is, a piece of `_PIECE` characters of it begins at a multiple of n - _PIECE + 1.
+    So the text's pieces at the multiples for the shortest secret are looked up, and the secrets that have one compared.
+    """
+
+    def __init__(self, known: Sequence[Secret]) -> None:
+        self._known = known
+        self._short = [number for number, secret in enumerate(known) if len(secret.text) < 2 * _PIECE]
+        long = [(number, secret.text) for number, secret in enumerate(known) if len(secret.text) >= 2 * _PIECE]
+        self._step = min((len(text) for _, text in long), default=2 * _PIECE) - _PIECE + 1
+        self._having: dict[str, list[tuple[int, int]]] = {}
+        for number, text in long:
+            for at in range(len(text) - _PIECE + 1):
+                self._having.setdefault(text[at : at + _PIECE], []).append((number, at))
+
+    def found_in(self, text: str) -> list[Secret]:
+        """The secrets that stand in the text, in their order."""
+        found = {number for number in self._short if self._known[number].text in text}
+        for start in range(0, len(text), self._step):
+            for number, at in self._having.get(text[start : start + _PIECE], ()):
+                if start >= at and text.startswith(self._known[number].text, start - at):
+                    found.add(number)
+        return [self._known[number] for number in sorted(found)]
+
+
+def _located(files: Mapping[str, bytes], search: _Search) -> Iterator[Leak]:
     for name, content in files.items():
         text = bare(f"{name}\n{_readable(name, content)}")
         first: dict[str, Secret] = {}
-        for secret in known:
-            if secret.text in text:
-                first.setdefault(secret.what, secret)
+        for secret in search.found_in(text):
+            first.setdefault(secret.what, secret)
         for secret in first.values():
             yield _leak(name, content, secret)
         if name.endswith((".whl", ".zip")):
             with zipfile.ZipFile(io.BytesIO(content)) as archive:
                 inner = {f"{name}/{entry}": archive.read(entry) for entry in archive.namelist()}
-            yield from located(inner, known)
+            yield from _located(inner, search)
 
 
 def _leak(name: str, content: bytes, secret: Secret) -> Leak:
