@@ -128,9 +128,9 @@ def test_responds_at_once(many: Run) -> None:
     depends=["test_responds"],
     rule="Use a queue depth of 10 for both topics.",
 )
-def test_quality_of_service(switching: Run, emergency: Run) -> None:
+def test_quality_of_service(switching: Run, released: Run) -> None:
     """All ends are reliable and volatile, and there is one publisher on each topic."""
-    for run in (switching, emergency):
+    for run in (switching, released):
         run.must_have_qos()
         for topic in run.exercise.outputs:
             count = len(run.end_points("publisher", topic.name))

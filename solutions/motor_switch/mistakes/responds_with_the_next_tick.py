@@ -5,6 +5,7 @@ Caught by:
 """
 
 import rclpy
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.task import Future
@@ -21,7 +22,7 @@ class MotorSwitch(Node):
         self.next_tick = Future()
         self.publisher = self.create_publisher(Bool, '/motors_on', 10)
         self.create_subscription(Bool, '/emergency_stop', self.on_emergency_stop, 10)
-        self.create_service(SetBool, '/switch_motors', self.on_request)
+        self.create_service(SetBool, '/switch_motors', self.on_request, callback_group=ReentrantCallbackGroup())
         self.create_timer(0.5, self.tick)
 
     def tick(self):

@@ -1,4 +1,4 @@
-"""Beats every 0.252 s, so that it lags behind by half a second after a minute.
+"""After ten seconds the heart beats a little more slowly.
 
 Caught by:
 - test_does_not_drift
@@ -15,10 +15,14 @@ class Heartbeat(Node):
     def __init__(self):
         super().__init__('heartbeat')
         self.publisher = self.create_publisher(Header, '/heartbeat', 10)
-        self.timer = self.create_timer(0.252, self.beat)
+        self.beats = 0
+        self.timer = self.create_timer(0.25, self.beat)
         self.get_logger().info('The heart is ready')
 
     def beat(self):
+        self.beats += 1
+        if self.beats == 40:
+            self.timer.timer_period_ns = 260_000_000
         message = Header()
         message.stamp = self.get_clock().now().to_msg()
         message.frame_id = 'torso'

@@ -1,4 +1,4 @@
-"""Beats twice every half second.
+"""Every other beat comes 0.05 s early: the heart limps.
 
 Caught by:
 - test_each_beat_comes_in_time
@@ -15,14 +15,19 @@ class Heartbeat(Node):
     def __init__(self):
         super().__init__('heartbeat')
         self.publisher = self.create_publisher(Header, '/heartbeat', 10)
-        self.timer = self.create_timer(0.5, self.beat)
+        self.ticks = 0
+        self.timer = self.create_timer(0.05, self.tick)
         self.get_logger().info('The heart is ready')
+
+    def tick(self):
+        self.ticks += 1
+        if self.ticks % 10 in (4, 0):
+            self.beat()
 
     def beat(self):
         message = Header()
         message.stamp = self.get_clock().now().to_msg()
         message.frame_id = 'torso'
-        self.publisher.publish(message)
         self.publisher.publish(message)
 
 
