@@ -122,7 +122,7 @@ class SeriesChecks(Recorded):
         elif subscriber and self.messages_on(topic):
             told = f"the subscriber “{subscriber}” got nothing on {topic}."
             if any(end.durability == "volatile" for end in mine):
-                told += " Your publisher is volatile: who joins late gets nothing that was published before."
+                told += " Your publisher is volatile: whoever joins late gets nothing that was published before."
         else:
             told = f"your node has a publisher on {topic}, but never published anything."
         self.wrong_at(None, told, "", expected, "none")
