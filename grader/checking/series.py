@@ -57,7 +57,8 @@ class SeriesChecks(Recorded):
                 self._wrong_time(part, wanted, came, pairs)
         if len(got) != len(expected):
             told = f"expected {len(expected)} messages on {name}, got {len(got)}."
-            self.wrong_at(None, told, "", f"{len(expected)} messages", len(got), self._shift(expected, got, field))
+            in_all = self._shift(expected, got, field) or _stops(expected, got)
+            self.wrong_at(None, told, "", f"{len(expected)} messages", len(got), in_all)
         if shift := self._shift(expected, got, field, tolerance):
             self.wrong_at(got[0].at, "the messages are not in step.", name, "each in its turn", "one late", shift)
 
@@ -179,3 +180,10 @@ def _nanoseconds(stamp: dict[str, int]) -> int:
 
 def _stamp(nanoseconds: int) -> dict[str, int]:
     return dict(zip(("sec", "nanosec"), divmod(nanoseconds, SECOND), strict=True))
+
+
+def _stops(expected: Sequence[Received], got: Sequence[Received]) -> str:
+    """When the last message came, if more was expected long after it."""
+    if not 0 < len(got) < len(expected) or expected[-1].at - got[-1].at <= SECOND:
+        return ""
+    return f"The last one came at {seconds(got[-1].at):.2f} s."
