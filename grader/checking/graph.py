@@ -123,7 +123,7 @@ def _wrong(text: str, expected: str, got: str, at_all: str = "") -> NoReturn:
 
 def _of_qos(end: EndPoint, durability: str) -> str:
     if durability == "transient_local" and end.kind == "publisher":
-        return "Who subscribes later gets nothing that a volatile publisher published before."
+        return "Whoever subscribes later gets nothing that it published before."
     if durability == "volatile" and end.durability == "transient_local" and end.kind == "subscription":
         return "A transient local subscription gets nothing from a volatile publisher."
     return ""

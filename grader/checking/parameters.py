@@ -13,6 +13,17 @@ from grader.recording.events import ParameterChange, ParameterReading
 ANY: Any = object()
 
 
+def typed(value: Any) -> str:
+    """A value of which one sees its type: the double 2 is shown as `2.0`."""
+    return f"{shown(value)}.0" if isinstance(value, float) and value.is_integer() else shown(value)
+
+
+def kind_of(value: Any) -> str:
+    """The type of a parameter's value, in ROS's words."""
+    words = {bool: "a bool", int: "an integer", float: "a double", str: "a string"}
+    return words.get(type(value), "an array")
+
+
 class ParameterChecks(Recorded):
     """Parameters that the scenario set and asked for while the node ran."""
 
@@ -40,9 +51,11 @@ class ParameterChecks(Recorded):
             if reading.value is None and wanted is not None:
                 self._unknown(reading.at, name, reading.answered is not None)
             if type(reading.value) is not type(wanted):
-                kinds = type(wanted).__name__, type(reading.value).__name__
-                told = f"expected {shown(wanted)}, a {kinds[0]}, got {shown(reading.value)}, a {kinds[1]}."
-                self.wrong_at(reading.at, told, f"parameter {name}", shown(wanted), shown(reading.value))
+                expected, got = (
+                    f"{typed(wanted)}, {kind_of(wanted)}",
+                    f"{typed(reading.value)}, {kind_of(reading.value)}",
+                )
+                self.wrong_at(reading.at, f"expected {expected}, got {got}.", f"parameter {name}", expected, got)
             if not equal(reading.value, wanted, tolerance):
                 unit = next((one.unit for one in self.exercise.parameters if one.name == name), "")
                 expected, got = shown(wanted, unit), shown(reading.value, unit)
@@ -70,7 +83,7 @@ class ParameterChecks(Recorded):
         if taken and "undeclared" in change.reason:
             self._unknown(change.at, change.name, answered=True)
         wanted, got = ("taken", "refused") if taken else ("refused", "taken")
-        told = f"the value {shown(change.value)} must be {wanted}, but your node {'took' if change.taken else got} it."
+        told = f"the value {typed(change.value)} must be {wanted}, but your node {'took' if change.taken else got} it."
         told += f" It said: {change.reason.rstrip('.')}." if change.reason and taken else ""
         self.wrong_at(change.at, told, f"parameter {change.name}", wanted, got, self._never_refuses(taken))
 

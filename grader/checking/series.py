@@ -57,7 +57,8 @@ class SeriesChecks(Recorded):
                 self._wrong_time(part, wanted, came, pairs)
         if len(got) != len(expected):
             told = f"expected {len(expected)} messages on {name}, got {len(got)}."
-            self.wrong_at(None, told, "", f"{len(expected)} messages", len(got), self._shift(expected, got, field))
+            in_all = self._shift(expected, got, field) or _stops(expected, got)
+            self.wrong_at(None, told, "", f"{len(expected)} messages", len(got), in_all)
         if shift := self._shift(expected, got, field, tolerance):
             self.wrong_at(got[0].at, "the messages are not in step.", name, "each in its turn", "one late", shift)
 
@@ -122,7 +123,7 @@ class SeriesChecks(Recorded):
         elif subscriber and self.messages_on(topic):
             told = f"the subscriber “{subscriber}” got nothing on {topic}."
             if any(end.durability == "volatile" for end in mine):
-                told += " Your publisher is volatile: who joins late gets nothing that was published before."
+                told += " Your publisher is volatile: whoever joins late gets nothing that was published before."
         else:
             told = f"your node has a publisher on {topic}, but never published anything."
         self.wrong_at(None, told, "", expected, "none")
@@ -179,3 +180,10 @@ def _nanoseconds(stamp: dict[str, int]) -> int:
 
 def _stamp(nanoseconds: int) -> dict[str, int]:
     return dict(zip(("sec", "nanosec"), divmod(nanoseconds, SECOND), strict=True))
+
+
+def _stops(expected: Sequence[Received], got: Sequence[Received]) -> str:
+    """When the last message came, if more was expected long after it."""
+    if not 0 < len(got) < len(expected) or expected[-1].at - got[-1].at <= SECOND:
+        return ""
+    return f"The last one came at {seconds(got[-1].at):.2f} s."

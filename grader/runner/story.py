@@ -19,6 +19,12 @@ LIMITS = {
 }
 
 
+#: What ROS 2's C code says before it aborts a program that gave it an object of another class (rosidl_generator_py).
+OTHER_CLASS = re.compile(r'__convert_from_py: Assertion .strncmp\("(?:\w+\.)+(?P<expected>\w+)"')
+
+_RESULT = "An action's execute callback has to return a Result, such as `return Fibonacci.Result()`."
+
+
 @dataclass(frozen=True)
 class LastWords:
     """The error that ended a program: its last line, such as `ZeroDivisionError: float division by zero`, and the line
@@ -63,17 +69,34 @@ def is_rclpys_own(log: str, file_name: str, source: str) -> bool:
     return any("ok()" in row for row in rows[-2:])
 
 
+def _advice(error: str, block: str) -> str:
+    """What to do about an error that rclpy raises far from the student's line which caused it (rclpy 7.1)."""
+    if error.startswith("TypeError") and ", in send_response" in block:
+        return ". A service's callback has to return the response: end each way through it with `return response`."
+    if ", in _execute_goal" in block or ", in _send_result_response" in block:
+        return f". {_RESULT}"
+    return ""
+
+
+def _of_signal(signal: int, log: str) -> str:
+    if other := OTHER_CLASS.search(log):
+        told = f"it gave ROS 2 an object of another class than {other['expected']}."
+        return f"{told} {_RESULT}" if other["expected"].endswith("_Result") else told
+    return f"it was killed by signal {signal}."
+
+
 def of_exit(exit_: Exit, log: str, file_name: str, source: str) -> tuple[str, int | None]:
     """Why a program ended, as a clause that follows "Your program ended: ", and the line to blame."""
     if exit_.limit:
         return f"{LIMITS.get(exit_.limit, exit_.limit)}.", None
     words = last_words(log, file_name, source)
     if words and words.error:
+        advice = _advice(words.error, log[log.rfind(TRACEBACK) :])
         place = f" in line {words.line}" if words.line else ""
         text = f": {words.text}" if words.text else ""
-        return f"{words.error}{place}{text}", words.line
+        return f"{words.error}{place}{text}{advice}", words.line
     if exit_.signal:
-        return f"it was killed by signal {exit_.signal}.", None
+        return _of_signal(exit_.signal, log), None
     if exit_.code == 0:
         return "it came to its end by itself, before it was asked to.", None
     return f"it gave up with exit code {exit_.code}.", None

@@ -53,7 +53,7 @@ def main():
     rclpy.init()
     node = {class_name}()
     try:
-        rclpy.spin(node)
+        rclpy.spin({spun})
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     finally:
@@ -119,7 +119,9 @@ def _program(
 
 def _filled(title: str, node: ProgramFile, imports: str, init: Sequence[str], methods: str) -> str:
     class_name = node.class_name or "".join(word.capitalize() for word in node.node.split("_"))
-    body = _BODY.format(class_name=class_name, node=node.node, init="\n".join(init), methods=methods)
+    # With one thread, an action's callback that waits by the node's clock would wait for ever.
+    spun = "node, MultiThreadedExecutor()" if "MultiThreadedExecutor" in imports else "node"
+    body = _BODY.format(class_name=class_name, node=node.node, init="\n".join(init), methods=methods, spun=spun)
     return f'"""{title}."""\n\n{imports}\n\n\n{body}'
 
 
@@ -178,8 +180,9 @@ def _marked(todo: Sequence[str], last: str = "") -> list[str]:
 
 
 def _imports(topics: Sequence[Topic], endpoints: Sequence[Endpoint]) -> str:
+    threads = {"MultiThreadedExecutor" for one in endpoints if one.role == "action"}
     found = {
-        "rclpy.executors": {"ExternalShutdownException"},
+        "rclpy.executors": {"ExternalShutdownException", *threads},
         "rclpy.node": {"Node"},
         "rclpy.action": {kind for one in endpoints if (kind := _ACTION_ENDS.get(one.role))},
         "rclpy.qos": {word for topic in topics for word in re.findall(r"QoSProfile|\w+Policy", _quality(topic))},

@@ -68,7 +68,7 @@ def test_succeed_is_forgotten() -> None:
 def test_execute_raises() -> None:
     mine = goal(*BEGIN, (1.0, "aborted"), result={"sequence": []})
     assert says(lambda: run(mine, RIGHT).must_end("succeeded")).endswith(
-        "Does execute raise, or return without goal_handle.succeed()?"
+        "Does execute raise, return without goal_handle.succeed(), or call canceled() when nobody asked for it?"
     )
 
 

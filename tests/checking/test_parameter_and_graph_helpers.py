@@ -37,11 +37,11 @@ def test_parameters_that_are_taken_or_refused_wrongly() -> None:
     takes, refuses = set_to((3.0, True), (-1.0, True)), set_to((3.0, False), (-1.0, False))
     right, mute = set_to((3.0, True), (-1.0, False)), set_to((3.0, None))
     assert says(lambda: run(takes, right).must_refuse("gain", -1.0)) == (
-        "At 1.00 s (as usual), parameter gain: the value -1 must be refused, but your node took it. "
+        "At 1.00 s (as usual), parameter gain: the value -1.0 must be refused, but your node took it. "
         "Your node takes every value. Did you add an on-set callback?"
     )
     told = says(lambda: run(refuses, right).must_take_and_refuse_as_the_solution())
-    assert "the value 3 must be taken, but your node refused it. It said: too small. Your node refuses every" in told
+    assert "the value 3.0 must be taken, but your node refused it. It said: too small. Your node refuses every" in told
     undeclared = replace(EMPTY, parameters=(replace(refuses.parameters[0], reason="access to undeclared parameter"),))
     assert "your node does not have it. Declare it" in says(lambda: run(undeclared, right).must_take("gain", 3.0))
     assert "your node gave no answer about it." in says(lambda: run(mute, right).must_take("gain"))
@@ -51,7 +51,7 @@ def test_parameters_that_are_taken_or_refused_wrongly() -> None:
     ("mine", "told"),
     [
         (read(3.0), "parameter gain: expected 2 1/s, got 3 1/s."),
-        (read(2), "expected 2, a float, got 2, a int."),
+        (read(2), "expected 2.0, a double, got 2, an integer."),
         (read(None), "your node does not have it. Declare it in __init__, with declare_parameter."),
         (read(None, answered=False), "your node gave no answer about it."),
     ],
@@ -110,7 +110,7 @@ def test_qos() -> None:
     exercise = replace(EXERCISE, topics=(latched,))
     assert says(run(EMPTY, exercise=exercise).must_have_qos) == (
         "Your publisher on /out is reliable and volatile. Expected reliable and transient_local. "
-        "Who subscribes later gets nothing that a volatile publisher published before."
+        "Whoever subscribes later gets nothing that it published before."
     )
     eager = replace(EMPTY, end_points=(replace(ENDS[0], durability="transient_local"),))
     assert says(run(eager).must_have_qos).endswith(

@@ -124,6 +124,9 @@ def test_a_series_that_comes_too_late_or_ends_too_early() -> None:
     assert (found.at, found.expected, found.got) == (0.55, "0.10 s", "0.55 s")
     short = published(TIMES[:40], VALUES[:40])
     assert "expected 50 messages on /out, got 40." in says(lambda: run(short, RIGHT).must_match_series("data"))
+    stopped = published(TIMES[:30], VALUES[:30])
+    told = says(lambda: run(stopped, RIGHT).must_match_series("data"))
+    assert told.endswith(f"expected 50 messages on /out, got 30. The last one came at {TIMES[29]:.2f} s.")
 
 
 def test_a_late_subscriber_of_a_volatile_publisher_gets_nothing() -> None:

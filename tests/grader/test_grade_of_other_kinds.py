@@ -89,7 +89,8 @@ def graded(folder: Path, names: str, interface: str, scenario: str, check: str, 
         f'    return (Scenario("plain", "a second or two", {scenario}, rate=20.0),)\n'
     )
     (exercise / "checks.py").write_text(
-        "from grader.checking import Run, check\n\n\n@check(points=4, hint='Look.')\ndef test_all(plain: Run) -> None:\n"
+        "from grader.checking import Run, check\n\n\n"
+        "@check(points=4, hint='Look.')\ndef test_all(plain: Run) -> None:\n"
         f'    """It works."""\n    {check}\n'
     )
     (solutions / "solution.py").write_text(f"{solution}# BEGIN SOLUTION\n# END SOLUTION\n")

@@ -38,7 +38,7 @@ def test_parameters_at_the_start(started: Run) -> None:
 
 @check(
     points=3,
-    hint="Read the parameters for each temperature, or renew what you keep of them.",
+    hint="Read the parameters for each temperature. An on-set callback still gets the old values from get_parameter().",
     depends=[test_switches_the_heater],
     misconception="reads parameters once",
 )
