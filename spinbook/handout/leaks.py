@@ -174,18 +174,51 @@ def located(files: Mapping[str, bytes], known: list[Secret]) -> Iterator[Leak]:
 
     Of a notebook everything counts: cells, outputs, attachments, and metadata of the whole and of each cell.
     """
+    yield from _located(files, _Finder(known))
+
+
+def _located(files: Mapping[str, bytes], finder: _Finder) -> Iterator[Leak]:
     for name, content in files.items():
-        text = bare(f"{name}\n{_readable(name, content)}")
         first: dict[str, Secret] = {}
-        for secret in known:
-            if secret.text in text:
-                first.setdefault(secret.what, secret)
+        for secret in finder.find(bare(f"{name}\n{_readable(name, content)}")):
+            first.setdefault(secret.what, secret)
         for secret in first.values():
             yield _leak(name, content, secret)
         if name.endswith((".whl", ".zip")):
             with zipfile.ZipFile(io.BytesIO(content)) as archive:
                 inner = {f"{name}/{entry}": archive.read(entry) for entry in archive.namelist()}
-            yield from located(inner, known)
+            yield from _located(inner, finder)
+
+
+#: Texts are looked at in blocks of so many characters.
+_BLOCK = 20
+
+
+class _Finder:
+    """Finds which of thousands of secrets are in a text, in one pass over it.
+
+    A text is cut into blocks. A secret of at least twice a block's length, wherever it is, covers a whole block, and
+    that block begins within the secret's first characters. So only secrets that have a block of the text there are
+    compared with it.
+    """
+
+    def __init__(self, known: Sequence[Secret]) -> None:
+        self._known = known
+        self._short = [number for number, secret in enumerate(known) if len(secret.text) < 2 * _BLOCK]
+        self._blocks: dict[str, list[tuple[int, int]]] = {}
+        short = set(self._short)
+        for number, secret in enumerate(known):
+            for offset in range(0 if number in short else _BLOCK):
+                self._blocks.setdefault(secret.text[offset : offset + _BLOCK], []).append((number, offset))
+
+    def find(self, text: str) -> list[Secret]:
+        """Return the secrets that are in the text, in the order in which they were given."""
+        found = {number for number in self._short if self._known[number].text in text}
+        for at in range(0, len(text) - _BLOCK + 1, _BLOCK):
+            for number, offset in self._blocks.get(text[at : at + _BLOCK], ()):
+                if at >= offset and number not in found and text.startswith(self._known[number].text, at - offset):
+                    found.add(number)
+        return [self._known[number] for number in sorted(found)]
 
 
 def _leak(name: str, content: bytes, secret: Secret) -> Leak:
