@@ -230,7 +230,6 @@ class _Search:
 
 def _located(files: Mapping[str, bytes], search: _Search) -> Iterator[Leak]:
     for name, content in files.items():
-        text = bare(f"{name}\n{_readable(name, content)}")
         first: dict[str, Secret] = {}
         for secret in search.found_in(text):
             first.setdefault(secret.what, secret)

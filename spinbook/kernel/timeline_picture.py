@@ -49,6 +49,9 @@ def span_of(lanes: Iterable[Lane]) -> tuple[float, float]:
 
 def moving_timeline(lanes: Sequence[Lane], title: str = "") -> str:
     """The picture of lanes of which at least one has a mark."""
+    # Web pages draw the other one, and have no matplotlib.
+    from matplotlib.figure import Figure
+
     start, end = span_of(lanes)
     across = Scale(start, max(end, start + 0.1), _LEFT, _WIDTH - _RIGHT)
     words = in_words(lanes, start)
@@ -201,38 +204,60 @@ def _moving(cycle: Cycle, height: float) -> str:
     return f'{rules}<clipPath id="{key}c">{window}</clipPath>'
 
 
-def still_timeline(lanes: Sequence[Lane], title: str = "") -> Figure:
-    """The same as a figure of matplotlib. Time counts from the first event."""
-    # Web pages draw the other one, and have no matplotlib.
-    from matplotlib.figure import Figure
+#: The still is laid out in the SVG's own pixels: a point of the figure is one of them.
+_POINTS_AN_INCH = 72
 
-    start, _ = span_of(lanes)
-    figure = Figure(figsize=(8, 0.9 + 0.75 * len(lanes)), layout="constrained")
-    axes = figure.subplots()
-    for row, lane in enumerate(lanes):
-        _draw_lane(axes, lane, -row, start)
-    axes.set_ylim(-len(lanes) + 0.3, 0.75)
-    axes.set_yticks([])
-    axes.set_xlabel("time (s)")
-    axes.grid(axis="x", alpha=0.3)
-    axes.spines[["top", "right", "left"]].set_visible(False)
-    figure.suptitle(title or ", ".join(dict.fromkeys(lane.name for lane in lanes)), fontsize=11)
+
+def still_timeline(lanes: Sequence[Lane], title: str = "") -> Figure:
+    """The same as a figure of matplotlib, as wide as a phone: the SVG's layout. Time counts from the first event."""
+    start, end = span_of(lanes)
+    across = Scale(start, max(end, start + 0.1), _LEFT, _WIDTH - _RIGHT)
+    figure = Figure()
+    axes = figure.add_axes((0, 0, 1, 1))
+    top = float(_TOP)
+    if title:
+        axes.text(_WIDTH / 2, top, title, fontsize=12, ha="center", va="center")
+        top += _LABEL
+    bottom = top
+    for lane in lanes:
+        bottom = _draw_lane(axes, lane, bottom, across)
+    height = _draw_axis(axes, across, top, bottom)
+    axes.set(xlim=(0, _WIDTH), ylim=(height, 0))
+    axes.axis("off")
+    figure.set_size_inches(_WIDTH / _POINTS_AN_INCH, height / _POINTS_AN_INCH)
     return figure
 
 
-def _draw_lane(draw: Axes, lane: Lane, y: float, start: float) -> None:
-    draw.text(0, y + 0.34, lane.label, fontsize=9, fontweight="bold")
+def _draw_lane(draw: Axes, lane: Lane, top: float, across: Scale) -> float:
+    """Draw a lane below `top`, as `_lane` does. Returns where it ends."""
+    draw.text(_LEFT, top + 6, _fitting(lane.label), fontsize=11, fontweight="bold", va="center")
+    top += _LABEL
     for span in lane.spans:
-        colour, _ = _SPANS[span.look]
-        length, alpha = span.end - span.start, 0.25 if span.open else 0.5
-        draw.barh(y, length, left=span.start - start, height=0.3, color=colour, alpha=alpha)
+        x, (colour, _) = across.at(span.start), _SPANS[span.look]
+        inset = 5 if span.look == "waits" else 2
+        width, alpha = max(1.0, across.at(span.end) - x), 0.15 if span.open else 0.45
+        draw.barh(
+            top + _BAR / 2, width, left=x, height=_BAR - 2 * inset, facecolor=colour, alpha=alpha, edgecolor=colour
+        )
     for mark in _few(lane.marks):
-        at = mark.at - start
+        x, y = across.at(mark.at), top + _BAR / 2
         if mark.look == "tick":
-            draw.plot([at, at], [y - 0.16, y + 0.16], color="black", linewidth=1)
+            draw.plot([x, x], [y - 6, y + 6], color="black", linewidth=1.2)
             continue
         shape = {"asked": ">", "cancel": "X", "bad": "X"}.get(mark.look, "o")
-        draw.plot([at], [y], marker=shape, color=_MARKS[mark.look][0], markersize=8)
-        if _is_written(mark):
-            above = mark.look == "answered"
-            draw.text(at, y + (0.19 if above else -0.33), mark.text, fontsize=8, ha="center")
+        draw.plot([x], [y], marker=shape, color=_MARKS[mark.look][0], markersize=8)
+    rows = 0
+    for text, x, row in _placed(lane.marks, across):
+        rows = max(rows, row + 1)
+        draw.text(x, top + _BAR + _ROW * row + 7, text, fontsize=10, va="center")
+    return top + _BAR + _ROW * rows + _GAP
+
+
+def _draw_axis(draw: Axes, across: Scale, top: float, bottom: float) -> float:
+    """Draw lines at round times and the times below them, as `_axis` does. Returns the picture's height."""
+    seconds = Scale(0.0, across.high - across.low, across.start, across.end)
+    for mark in seconds.marks():
+        x, unit = seconds.at(mark), " s" if mark == seconds.marks()[-1] else ""
+        draw.plot([x, x], [top, bottom], color=_GREY, alpha=0.3, linewidth=1, zorder=0)
+        draw.text(x, bottom + 11, f"{mark:g}{unit}", fontsize=11, ha="center", va="center")
+    return bottom + 22
