@@ -142,7 +142,7 @@ def _facts(finding: Finding, grade: Grade) -> tuple[tuple[tuple[str, str], ...],
         facts.append(("when", f"{finding.at or 0.0:.2f} s after the start (message {finding.message}{of})"))
         before = ""
     if finding.part:
-        facts.append(("joint", finding.part))
+        facts.append(("which", finding.part))
     # "Your subscription has another type. Expected …" keeps its first sentence.
     remark = f"{before.rpartition('Expected ')[0].strip()} {after.strip()}".strip()
     return tuple(facts), remark
