@@ -62,8 +62,12 @@ class Signature:
 WHERE = re.compile(r"^(Message \d+ of \d+|At [\d.]+ s|Before the start) \([^)]*\)(, [^:]*)?: |^In “[^”]*”(, [^:]*)?: ")
 GUESS = re.compile(r" Is \S+ a misspelling of \S+\?")
 ENDED = re.compile(r"\b([A-Z]\w*(?:Error|Exception|Interrupt))\b.* in line \d+")
-#: One sentence in which something was expected, or was not.
-COMPARISON = re.compile(r"[^.]*\b(expected|must be|must have|came|got|never published|published nothing)\b[^.]*\.")
+#: A full stop that ends no sentence, as in header.stamp, or any other character.
+INSIDE = r"(?:[^.]|\.(?=\S))*"
+#: One sentence in which something was expected, or was not; what it may lie between tells which rule is broken.
+COMPARISON = re.compile(
+    rf"(?!.* between ){INSIDE}\b(expected|must|came|got|never published|published nothing)\b{INSIDE}\."
+)
 NUMBER = re.compile(r"(?<![\w.])-?\d+(\.\d+)?(e[+-]?\d+)?(?![\w.]*\w)")
 DIGITS = re.compile(r"[1-9](?:[\d.]*[1-9])?")
 #: Of so many significant digits is a value that hardly two mistakes share.
@@ -161,13 +165,25 @@ def mistakes_in(failed: Mapping[str, Failure], blocked: Set[str], signatures: Se
     left, made = set(failed), dict[int, float]()
     while left:
         scores = {number: _score(failed, left, blocked, one) for number, one in enumerate(signatures)}
-        ranking = sorted((score, -number) for number, score in scores.items() if score[0] and number not in made)
-        if not ranking or (len(ranking) > 1 and ranking[-1][0] == ranking[-2][0]):
+        best = max(scores, key=lambda number: scores[number], default=None)
+        if best is None or not scores[best][0] or _has_rival(best, scores, signatures):
             break
-        (_, fit), number = ranking[-1]
-        made[-number] = fit
-        left -= signatures[-number].failures.keys()
-    return [number for number, fit in made.items() if fit >= FITS_AMONG_OTHERS or not left]
+        made[best] = scores[best][1]
+        left -= signatures[best].failures.keys()
+    return [number for number, fit in made.items() if not left or _stands_alone(signatures[number], fit)]
+
+
+def _has_rival(best: int, scores: Mapping[int, tuple[float, float]], signatures: Sequence[Signature]) -> bool:
+    """Whether another signature explains some of the same checks, and the whole as well."""
+    checks = signatures[best].failures.keys()
+    equal = [number for number, score in scores.items() if score == scores[best] and number != best]
+    return any(checks & signatures[number].failures.keys() for number in equal)
+
+
+def _stands_alone(signature: Signature, fit: float) -> bool:
+    """Whether a signature may be named though the submission fails other checks that nothing explains."""
+    failures = signature.failures.values()
+    return fit >= FITS_AMONG_OTHERS and (len(failures) > 1 or any(failure.telling for failure in failures))
 
 
 def _score(

@@ -26,8 +26,9 @@ from spinbook.problem import Problem, SpinbookError
 FOR_AUTHORS = ("spinbook/new/template/", "spinbook/new/kinds/")
 
 _BUILD = "import sys; from setuptools.build_meta import build_wheel; print(build_wheel(sys.argv[1]))"
-_PACKAGES = ("spinbook/", "grader/", "interface_compiler/")
-_SOURCES = ("pyproject.toml", "README.md", "LICENSE", "spinbook", "grader", "interface_compiler")
+#: All that the commands import, as pyproject.toml lists it.
+_PACKAGES = ("spinbook", "grader", "interface_compiler", "rcl_python", "rmw_lockstep")
+_SOURCES = ("pyproject.toml", "README.md", "LICENSE", *_PACKAGES)
 
 
 def spinbook_wheel() -> tuple[str, bytes]:
@@ -68,12 +69,11 @@ def _built(source: Path) -> dict[str, bytes]:
 def _installed() -> dict[str, bytes]:
     """The files of the Spinbook that is installed: for a package of pure Python, what was in its wheel."""
     distribution = metadata.distribution("spinbook")
+    kept = (*(f"{package}/" for package in _PACKAGES), f"spinbook-{spinbook.__version__}.dist-info/")
     files = {}
     for file in distribution.files or ():
         name = file.as_posix()
-        wanted = name.startswith(
-            ("spinbook/", "grader/", "interface_compiler/", f"spinbook-{spinbook.__version__}.dist-info/")
-        )
+        wanted = name.startswith(kept)
         own = name.rpartition("/")[2] not in ("INSTALLER", "REQUESTED", "direct_url.json") and "__pycache__" not in name
         if wanted and own:
             files[name] = Path(str(distribution.locate_file(file))).read_bytes()

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import ast
+import io
 import json
 import re
 import shutil
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -19,6 +21,7 @@ from handout.conftest import CHAPTER, NOTE, ROOT, HandedOut, append, copy_course
 from interface_compiler.archive import zipped
 from spinbook.handout.leaks import Secret, hidden_names, leaks, secrets
 from spinbook.handout.student_copy import for_students
+from spinbook.handout.wheels import spinbook_wheel
 
 EXERCISE = ROOT / "exercises" / "joint_velocity"
 SOLUTIONS = ROOT / "solutions" / "joint_velocity"
@@ -134,6 +137,28 @@ def test_the_means_to_install_are_there_and_can_be_read(real: HandedOut) -> None
     assert {"pip": [f"./wheels/{wheel.name}"]} in conda["dependencies"]
     container = json.loads((real.folder / ".devcontainer" / "devcontainer.json").read_text())
     assert f"./wheels/{wheel.name}[colcon,lab]" in container["postCreateCommand"]
+
+
+def test_the_wheel_holds_every_package_of_ours_that_its_modules_import() -> None:
+    name, content = spinbook_wheel()
+    assert name.startswith("spinbook-")
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        files = archive.namelist()
+        trees = [ast.parse(archive.read(file)) for file in files if file.endswith(".py")]
+    imported = {
+        module.partition(".")[0]
+        for tree in trees
+        for node in ast.walk(tree)
+        for module in ([node.module or ""] if isinstance(node, ast.ImportFrom) else imported_by(node))
+    }
+    ours = {file.parent.name for file in ROOT.glob("*/__init__.py")}
+    assert imported & ours >= {"spinbook", "grader", "rmw_lockstep"}
+    assert {package for package in imported & ours if f"{package}/__init__.py" not in files} == set()
+
+
+def imported_by(node: ast.AST) -> list[str]:
+    """The modules of an `import` statement."""
+    return [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
 
 
 def test_the_students_exercise_is_the_authors_without_what_is_not_for_them(real: HandedOut) -> None:
