@@ -17,8 +17,9 @@ Frame: TypeAlias = "dict[str, Any]"
 class Link(Protocol):
     """What carries frames to the other participants of a graph, and waits for theirs."""
 
-    lock: threading.Condition
-    """Held while the graph or a queue changes; told whenever something may have become ready."""
+    @property
+    def lock(self) -> threading.Condition:
+        """Held while the graph or a queue changes; told whenever something may have become ready."""
 
     def send(self, frame: Frame, data: bytes = b"") -> None:
         """Hand a frame to every other participant that may want it."""

@@ -8,7 +8,9 @@ import sys
 from pathlib import Path
 
 import rcl_python
+from spinbook.browser.in_page import threads
 
+threads.replace_threading()
 rcl_python.install()
 
 from grader.exercise import load  # noqa: E402

@@ -44,7 +44,7 @@ def handed_out(name: str, folder: Path) -> Exercise:
 def in_the_page(exercise: Exercise, file: Path, out: Path) -> dict[str, Any]:
     """What the page's check comes to, from a process that runs over rcl_python."""
     command = [sys.executable, os.fspath(CHECK_FILE), os.fspath(exercise.folder), os.fspath(file), os.fspath(out)]
-    done = subprocess.run(["timeout", "-k", "1", "120", *command], capture_output=True, text=True, cwd=ROOT, check=False)
+    done = subprocess.run(["timeout", "-k", "1", "60", *command], capture_output=True, text=True, cwd=ROOT, check=False)
     assert done.returncode == 0, f"exit code {done.returncode}: {done.stderr}"
     found: dict[str, Any] = json.loads(out.read_text(encoding="utf-8"))
     return found

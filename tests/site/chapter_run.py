@@ -17,7 +17,7 @@ from typing import Any
 
 from playwright.sync_api import Locator, Page
 
-CELLS = "main .cell:is(.cell-node, .cell-shell, .cell-snippet, .cell-interface)"
+CELLS = "main .cell:is(.cell-node, .cell-shell, .cell-snippet, .cell-interface, .cell-package_file)"
 PICTURE = "(a picture)"
 _NOT_IN_A_PAGE = ("spinbook-setup", "exercise-")
 _ENDLESS = re.compile(

@@ -24,13 +24,10 @@ _ARCHIVE = Path("/check.zip")
 _FOLDER = Path("/exercises")
 _CANNOT = {
     "numpy": "Your program imports numpy, which a web page does not have. Check it in the notebook.",
-    "threading": "Your program uses threads, which a check in a web page can't follow. Check it in the notebook.",
-    "concurrent": "Your program uses threads, which a check in a web page can't follow. Check it in the notebook.",
     "asyncio": "Your program uses asyncio, which needs the browser for itself. Check it in the notebook.",
     "multiprocessing": "Your program starts processes, which a web page can't. Check it in the notebook.",
 }
 _SEVERAL = "This exercise has several programs, which a web page can't check together. Check it in the notebook."
-_THREADED = "MultiThreadedExecutor"
 
 
 def check(name: str, source: str) -> str:
@@ -56,8 +53,6 @@ def hindrance_of(source: str) -> str:
         for name in _imported(node):
             if name in _CANNOT:
                 return _CANNOT[name]
-        if isinstance(node, (ast.Name, ast.Attribute, ast.alias)) and _THREADED in ast.dump(node):
-            return _CANNOT["threading"]
     return ""
 
 

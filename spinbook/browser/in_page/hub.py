@@ -6,7 +6,6 @@ ends of the connection: `PageHub` and `PageConnection` on the hub's side, `Turns
 
 from __future__ import annotations
 
-import threading
 from collections import deque
 from collections.abc import Callable
 
@@ -15,6 +14,7 @@ from rmw_lockstep.hub.frames import Hello, Idle
 from rmw_lockstep.hub.limits import Use
 from rmw_lockstep.hub.link import Link
 from rmw_lockstep.hub.router import Router
+from spinbook.browser.in_page import threads
 
 #: The number of the program among the processes of its run.
 PROGRAM = 1
@@ -25,10 +25,12 @@ class Over(BaseException):
 
 
 class Turns:
-    """Two threads that never run at the same time: the program's and the hub's."""
+    """Two sides that never run at the same time: the program's threads and the hub's."""
 
     def __init__(self) -> None:
-        self._program, self._hub = threading.Semaphore(0), threading.Semaphore(0)
+        self._program, self._hub = threads.raw_lock(), threads.raw_lock()
+        self._program.acquire()
+        self._hub.acquire()
         self.is_over = False
         """Whether the program is to end now, as one that is killed."""
         self.has_ended = False
@@ -51,12 +53,10 @@ class Turns:
         self._program.acquire()
 
     def let_hub_go_on(self) -> None:
-        """The program waits until something happens. Raises `Over`."""
+        """The program waits until something happens, or its run is over."""
         if not self.is_over:
             self._hub.release()
             self._program.acquire()
-        if self.is_over:
-            raise Over
 
     def end(self) -> None:
         """The program has ended."""
@@ -88,10 +88,9 @@ class PageConnection(Link):
     def close(self) -> None:
         """There is nothing to close."""
 
-    def rests(self, now: int, until: int | None, in_ros: bool) -> None:
-        """The program has nothing left to do before `until` (ns), or before something comes."""
-        next_ = -1 if until is None else until
-        self.believe(Idle(self.handled, now, next_, int(in_ros), int(not in_ros), 0, 0, 1, ()))
+    def rests(self, now: int, until: int | None, in_ros: int) -> None:
+        """The program has nothing left to do before `until` (ns), or before something comes; so many wait in ROS."""
+        self.believe(Idle(self.handled, now, -1 if until is None else until, in_ros, 0, 0, 0, 1, ()))
 
 
 class PageHub(Hub):

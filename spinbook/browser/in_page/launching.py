@@ -40,8 +40,9 @@ def plan(line: str) -> str:
     """What `ros2 launch …` is to start, as JSON: its exit status and the steps. Errors are printed."""
     from spinbook.browser.in_page.cells import run_command
 
-    command.Launched = _Planned  # type: ignore[misc, assignment]
-    processes.find = _as_it_is  # type: ignore[assignment]
+    # Instead of processes of the system, those of the page.
+    setattr(command, "Launched", _Planned)  # noqa: B010 - as far as types go, it is another module's import
+    setattr(processes, "find", _as_it_is)  # noqa: B010
     _planned.clear()
     status = run_command(line)
     return json.dumps({"status": status, "steps": _planned})

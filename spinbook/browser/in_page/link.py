@@ -19,21 +19,13 @@ from spinbook.browser.in_page import threads
 _BREATH_S = 0.02
 
 
-class _Told(threading.Condition):
-    """A condition that also tells who waits for the page."""
-
-    def notify_all(self) -> None:
-        super().notify_all()
-        threads.changed()
-
-
 class PageLink:
     """The link of one worker. `page` is the worker's JavaScript side (worker.js)."""
 
     def __init__(self, page: Any) -> None:
         from pyodide.ffi import to_js  # type: ignore[import-not-found]
 
-        self.lock = _Told(threading.RLock())
+        self.lock = threads.Told(threading.RLock())
         self._page, self._to_js = page, to_js
         self._breathed = time.monotonic()
 

@@ -19,7 +19,9 @@ from rcl_python.link import Frame
 from rmw_lockstep.hub import EPOCH, frames
 from rmw_lockstep.hub.qos import AUTOMATIC, INFINITE, Qos
 from rmw_lockstep.hub.router import NO_HASH
+from spinbook.browser.in_page import threads
 from spinbook.browser.in_page.hub import PROGRAM, Over, PageHub, Turns
+from spinbook.browser.in_page.rota import Rota
 
 _KINDS = (PUBLISHER, SUBSCRIPTION, SERVICE, CLIENT)
 _HEADER = 5
@@ -29,17 +31,17 @@ _TIME = struct.Struct("<qB")
 _BARRIER, _TIME_KIND = ord("|"), ord("T")
 #: A program that only looks and never waits is done after so many looks.
 _LOOKS = 4
-_THREAD = 1
 
 
 class ProgramLink:
     """The link of a program whose whole world is a page's hub."""
 
     def __init__(self, hub: PageHub, turns: Turns) -> None:
-        self.lock = threading.Condition(threading.RLock())
+        self.lock = threads.Told(threading.RLock())
         self._hub, self._turns, self._connection = hub, turns, hub.connection
         self._now = hub.now
         self._looks = self._number = 0
+        self.rota = Rota(self)
 
     # --- out
 
@@ -47,12 +49,15 @@ class ProgramLink:
         """Hand a frame to the hub, which takes it at once."""
         if self._turns.is_over:
             return
-        for kind, payload in _encoded(frame, data, self._connection.handled, self._now):
+        thread = self.rota.number()
+        for kind, payload in _encoded(frame, data, (self._connection.handled, self._now, thread)):
             try:
                 self._hub.router.handle(self._connection, ord(kind), payload)
             except Exception as fault:
+                # The hub's thread raises it, and the program goes no further.
                 self._turns.fault = fault
                 self._turns.let_hub_go_on()
+                self.heed()
 
     # --- in
 
@@ -70,29 +75,44 @@ class ProgramLink:
     # --- time
 
     def wait(self, nanoseconds: int | None) -> None:
-        """The program has nothing left to do."""
-        self._rest(nanoseconds, in_ros=True)
+        """Wait for what comes, for another thread, or for so long."""
+        self._looks = 0
+        held = self.lock._release_save()  # type: ignore[attr-defined]
+        try:
+            self.rota.wait(nanoseconds, in_ros=True)
+        finally:
+            self.lock._acquire_restore(held)  # type: ignore[attr-defined]
 
     def sleep(self, seconds: SupportsFloat) -> None:
         """Do what time.sleep does, by the hub's time."""
         until = self._now + round(float(seconds) * 1e9)
         while self._now < until:
-            self._rest(until - self._now, in_ros=False)
+            self.rota.wait(until - self._now, in_ros=False)
             participant.current().pump()
 
-    def _rest(self, nanoseconds: int | None, in_ros: bool) -> None:
-        self._looks = 0
-        until = None if nanoseconds is None else self._now + nanoseconds
-        while not self._goes_on(until):
+    def rest(self, until: int | None, in_ros: int) -> None:
+        """All threads wait, of which so many in ROS: until something has come, or the time has, or a signal."""
+        while not self._goes_on(until) and not self._turns.is_over and not self._turns.signal:
             self._connection.rests(self._now, until, in_ros)
             self._turns.let_hub_go_on()
-            if self._turns.signal:
-                self._heed()
-                return
 
-    def _heed(self) -> None:
-        name, self._turns.signal = self._turns.signal, ""
-        interrupt(name)
+    def heed(self) -> None:
+        """Do, in the main thread, what the hub wants: end, or handle a signal. Raises `Over`."""
+        if self._turns.is_over:
+            raise Over
+        if self._turns.signal:
+            name, self._turns.signal = self._turns.signal, ""
+            interrupt(name)
+
+    @property
+    def is_wanted(self) -> bool:
+        """Whether the main thread has something to heed."""
+        return self._turns.is_over or bool(self._turns.signal)
+
+    @property
+    def has_frames(self) -> bool:
+        """Whether anything waits to be taken in."""
+        return bool(self._connection.queued)
 
     def _goes_on(self, until: int | None) -> bool:
         """Whether there is anything to take in, or the time has come; time goes on as far as it was granted."""
@@ -108,13 +128,13 @@ class ProgramLink:
                 return True
             queued.popleft()
             self._connection.handled += 1
-        return False
+        return until is not None and until <= self._now
 
     def breathe(self) -> None:
         """A program that looks again and again without waiting waits."""
         self._looks += 1
         if self._looks > _LOOKS:
-            self._rest(None, in_ros=True)
+            self.wait(None)
 
     def steady(self) -> int:
         """What the hub says that the time is (ns)."""
@@ -139,8 +159,8 @@ class ProgramLink:
 # --- frames
 
 
-def _encoded(frame: Frame, data: bytes, handled: int, now: int) -> Iterator[tuple[str, bytes]]:
-    """What the hub is told: kind and payload of each frame."""
+def _encoded(frame: Frame, data: bytes, moment: tuple[int, int, int]) -> Iterator[tuple[str, bytes]]:
+    """What the hub is told: kind and payload of each frame. `moment` is what was handled, the time, and the thread."""
     op = frame["op"]
     if op == "hello":
         yield "J", b""
@@ -154,11 +174,11 @@ def _encoded(frame: Frame, data: bytes, handled: int, now: int) -> Iterator[tupl
         yield "e", frames.to_gone(b"e", _id(frame["gid"]))[_HEADER:]
     elif op == "message":
         only = _id(frame["to"][0]) if len(frame["to"]) == 1 else 0
-        yield "D", _DATA.pack(_id(frame["from"]), only, frame["sent"], handled, now, _THREAD) + data
+        yield "D", _DATA.pack(_id(frame["from"]), only, frame["sent"], *moment) + data
     elif op == "request":
-        yield "Q", _CALL.pack(_id(frame["from"]), frame["n"], frame["sent"], handled, now, _THREAD) + data
+        yield "Q", _CALL.pack(_id(frame["from"]), frame["n"], frame["sent"], *moment) + data
     elif op == "response":
-        yield "R", _CALL.pack(_id(frame["to"][0]), frame["n"], frame["sent"], handled, now, _THREAD) + data
+        yield "R", _CALL.pack(_id(frame["to"][0]), frame["n"], frame["sent"], *moment) + data
 
 
 def _id(key: str) -> int:

@@ -1,7 +1,8 @@
 """Runs a student's program through a scenario, in simulated time and in one interpreter with the grader's own runner.
 
-Two threads take turns: the program's, and the one in which grader/runner does what the scenario says. So there is no
-timing and no patience in it, and every run is the same; the recording is the grader's own.
+The program's threads take turns, and when all of them wait it is the turn of the thread in which grader/runner does
+what the scenario says. So there is no timing and no patience in it, and every run is the same; the recording is the
+grader's own.
 """
 
 from __future__ import annotations
@@ -12,7 +13,6 @@ import os
 import re
 import signal
 import sys
-import threading
 import time
 import traceback
 import types
@@ -27,6 +27,7 @@ from grader.runner.task import Task
 from grader.scenario import Scenario
 from grader.scenario.command_line import arguments
 from rcl_python import logs
+from spinbook.browser.in_page import threads
 from spinbook.browser.in_page.hub import Over, PageHub, Turns
 from spinbook.browser.in_page.program_link import ProgramLink, join
 
@@ -109,18 +110,21 @@ def run(exercise: Exercise, scenario: Scenario, program: Program) -> Recording:
     task = Task(exercise, scenario, program.file, program.source)
     found: list[Recording | BaseException] = []
 
+    over = threads.raw_lock()
+    over.acquire()
+
     def grade() -> None:
         try:
             found.append(Run(task, student, hub).run(time.monotonic()))
         except BaseException as fault:
             found.append(fault)
             student.kill()
+        over.release()
 
-    grading = threading.Thread(target=grade, name="grading")
-    grading.start()
+    threads.raw_start(grade)
     with _as_main(program, scenario, log, link):
         link.run(lambda: _main(program, student, log))
-    grading.join()
+    over.acquire()
     if isinstance(found[0], BaseException):
         raise found[0]
     return found[0]
@@ -129,7 +133,10 @@ def run(exercise: Exercise, scenario: Scenario, program: Program) -> Recording:
 def _main(program: Program, student: PageStudent, log: io.StringIO) -> None:
     """Run the program as Python runs a script, up to its exit status."""
     try:
-        exec(compile(program.source, program.file, "exec"), sys.modules["__main__"].__dict__)
+        try:
+            exec(compile(program.source, program.file, "exec"), sys.modules["__main__"].__dict__)
+        finally:
+            threads.wait_for_all()
     except Over:
         raise
     except SystemExit as error:
@@ -175,10 +182,12 @@ def _as_main(program: Program, scenario: Scenario, log: io.StringIO, link: Progr
     sys.modules["__main__"] = main
     sys.argv = [program.file, *arguments(scenario)]
     logs.write = lambda line: print(line, file=log)
+    threads.govern(link.rota)
     try:
         with redirect_stdout(log), redirect_stderr(log), _time_of(link):
             yield
     finally:
+        threads.govern(None)
         sys.modules["__main__"], sys.argv, logs.write, environment = before
         os.environ.clear()
         os.environ.update(environment)
@@ -190,7 +199,6 @@ def _as_main(program: Program, scenario: Scenario, log: io.StringIO, link: Progr
 @contextmanager
 def _time_of(link: ProgramLink) -> Iterator[None]:
     """Let the clocks of the program's thread show what the hub grants; those of the grader's stay as they are."""
-    program = threading.get_ident()
     ours = {name: getattr(time, name) for name in ("sleep", "time", "time_ns", "monotonic", "monotonic_ns")}
     theirs: dict[str, Callable[..., float | None]] = {
         "sleep": link.sleep,
@@ -202,7 +210,7 @@ def _time_of(link: ProgramLink) -> Iterator[None]:
 
     def choose(name: str) -> Callable[..., float | None]:
         def clock(*given: float) -> float | None:
-            return (theirs if threading.get_ident() == program else ours)[name](*given)
+            return (theirs if link.rota.governs(threads.get_ident()) else ours)[name](*given)
 
         return clock
 

@@ -8,33 +8,59 @@ built of these (Condition, Event, Semaphore, queues, ThreadPoolExecutor) is Pyth
 
 from __future__ import annotations
 
+import _thread
+import _threading_local
 import itertools
 import queue
 import threading
 import time
 from collections.abc import Callable
 from types import TracebackType
-from typing import Any
-
-import _threading_local
+from typing import Any, Protocol
 
 _numbers = itertools.count(1_000)
 _main = threading.get_ident()
 _current = _main
 _page: Any = None
 _await: Callable[[Any], None]
-_spawn: Callable[[Callable[[], None]], None]
-_heed: Callable[[], None] = lambda: None
+_heed: Callable[[], None]
 _waiting = 0
+
+
+class Governor(Protocol):
+    """What decides whose turn it is among the threads of a program that is being checked (rota.py)."""
+
+    def governs(self, thread: int) -> bool: ...
+    def pause(self, milliseconds: float) -> None: ...
+    def changed(self) -> None: ...
+    def start(self, run: Callable[[], None]) -> int: ...
+
+
+_governor: Governor | None = None
+
+
+def govern(governor: Governor | None) -> None:
+    """Let this one decide from now on, or nobody."""
+    global _governor
+    _governor = governor
 
 
 def get_ident() -> int:
     """The number of the thread whose turn it is."""
-    return _current
+    return _current if _page else _thread.get_ident()
 
 
 def pause(milliseconds: float, for_frames: bool) -> None:
     """Let others go on for so long (-1: without end), or until anything has changed, or a frame has come."""
+    if _governor and _governor.governs(get_ident()):
+        _governor.pause(milliseconds)
+    elif _page:
+        _pause_in_page(milliseconds, for_frames)
+    else:
+        raise RuntimeError("a thread waits that nobody governs")
+
+
+def _pause_in_page(milliseconds: float, for_frames: bool) -> None:
     global _current, _waiting
     mine = _current
     _waiting += 1
@@ -49,6 +75,8 @@ def pause(milliseconds: float, for_frames: bool) -> None:
 
 def changed() -> None:
     """Let all who wait look again."""
+    if _governor:
+        _governor.changed()
     if _waiting:
         _page.wake()
 
@@ -58,6 +86,7 @@ class Lock:
 
     def __init__(self) -> None:
         self._held = False
+        self._wanted = 0
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take it, waiting for it for at most `timeout` seconds; whether it was taken."""
@@ -66,16 +95,24 @@ class Lock:
             left = -1.0 if until is None else 1000 * (until - time.monotonic())
             if not blocking or (until is not None and left <= 0):
                 return False
-            pause(left, False)
+            self._wait(left)
         self._held = True
         return True
+
+    def _wait(self, milliseconds: float) -> None:
+        self._wanted += 1
+        try:
+            pause(milliseconds, False)
+        finally:
+            self._wanted -= 1
 
     def release(self) -> None:
         """Give it back. Raises RuntimeError where nobody holds it."""
         if not self._held:
             raise RuntimeError("release unlocked lock")
         self._held = False
-        changed()
+        if self._wanted:
+            changed()
 
     def locked(self) -> bool:
         """Whether somebody holds it."""
@@ -89,6 +126,15 @@ class Lock:
 
     def _at_fork_reinit(self) -> None:
         self._held = False
+
+
+class Told(threading.Condition):
+    """A condition that also tells who waits for messages."""
+
+    def notify_all(self) -> None:
+        """Let all who wait look again."""
+        super().notify_all()
+        changed()
 
 
 class Handle:
@@ -113,21 +159,68 @@ class Handle:
             pause(-1 if until is None else max(0.0, 1000 * (until - time.monotonic())), False)
 
 
+def raw_lock() -> Any:
+    """A lock for those who govern: it waits by what is below all this."""
+    return Lock() if _page else _thread.allocate_lock()
+
+
+def raw_start(run: Callable[[], None]) -> int:
+    """Start a thread that nobody governs yet; its number."""
+    if not _page:
+        return _thread.start_new_thread(run, ())
+    from pyodide.ffi import create_proxy  # type: ignore[import-not-found]
+
+    number = next(_numbers)
+
+    def as_it() -> None:
+        global _current
+        _current = number
+        run()
+
+    _page.spawn(create_proxy(as_it))
+    return number
+
+
+def _begin(run: Callable[[], None]) -> int:
+    if _governor and _governor.governs(get_ident()):
+        return _governor.start(run)
+    return raw_start(run)
+
+
 def _start(function: Callable[[], None], handle: Handle | None = None, daemon: bool = True) -> Handle:
-    """What `threading` calls to start a thread."""
+    """What `threading` calls to start a thread (Python 3.13 and newer)."""
     started = handle or Handle()
-    started.ident = next(_numbers)
 
     def run() -> None:
-        global _current
-        _current = started.ident
         try:
             function()
         finally:
             started._set_done()
 
-    _spawn(run)
+    started.ident = _begin(run)
     return started
+
+
+_sentinels: dict[int, Lock] = {}
+
+
+def _set_sentinel() -> Lock:
+    """What `threading` asks for a lock that is free when this thread has ended (Python 3.12 and older)."""
+    return _sentinels.setdefault(get_ident(), Lock())
+
+
+def _start_new(function: Callable[..., None], given: tuple[Any, ...]) -> int:
+    """What `threading` calls to start a thread (Python 3.12 and older)."""
+
+    def run() -> None:
+        try:
+            function(*given)
+        finally:
+            sentinel = _sentinels.pop(get_ident(), None)
+            if sentinel and sentinel.locked():
+                sentinel.release()
+
+    return _begin(run)
 
 
 def use(page: Any, heed: Callable[[], None]) -> None:
@@ -135,23 +228,30 @@ def use(page: Any, heed: Callable[[], None]) -> None:
 
     To be called before anything is imported that keeps a lock.
     """
-    global _page, _await, _spawn, _heed
-    from pyodide.ffi import create_proxy, run_sync  # type: ignore[import-not-found]
+    global _page, _await, _heed
+    from pyodide.ffi import run_sync
 
     _page, _await, _heed = page, run_sync, heed
-    _spawn = lambda run: page.spawn(create_proxy(run))  # noqa: E731
+    replace_threading()
+
+
+def replace_threading() -> None:
+    """Let `threading` and what is built of it use what is here. Without a page, threads must be governed."""
     patched: dict[str, Any] = {
         "Lock": Lock,
         "_allocate_lock": Lock,
-        "RLock": threading._RLock,  # type: ignore[attr-defined]
+        "RLock": threading._RLock,
         "get_ident": get_ident,
         "get_native_id": get_ident,
         "_start_joinable_thread": _start,
         "_ThreadHandle": Handle,
+        "_start_new_thread": _start_new,
+        "_set_sentinel": _set_sentinel,
         "local": _threading_local.local,
     }
     for name, value in patched.items():
-        setattr(threading, name, value)
+        if hasattr(threading, name):
+            setattr(threading, name, value)
     # The one in C waits in a way of its own.
     queue.SimpleQueue = queue._PySimpleQueue  # type: ignore[misc, attr-defined]
 

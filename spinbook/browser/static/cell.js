@@ -6,6 +6,8 @@ const LINES = 500;
 const KINDS = ["node", "shell", "snippet", "interface", "package_file"];
 
 export const cells = new Map();
+// How many cells have been run.
+let turns = 0;
 // What each node has printed, for %log.
 export const logs = new Map();
 
@@ -21,7 +23,10 @@ class Cell {
     this.recorded = node.querySelector(".cell_output");
     this.links = node.querySelector(".cell-links");
     const language = this.kind === "node" || this.kind === "snippet" ? "python" : "";
-    this.editor = editing(this.code, `${location.pathname}#${this.name}`, this.file || "this cell", language);
+    // A chapter may show a program again, changed: each has changes of its own.
+    const before = [...cells.values()].filter((cell) => cell.name === this.name).length;
+    const own = before ? `${this.name}-${before + 1}` : this.name;
+    this.editor = editing(this.code, `${location.pathname}#${own}`, this.file || "this cell", language);
     this.reset = button("Reset", `Reset ${this.name}`, () => this.restore());
     this.reset.hidden = !this.editor.changed;
     this.editor.onchange = () => (this.reset.hidden = false);
@@ -59,6 +64,7 @@ class Cell {
     this.shown = element("div", { className: "ran" }, this.state, this.output);
     this.node.append(this.shown);
     this.reset.hidden = false;
+    this.turn = ++turns;
     this.count = 0;
     this.failed = false;
     this.until = this.about.until;
@@ -105,6 +111,8 @@ export function cellAt(node) {
   return cells.get(node);
 }
 
-// The cell that belongs to a module of the chapter, as `ros2 run` names it.
+// The cell that belongs to a module of the chapter, as `ros2 run` names it: of several, the one that was run last.
 export const cellOf = (name, full = "") =>
-  [...cells.values()].find((cell) => cell.kind === "node" && (cell.name === name || cell.about.executables?.includes(full)));
+  [...cells.values()]
+    .filter((cell) => cell.kind === "node" && (cell.name === name || cell.about.executables?.includes(full)))
+    .sort((a, b) => (b.turn ?? 0) - (a.turn ?? 0))[0];

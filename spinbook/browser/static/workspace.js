@@ -3,9 +3,14 @@ import { cells } from "./cell.js";
 
 const texts = {};
 
-// The package of the page's nodes.
-const pack = () =>
-  [...cells.values()].flatMap((cell) => cell.about.executables ?? []).map((name) => name.split("/")[0])[0] ?? "package";
+const NAMED = /\bros2 (?:run|launch) ([a-z]\w+) [\w.]|\bsrc\/([a-z]\w+)\//g;
+
+// The package of the page's nodes, as its commands name it.
+function pack() {
+  const text = [...cells.values()].filter((cell) => cell.kind === "shell").map((cell) => cell.source).join("\n");
+  const names = [...text.matchAll(NAMED)].map(([, run, path]) => run ?? path).filter((name) => name !== "turtlesim");
+  return names[0] ?? "package";
+}
 
 // Write a file; where it lies in the workspace.
 export function keep(path, text) {

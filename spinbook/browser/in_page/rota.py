@@ -1,0 +1,116 @@
+"""Whose turn it is among the threads of a program that is being checked: one runs at a time, in a fixed order.
+
+A thread goes on until it waits; then the next one has its turn that has anything new to look at. When all of them
+wait, the program has nothing left to do, and that is what the hub is told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from rcl_python import participant
+from spinbook.browser.in_page import threads
+
+if TYPE_CHECKING:
+    from spinbook.browser.in_page.program_link import ProgramLink
+
+
+class Rota:
+    """The threads of one program; the one that makes it is the main thread."""
+
+    def __init__(self, link: ProgramLink) -> None:
+        self._link = link
+        self._main = threads.get_ident()
+        self._gates: dict[int, Any] = {self._main: _closed()}
+        self._due: dict[int, int | None] = {}
+        self._in_ros: set[int] = set()
+        self._curious: set[int] = set()
+        self._numbers = {self._main: 1}
+
+    def governs(self, thread: int) -> bool:
+        """Whether a thread is one of the program's."""
+        return thread in self._gates
+
+    def number(self) -> int:
+        """The thread whose turn it is, counted from 1."""
+        return self._numbers.get(threads.get_ident(), 1)
+
+    def start(self, run: Callable[[], None]) -> int:
+        """Start another thread of the program's, whose turn comes later."""
+        gate = _closed()
+
+        def body() -> None:
+            gate.acquire()
+            try:
+                run()
+            finally:
+                self._leave()
+
+        number = threads.raw_start(body)
+        self._gates[number] = gate
+        self._numbers[number] = len(self._numbers) + 1
+        self._due[number] = None
+        self._curious.add(number)
+        return number
+
+    def changed(self) -> None:
+        """Let all who wait look again."""
+        self._curious.update(self._due)
+
+    def pause(self, milliseconds: float) -> None:
+        """Wait for another thread, for so long at most (-1: without end)."""
+        self.wait(None if milliseconds < 0 else round(milliseconds * 1e6), in_ros=False)
+
+    def wait(self, nanoseconds: int | None, in_ros: bool) -> None:
+        """Let others have their turns: for so long, or until there is anything new to look at."""
+        mine = threads.get_ident()
+        self._due[mine] = None if nanoseconds is None else self._link.steady() + nanoseconds
+        if in_ros:
+            self._in_ros.add(mine)
+        next_ = self._next(mine)
+        if next_ != mine:
+            self._gates[next_].release()
+            self._gates[mine].acquire()
+        del self._due[mine]
+        self._in_ros.discard(mine)
+        self._curious.discard(mine)
+        if mine == self._main:
+            self._link.heed()
+
+    def _leave(self) -> None:
+        """This thread has ended."""
+        mine = threads.get_ident()
+        next_ = self._next(mine)
+        del self._gates[mine]
+        self._gates[next_].release()
+
+    def _next(self, mine: int) -> int:
+        """Whose turn it is after this one; waits for the hub where all wait."""
+        while True:
+            if self._link.is_wanted and self._main in self._due:
+                return self._main
+            known = list(self._gates)
+            at = known.index(mine) + 1
+            for thread in (*known[at:], *known[:at]):
+                if thread in self._due and (thread in self._curious or self._is_due(thread)):
+                    return thread
+            self._let_hub_go_on()
+
+    def _is_due(self, thread: int) -> bool:
+        due = self._due[thread]
+        return due is not None and due <= self._link.steady()
+
+    def _let_hub_go_on(self) -> None:
+        dues = [due for due in self._due.values() if due is not None]
+        self._link.rest(min(dues, default=None), len(self._in_ros))
+        if not self._in_ros and self._link.has_frames:
+            # Nobody else takes them in.
+            participant.current().pump()
+        self.changed()
+
+
+def _closed() -> Any:
+    gate = threads.raw_lock()
+    gate.acquire()
+    return gate
