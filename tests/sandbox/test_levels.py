@@ -68,13 +68,13 @@ def test_each_level_has_really_been_tried() -> None:
 
 def test_without_bubblewrap_that_level_is_told_to_be_absent(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "/nowhere")
-    isolation._reason_against.cache_clear()
+    isolation._tried.cache_clear()
     try:
         assert "not installed" in str(available()[Isolation.BUBBLEWRAP])
         with pytest.raises(SandboxUnavailable, match="bwrap"):
             choose(Isolation.BUBBLEWRAP)
     finally:
-        isolation._reason_against.cache_clear()
+        isolation._tried.cache_clear()
 
 
 def test_where_a_machine_refuses_user_namespaces_landlock_is_what_is_left() -> None:
