@@ -10,6 +10,14 @@ from pathlib import Path
 PART = ".part"
 
 
+def cached(kind: str) -> Path:
+    """The folder for one kind of what can be made again: in `SPINBOOK_CACHE`, else in the user's cache folder."""
+    if given := os.environ.get("SPINBOOK_CACHE"):
+        return Path(given) / kind
+    base = os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()
+    return Path(base) / "spinbook" / kind
+
+
 def write_if_changed(file: Path, content: str | bytes, *, durable: bool = False) -> bool:
     """Make `file` hold `content`, and its folders exist. True if it had to be written.
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
-import os
 import platform
 import re
 from functools import cache
@@ -15,7 +14,7 @@ from pathlib import Path
 from grader.checking.verdict import Verdict
 from grader.exercise import Exercise, ExerciseError
 from grader.exercise.starter import MarkError, starter
-from grader.files import write_if_changed
+from grader.files import cached, write_if_changed
 from grader.grading.running import ScenarioRunner
 from grader.recording import Recording
 from grader.recording.store import from_json, to_json
@@ -88,11 +87,8 @@ def reference(runner: ScenarioRunner) -> dict[str, Recording]:
 
 
 def cache_folder() -> Path:
-    """Where the solution's recordings are kept: `SPINBOOK_CACHE`, else the user's cache folder."""
-    if given := os.environ.get("SPINBOOK_CACHE"):
-        return Path(given) / "reference"
-    base = os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()
-    return Path(base) / "spinbook" / "reference"
+    """Where the solution's recordings are kept."""
+    return cached("reference")
 
 
 def solution_file(exercise: Exercise) -> Path:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import array
 import re
 from typing import Any
 
@@ -43,10 +42,18 @@ def _element_class(message: Any, field: str) -> Any:
 
 
 def _plain(value: Any) -> Any:
+    if type(value) in _PLAIN:
+        return value
     if hasattr(value, "get_fields_and_field_types"):
         return to_fields(value)
     if isinstance(value, (bytes, bytearray)):
         return list(value)
-    if isinstance(value, (list, tuple, array.array)) or hasattr(value, "tolist"):
-        return [_plain(item) for item in (value.tolist() if hasattr(value, "tolist") else value)]
+    if hasattr(value, "tolist"):  # an array of numbers, Python's or numpy's
+        return value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
     return value
+
+
+#: Most of what messages hold, and plain as it is.
+_PLAIN = (float, str, int, bool)

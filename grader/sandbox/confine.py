@@ -64,7 +64,6 @@ def confine(
     isolation = start.isolation
     if isolation is Isolation.NONE:
         return
-    hidden = (*filesystem.own_packages(), *start.program.hidden)
     network = start.program.hub is None
     filters = seccomp.program(network=network, no_signals=_signals_leave(isolation)) if seccomp.supported() else None
     user = USER_ID if isolation is not Isolation.LANDLOCK else Path(place.home).stat().st_uid
@@ -76,6 +75,7 @@ def confine(
     syscalls.prctl(syscalls.PR_SET_NO_NEW_PRIVS, 1)
     syscalls.prctl(syscalls.PR_SET_DUMPABLE, 1)  # lost with the change of user; without it /proc/self is closed
     if isolation is Isolation.LANDLOCK:
+        hidden = (*filesystem.own_packages(), *start.program.hidden)
         landlock.restrict(place, start.program.readonly, hidden, processes=not network)
     if filters is not None:
         seccomp.install(filters)

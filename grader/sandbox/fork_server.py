@@ -12,7 +12,7 @@ import sys
 from collections.abc import Sequence
 from types import TracebackType
 
-from grader.sandbox import filesystem, namespaces, network
+from grader.sandbox import filesystem, namespaces, network, trials
 from grader.sandbox.confine import Start
 from grader.sandbox.errors import SandboxError
 from grader.sandbox.isolation import Isolation
@@ -100,7 +100,11 @@ class ForkServer:
         finally:
             for number in passed:
                 os.close(number)
-        return Student(ours, output, limits)
+        try:
+            return Student(ours, output, limits)
+        except SandboxError:
+            trials.forget()
+            raise
 
     def close(self) -> None:
         """Ends the processes. Students that they have started end with their rigs."""

@@ -8,7 +8,7 @@ import sys
 from enum import Enum
 from functools import cache
 
-from grader.sandbox import filesystem
+from grader.sandbox import filesystem, trials
 from grader.sandbox.errors import SandboxUnavailable
 
 _TRIAL_S = 30.0
@@ -32,8 +32,8 @@ class Isolation(str, Enum):
 
 
 def available() -> dict[Isolation, str | None]:
-    """For each level None if it works here, else the reason in words. Found by starting a program in it; then kept."""
-    return {level: _reason_against(level) for level in Isolation}
+    """For each level None if it works here, else the reason in words. Found by starting a program in it."""
+    return {level: _tried(level) for level in Isolation}
 
 
 def choose(wanted: Isolation | None = None) -> Isolation:
@@ -60,8 +60,18 @@ def choose(wanted: Isolation | None = None) -> Isolation:
     )
 
 
-@cache
 def _reason_against(level: Isolation) -> str | None:
+    """None where the level works, or has worked under the same circumstances; else the reason in words."""
+    if trials.has_worked(level.value):
+        return None
+    reason = _tried(level)
+    if reason is None:
+        trials.keep(level.value)
+    return reason
+
+
+@cache
+def _tried(level: Isolation) -> str | None:
     if not sys.platform.startswith("linux"):
         return None if level is Isolation.NONE else "it needs Linux"
     environment = {name: os.environ[name] for name in filesystem.RUNTIME_VARIABLES if name in os.environ}

@@ -15,6 +15,7 @@ import platform
 import socket
 import struct
 from collections.abc import Sequence
+from functools import cache
 
 from grader.sandbox import syscalls
 
@@ -122,6 +123,7 @@ def supported() -> bool:
     return platform.machine() in ("x86_64", "aarch64")
 
 
+@cache
 def program(*, network: bool = True, no_signals: bool = False) -> bytes:
     """The filter as the kernel wants it (an array of struct sock_filter).
 

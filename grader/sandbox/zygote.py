@@ -20,7 +20,7 @@ import warnings
 from pathlib import Path
 from typing import NoReturn
 
-from grader.sandbox import filesystem, middleware
+from grader.sandbox import filesystem, middleware, seccomp
 from grader.sandbox import middleware as type_support
 from grader.sandbox.middleware import Middleware, choosable
 from grader.sandbox.program import Paths, Program
@@ -155,6 +155,9 @@ def _prepare_for_forks() -> None:
     """Finds out once what every fork would have to find out for itself."""
     filesystem.system()
     filesystem.interpreter()
+    if seccomp.supported():
+        seccomp.program(network=False, no_signals=False)
+        seccomp.program(network=False)
     with contextlib.suppress(Exception):  # an rclpy whose logger works in another way
         # The logger looks at the file of every module when it is first asked for a caller: half a step's time each.
         importlib.import_module("rclpy.impl.rcutils_logger").CallerId()

@@ -10,12 +10,10 @@ from rmw_lockstep.hub import frames
 from rmw_lockstep.hub.ends import Asked, Client, End, Heard, Moment, Publisher, Server, Subscription
 from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, EndPoint, Node
 from rmw_lockstep.hub.graph import HUB, Graph
+from rmw_lockstep.hub.hashes import type_hash
 from rmw_lockstep.hub.limits import Use, Violation
 from rmw_lockstep.hub.link import Link
 from rmw_lockstep.hub.qos import TRANSIENT_LOCAL, Qos
-
-#: The hash of a type whose description the hub has not got: version 0 is "none".
-NO_HASH = bytes(frames.HASH_BYTES)
 
 #: Requests of other processes that one process may leave unanswered.
 MOST_REQUESTS = 10_000
@@ -290,7 +288,7 @@ class Router:
 
     def new_end_point(self, kind: int, node: Node, name: str, type: str, qos: Qos) -> EndPoint:
         """An identity for an end point of the hub's."""
-        return EndPoint(next(self._numbers), kind, node.id, name, type, NO_HASH, qos)
+        return EndPoint(next(self._numbers), kind, node.id, name, type, type_hash(type), qos)
 
     def add_end(self, end: End) -> None:
         """It is in the graph from now on."""

@@ -1,7 +1,8 @@
-"""What judging costs besides the checks themselves."""
+"""What judging costs besides the checks themselves, and what it reads."""
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -33,3 +34,25 @@ def test_a_process_that_has_loaded_pytest_loads_nothing_more_of_it_for_the_check
     )
     assert run.returncode == 0, run.stderr
     assert run.stdout.strip() == ""
+
+
+LISTED = """
+import sys
+from pathlib import Path
+from grader.checking.judging import listed
+from grader.exercise import load
+
+print(len(listed(load(Path(sys.argv[1])))))
+"""
+
+
+def test_nothing_that_lies_above_an_exercise_is_read(tmp_path: Path) -> None:
+    exercise = tmp_path / "exercises" / EXERCISE.name
+    shutil.copytree(EXERCISE, exercise)
+    for folder in (tmp_path, exercise.parent):
+        (folder / "conftest.py").write_text("raise SystemExit('this file is not for the grader')\n")
+
+    run = subprocess.run([sys.executable, "-c", LISTED, str(exercise)], capture_output=True, text=True, timeout=120)
+
+    assert run.returncode == 0, run.stderr
+    assert int(run.stdout) > 10

@@ -53,6 +53,8 @@ def test_the_package_is_known_to_ament_with_its_definitions(robot_interfaces: Co
     prefix = robot_interfaces.prefix
 
     assert prefixes.interfaces([prefix])["robot_interfaces"] >= {"msg/JointLimits", "srv/GetLimits", "action/MoveJoint"}
+    assert prefixes.interfaces_of("robot_interfaces", [prefix]) == prefixes.interfaces([prefix])["robot_interfaces"]
+    assert not prefixes.interfaces_of("other_interfaces", [prefix])
     assert prefixes.definitions_of("robot_interfaces", prefix) == {item.path: item.text for item in robot()}
 
 

@@ -10,7 +10,17 @@ from pathlib import Path
 import pytest
 from sandbox_rig import reason_against
 
-from grader.sandbox import Isolation, SandboxUnavailable, available, choose, isolation
+from grader.sandbox import (
+    ForkServer,
+    Isolation,
+    Program,
+    SandboxError,
+    SandboxUnavailable,
+    available,
+    choose,
+    isolation,
+    trials,
+)
 
 NOTHING_WORKS = {
     Isolation.BUBBLEWRAP: "bubblewrap (bwrap) is not installed",
@@ -66,15 +76,65 @@ def test_each_level_has_really_been_tried() -> None:
     assert all(reason is None or len(reason) > 10 for reason in found.values())
 
 
+@pytest.fixture
+def tried(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, reasons_of_trials: dict[Isolation, str]) -> list[Isolation]:
+    """The levels that have been tried, in order; nothing is kept from before."""
+    found: list[Isolation] = []
+    monkeypatch.setenv("SPINBOOK_CACHE", str(tmp_path))
+
+    def trial(level: Isolation) -> str | None:
+        found.append(level)
+        return reasons_of_trials.get(level)
+
+    monkeypatch.setattr(isolation, "_tried", trial)
+    return found
+
+
+@pytest.fixture
+def reasons_of_trials() -> dict[Isolation, str]:
+    """What speaks against a level when it is tried."""
+    return {}
+
+
+def test_a_level_that_has_worked_is_not_tried_again_until_something_changes(
+    tried: list[Isolation], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert [choose(), choose()] == [Isolation.BUBBLEWRAP] * 2
+    assert tried == [Isolation.BUBBLEWRAP]
+
+    monkeypatch.setenv("AMENT_PREFIX_PATH", "/opt/ros/another")
+    choose()
+    assert tried == [Isolation.BUBBLEWRAP] * 2
+
+
+def test_a_level_that_did_not_work_is_tried_each_time(
+    tried: list[Isolation], reasons_of_trials: dict[Isolation, str]
+) -> None:
+    reasons_of_trials[Isolation.BUBBLEWRAP] = NOTHING_WORKS[Isolation.BUBBLEWRAP]
+
+    assert [choose(), choose()] == [Isolation.NAMESPACES] * 2
+    assert tried == [Isolation.BUBBLEWRAP, Isolation.NAMESPACES, Isolation.BUBBLEWRAP]
+
+
+def test_a_sandbox_that_could_not_be_made_has_its_level_tried_again(tried: list[Isolation], tmp_path: Path) -> None:
+    choose()
+
+    program = Program("node.py", {"node.py": b"print('never')"}, hub=tmp_path / "no such hub")
+    with ForkServer(preload=()) as fork_server, pytest.raises(SandboxError):
+        fork_server.start(program, Isolation.NONE)
+
+    assert not trials.has_worked(Isolation.BUBBLEWRAP.value)
+
+
 def test_without_bubblewrap_that_level_is_told_to_be_absent(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "/nowhere")
-    isolation._reason_against.cache_clear()
+    isolation._tried.cache_clear()
     try:
         assert "not installed" in str(available()[Isolation.BUBBLEWRAP])
         with pytest.raises(SandboxUnavailable, match="bwrap"):
             choose(Isolation.BUBBLEWRAP)
     finally:
-        isolation._reason_against.cache_clear()
+        isolation._tried.cache_clear()
 
 
 def test_where_a_machine_refuses_user_namespaces_landlock_is_what_is_left() -> None:
