@@ -14,10 +14,9 @@ from types import TracebackType
 
 from grader.sandbox import filesystem, namespaces, network
 from grader.sandbox.confine import Start
-from grader.sandbox.errors import SandboxError
 from grader.sandbox.isolation import Isolation
-from grader.sandbox.middleware import Middleware, variables
-from grader.sandbox.program import Limits, Program
+from grader.sandbox.middleware import variables
+from grader.sandbox.program import Limits, Middleware, Program, SandboxError
 from grader.sandbox.student import Student
 
 PRELOAD = (

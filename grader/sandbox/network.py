@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 
 from grader.sandbox import namespaces, syscalls
-from grader.sandbox.errors import SandboxError
 from grader.sandbox.isolation import Isolation
+from grader.sandbox.program import SandboxError
 
 
 def enter(isolation: Isolation) -> None:

@@ -9,9 +9,8 @@ import signal
 import socket
 from types import TracebackType
 
-from grader.sandbox.errors import SandboxError
 from grader.sandbox.monitor import Exit, Monitor, Output
-from grader.sandbox.program import Limits
+from grader.sandbox.program import Limits, SandboxError
 
 _START_S = 30.0
 _DEATH_S = 30.0
