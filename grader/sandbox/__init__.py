@@ -1,8 +1,8 @@
-"""Runs a student's program where it can neither see nor harm anything: see docs/sandbox.md.
+"""Runs a student's program where it can't see or harm anything else: see docs/sandbox.md.
 
-fork server = Fork server([Middleware.LOCKSTEP])  # once in a worker, before the processes that grade are forked
+server = ForkServer([Middleware.LOCKSTEP])  # once in a worker, before the processes that grade are forked
 ...
-with fork server.start(Program("node.py", {"node.py": source}, hub=socket), isolation) as student:
+with server.start(Program("node.py", {"node.py": source}, hub=socket), isolation) as student:
     ...
 """
 

@@ -36,7 +36,7 @@ PRELOAD = (
 
 
 class ForkServer:
-    """Starts students. One serves a whole worker: make it before the rigs are forked, and each of them may use it.
+    """Starts students. One serves a whole worker: make it before the runners are forked, and each of them may use it.
 
     It has a process for each middleware, which is started when it is first needed.
     """
@@ -45,7 +45,7 @@ class ForkServer:
         """Starts the processes for some middlewares; they import while the caller goes on.
 
         Args:
-            middlewares: those that rigs will need. A rig that needs another one waits for a process of its own.
+            middlewares: those that runners will need. A runner that needs another one waits for a process of its own.
             preload: the modules to import beforehand; those that are not installed are left out.
         """
         self._preload = preload
@@ -102,7 +102,7 @@ class ForkServer:
         return Student(ours, output, limits)
 
     def close(self) -> None:
-        """Ends the processes. Students that they have started end with their rigs."""
+        """Ends the processes. Students that they have started end with their runners."""
         for server in self._servers.values():
             server.close()
 
@@ -153,7 +153,7 @@ class _Process:
 
 
 def _namespaces(program: Program) -> list[int]:
-    """Descriptors of the namespaces that a student joins: its user namespace, and without a hub its rig's network."""
+    """Namespaces that a student joins, as descriptors: its user namespace, and without a hub its runner's network."""
     if program.hub:
         return [os.dup(namespaces.user_namespace_of_this_process())]
     rig = [os.open(f"/proc/self/ns/{name}", os.O_RDONLY) for name in ("user", "net")]

@@ -108,7 +108,7 @@ _MIB = 1024 * 1024
 class Limits:
     """What one start of a student's program may use before it is killed.
 
-    CPU time and blocked time decide verdicts (the rig counts them); these are the outer walls, wide enough for
+    CPU time and blocked time decide verdicts (the runner counts them); these are the outer walls, wide enough for
     every honest program on a busy machine.
     """
 

@@ -1,4 +1,4 @@
-"""A student's running program, as the rig holds it."""
+"""A student's running program, as the runner holds it."""
 
 from __future__ import annotations
 
