@@ -12,7 +12,7 @@ from grader.checking.comparator import TOLERANCE
 from grader.checking.recorded import Recorded
 from grader.checking.shown import shown
 from grader.recording.events import By, Cancel, Goal
-from grader.scenario.scenario import SECOND
+from grader.scenario.times import SECOND
 
 _FORGOT = "The result is filled in, but the goal was aborted: a server has to call goal_handle.succeed()."
 _ABORTED = "Does execute raise, return without goal_handle.succeed(), or call canceled() when nobody asked for it?"

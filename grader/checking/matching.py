@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from grader.checking.comparator import difference, equal
 from grader.checking.shown import shown
-from grader.scenario.scenario import SECOND
+from grader.scenario.times import SECOND
 
 if TYPE_CHECKING:
     from grader.checking.run import Exchange, Message, Run

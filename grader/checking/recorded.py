@@ -13,7 +13,7 @@ from grader.checking.verdict import Finding, Wrong
 from grader.exercise import Exercise
 from grader.exercise.exercise import Endpoint, Role, Topic
 from grader.recording import Ending, Received, Recording
-from grader.scenario.scenario import SECOND, START
+from grader.scenario.times import SECOND, START
 
 _SLEEPS = "Does your node wait by the computer's clock, such as with time.sleep? It goes at another speed here."
 

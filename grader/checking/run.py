@@ -16,7 +16,7 @@ from grader.checking.services import ServiceChecks
 from grader.checking.trajectory import TrajectoryChecks
 from grader.checking.verdict import Finding, Wrong
 from grader.recording import EndPoint, Received, Recording, Sent
-from grader.scenario.scenario import SECOND, START
+from grader.scenario.times import SECOND, START
 
 #: On which the grader tells simulated time. Whatever uses simulated time subscribes to it.
 CLOCK = "/clock"

@@ -10,7 +10,7 @@ from grader.checking.matching import COMPUTER_CLOCK
 from grader.checking.recorded import Recorded, field_of, seconds
 from grader.checking.shown import shown
 from grader.recording import Received
-from grader.scenario.scenario import SECOND, START
+from grader.scenario.times import SECOND, START
 
 #: A stamp that is larger than this (s) can't be simulated time, which begins at 100 s.
 COMPUTER_STAMP = 1_000_000

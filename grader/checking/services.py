@@ -8,7 +8,7 @@ from grader.checking.comparator import TOLERANCE
 from grader.checking.recorded import Recorded
 from grader.checking.shown import shown
 from grader.recording.events import By, Call
-from grader.scenario.scenario import SECOND
+from grader.scenario.times import SECOND
 
 
 class ServiceChecks(Recorded):

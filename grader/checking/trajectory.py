@@ -6,7 +6,7 @@ import math
 
 from grader.checking.recorded import Recorded, field_of, seconds
 from grader.recording import Received, Sent
-from grader.scenario.scenario import SECOND, START
+from grader.scenario.times import SECOND, START
 
 Place = dict[str, float]
 

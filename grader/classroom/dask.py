@@ -11,13 +11,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.classroom.local import own_core, picture
+from grader.classroom.local import own_core
 from grader.classroom.request import Graded, NoCluster, host_error
 from grader.classroom.results import grade_key
 from grader.exercise import Exercise, load
 from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
 from grader.grading.reference import versions
+from grader.report.feedback_plot import picture
 from grader.sandbox import Middleware, choose_middleware
 from grader.submission import Submission
 from grader.workers import WorkerPool

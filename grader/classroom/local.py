@@ -13,23 +13,13 @@ from pathlib import Path
 
 from grader.classroom.request import Graded, host_error
 from grader.classroom.results import grade_key
-from grader.exercise import Exercise, ExerciseError
-from grader.grading import Grade
+from grader.exercise import ExerciseError
 from grader.grading.grading import Grading
 from grader.grading.running import WorkStealing
 from grader.locks import claim_number
-from grader.report.feedback_plot import feedback_plot
+from grader.report.feedback_plot import picture
 from grader.sandbox import Middleware
 from grader.submission import Submission
-
-
-def picture(grade: Grade, exercise: Exercise) -> str | None:
-    """What the node published over what the solution did, as SVG; None where there is nothing to draw."""
-    try:
-        return feedback_plot(grade, exercise)
-    except Exception:  # of data that a student chose; a page without a picture is better than no page
-        return None
-
 
 #: How many submissions to grade at once on each core: grader and program wait for one another, and over Fast DDS both
 #: wait for the network most of the time.

@@ -123,7 +123,7 @@ class Exercise:
 
     @property
     def scenarios_file(self) -> Path:
-        """The file that declares what the node is spun against."""
+        """The file that declares what the node is run against."""
         return self.folder / "scenarios.py"
 
     @property

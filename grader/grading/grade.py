@@ -21,8 +21,8 @@ class Grade:
     """One grading. Two gradings of one submission are equal: what may differ (timings, logs) does not count.
 
     `message` tells the student, or for a host error the instructor, what happened; `line` is the line of the student's
-    file that is to blame, where known. `hold` is how the rig knew that the node had handled a message. `recordings` and
-    `references` are what the node and the solution published, by scenario.
+    file that is to blame, where known. `hold` is how the runner knew that the node had handled a message. `recordings`
+    and `references` are what the node and the solution published, by scenario.
 
     A `self_check` judges by the public checks only, and is no grade of record; `hidden_checks` and `hidden_points` are
     how many more checks there are, and what they give together.

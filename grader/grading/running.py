@@ -118,7 +118,7 @@ MOST_BYTES, LEAST_BYTES = 24_000_000, 1_000_000
 
 @dataclass(frozen=True)
 class ScenarioRunner:
-    """Spins submissions of one exercise through its scenarios, at one level of isolation."""
+    """Runs submissions of one exercise through its scenarios, at one level of isolation."""
 
     exercise: Exercise
     scenarios: tuple[Scenario, ...]
@@ -143,7 +143,7 @@ class ScenarioRunner:
     def spin(self, submission: Submission) -> dict[str, Recording]:
         """The recording of each scenario. Raises `HostFault` when one can't be had.
 
-        The first scenario decides whether the program works at all; if it does not, nothing else is spun, and every
+        The first scenario decides whether the program works at all; if it does not, nothing else is run, and every
         recording ends as that one does.
         """
         jobs = [self.job(submission, scenario, i) for i, scenario in enumerate(self.scenarios)]

@@ -1,4 +1,4 @@
-"""What was seen while a node was spun: plain data, that nothing of the student's can change."""
+"""What was seen while a node was run: plain data, that nothing of the student's can change."""
 
 from grader.recording.events import (
     Call,

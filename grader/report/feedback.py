@@ -109,7 +109,7 @@ HEADLINES: dict[Outcome, tuple[str, str]] = {
     ),
     "host-error": (
         "This could not be graded, and that is not your fault",
-        "The machine or the grader was at fault. This is not a score, and it costs you no points.",
+        "The machine or the grader was at fault. This is not a score, and it costs you nothing.",
     ),
 }
 

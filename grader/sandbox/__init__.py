@@ -1,18 +1,17 @@
-"""Runs a student's program where it can neither see nor harm anything: see docs/sandbox.md.
+"""Runs a student's program where it can't see or harm anything else: see docs/sandbox.md.
 
-fork server = Fork server([Middleware.LOCKSTEP])  # once in a worker, before the processes that grade are forked
+server = ForkServer([Middleware.LOCKSTEP])  # once in a worker, before the processes that grade are forked
 ...
-with fork server.start(Program("node.py", {"node.py": source}, hub=socket), isolation) as student:
+with server.start(Program("node.py", {"node.py": source}, hub=socket), isolation) as student:
     ...
 """
 
-from grader.sandbox.errors import SandboxError, SandboxUnavailable
 from grader.sandbox.fork_server import ForkServer
 from grader.sandbox.isolation import Isolation, available, choose
-from grader.sandbox.middleware import Choice, Middleware, MiddlewareUnavailable, choose_middleware, to_be_compiled
+from grader.sandbox.middleware import Choice, MiddlewareUnavailable, choose_middleware, to_be_compiled
 from grader.sandbox.monitor import Exit, Output
 from grader.sandbox.network import enter
-from grader.sandbox.program import Limits, Program
+from grader.sandbox.program import Limits, Middleware, Program, SandboxError, SandboxUnavailable
 from grader.sandbox.student import Student
 
 __all__ = [

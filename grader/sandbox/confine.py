@@ -17,7 +17,7 @@ _DESCRIPTORS = 1024
 
 @dataclass(frozen=True)
 class Start:
-    """What a rig asks for.
+    """What a runner asks for.
 
     Attributes:
         program: what to run.

@@ -14,10 +14,9 @@ from types import TracebackType
 
 from grader.sandbox import filesystem, namespaces, network, trials
 from grader.sandbox.confine import Start
-from grader.sandbox.errors import SandboxError
 from grader.sandbox.isolation import Isolation
-from grader.sandbox.middleware import Middleware, variables
-from grader.sandbox.program import Limits, Program
+from grader.sandbox.middleware import variables
+from grader.sandbox.program import Limits, Middleware, Program, SandboxError
 from grader.sandbox.student import Student
 
 PRELOAD = (
@@ -37,7 +36,7 @@ PRELOAD = (
 
 
 class ForkServer:
-    """Starts students. One serves a whole worker: make it before the rigs are forked, and each of them may use it.
+    """Starts students. One serves a whole worker: make it before the runners are forked, and each of them may use it.
 
     It has a process for each middleware, which is started when it is first needed.
     """
@@ -46,7 +45,7 @@ class ForkServer:
         """Starts the processes for some middlewares; they import while the caller goes on.
 
         Args:
-            middlewares: those that rigs will need. A rig that needs another one waits for a process of its own.
+            middlewares: those that runners will need. A runner that needs another one waits for a process of its own.
             preload: the modules to import beforehand; those that are not installed are left out.
         """
         self._preload = preload
@@ -107,7 +106,7 @@ class ForkServer:
             raise
 
     def close(self) -> None:
-        """Ends the processes. Students that they have started end with their rigs."""
+        """Ends the processes. Students that they have started end with their runners."""
         for server in self._servers.values():
             server.close()
 
@@ -158,7 +157,7 @@ class _Process:
 
 
 def _namespaces(program: Program) -> list[int]:
-    """Descriptors of the namespaces that a student joins: its user namespace, and without a hub its rig's network."""
+    """Namespaces that a student joins, as descriptors: its user namespace, and without a hub its runner's network."""
     if program.hub:
         return [os.dup(namespaces.user_namespace_of_this_process())]
     rig = [os.open(f"/proc/self/ns/{name}", os.O_RDONLY) for name in ("user", "net")]

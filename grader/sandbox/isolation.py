@@ -9,7 +9,7 @@ from enum import Enum
 from functools import cache
 
 from grader.sandbox import filesystem, trials
-from grader.sandbox.errors import SandboxUnavailable
+from grader.sandbox.program import SandboxUnavailable
 
 _TRIAL_S = 30.0
 

@@ -17,7 +17,7 @@ from functools import cache
 from pathlib import Path
 
 from grader.sandbox import filesystem, syscalls
-from grader.sandbox.namespaces import dedicated_user
+from grader.sandbox.filesystem import dedicated_user
 from grader.sandbox.program import Paths
 
 _CREATE_RULESET, _ADD_RULE, _RESTRICT_SELF = 444, 445, 446

@@ -9,30 +9,12 @@ import inspect
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
-from enum import Enum
 from functools import cache
 from pathlib import Path
 
-from grader.sandbox.errors import SandboxUnavailable
-from rmw_lockstep.library import IDENTIFIER, Library, Unavailable, compiler, library
+from grader.sandbox.program import Middleware, SandboxUnavailable
+from rmw_lockstep.library import Library, Unavailable, compiler, library
 from rmw_lockstep.ros import installed_ros
-
-
-class Middleware(str, Enum):
-    """The middlewares, the better one first."""
-
-    LOCKSTEP = "lockstep"
-    """rmw_lockstep: no network, and the hub knows when a program has nothing left to do."""
-    FASTDDS = "fastdds"
-    """Fast DDS over a network that a rig shares with its student."""
-
-    def __str__(self) -> str:
-        """The word that is used on the command line and in a grade."""
-        return self.value
-
-    def is_named(self, identifier: str) -> bool:
-        """Whether rclpy calls the middleware so that it has loaded."""
-        return identifier == IDENTIFIER if self is Middleware.LOCKSTEP else identifier.startswith("rmw_fastrtps")
 
 
 class MiddlewareUnavailable(SandboxUnavailable):

@@ -97,7 +97,7 @@ _LAST_WORDS = {
 
 
 class Monitor:
-    """A thread in the rig for one student."""
+    """A thread in the runner for one student."""
 
     def __init__(
         self, control: socket.socket, output: int, limits: Limits, pid: int, init: int, holders: frozenset[int]

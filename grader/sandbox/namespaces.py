@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from grader.sandbox import seccomp, syscalls
-from grader.sandbox.filesystem import USER_ID, Mount
+from grader.sandbox.filesystem import USER_ID, Mount, dedicated_user
 from grader.sandbox.program import SUBMISSION
 
 
@@ -192,10 +192,6 @@ def _seal(target: str) -> None:
     syscalls.mount("", target, flags=flags)
 
 
-# Users whom systemd reserves for services without a user of their own; nobody's files belong to them.
-_FIRST, _COUNT = 61184, 4336
-
-
 _of_process: dict[int, int] = {}
 
 
@@ -253,8 +249,3 @@ def create_user_namespace() -> int:
         os.close(told_at)
         os.close(ended_to)
         os.waitpid(child, 0)
-
-
-def dedicated_user() -> int:
-    """A user number for a student whom root starts, different from one supervisor process to the next."""
-    return _FIRST + os.getpid() % _COUNT

@@ -6,18 +6,18 @@ import os
 from pathlib import Path
 
 from grader.sandbox import namespaces, syscalls
-from grader.sandbox.errors import SandboxError
 from grader.sandbox.isolation import Isolation
+from grader.sandbox.program import SandboxError
 
 
 def enter(isolation: Isolation) -> None:
     """Moves this process into namespaces of its own: a network with nothing but loopback, /dev/shm, and System V IPC.
 
-    Only for students without a hub, who talk to their rig over Fast DDS. Those with a hub have no network to share.
+    Only for students without a hub, who talk to their runner over Fast DDS. Those with a hub have no network to share.
 
     Call it in a freshly forked process with a single thread, before rclpy is initialised. Its students join the same
-    network, so that rig and student hear each other and nobody else. At the levels without namespaces only orphans
-    are caught (see PR_SET_CHILD_SUBREAPER in prctl(2)); there a ROS domain of its own has to separate the rig.
+    network, so that runner and student hear each other and nobody else. At the levels without namespaces only orphans
+    are caught (see PR_SET_CHILD_SUBREAPER in prctl(2)); there a ROS domain of its own has to separate the runner.
 
     Called again by the same thread, before its next student, it moves into another new network: in the old one the
     kernel may still keep a port for a connection of the last student's.
@@ -50,12 +50,12 @@ def enter(isolation: Isolation) -> None:
     _made.append(namespaces.create_user_namespace())
 
 
-# The descriptor of the students' user namespace, once this process is a rig.
+# The descriptor of the students' user namespace, once this process is a runner.
 _made: list[int] = []
 
 
 def students_users() -> int:
-    """The user namespace that this rig's students run in, one after the other: a descriptor.
+    """The user namespace that this runner's students run in, one after the other: a descriptor.
 
     Raises:
         SandboxError: if this process has not entered namespaces of its own.

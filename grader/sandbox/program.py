@@ -1,4 +1,4 @@
-"""What is started in a sandbox: files, arguments and paths, and the limits it has to keep."""
+"""What is started in a sandbox: files, arguments, paths, middleware and limits; and what can go wrong."""
 
 from __future__ import annotations
 
@@ -7,12 +7,38 @@ import os
 import resource
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import Enum
 from pathlib import Path, PurePosixPath
 
-from grader.sandbox.middleware import Middleware
+from rmw_lockstep.library import IDENTIFIER
 
 SUBMISSION = "/submission"
 HUB = "/run/lockstep/hub"
+
+
+class SandboxUnavailable(Exception):
+    """This machine does not allow the sandbox or the middleware that was wanted, or none at all."""
+
+
+class SandboxError(Exception):
+    """A sandbox could not be made or ended: a fault of ours or the machine's, never of the student."""
+
+
+class Middleware(str, Enum):
+    """The middlewares, the better one first."""
+
+    LOCKSTEP = "lockstep"
+    """rmw_lockstep: no network, and the hub knows when a program has nothing left to do."""
+    FASTDDS = "fastdds"
+    """Fast DDS over a network that the runner shares with its student."""
+
+    def __str__(self) -> str:
+        """The word that is used on the command line and in a grade."""
+        return self.value
+
+    def is_named(self, identifier: str) -> bool:
+        """Whether rclpy calls the middleware so that it has loaded."""
+        return identifier == IDENTIFIER if self is Middleware.LOCKSTEP else identifier.startswith("rmw_fastrtps")
 
 
 @dataclass(frozen=True)
@@ -82,7 +108,7 @@ _MIB = 1024 * 1024
 class Limits:
     """What one start of a student's program may use before it is killed.
 
-    CPU time and blocked time decide verdicts (the rig counts them); these are the outer walls, wide enough for
+    CPU time and blocked time decide verdicts (the runner counts them); these are the outer walls, wide enough for
     every honest program on a busy machine.
     """
 

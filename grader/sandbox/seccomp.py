@@ -103,7 +103,7 @@ _FORBIDDEN: dict[str, tuple[int | None, int | None]] = {
 }
 # Told to be absent, because callers then fall back to a call that is allowed.
 _ABSENT: dict[str, tuple[int, int]] = {"memfd_create": (319, 279), "clone3": (435, 435)}
-# Told to have worked: the rig has pinned the program to one core and it stays there.
+# Told to have worked: the runner has pinned the program to one core and it stays there.
 _IGNORED: dict[str, tuple[int, int]] = {"sched_setaffinity": (203, 122)}
 # Refused only where nothing else keeps signals inside (see `program_for`).
 _SIGNALS: dict[str, tuple[int, int]] = {

@@ -1,4 +1,4 @@
-"""A student's running program, as the rig holds it."""
+"""A student's running program, as the runner holds it."""
 
 from __future__ import annotations
 
@@ -9,9 +9,8 @@ import signal
 import socket
 from types import TracebackType
 
-from grader.sandbox.errors import SandboxError
 from grader.sandbox.monitor import Exit, Monitor, Output
-from grader.sandbox.program import Limits
+from grader.sandbox.program import Limits, SandboxError
 
 _START_S = 30.0
 _DEATH_S = 30.0

@@ -32,9 +32,9 @@ def supervise(start: Start, control: int, output: int, rig_namespaces: Sequence[
 
     Args:
         start: what to start.
-        control: the socket to the rig.
+        control: the socket to the runner.
         output: where the student's standard output and error go.
-        rig_namespaces: the user namespace that the rig has made for its students, and for those without a hub its own
+        rig_namespaces: the user namespace that the runner made for its students, and for those without a hub its own
             user and network namespace; empty for the levels without.
     """
     reported = False
@@ -66,7 +66,7 @@ def supervise(start: Start, control: int, output: int, rig_namespaces: Sequence[
 
 
 def refuse(control: int, reason: str) -> NoReturn:
-    """Answers a rig that no student can be started, and exits."""
+    """Answers a runner that no student can be started, and exits."""
     _tell(control, {"event": "failed", "reason": reason})
     os._exit(0)
 
@@ -161,12 +161,12 @@ def _hear(control: int) -> bytes:
 
 
 def _tell(control: int, message: dict[str, object]) -> None:
-    with contextlib.suppress(OSError):  # the rig is gone: its end is noticed when listening
+    with contextlib.suppress(OSError):  # the runner is gone: its end is noticed when listening
         os.write(control, json.dumps(message).encode())
 
 
 def _join(namespace: int) -> None:
-    """Enters a namespace of the rig's, unless this process is in it already."""
+    """Enters a namespace of the runner's, unless this process is in it already."""
     for name in ("user", "net"):
         mine = Path(f"/proc/self/ns/{name}").stat()
         if (mine.st_dev, mine.st_ino) == (os.fstat(namespace).st_dev, os.fstat(namespace).st_ino):
@@ -179,7 +179,7 @@ def _tasks_beside(start: Start) -> int:
     apart = start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES)
     if apart and (os.geteuid() == 0 or limits.counts_for_each_user_namespace()):
         return 4  # this process and those that hold the namespace open
-    # The user's other processes come and go, so this is only the wall behind the rig, which counts the student's own.
+    # Other processes of the user come and go. The runner counts the student's own; this is the wall behind it.
     user = landlock.student_user() if start.isolation is Isolation.LANDLOCK else os.getuid()
     return limits.tasks_of_user(user) + 3 * start.limits.processes
 

@@ -8,11 +8,10 @@ from __future__ import annotations
 import sys
 
 from grader.sandbox import landlock
-from grader.sandbox.errors import SandboxError
 from grader.sandbox.fork_server import ForkServer
 from grader.sandbox.isolation import Isolation
 from grader.sandbox.network import enter
-from grader.sandbox.program import Program
+from grader.sandbox.program import Program, SandboxError
 
 _WORD = "works"
 _PROGRAM = f"import rclpy.exceptions, sys\nprint({_WORD!r})\n"

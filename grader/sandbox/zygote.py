@@ -22,8 +22,8 @@ from typing import NoReturn
 
 from grader.sandbox import filesystem, middleware, seccomp
 from grader.sandbox import middleware as type_support
-from grader.sandbox.middleware import Middleware, choosable
-from grader.sandbox.program import Paths, Program
+from grader.sandbox.middleware import choosable
+from grader.sandbox.program import Middleware, Paths, Program
 from grader.sandbox.supervisor import Request, refuse, supervise
 
 

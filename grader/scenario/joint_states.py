@@ -11,8 +11,8 @@ import random
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
-from grader.scenario.scenario import SECOND, START, Message
-from grader.scenario.times import every, later
+from grader.scenario.scenario import Message
+from grader.scenario.times import SECOND, START, every, later
 
 #: A humanoid's six arm joints and their positions (rad) `t` seconds after the start.
 ARM_SWING: dict[str, Callable[[float], float]] = {

@@ -14,8 +14,8 @@ from dataclasses import replace
 from typing import Any
 
 from grader.recording.recording import Fields
-from grader.scenario.scenario import SECOND, START, Message
-from grader.scenario.times import later
+from grader.scenario.scenario import Message
+from grader.scenario.times import SECOND, START, later
 
 Stream = tuple[Message, ...]
 

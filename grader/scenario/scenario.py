@@ -12,15 +12,10 @@ from grader.exercise.exercise import Qos
 from grader.recording.recording import Fields
 from grader.scenario.place import line_of_the_author
 from grader.scenario.servers import ActionServer, Server
+from grader.scenario.times import BEFORE_START as BEFORE_START
+from grader.scenario.times import SECOND as SECOND
+from grader.scenario.times import START as START
 from grader.scenario.world import World
-
-SECOND = 1_000_000_000
-
-#: Simulated time at which every scenario begins. Not 0, which means "no time yet" in ROS.
-START = 100 * SECOND
-
-#: When something happens that happens before the student's program starts.
-BEFORE_START = START - SECOND
 
 #: How often /clock is published between steps, unless the author says otherwise (Hz).
 RATE = 100.0

@@ -7,9 +7,6 @@ from typing import Any, TypeVar
 
 from grader.exercise.exercise import Durability, Qos, Reliability
 from grader.scenario.scenario import (
-    BEFORE_START,
-    SECOND,
-    START,
     CancelAll,
     CancelGoal,
     ComeBack,
@@ -23,6 +20,7 @@ from grader.scenario.scenario import (
     StartProgram,
     Subscribe,
 )
+from grader.scenario.times import BEFORE_START, SECOND, START
 
 One = TypeVar("One")
 

@@ -1,11 +1,18 @@
-"""When a reference publisher publishes: instants in seconds after a scenario's start."""
+"""Simulated time: its unit and its beginning, and when a reference publisher publishes (s after the start)."""
 
 from __future__ import annotations
 
 import random
 from collections.abc import Sequence
 
-from grader.scenario.scenario import SECOND
+#: Simulated time counts nanoseconds.
+SECOND = 1_000_000_000
+
+#: Simulated time at which every scenario begins. Not 0, which means "no time yet" in ROS.
+START = 100 * SECOND
+
+#: When something happens that happens before the student's program starts.
+BEFORE_START = START - SECOND
 
 
 def every(period: float, seconds: float) -> tuple[float, ...]:

@@ -21,7 +21,7 @@ from spinbook.chapter.links import linked
 def exercise_files(exercise: Exercise, workers: WorkerPool) -> dict[str, bytes]:
     """The copy's files by name: task, starter, public checks, and what these judge by.
 
-    Spins the author's solution through the public scenarios, unless that was done before. Raises `ExerciseError`.
+    Runs the author's solution through the public scenarios, unless that was done before. Raises `ExerciseError`.
     """
     solution = exercise.solution_file
     assert solution

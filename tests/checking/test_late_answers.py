@@ -62,7 +62,7 @@ def test_an_answer_that_comes_later_is_told_with_its_delay(check: Callable[[Run]
 def test_an_answer_that_comes_with_the_next_message_is_told_as_one_message_late() -> None:
     received = [answer(n, right(n), later=0.1) for n in range(1, COUNT)]
     assert "Message 1 of 8" in told(received, Run.must_answer)
-    assert "it came one message late." in told(received, Run.must_answer)
+    assert "it arrived one message late." in told(received, Run.must_answer)
 
 
 def test_where_each_answer_is_the_one_to_the_message_before_that_is_told() -> None:

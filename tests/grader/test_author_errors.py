@@ -10,6 +10,7 @@ import pytest
 
 from grader.exercise import ExerciseError, load
 from grader.grading import Options, grading_of
+from grader.problem import Problem
 from grader.workers import WorkerPool
 
 ROOT = Path(__file__).parents[2]
@@ -36,10 +37,10 @@ def change(file: Path, old: str, new: str) -> None:
     file.write_text(text.replace(old, new, 1), encoding="utf-8")
 
 
-def problem_of(course: Path, workers: WorkerPool) -> ExerciseError:
+def problem_of(course: Path, workers: WorkerPool) -> Problem:
     with pytest.raises(ExerciseError) as caught:
         grading_of(load(course / "exercises" / "small"), Options(), workers)
-    return caught.value
+    return caught.value.problem
 
 
 def test_unspoiled_it_is_ready(course: Path, workers: WorkerPool) -> None:
