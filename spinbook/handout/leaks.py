@@ -231,7 +231,7 @@ class _Search:
 def _located(files: Mapping[str, bytes], search: _Search) -> Iterator[Leak]:
     for name, content in files.items():
         first: dict[str, Secret] = {}
-        for secret in search.found_in(text):
+        for secret in search.found_in(bare(f"{name}\n{_readable(name, content)}")):
             first.setdefault(secret.what, secret)
         for secret in first.values():
             yield _leak(name, content, secret)

@@ -50,7 +50,6 @@ def span_of(lanes: Iterable[Lane]) -> tuple[float, float]:
 def moving_timeline(lanes: Sequence[Lane], title: str = "") -> str:
     """The picture of lanes of which at least one has a mark."""
     # Web pages draw the other one, and have no matplotlib.
-    from matplotlib.figure import Figure
 
     start, end = span_of(lanes)
     across = Scale(start, max(end, start + 0.1), _LEFT, _WIDTH - _RIGHT)

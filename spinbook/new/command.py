@@ -19,7 +19,7 @@ from spinbook.new.writing import (
     write_exercise,
     write_solution,
 )
-from spinbook.problem import Problem, SpinbookError
+from spinbook.problem import SpinbookError
 
 _COURSE = """\
 Made the course "{title}" in {folder}. It works as it is. Go on with:
@@ -123,7 +123,7 @@ def _exercise(folder: Path) -> Exercise:
     try:
         return load(folder)
     except ExerciseError as error:
-        raise SpinbookError(Problem(error.file, error.line, error.found, error.fix)) from None
+        raise SpinbookError(error.problem) from None
 
 
 def _shown(file: Path) -> Path:

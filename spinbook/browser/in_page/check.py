@@ -73,14 +73,14 @@ def _unpacked(name: str) -> Path:
 def public_part(exercise: Exercise) -> tuple[list[Scenario], dict[str, Recording], dict[str, Any]]:
     """The scenarios, the solution's recordings of them, and what stays hidden, from public.json."""
     entries = json.loads(exercise.public_file.read_text(encoding="utf-8"))
-    scenarios = [_scenario(item) for item in entries["scenarios"]]
+    scenarios = [_scenario(item, exercise.folder) for item in entries["scenarios"]]
     return scenarios, from_plain(entries["expected"]), entries["hidden"]
 
 
-def _scenario(entries: dict[str, Any]) -> Scenario:
+def _scenario(entries: dict[str, Any], folder: Path) -> Scenario:
     """A scenario as public.json has it: one that only publishes in a form of its own."""
     if "is" in entries:
-        found: Scenario = scenario_from_plain(entries)
+        found: Scenario = scenario_from_plain(entries, folder)
         return found
     return Scenario(**{**entries, "messages": tuple(Message(**message) for message in entries["messages"])})
 

@@ -17,8 +17,8 @@ from rcl_python.context import interrupt
 from rcl_python.graph import CLIENT, PUBLISHER, SERVICE, SUBSCRIPTION
 from rcl_python.link import Frame
 from rmw_lockstep.hub import EPOCH, frames
+from rmw_lockstep.hub.hashes import NO_HASH
 from rmw_lockstep.hub.qos import AUTOMATIC, INFINITE, Qos
-from rmw_lockstep.hub.router import NO_HASH
 from spinbook.browser.in_page import threads
 from spinbook.browser.in_page.hub import PROGRAM, Over, PageHub, Turns
 from spinbook.browser.in_page.rota import Rota
