@@ -32,7 +32,7 @@ class CourseFolder:
     def spinbook(self, *words: str) -> subprocess.CompletedProcess[str]:
         """Run the command in the course's folder."""
         return subprocess.run(
-            [sys.executable, "-m", "spinbook", *words], cwd=self.root, capture_output=True, text=True, timeout=280
+            [sys.executable, "-m", "spinbook", *words], cwd=self.root, capture_output=True, text=True, timeout=560
         )
 
     def notebook(self, name: str, folder: str = "notebooks") -> Any:

@@ -65,7 +65,7 @@ class SmallClass:
     def grade(self, *arguments: str, out: str = "results") -> tuple[int, str]:
         """The command's exit code, and all that it printed."""
         process = self.start(*arguments, out=out)
-        printed, _ = process.communicate(timeout=280)
+        printed, _ = process.communicate(timeout=560)
         return process.returncode, printed
 
     def wait_for_grades(self, count: int, process: subprocess.Popen[str], out: str = "results") -> None:

@@ -180,7 +180,7 @@ class SmallCourse:
         """Run `spinbook site` in the course's folder, where npm's registry is out of reach."""
         environment = {**os.environ, "npm_config_registry": "http://127.0.0.1:9"}
         argv = [sys.executable, "-m", "spinbook", "site", *words]
-        return subprocess.run(argv, cwd=self.root, env=environment, capture_output=True, text=True, timeout=250)
+        return subprocess.run(argv, cwd=self.root, env=environment, capture_output=True, text=True, timeout=560)
 
     @contextmanager
     def serving(self) -> Iterator[str]:
