@@ -58,9 +58,9 @@ class CheckResult:
     """What one check is worth.
 
     `kills` are the mutants that it catches, `score` their part of all that can be told from the solution, between 0
-    and 1; `alone` are those that no other check catches. `mistakes` are those of the author's that it catches.
-    `judging_s` is how long it takes to judge the solution, `spinning_s` how long its scenarios are spun, `alone_s`
-    those of them that no other check asks for; all in seconds.
+    and 1; `alone` are those that no other check catches, as far as they were spun. `mistakes` are those of the author's
+    that it catches. `judging_s` is how long it takes to judge the solution, `spinning_s` how long its scenarios are
+    spun, `alone_s` those of them that no other check asks for; all in seconds.
     """
 
     name: str
