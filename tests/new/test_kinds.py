@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -83,10 +84,14 @@ def folder_of(grading: Grading) -> Path:
 
 def caught_and_named(grading: Grading, mistake: Path) -> tuple[set[str], set[str]]:
     """The checks that a mistake fails, and those that its docstring says it fails."""
-    header = ast.get_docstring(ast.parse(mistake.read_text(encoding="utf-8"))) or ""
     grade = grading.grade(read(str(mistake), grading.runner.exercise))
-    failed = {verdict.name for verdict in grade.verdicts if verdict.status == "failed"}
-    return failed, set(re.findall(r"^- (test_\w+)$", header, re.MULTILINE))
+    return {verdict.name for verdict in grade.verdicts if verdict.status == "failed"}, named_by(mistake)
+
+
+def named_by(mistake: Path) -> set[str]:
+    """The checks that a mistake's docstring says it fails."""
+    header = ast.get_docstring(ast.parse(mistake.read_text(encoding="utf-8"))) or ""
+    return set(re.findall(r"^- (test_\w+)$", header, re.MULTILINE))
 
 
 def test_the_starter_gets_nothing_and_a_usual_mistake_loses_what_it_names(
@@ -115,6 +120,20 @@ def test_every_mistake_loses_exactly_the_checks_that_it_names(grading: Grading) 
     for file in files:
         failed, named = caught_and_named(grading, file)
         assert failed == named, file.name
+
+
+@pytest.mark.soak
+def test_a_class_of_six_gets_its_grades_side_by_side(grading: Grading) -> None:
+    folder, exercise = folder_of(grading), grading.runner.exercise
+    right = [folder / "solution.py", *sorted((folder / "right").glob("*.py"))[:2]]
+    wrong = sorted((folder / "mistakes").glob("*.py"))[:2]
+    empty = of_source("starter", starter(right[0].read_text(encoding="utf-8")).encode(), exercise)
+    with ThreadPoolExecutor(3) as desk:
+        grades = list(desk.map(grading.grade, [*(read(str(file), exercise) for file in (*right, *wrong)), empty]))
+    assert [grade.full_marks for grade in grades] == [True] * 3 + [False] * 3
+    assert [grade.score for grade in grades if grade.submission == "starter"] == [0]
+    for file, grade in zip(wrong, grades[3:5], strict=True):
+        assert {verdict.name for verdict in grade.verdicts if verdict.status == "failed"} == named_by(file)
 
 
 def test_the_exercise_has_its_own_names(course: Path) -> None:
