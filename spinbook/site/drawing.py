@@ -41,8 +41,8 @@ _DOWNLOAD_PATIENCE_S = 60
 _DRAWING_PATIENCE_S = 120
 
 _FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif"
-_LIGHT = {"back": "#e6f2f1", "line": "#0b6b66", "ink": "#14211f", "edge": "#4a5b59"}
-_DARK = {"back": "#173835", "line": "#66cfc4", "ink": "#eaf4f2", "edge": "#a3b8b5"}
+_LIGHT = {"back": "#e6f2f1", "line": "#0b6b66", "ink": "#14211f", "edge": "#4a5b59", "paper": "#ffffff"}
+_DARK = {"back": "#173835", "line": "#66cfc4", "ink": "#eaf4f2", "edge": "#a3b8b5", "paper": "#101817"}
 
 
 @dataclass(frozen=True)
@@ -159,7 +159,8 @@ def _theme(colours: dict[str, str]) -> dict[str, Any]:
         "textColor": ink,
         "clusterBkg": "transparent",
         "clusterBorder": edge,
-        "edgeLabelBackground": "transparent",
+        # The colour of the page (--paper in site.css): an arrow is not drawn through its own label.
+        "edgeLabelBackground": colours["paper"],
         "useGradient": False,
         "dropShadow": "none",
     }

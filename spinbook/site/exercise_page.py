@@ -111,7 +111,7 @@ def _starter(exercise: Exercise, starter: str, download: str) -> str:
     return f"""\
 ## Starter
 
-Begin with this file. What you are to write is marked in it.
+Begin with this file. The places for your code are marked.
 
 <p><a class="button" href="{download}" download>Download {exercise.file_name}</a></p>
 
@@ -131,8 +131,8 @@ spinbook grade {exercise.name} {exercise.file_name}
 ```
 
 The command starts your node as it is, publishes to it, listens to what it answers, and says what is right and what is
-not yet. You may run it as often as you like. In the notebook of the handout, `%check {exercise.name}` does so for the
-exercise's cell. [How to install what it needs](../about.md) stands on another page."""
+not yet. You may run it as often as you like. In the notebook of the handout, `%check {exercise.name}` does the same
+for the exercise's cell. Another page says [how to install what it needs](../about.md)."""
 
 
 def _points(exercise: Exercise, checks: Sequence[PublicCheck]) -> str:

@@ -26,6 +26,9 @@ _IMAGE = re.compile(r"<img\b[^>]*>")
 _SOURCE = re.compile(r'\bsrc="([^"]+)"')
 _HEADING_LINK = re.compile(r'<a class="headerlink" href="(#[^"]*)" title="[^"]*">[^<]*</a>')
 _EMPTY_HEAD = re.compile(r'<th class="head[^"]*">\s*(?:<p></p>)?\s*</th>')
+#: Code in a table, and where a line may break in it: behind the slashes of a type, which is long.
+_CELL_CODE = re.compile(r"(?<=<td>)(?:(?!</td>).)*<code(?:(?!</td>).)*", re.DOTALL)
+_INNER_SLASH = re.compile(r"(?<=\w)/(?=\w)(?=[^<>]*</span></code>)")
 _STYLE = re.compile(r'\sstyle="[^"]*"')
 
 
@@ -44,6 +47,7 @@ def finish(app: Sphinx, page: str, template: str, context: dict[str, Any], doctr
     if context.get("display_toc"):
         contents = f'<details class="page-toc-small"><summary>On this page</summary>{context["toc"]}</details>'
         body = body.replace("</h1>", f"</h1>\n{contents}", 1)
+    body = _CELL_CODE.sub(lambda match: _INNER_SLASH.sub("/<wbr>", match.group()), body)
     body = body.replace("<table", '<div class="table"><table').replace("</table>", "</table></div>")
     context["body"] = body
 

@@ -61,10 +61,12 @@ def home_drawing(drawings: Mapping[str, Picture | None]) -> str:
 
 
 def home_pictures(runs: list[tuple[Chapter, Ran]]) -> list[Shown]:
-    """The richest plot and the last turtle that the chapters' nodes drew, where there are some."""
+    """The richest plot and the last trail of a turtle that the chapters' nodes drew, where there are some."""
     pictures = [(chapter, cell, output) for chapter, ran in runs for cell, output in _pictures(chapter, ran)]
     plots = [found for found in pictures if "samples" in alternative(found[2], found[1])]
-    turtles = [found for found in pictures if "turtle" in alternative(found[2], found[1]).lower()]
+    turtles = [found for found in pictures if "turtlesim" in alternative(found[2], found[1]).lower()]
+    # One that has moved has a moving picture.
+    turtles = [found for found in turtles if "image/svg+xml" in found[2]["data"]] or turtles
     chosen = []
     if plots:
         chosen.append(

@@ -95,6 +95,9 @@ def test_an_exercise_has_task_interface_starter_and_points(built: SmallCourse) -
     assert "100 points" in page
     assert re.search(r"publishes on /joint_velocities sensor_msgs/msg/JointState keep last 10.*velocity in rad/s", page)
     assert "It publishes one message for each message after the first." in page
+    assert "sensor_msgs/<wbr>msg/<wbr>JointState</span></code>" in built.page(EXERCISE), (
+        "a long type may break in a table"
+    )
     starter = (built.site / "downloads" / "joint_velocity.py").read_text()
     assert "SOLUTION" not in starter
     ast.parse(starter)
