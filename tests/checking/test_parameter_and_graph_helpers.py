@@ -97,10 +97,12 @@ def test_an_end_point_that_is_missing(number: int, fields: dict[str, Any], told:
 
 def test_end_points_that_are_too_many() -> None:
     run(EMPTY).must_have_interface(only=True)
-    more = replace(EMPTY, end_points=(*ENDS, replace(ENDS[1], topic="/clock"), replace(ENDS[0], topic="/other")))
+    more = replace(EMPTY, end_points=(*ENDS, replace(ENDS[0], topic="/clock"), replace(ENDS[0], topic="/other")))
     assert says(lambda: run(more).must_have_interface(only=True)) == (
         "Your node has a subscription on /other, which is not in the task."
     )
+    clock = replace(EMPTY, end_points=(*ENDS, replace(ENDS[1], topic="/clock")))
+    assert "a publisher on /clock, which is not" in says(lambda: run(clock).must_have_interface(only=True))
     twice = replace(EMPTY, end_points=(*ENDS, ENDS[1]))
     assert says(lambda: run(twice).must_have_interface(only=True)) == "Your node has 2 publishers on /out. Expected 1."
 

@@ -75,4 +75,5 @@ def test_answers_at_once(visitors: Run) -> None:
 def test_node_is_as_described(visitors: Run) -> None:
     """The node has the name and the quality of service of the task."""
     visitors.must_have_nodes()
+    visitors.must_have_interface(only=True)
     visitors.must_have_qos()

@@ -93,4 +93,5 @@ def test_a_sprinkler_that_appears_late(late: Run, too_late: Run) -> None:
 def test_node_is_as_described(fire: Run) -> None:
     """The node has the name and the quality of service of the task."""
     fire.must_have_nodes()
+    fire.must_have_interface(only=True)
     fire.must_have_qos()

@@ -119,4 +119,5 @@ def test_a_telescope_that_accepts_late(slow: Run) -> None:
 def test_node_is_as_described(one_star: Run) -> None:
     """The node has the name and the quality of service of the task."""
     one_star.must_have_nodes()
+    one_star.must_have_interface(only=True)
     one_star.must_have_qos()

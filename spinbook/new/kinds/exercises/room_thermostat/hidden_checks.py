@@ -57,6 +57,7 @@ def test_refuses_other_types(types: Run) -> None:
 def test_node_is_as_described(read: Run) -> None:
     """The node has the name, the parameters and the quality of service of the task."""
     read.must_have_nodes()
+    read.must_have_interface(only=True)
     read.must_have_qos()
     read.must_have_parameter("target", 20.0)
     read.must_have_parameter("margin", 0.5)

@@ -127,4 +127,5 @@ def test_amidships_without_a_course(adrift: Run) -> None:
 def test_node_is_as_described(bench: Run) -> None:
     """The node has the name and the quality of service of the task."""
     bench.must_have_nodes()
+    bench.must_have_interface(only=True)
     bench.must_have_qos()

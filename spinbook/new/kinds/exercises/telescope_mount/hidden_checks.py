@@ -110,3 +110,4 @@ def test_a_goal_after_a_cancel(after_cancel: Run) -> None:
 def test_node_is_as_described(one_goal: Run) -> None:
     """The node has the name of the task."""
     one_goal.must_have_nodes()
+    one_goal.must_have_interface(only=True)
