@@ -95,7 +95,7 @@ def failure_of(finding: Finding) -> Failure:
     for value, name in ((finding.expected, "expected"), (finding.got, "got")):
         if value:
             count = 1 if NUMBER.match(value) else 0
-            kind = re.sub(rf"(?<![\w.]){re.escape(value)}(?![\w.]\w)", f"⟨{name}⟩", kind, count=count)
+            kind = re.sub(rf"(?<![\w.]){re.escape(value)}(?!\w|\.\w)", f"⟨{name}⟩", kind, count=count)
     kind = NUMBER.sub("⟨number⟩", re.sub(r" \([^)]*\)", "", GUESS.sub("", kind)))
     return Failure(finding.text, kind, _digits(finding.got) >= ENOUGH_DIGITS)
 

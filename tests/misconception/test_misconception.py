@@ -6,7 +6,7 @@ import plain_grades as plain
 
 from grader.checking.verdict import Finding, Verdict
 from grader.classroom import Entry, Student
-from grader.classroom.misconceptions import Signature, failure_of, failures_of, grouped
+from grader.classroom.misconceptions import Signature, failure_of, failures_of, grouped, mistakes_in
 
 
 def finding(text: str, expected: str = "0.489 rad/s", got: str = "0.978 rad/s") -> Finding:
@@ -87,3 +87,39 @@ def test_the_same_check_failed_in_another_way_is_no_match() -> None:
 def test_who_fails_nothing_or_did_not_come_through_is_in_no_group() -> None:
     crashed = plain.entry(plain.CRASHED, Student("ben"))
     assert groups(entry("ada"), crashed) == ({}, [])
+
+
+def test_two_mistakes_that_fail_alike_are_told_apart_or_neither_is_named() -> None:
+    twins = [signature(name, test_first=SILENT) for name in ("mute", "deaf")]
+    assert mistakes_in({"test_first": failure_of(SILENT)}, set(), twins) == []
+
+
+def test_a_value_that_came_is_told_from_another_one() -> None:
+    mistake = signature("late", test_first=BARE)
+    other = finding(
+        "Message 3 of 16 (0.30 s), left_elbow: expected velocity 0.489 rad/s, got 0.611 rad/s.", got="0.611 rad/s"
+    )
+    assert mistakes_in({"test_first": failure_of(BARE)}, set(), [mistake]) == [0]
+    assert mistakes_in({"test_first": failure_of(other)}, set(), [mistake]) == []
+
+
+def test_what_only_half_explains_a_submission_is_not_named_on_one_comparison() -> None:
+    failed = {"test_first": failure_of(BARE), "test_new": failure_of(SILENT)}
+    assert mistakes_in(failed, set(), [signature("late", test_first=BARE)]) == []
+
+
+def test_a_check_that_can_not_be_judged_speaks_for_nothing() -> None:
+    both = signature("fixed_dt", test_lost=HALF_AS_LARGE, test_gap=HALF_AS_LARGE)
+    failed = {"test_lost": failure_of(HALF_AS_LARGE)}
+    assert mistakes_in(failed, {"test_gap"}, [both]) == [0]
+    assert mistakes_in(failed, set(), [both]) == []
+
+
+def test_numbers_and_guessed_names_are_no_part_of_a_kind() -> None:
+    kinds = {
+        failure_of(
+            Finding(f"Your node does not publish on /a. It publishes on: {name}.{guess}", expected="/a", got=name)
+        ).kind
+        for name, guess in (("/b", ""), ("/aa", " Is /aa a misspelling of /a?"))
+    }
+    assert len(kinds) == 1
