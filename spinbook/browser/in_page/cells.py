@@ -68,8 +68,7 @@ def define(path: str, text: str) -> int:
         print(_OTHER_TEXT, file=sys.stderr)
         return 1
     package, kind, name = path.split("/")
-    stem = name.partition(".")[0]
-    print(f"{package}/{kind}/{stem}: ready. In Python: from {package}.{kind} import {stem}")
+    print(f"{package}/{kind}/{name.partition('.')[0]}: ready.")
     return 0
 
 

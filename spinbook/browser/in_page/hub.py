@@ -54,7 +54,7 @@ class Turns:
 
     def let_hub_go_on(self) -> None:
         """The program waits until something happens, or its run is over."""
-        if not self.is_over:
+        if not self.is_over and not self.has_ended:
             self._hub.release()
             self._program.acquire()
 

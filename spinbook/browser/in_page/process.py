@@ -19,6 +19,8 @@ from spinbook.browser.in_page import threads
 from spinbook.browser.in_page.link import PageLink
 
 _FAILED, _INTERRUPTED = 1, 130
+#: How many threads `MultiThreadedExecutor` and other pools have.
+_PROCESSORS = 4
 _NO_NUMPY = "This program imports {name}, which a web page does not have. It runs in a notebook and in the grader."
 _NO_MEMORY = "This program needs more memory than a web page has. It runs in a notebook."
 _NO_PROCESSES = "This program starts another one, which a web page can't. It runs in a notebook."
@@ -33,6 +35,8 @@ def open_process(page: Any, identity: str) -> None:
     participant.use(link, identity)
     time.sleep = link.sleep  # type: ignore[assignment]
     logs.write = lambda line: print(line, file=sys.stderr)
+    # A pool of one thread would be none; how many there are is not the page's to know.
+    os.cpu_count = lambda: _PROCESSORS
     rcl_python.install()
     builtins.input = _refuse_input
 

@@ -47,8 +47,8 @@ class ProgramLink:
 
     def send(self, frame: Frame, data: bytes = b"") -> None:
         """Hand a frame to the hub, which takes it at once."""
-        if self._turns.is_over:
-            return
+        if self._turns.is_over or self._turns.has_ended:
+            return  # such as an object of the program's that is collected later
         thread = self.rota.number()
         for kind, payload in _encoded(frame, data, (self._connection.handled, self._now, thread)):
             try:

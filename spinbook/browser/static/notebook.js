@@ -148,7 +148,7 @@ async function bounded(cell, process, line) {
     process.signal("SIGINT");
   };
   const timer = setTimeout(interrupt, 1000 * seconds);
-  if (endless && cell.until) cell.seen.then(interrupt);
+  if (cell.until) cell.seen.then(interrupt);
   try {
     const status = await busy(cell, process, "command", { source: line, files: files() });
     if (interrupted && status !== null) cell.failed = false;

@@ -100,6 +100,7 @@ const does = {
   },
   timeline: async ({ names }) => {
     const { py } = await ready;
+    await shares(py);
     return py.pyimport("spinbook.browser.in_page.timeline").record.callPromising(py.toPy(names));
   },
   drawn: async ({ names, lines, title }) => {
