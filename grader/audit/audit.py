@@ -20,7 +20,7 @@ from grader.audit.candidates import (
     seeds_of,
 )
 from grader.audit.listing import Check, ChecksJob, problems_in_text
-from grader.audit.mutants import Mutant, mutants_of
+from grader.audit.mutants.making import Mutant, mutants_of
 from grader.audit.recordings import Spins, tidy
 from grader.audit.result import LEAST_SCORE, Audit, MutantResult, Problem, score_of
 from grader.audit.store import Store
@@ -34,11 +34,12 @@ from grader.audit.worth import (
     scenario_results,
     worth_spinning_on,
 )
-from grader.exercise import Exercise
-from grader.grading import Options, grading_of
+from grader.exercise.exercise import Exercise
+from grader.grading.grade import Options
+from grader.grading.grading import grading_of
 from grader.grading.reference import solution_file
 from grader.submission.reading import of_source
-from grader.workers import WorkerPool
+from grader.workers.pool import WorkerPool
 
 #: Over how many seeds right solutions have to be right.
 SEEDS = 20

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from grader.checking import Run
 from grader.checking.comparator import equal
 from grader.checking.run import Message
-from grader.exercise import Exercise
-from grader.grading import Grade
+from grader.exercise.exercise import Exercise
+from grader.grading.grade import Grade
 
 #: (seconds after the scenario's start, value)
 Point = tuple[float, float]

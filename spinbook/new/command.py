@@ -6,7 +6,8 @@ from pathlib import Path
 
 import click
 
-from grader.exercise import Exercise, ExerciseError, load
+from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.loading import load
 from spinbook.course.course import find_course
 from spinbook.new.kind import BY_NAME, KINDS, Kind
 from spinbook.new.writing import (

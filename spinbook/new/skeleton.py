@@ -11,8 +11,17 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from grader.exercise import Exercise
-from grader.exercise.exercise import Direction, Durability, Endpoint, Parameter, ProgramFile, Reliability, Role, Topic
+from grader.exercise.exercise import (
+    Direction,
+    Durability,
+    Endpoint,
+    Exercise,
+    Parameter,
+    ProgramFile,
+    Reliability,
+    Role,
+    Topic,
+)
 
 #: A program's end, and what an __init__ does for it.
 _ENTRY = {

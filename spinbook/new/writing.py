@@ -11,7 +11,7 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from grader.exercise import Exercise
+from grader.exercise.exercise import Exercise
 from grader.files import write_if_changed
 from spinbook.new.kind import COURSE, Kind
 from spinbook.new.skeleton import skeleton

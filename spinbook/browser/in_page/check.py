@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from grader.checking.verdict import Verdict
-from grader.exercise import Exercise, load
-from grader.recording import Recording
-from grader.recording.recording import likewise
+from grader.exercise.exercise import Exercise
+from grader.exercise.loading import load
+from grader.recording.recording import Recording, likewise
 from grader.recording.store import from_plain
-from grader.scenario import Message, Scenario
+from grader.scenario.scenario import Message, Scenario
 from grader.scenario.store import from_plain as scenario_from_plain
 from spinbook.browser.in_page import rig
 from spinbook.browser.in_page.rig import Program

@@ -20,12 +20,12 @@ from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 
-from grader.exercise import Exercise
-from grader.recording import Recording
+from grader.exercise.exercise import Exercise
+from grader.recording.recording import Recording
 from grader.runner.run import Run
 from grader.runner.task import Task
-from grader.scenario import Scenario
 from grader.scenario.command_line import arguments
+from grader.scenario.scenario import Scenario
 from rcl_python import logs
 from spinbook.browser.in_page import threads
 from spinbook.browser.in_page.hub import Over, PageHub, Turns
