@@ -154,7 +154,7 @@ def grade(
     sys.exit(OUR_FAULT if result.outcome == "host-error" else NOT_FULL_MARKS if not result.full_marks else FULL_MARKS)
 
 
-def _class(exercise: Exercise, order: ClassRequest) -> int:
+def _class(exercise: Exercise, class_request: ClassRequest) -> int:
     """Grade a class. What that needs is imported here: a single submission's grade comes sooner without."""
     from grader.classroom.class_run import grade_class
     from grader.classroom.deadline import OverridesError
@@ -162,7 +162,7 @@ def _class(exercise: Exercise, order: ClassRequest) -> int:
     from grader.classroom.results import Busy
 
     try:
-        return grade_class(exercise, order, Console(soft_wrap=False, highlight=False))
+        return grade_class(exercise, class_request, Console(soft_wrap=False, highlight=False))
     except (SubmissionsError, OverridesError, Busy, NoCluster) as error:
         raise click.UsageError(str(error)) from None
 

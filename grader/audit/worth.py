@@ -97,9 +97,9 @@ def problems_of_broken(checks: tuple[Check, ...], trials: dict[str, Trial]) -> l
     for check in checks:
         for name, trial in trials.items():
             if trial.statuses.get(check.name) == "error":
-                told = f"{check.name} breaks on what {name} publishes: {trial.findings[check.name].text}"
+                text = f"{check.name} breaks on what {name} publishes: {trial.findings[check.name].text}"
                 fix = "Whatever a student's node publishes, a check has to pass or to fail: look before you take."
-                found.append(Problem(f"{check.file}:{check.line}", check.name, told, fix))
+                found.append(Problem(f"{check.file}:{check.line}", check.name, text, fix))
                 break
     return found
 
@@ -116,8 +116,8 @@ def messages(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Proble
         for name, trial in trials.items():
             finding = trial.findings.get(check.name) if check.name in trial.failed else None
             if finding and not _broke_off(finding) and not finding.expected and not WORDS.search(finding.text):
-                told = f"{check.name} fails for {name} and does not say what was expected: “{finding.text}”"
-                found.append(Problem(f"{check.file}:{check.line}", check.name, told, "Name it in the message."))
+                message = f"{check.name} fails for {name} and does not say what was expected: “{finding.text}”"
+                found.append(Problem(f"{check.file}:{check.line}", check.name, message, "Name it in the message."))
                 break
     return found
 

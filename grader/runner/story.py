@@ -80,8 +80,8 @@ def _advice(error: str, block: str) -> str:
 
 def _of_signal(signal: int, log: str) -> str:
     if other := OTHER_CLASS.search(log):
-        told = f"it gave ROS 2 an object of another class than {other['expected']}."
-        return f"{told} {_RESULT}" if other["expected"].endswith("_Result") else told
+        text = f"it gave ROS 2 an object of another class than {other['expected']}."
+        return f"{text} {_RESULT}" if other["expected"].endswith("_Result") else text
     return f"it was killed by signal {signal}."
 
 

@@ -49,8 +49,8 @@ def forget() -> None:
 
 
 def _file(level: str) -> Path:
-    told = "\n".join((level, *_circumstances()))
-    return cached("sandbox") / f"{level}-{hashlib.sha256(told.encode()).hexdigest()[:32]}"
+    text = "\n".join((level, *_circumstances()))
+    return cached("sandbox") / f"{level}-{hashlib.sha256(text.encode()).hexdigest()[:32]}"
 
 
 def _circumstances() -> Iterator[str]:

@@ -219,10 +219,10 @@ _MAY_WAIT = 300
 
 def _told_to_stop() -> threading.Event:
     """An event that SIGINT and SIGTERM set. ROS goes on: what has arrived by then is still to be read."""
-    told = threading.Event()
+    text = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: told.set())
-    return told
+        signal.signal(number, lambda *_: text.set())
+    return text
 
 
 def record(recorder: TimelineRecorder, told_to_stop: threading.Event) -> None:
