@@ -12,14 +12,17 @@ from grader.classroom.deadline import OverridesError
 from grader.classroom.handed_in import SubmissionsError
 from grader.classroom.request import ClassRequest, NoCluster
 from grader.classroom.results import Busy
-from grader.exercise import Exercise, ExerciseError, load
-from grader.exercise.loading import NoExercise, find
-from grader.grading import Grade, Options, grading_of
+from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.loading import NoExercise, find, load
+from grader.grading.grade import Grade, Options
+from grader.grading.grading import grading_of
 from grader.report.as_json import as_json
 from grader.report.terminal import show
-from grader.sandbox import Isolation, Middleware, SandboxUnavailable, choose_middleware, to_be_compiled
-from grader.submission import NoSubmission, Submission, read
-from grader.workers import HostFault, WorkerPool
+from grader.sandbox.isolation import Isolation
+from grader.sandbox.middleware import choose_middleware, to_be_compiled
+from grader.sandbox.program import Middleware, SandboxUnavailable
+from grader.submission.reading import NoSubmission, Submission, read
+from grader.workers.pool import HostFault, WorkerPool
 
 #: Exit codes. 2 is click's own, for usage.
 FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3

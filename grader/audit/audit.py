@@ -20,18 +20,19 @@ from grader.audit.candidates import (
     seeds_of,
 )
 from grader.audit.listing import Check, ChecksJob, problems_in_text
-from grader.audit.mutants import Mutant, mutants_of
+from grader.audit.mutants.making import Mutant, mutants_of
 from grader.audit.recordings import Spins, tidy
 from grader.audit.result import LEAST_SCORE, Audit, MutantResult, Problem, score_of
 from grader.audit.store import Store
 from grader.audit.survivors import listed, problems_of_survivors, result_of, stale
 from grader.audit.trial import Trial, Trials, Until
 from grader.audit.worth import check_results, messages, problems_of_broken, problems_of_checks, scenario_results
-from grader.exercise import Exercise
-from grader.grading import Options, grading_of
+from grader.exercise.exercise import Exercise
+from grader.grading.grade import Options
+from grader.grading.grading import grading_of
 from grader.grading.reference import solution_file
 from grader.submission.reading import of_source
-from grader.workers import WorkerPool
+from grader.workers.pool import WorkerPool
 
 #: Over how many seeds right solutions have to be right.
 SEEDS = 20

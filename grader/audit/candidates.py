@@ -12,13 +12,13 @@ from grader.audit.listing import Check
 from grader.audit.result import Judged, Problem
 from grader.audit.store import Store
 from grader.audit.trial import Trial, Trials
-from grader.exercise import Exercise, starter
+from grader.exercise.exercise import Exercise
+from grader.exercise.starter import starter
 from grader.grading.reference import solution_file
-from grader.recording import Recording
-from grader.scenario import Scenario
+from grader.recording.recording import Recording
 from grader.scenario.declared import declared
-from grader.submission import Submission
-from grader.submission.reading import of_source
+from grader.scenario.scenario import Scenario
+from grader.submission.reading import Submission, of_source
 
 #: A node that is there and does nothing.
 IDLE = """import rclpy

@@ -11,11 +11,12 @@ from rich.console import Console
 
 from grader.audit.report import on, show, show_shadow, write_json
 from grader.audit.result import Audit, Problem
-from grader.exercise import Exercise, ExerciseError, load
-from grader.exercise.loading import NoExercise, find
-from grader.grading import Options
-from grader.sandbox import Middleware, SandboxUnavailable, choose_middleware
-from grader.workers import HostFault, WorkerPool
+from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.loading import NoExercise, find, load
+from grader.grading.grade import Options
+from grader.sandbox.middleware import choose_middleware
+from grader.sandbox.program import Middleware, SandboxUnavailable
+from grader.workers.pool import HostFault, WorkerPool
 from interface_compiler.near import use_near
 
 #: Exit codes, beside click's 2 for usage and a shell's 130 for Ctrl-C.

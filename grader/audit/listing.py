@@ -19,10 +19,11 @@ from grader.checking.judging import run_pytest
 from grader.checking.plugin import Checks
 from grader.checking.run import Run
 from grader.checking.verdict import mark_of
-from grader.exercise import Exercise, starter
+from grader.exercise.exercise import Exercise
+from grader.exercise.starter import starter
 from grader.grading.reference import solution_file
-from grader.recording import Recording
-from grader.sandbox import ForkServer
+from grader.recording.recording import Recording
+from grader.sandbox.fork_server import ForkServer
 
 
 @dataclass(frozen=True)

@@ -15,11 +15,11 @@ from pathlib import Path
 from grader.files import write_if_changed
 from grader.grading.grading import Grading
 from grader.grading.reference import GRADER, cache_folder, digest_of, versions
-from grader.recording import Recording
+from grader.recording.recording import Recording
 from grader.recording.store import from_json, to_json
-from grader.sandbox import Middleware
-from grader.scenario import Scenario
-from grader.submission import Submission
+from grader.sandbox.program import Middleware
+from grader.scenario.scenario import Scenario
+from grader.submission.reading import Submission
 
 #: The parts of the grader that decide what a recording holds.
 SPINNING = ("workers", "exercise", "recording", "runner", "sandbox", "scenario", "submission")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from grader.audit.mutants import Mutant
+from grader.audit.mutants.making import Mutant
 
 #: The part of the mutants that must be caught, of those that can be told from the solution.
 LEAST_SCORE = 0.95

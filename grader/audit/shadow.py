@@ -14,12 +14,12 @@ from dataclasses import dataclass, replace
 from grader.audit.audit import Progress
 from grader.audit.candidates import Candidate, mistakes, right_ones
 from grader.checking.verdict import Verdict
-from grader.exercise import Exercise
-from grader.grading import Grade, Options, grading_of
-from grader.grading.grading import Grading
-from grader.recording import Recording
-from grader.sandbox import Middleware
-from grader.workers import HostFault, WorkerPool
+from grader.exercise.exercise import Exercise
+from grader.grading.grade import Grade, Options
+from grader.grading.grading import Grading, grading_of
+from grader.recording.recording import Recording
+from grader.sandbox.program import Middleware
+from grader.workers.pool import HostFault, WorkerPool
 
 #: What is compared besides the checks.
 OUTCOME = "outcome"

@@ -6,10 +6,10 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from grader.audit.mutants import Mutant
+from grader.audit.mutants.making import Mutant
 from grader.audit.result import Fate, MutantResult, Problem
 from grader.audit.trial import Trial
-from grader.exercise import Exercise, ExerciseError
+from grader.exercise.exercise import Exercise, ExerciseError
 
 if sys.version_info >= (3, 11):
     import tomllib

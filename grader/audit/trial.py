@@ -13,9 +13,9 @@ from grader.audit.listing import Check
 from grader.audit.recordings import Spins
 from grader.checking.verdict import Finding, Status, Verdict
 from grader.grading.grading import Grading
-from grader.recording import Ending, Received, Recording
-from grader.scenario import Scenario
-from grader.submission import Submission
+from grader.recording.recording import Ending, Received, Recording
+from grader.scenario.scenario import Scenario
+from grader.submission.reading import Submission
 from grader.workers.jobs import JudgeJob
 
 

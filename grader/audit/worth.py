@@ -10,7 +10,7 @@ from grader.audit.listing import Check
 from grader.audit.result import CheckResult, Problem, ScenarioResult
 from grader.audit.trial import Trial
 from grader.checking.verdict import Finding
-from grader.scenario import Scenario
+from grader.scenario.scenario import Scenario
 
 #: A message that names no expected value has to say in words what was to be.
 WORDS = re.compile(r"expect|must|should|has to|have to|was to|were to|instead of|may not", re.IGNORECASE)

@@ -6,7 +6,7 @@ from typing import Literal, NoReturn
 
 from grader.checking.recorded import Recorded
 from grader.checking.verdict import Finding, Wrong
-from grader.recording import EndPoint
+from grader.recording.recording import EndPoint
 
 Kind = Literal["publisher", "subscription", "server", "client", "action server", "action client"]
 

@@ -17,8 +17,8 @@ from grader.checking.plugin import Checks, fixtures_of
 from grader.checking.run import Run
 from grader.checking.spelling import with_spelling
 from grader.checking.verdict import Verdict
-from grader.exercise import Exercise, ExerciseError
-from grader.recording import Recording
+from grader.exercise.exercise import Exercise, ExerciseError
+from grader.recording.recording import Recording
 
 
 def judge(

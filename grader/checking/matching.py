@@ -12,7 +12,7 @@ from grader.scenario.times import SECOND
 
 if TYPE_CHECKING:
     from grader.checking.run import Exchange, Message, Run
-    from grader.recording import Received
+    from grader.recording.recording import Received
 
 
 #: Which fields say when a message was sent, and nothing of what it says.

@@ -13,7 +13,7 @@ import pytest
 
 from grader.checking.run import Run
 from grader.checking.verdict import Finding, Mark, Verdict, Wrong, mark_of
-from grader.exercise import ExerciseError
+from grader.exercise.exercise import ExerciseError
 
 
 def fixtures_of(runs: Mapping[str, Run | None]) -> ModuleType:

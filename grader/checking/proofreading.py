@@ -15,7 +15,8 @@ from pathlib import Path
 
 from grader.checking.judging import Listed, listed
 from grader.child_process import run_program
-from grader.exercise import Exercise, ExerciseError, load
+from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.loading import load
 from grader.exercise.starter import MarkError, starter
 from grader.problem import Problem
 from grader.scenario.declared import declared

@@ -10,9 +10,8 @@ from grader.checking.comparator import difference
 from grader.checking.matching import COMPUTER_CLOCK, common
 from grader.checking.shown import shown
 from grader.checking.verdict import Finding, Wrong
-from grader.exercise import Exercise
-from grader.exercise.exercise import Endpoint, Role, Topic
-from grader.recording import Ending, Received, Recording
+from grader.exercise.exercise import Endpoint, Exercise, Role, Topic
+from grader.recording.recording import Ending, Received, Recording
 from grader.scenario.times import SECOND, START
 
 _SLEEPS = "Does your node wait by the computer's clock, such as with time.sleep? It goes at another speed here."

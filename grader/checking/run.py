@@ -15,7 +15,7 @@ from grader.checking.series import SeriesChecks
 from grader.checking.services import ServiceChecks
 from grader.checking.trajectory import TrajectoryChecks
 from grader.checking.verdict import Finding, Wrong
-from grader.recording import EndPoint, Received, Recording, Sent
+from grader.recording.recording import EndPoint, Received, Recording, Sent
 from grader.scenario.times import SECOND, START
 
 #: On which the grader tells simulated time. Whatever uses simulated time subscribes to it.

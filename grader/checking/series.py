@@ -9,7 +9,7 @@ from grader.checking.comparator import TOLERANCE, equal
 from grader.checking.matching import COMPUTER_CLOCK
 from grader.checking.recorded import Recorded, field_of, seconds
 from grader.checking.shown import shown
-from grader.recording import Received
+from grader.recording.recording import Received
 from grader.scenario.times import SECOND, START
 
 #: A stamp that is larger than this (s) can't be simulated time, which begins at 100 s.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from grader.checking.recorded import Recorded, field_of, seconds
-from grader.recording import Received, Sent
+from grader.recording.recording import Received, Sent
 from grader.scenario.times import SECOND, START
 
 Place = dict[str, float]

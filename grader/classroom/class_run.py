@@ -29,13 +29,13 @@ from grader.classroom.publishing import publish
 from grader.classroom.rejudging import difference, rejudge
 from grader.classroom.request import Backend, ClassRequest, host_error
 from grader.classroom.results import ClassGrading, Plan, Results, not_written
-from grader.exercise import Exercise
+from grader.exercise.exercise import Exercise
 from grader.files import write_if_changed
-from grader.grading import Grade, grading_of
-from grader.grading.grading import Grading
+from grader.grading.grade import Grade
+from grader.grading.grading import Grading, grading_of
 from grader.report.printable import printable
-from grader.submission import Submission, read
-from grader.workers import WorkerPool
+from grader.submission.reading import Submission, read
+from grader.workers.pool import WorkerPool
 
 #: How many files that were skipped for one reason are named; the overview page names all.
 MOST_NAMED = 5

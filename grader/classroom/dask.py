@@ -14,14 +14,16 @@ from typing import TYPE_CHECKING
 from grader.classroom.local import own_core
 from grader.classroom.request import Graded, NoCluster, host_error
 from grader.classroom.results import grade_key
-from grader.exercise import Exercise, load
-from grader.grading import Options, grading_of
-from grader.grading.grading import Grading
+from grader.exercise.exercise import Exercise
+from grader.exercise.loading import load
+from grader.grading.grade import Options
+from grader.grading.grading import Grading, grading_of
 from grader.grading.reference import versions
 from grader.report.feedback_plot import picture
-from grader.sandbox import Middleware, choose_middleware
-from grader.submission import Submission
-from grader.workers import WorkerPool
+from grader.sandbox.middleware import choose_middleware
+from grader.sandbox.program import Middleware
+from grader.submission.reading import Submission
+from grader.workers.pool import WorkerPool
 
 if TYPE_CHECKING:
     from distributed import Client

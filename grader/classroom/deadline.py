@@ -12,7 +12,7 @@ from typing import Any
 
 from grader.classroom import Adjustment, Entry
 from grader.classroom.handed_in import SubmissionsError, moment, table_rows
-from grader.exercise import Exercise, ExerciseError
+from grader.exercise.exercise import Exercise, ExerciseError
 
 if sys.version_info >= (3, 11):
     import tomllib

@@ -12,7 +12,7 @@ from html import escape
 from pathlib import Path
 
 from grader.checking.verdict import Verdict
-from grader.exercise import Exercise
+from grader.exercise.exercise import Exercise
 from grader.files import write_if_changed
 from grader.grading.entry import Entry, Student
 from grader.report.as_json import folder_of

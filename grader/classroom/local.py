@@ -13,13 +13,13 @@ from pathlib import Path
 
 from grader.classroom.request import Graded, host_error
 from grader.classroom.results import grade_key
-from grader.exercise import ExerciseError
+from grader.exercise.exercise import ExerciseError
 from grader.grading.grading import Grading
 from grader.grading.running import WorkStealing
 from grader.locks import claim_number
 from grader.report.feedback_plot import picture
-from grader.sandbox import Middleware
-from grader.submission import Submission
+from grader.sandbox.program import Middleware
+from grader.submission.reading import Submission
 
 #: How many submissions to grade at once on each core: grader and program wait for one another, and over Fast DDS both
 #: wait for the network most of the time.

@@ -12,7 +12,7 @@ from urllib.parse import quote
 
 from grader.checking.verdict import Verdict
 from grader.classroom.misconceptions import Misconceptions
-from grader.exercise import Exercise
+from grader.exercise.exercise import Exercise
 from grader.grading.entry import Entry, Skipped
 from grader.report.as_json import STUDENTS
 from grader.report.pages import points, render

@@ -11,11 +11,11 @@ from rich.text import Text
 from grader.classroom.handed_in import HandedIn, Submissions
 from grader.classroom.request import Graded
 from grader.classroom.results import ClassGrading, recordings_key
-from grader.grading import Grade
+from grader.grading.grade import Grade
 from grader.grading.grading import Grading
 from grader.report.feedback_plot import picture
 from grader.report.printable import printable
-from grader.submission import Submission
+from grader.submission.reading import Submission
 
 
 @dataclass(frozen=True)

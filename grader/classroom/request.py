@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from grader.grading import Grade, Options
+from grader.grading.grade import Grade, Options
 from grader.grading.reference import versions
 from grader.grading.running import ScenarioRunner
-from grader.submission import Submission
+from grader.submission.reading import Submission
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import click
 
-from grader.exercise import Exercise, load
-from grader.exercise.loading import find
+from grader.exercise.exercise import Exercise
+from grader.exercise.loading import find, load
 from grader.gradescope.command import author_errors, autograder_files, isolation_option
-from grader.sandbox import Isolation
+from grader.sandbox.isolation import Isolation
 
 #: For a repository without Classroom 50: where the folder that this command writes is a private repository.
 WORKFLOW = """\

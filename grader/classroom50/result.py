@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from datetime import datetime, timezone
 from typing import Any
 
-from grader.grading import Grade
+from grader.grading.grade import Grade
 from grader.report.feedback import Told, told
 from grader.report.printable import printable
 

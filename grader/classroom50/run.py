@@ -12,13 +12,16 @@ import sys
 from pathlib import Path
 
 from grader.classroom50.result import result, summary
-from grader.exercise import Exercise, ExerciseError, load
+from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.loading import load
 from grader.files import write_if_changed
 from grader.gradescope.prepare import keep_beside
 from grader.gradescope.run import submission
-from grader.grading import Grade, Options, grading_of
-from grader.sandbox import Isolation, SandboxUnavailable
-from grader.workers import HostFault, WorkerPool
+from grader.grading.grade import Grade, Options
+from grader.grading.grading import grading_of
+from grader.sandbox.isolation import Isolation
+from grader.sandbox.program import SandboxUnavailable
+from grader.workers.pool import HostFault, WorkerPool
 
 
 def main(folder: Path, repository: Path, isolation: str = "") -> int:

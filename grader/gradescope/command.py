@@ -12,11 +12,11 @@ from pathlib import Path
 
 import click
 
-from grader.exercise import Exercise, ExerciseError, load
-from grader.exercise.loading import NoExercise, find
+from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.loading import NoExercise, find, load
 from grader.gradescope.installed import NotInstalled, installed_wheel, pins
 from grader.grading.reference import solution_file
-from grader.sandbox import Isolation
+from grader.sandbox.isolation import Isolation
 from interface_compiler import activation
 from interface_compiler.building import DEFINITIONS
 

@@ -6,10 +6,13 @@ import os
 import sys
 from pathlib import Path
 
-from grader.exercise import ExerciseError, load
-from grader.grading import Options, grading_of
-from grader.sandbox import Isolation, SandboxUnavailable
-from grader.workers import HostFault, WorkerPool
+from grader.exercise.exercise import ExerciseError
+from grader.exercise.loading import load
+from grader.grading.grade import Options
+from grader.grading.grading import grading_of
+from grader.sandbox.isolation import Isolation
+from grader.sandbox.program import SandboxUnavailable
+from grader.workers.pool import HostFault, WorkerPool
 
 
 def keep_beside(exercise: Path) -> None:

@@ -15,15 +15,18 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from grader.exercise import Exercise, ExerciseError, load
+from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.loading import load
 from grader.files import write_if_changed
 from grader.gradescope.prepare import keep_beside
-from grader.grading import Options, grading_of
 from grader.grading.entry import Entry, Student
+from grader.grading.grade import Options
+from grader.grading.grading import grading_of
 from grader.report.gradescope import no_score, results
-from grader.sandbox import Isolation, SandboxUnavailable
-from grader.submission import Submission, read
-from grader.workers import HostFault, WorkerPool
+from grader.sandbox.isolation import Isolation
+from grader.sandbox.program import SandboxUnavailable
+from grader.submission.reading import Submission, read
+from grader.workers.pool import HostFault, WorkerPool
 
 
 def main(folder: Path, root: Path, isolation: str = "") -> None:

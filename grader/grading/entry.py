@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Literal
 
-from grader.grading import Grade
+from grader.grading.grade import Grade
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,10 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from grader.checking.verdict import Verdict
-from grader.exercise import Exercise
-from grader.recording import Ending, Recording
-from grader.sandbox import Isolation, Limits, Middleware
+from grader.exercise.exercise import Exercise
+from grader.recording.recording import Ending, Recording
+from grader.sandbox.isolation import Isolation
+from grader.sandbox.program import Limits, Middleware
 
 #: What happened, of which only `host-error` is not the student's: it is no score and has to be graded again.
 Outcome = Literal["graded", "did-not-start", "crashed", "timed-out", "over-limit", "host-error"]

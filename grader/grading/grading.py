@@ -6,18 +6,19 @@ import time
 from dataclasses import dataclass
 
 from grader.checking.verdict import Verdict
-from grader.exercise import Exercise
+from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade, Options, Outcome, message_of
 from grader.grading.public import PublicPart, public_part
 from grader.grading.reference import reference, solution_file, versions
 from grader.grading.running import ScenarioRunner
-from grader.recording import Ending, Recording
-from grader.sandbox import Isolation, SandboxUnavailable, choose
-from grader.scenario import Scenario
+from grader.recording.recording import Ending, Recording
+from grader.sandbox.isolation import Isolation, choose
+from grader.sandbox.program import SandboxUnavailable
 from grader.scenario.declared import declared
-from grader.submission import Submission
-from grader.workers import HostFault, WorkerPool
+from grader.scenario.scenario import Scenario
+from grader.submission.reading import Submission
 from grader.workers.jobs import JudgeJob
+from grader.workers.pool import HostFault, WorkerPool
 
 
 @dataclass(frozen=True)

@@ -11,20 +11,20 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from grader.checking.judging import Listed
-from grader.exercise import Exercise, ExerciseError
+from grader.exercise.exercise import Exercise, ExerciseError
 from grader.grading.grade import Options
 from grader.grading.reference import reference
 from grader.grading.running import ScenarioRunner
-from grader.recording import Recording
+from grader.recording.recording import Recording
 from grader.recording.store import from_plain, plain
-from grader.sandbox import Isolation
-from grader.scenario import Message, Scenario
+from grader.sandbox.isolation import Isolation
 from grader.scenario.declared import declared
+from grader.scenario.scenario import Message, Scenario
 from grader.scenario.store import NotForStudents
 from grader.scenario.store import from_plain as from_plain_scenario
 from grader.scenario.store import plain as plain_scenario
-from grader.workers import WorkerPool
 from grader.workers.jobs import ListJob
+from grader.workers.pool import WorkerPool
 
 #: Changes when older versions can't read the file any more. Format 1 had messages only.
 FORMAT = 2

@@ -14,13 +14,13 @@ from pathlib import Path
 
 from grader.checking.proofreading import line_with, points_that_do_not_add_up, same_name_twice
 from grader.checking.verdict import Verdict
-from grader.exercise import Exercise, ExerciseError
+from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.starter import MarkError, starter
 from grader.files import write_if_changed
 from grader.grading.running import ScenarioRunner
-from grader.recording import Recording
+from grader.recording.recording import Recording
 from grader.recording.store import from_json, to_json
-from grader.sandbox import Middleware
+from grader.sandbox.program import Middleware
 from grader.submission.reading import of_source
 from grader.workers.jobs import JudgeJob
 from interface_compiler import activation

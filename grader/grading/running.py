@@ -12,15 +12,16 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from grader.exercise import Exercise
+from grader.exercise.exercise import Exercise
 from grader.grading.grade import Options
-from grader.recording import Ending, Recording
-from grader.sandbox import Isolation, Middleware, MiddlewareUnavailable, Program, choose_middleware
-from grader.scenario import Companion, Scenario
-from grader.submission import Submission
-from grader.workers import WorkerPool
+from grader.recording.recording import Ending, Recording
+from grader.sandbox.isolation import Isolation
+from grader.sandbox.middleware import MiddlewareUnavailable, choose_middleware
+from grader.sandbox.program import Middleware, Program
+from grader.scenario.scenario import Companion, Scenario
+from grader.submission.reading import Submission
 from grader.workers.jobs import RunJob
-from grader.workers.pool import FAST_DDS_ENVIRONMENT, PROFILE, STUDENT_ENVIRONMENT
+from grader.workers.pool import FAST_DDS_ENVIRONMENT, PROFILE, STUDENT_ENVIRONMENT, WorkerPool
 
 
 class TaskQueue:

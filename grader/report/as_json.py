@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from grader.checking.verdict import Finding, Verdict
-from grader.grading import Grade
 from grader.grading.entry import Adjustment, Entry, Student
+from grader.grading.grade import Grade
 
 
 def as_json(grade: Grade) -> str:

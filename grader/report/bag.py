@@ -8,9 +8,9 @@ import shutil
 from pathlib import Path
 from typing import Any
 
-from grader.grading import Grade
-from grader.recording import Event, Received, Recording, Sent
-from grader.recording.recording import Fields
+from grader.grading.grade import Grade
+from grader.recording.events import Event
+from grader.recording.recording import Fields, Received, Recording, Sent
 from interface_compiler import prefixes
 
 #: The solution's answers are in the bag, too, under this name in front of the topic's.

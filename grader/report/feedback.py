@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from html import unescape
 
 from grader.checking.verdict import Finding, Status, Verdict
-from grader.exercise import Exercise
-from grader.grading import Grade
+from grader.exercise.exercise import Exercise
 from grader.grading.entry import Adjustment, Entry
-from grader.grading.grade import Outcome
+from grader.grading.grade import Grade, Outcome
 from grader.report.pages import render
 from grader.report.printable import as_students_see_it, printable
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from grader.exercise import Exercise
-from grader.grading import Grade
+from grader.exercise.exercise import Exercise
+from grader.grading.grade import Grade
 from grader.report.curves import Curve, Point, curves, drawn_quantity
 from grader.report.pages import template
 

@@ -11,9 +11,9 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from grader.exercise import Exercise
+from grader.exercise.exercise import Exercise
 from grader.files import write_if_changed
-from grader.grading import Grade
+from grader.grading.grade import Grade
 from grader.report.curves import Curve, Point, Quantity, curves, drawn_quantity
 from grader.report.printable import printable
 

@@ -7,10 +7,11 @@ from rich.padding import Padding
 from rich.text import Text
 
 from grader.checking.verdict import Status, Verdict
-from grader.exercise import Exercise
-from grader.grading import Grade
+from grader.exercise.exercise import Exercise
+from grader.grading.grade import Grade
 from grader.report.printable import as_students_see_it, printable
-from grader.sandbox import Isolation, Middleware
+from grader.sandbox.isolation import Isolation
+from grader.sandbox.program import Middleware
 
 
 def points_so_far(grade: Grade) -> str:

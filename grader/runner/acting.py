@@ -9,8 +9,7 @@ from action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
 from action_msgs.srv import CancelGoal as CancelService
 from rclpy.serialization import serialize_message
 
-from grader.recording import Cancel, Feedback, Goal, GoalState
-from grader.recording.events import STATES
+from grader.recording.events import STATES, Cancel, Feedback, Goal, GoalState
 from grader.runner.cdr import deserialized
 from grader.runner.ends import Ends, Schedule, nanoseconds
 from grader.runner.goals import CANCEL, STATUS

@@ -9,7 +9,7 @@ from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.serialization import serialize_message
 
-from grader.recording import Call, ParameterChange, ParameterReading
+from grader.recording.events import Call, ParameterChange, ParameterReading
 from grader.runner.cdr import deserialized, fields_of, serialized
 from grader.runner.ends import Ends
 from grader.runner.message import message_class

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from grader.recording import Ending
+from grader.recording.recording import Ending
 from grader.runner.story import of_exit
 from grader.runner.student import Student
 

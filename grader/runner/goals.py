@@ -9,8 +9,7 @@ from action_msgs.msg import GoalStatusArray
 from action_msgs.srv import CancelGoal as CancelService
 from rclpy.serialization import serialize_message
 
-from grader.recording import Cancel, Feedback, Goal, GoalState
-from grader.recording.events import STATES
+from grader.recording.events import STATES, Cancel, Feedback, Goal, GoalState
 from grader.runner.cdr import deserialized
 from grader.runner.ends import Ends
 from grader.runner.message import filled, message_class, to_fields

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from grader.recording import EndPoint
-from grader.recording.recording import EndPointKind
+from grader.recording.recording import EndPoint, EndPointKind
 from rmw_lockstep.hub import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, Hub
 from rmw_lockstep.hub import EndPoint as OnHub
 from rmw_lockstep.hub.graph import Graph

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import time
 
-from grader.recording import Ending
+from grader.recording.recording import Ending
 from grader.runner.budget import Allowance, Budget, Gone
 from grader.runner.ending import MAY_TAKE_S
 from grader.runner.stopped import Stopped

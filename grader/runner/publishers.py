@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from grader.recording import Sent
+from grader.recording.recording import Sent
 from grader.runner.cdr import serialized
 from grader.runner.ends import hub_qos
 from grader.runner.message import message_class
-from grader.scenario import Message, Scenario
+from grader.scenario.scenario import Message, Scenario
 from rmw_lockstep.hub import HubNode, Publisher, Qos
 from rmw_lockstep.hub.qos import TRANSIENT_LOCAL
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from grader.recording import Received
+from grader.recording.recording import Received
 from grader.runner.cdr import fields_of
 from grader.runner.clocks import Clocks
 from grader.runner.message import message_class

@@ -15,7 +15,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from grader.recording import Ending, EndPoint, Received, Recording
+from grader.recording.recording import Ending, EndPoint, Received, Recording
 from grader.runner.budget import Allowance, Budget, Gone
 from grader.runner.clocks import Clocks, clock_message
 from grader.runner.ending import cut_short
@@ -33,8 +33,7 @@ from grader.runner.student import Student
 from grader.runner.task import Task
 from grader.runner.team import Start, Team
 from grader.runner.violations import story_of
-from grader.scenario import Message
-from grader.scenario.scenario import SECOND, START, Content
+from grader.scenario.scenario import SECOND, START, Content, Message
 from rmw_lockstep.hub import Hub, Limits, Violation
 
 #: How far simulated time goes on after the last message, for what a node does by timer (ns).

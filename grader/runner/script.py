@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from grader.exercise import ExerciseError
-from grader.recording import Call, Goal, ParameterChange, ParameterReading
+from grader.exercise.exercise import ExerciseError
+from grader.recording.events import Call, Goal, ParameterChange, ParameterReading
 from grader.runner.acting import ScriptedActionServer
 from grader.runner.calls import Calls
 from grader.runner.ends import Ends, Schedule, hub_qos, nanoseconds

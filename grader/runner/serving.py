@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from grader.exercise import Exercise
-from grader.recording import Call
+from grader.exercise.exercise import Exercise
+from grader.recording.events import Call
 from grader.runner.cdr import deserialized, fields_of, serialized
 from grader.runner.ends import Ends, Schedule, nanoseconds
 from grader.runner.message import message_class, to_fields

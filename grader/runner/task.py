@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from grader.exercise import Exercise
-from grader.scenario import Scenario
+from grader.exercise.exercise import Exercise
+from grader.scenario.scenario import Scenario
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from grader.recording import Exit as Recorded
+from grader.recording.events import Exit as Recorded
 from grader.runner.student import Exit, Output, Student
-from grader.scenario import Scenario
+from grader.scenario.scenario import Scenario
 from rmw_lockstep.hub import Hub
 
 #: Starts a program, which is to connect to the hub at this socket.

@@ -8,7 +8,7 @@ import traceback
 from pathlib import Path
 from typing import Any
 
-from grader.exercise import Exercise, ExerciseError
+from grader.exercise.exercise import Exercise, ExerciseError
 from grader.scenario.resolving import resolved
 from grader.scenario.scenario import Scenario
 

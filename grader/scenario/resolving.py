@@ -8,8 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NoReturn, TypeVar
 
-from grader.exercise import Exercise, ExerciseError
-from grader.exercise.exercise import Endpoint
+from grader.exercise.exercise import Endpoint, Exercise, ExerciseError
 from grader.recording.recording import Fields
 from grader.recording.types import message_class
 from grader.scenario.scenario import (

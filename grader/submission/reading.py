@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from grader.exercise import Exercise
-from grader.sandbox import Program
+from grader.exercise.exercise import Exercise
+from grader.sandbox.program import Program
 from grader.submission.parts import joined, parts
 from grader.submission.upload import NoUpload, Upload, unpack
 

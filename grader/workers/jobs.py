@@ -10,12 +10,16 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any, Protocol
 
-from grader.exercise import Exercise
+from grader.exercise.exercise import Exercise
 from grader.locks import claim_number
-from grader.recording import Recording
+from grader.recording.recording import Recording
 from grader.runner.task import Task
-from grader.sandbox import ForkServer, Isolation, Limits, Middleware, Program, Student, enter
-from grader.scenario import Scenario
+from grader.sandbox.fork_server import ForkServer
+from grader.sandbox.isolation import Isolation
+from grader.sandbox.network import enter
+from grader.sandbox.program import Limits, Middleware, Program
+from grader.sandbox.student import Student
+from grader.scenario.scenario import Scenario
 
 #: Inside network namespaces of its own a rig is alone in every domain.
 ALONE = 42

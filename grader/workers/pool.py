@@ -14,7 +14,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from grader.sandbox import Middleware, choose_middleware
+from grader.sandbox.middleware import choose_middleware
+from grader.sandbox.program import Middleware
 
 if TYPE_CHECKING:
     from grader.workers.jobs import Job

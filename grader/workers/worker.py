@@ -16,8 +16,10 @@ import traceback
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from grader.exercise import ExerciseError
-from grader.sandbox import ForkServer, Middleware, filesystem, middleware
+from grader.exercise.exercise import ExerciseError
+from grader.sandbox import filesystem, middleware
+from grader.sandbox.fork_server import ForkServer
+from grader.sandbox.program import Middleware
 from grader.sandbox.zygote import fork
 from grader.workers.pool import PREPARE_TO_JUDGE, PROCESS, PROFILE
 from interface_compiler import activation

@@ -8,8 +8,8 @@ import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from grader.exercise import Exercise
-from grader.workers import WorkerPool
+from grader.exercise.exercise import Exercise
+from grader.workers.pool import WorkerPool
 from spinbook.browser.archives import check_archive, ros_archive, share_archive
 from spinbook.build.digest import digest
 from spinbook.handout.student_copy import exercise_files

@@ -10,7 +10,8 @@ from typing import Any
 
 import nbformat
 
-from grader.exercise import load, starter
+from grader.exercise.loading import load
+from grader.exercise.starter import starter
 from spinbook.build.portable import Place, portable
 from spinbook.chapter.chapter import Cell, CellKind, Chapter
 from spinbook.chapter.flavours import parser

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from grader.exercise import ExerciseError
+from grader.exercise.exercise import ExerciseError
 from grader.files import write_if_changed
 from spinbook.build.digest import code_digest, digest, files_digest
 from spinbook.build.notebook import notebook_json

@@ -10,11 +10,13 @@ import sys
 import threading
 from pathlib import Path
 
-from grader.exercise import ExerciseError, load
+from grader.exercise.exercise import ExerciseError
+from grader.exercise.loading import load
 from grader.files import write_if_changed
-from grader.grading import Grade, grade_submission
+from grader.grading.grade import Grade
+from grader.grading.grading import grade_submission
 from grader.submission.reading import of_source
-from grader.workers import HostFault
+from grader.workers.pool import HostFault
 
 
 def main() -> None:

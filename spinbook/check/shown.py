@@ -13,8 +13,8 @@ from markupsafe import Markup
 from rich.console import Console
 
 from grader.checking.verdict import Finding
-from grader.exercise import Exercise
-from grader.grading import Grade
+from grader.exercise.exercise import Exercise
+from grader.grading.grade import Grade
 from grader.report import terminal
 from grader.report.feedback import Told, advice, told
 from grader.report.feedback_plot import feedback_plot

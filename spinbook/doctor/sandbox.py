@@ -18,7 +18,7 @@ _ALLOW = (
 def examine_sandbox(name: str) -> Finding:
     """Ask the grader, which runs a program in each of its sandboxes."""
     try:
-        from grader.sandbox import Isolation, available
+        from grader.sandbox.isolation import Isolation, available
     except ImportError as error:
         return missing(name, f"the grader does not load: {error}", "Make the environment anew: make setup")
     levels = available()

@@ -9,7 +9,8 @@ import click
 
 from grader.classroom.course_gradebook import course_csv, course_page, course_rows, graded_exercises
 from grader.classroom.gradebook import BYTE_ORDER_MARK
-from grader.exercise import ExerciseError, load
+from grader.exercise.exercise import ExerciseError
+from grader.exercise.loading import load
 from grader.files import write_if_changed
 from spinbook.chapter.chapter import CellKind
 from spinbook.chapters import read_all

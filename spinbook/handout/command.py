@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from grader.files import write_if_changed
-from grader.workers import HostFault
+from grader.workers.pool import HostFault
 from interface_compiler.archive import zipped
 from spinbook.course.course import find_course
 from spinbook.handout.contents import Handout, handout

@@ -11,9 +11,10 @@ from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from grader.exercise import Exercise, ExerciseError, load
-from grader.workers import WorkerPool
+from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.loading import load
 from grader.workers.jobs import ListJob
+from grader.workers.pool import WorkerPool
 from spinbook import __version__
 from spinbook.build.notebooks import build_notebooks
 from spinbook.course.course import Course

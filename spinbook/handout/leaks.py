@@ -11,8 +11,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from grader.exercise import Exercise, starter
-from grader.exercise.starter import BEGIN, END
+from grader.exercise.exercise import Exercise
+from grader.exercise.starter import BEGIN, END, starter
 
 #: One line with so many characters besides spaces is no coincidence, nor are so many lines with so many together.
 _ONE_LINE = 40

@@ -8,12 +8,14 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
 
-from grader.exercise import Exercise, starter
+from grader.exercise.exercise import Exercise
+from grader.exercise.starter import starter
 from grader.exercise.writing import to_toml
-from grader.grading import Options
+from grader.grading.grade import Options
 from grader.grading.public import public_part, to_json
-from grader.sandbox import Isolation, SandboxUnavailable, choose
-from grader.workers import WorkerPool
+from grader.sandbox.isolation import Isolation, choose
+from grader.sandbox.program import SandboxUnavailable
+from grader.workers.pool import WorkerPool
 from spinbook.chapter.comments import without_comments
 from spinbook.chapter.links import linked
 

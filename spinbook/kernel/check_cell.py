@@ -14,8 +14,8 @@ from typing import Any
 
 from IPython.display import display
 
-from grader.exercise import Exercise, ExerciseError, load
-from grader.exercise.loading import NoExercise, find
+from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.loading import NoExercise, find, load
 from grader.submission.reading import NoCell, cell_of
 from spinbook.kernel.process import CellFailed, KeptProcess
 from spinbook.kernel.session import Session

@@ -12,7 +12,9 @@ from typing import Any
 import jupytext
 import nbformat
 
-from grader.exercise import Exercise, ExerciseError, load, starter
+from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.loading import load
+from grader.exercise.starter import starter
 from spinbook.browser.files import can_run, public_parts, run_files
 from spinbook.chapter.chapter import CellKind, Chapter
 from spinbook.chapter.comments import without_comments

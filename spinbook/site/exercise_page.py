@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from grader.exercise import Exercise
-from grader.exercise.exercise import Endpoint, Parameter, Topic
+from grader.exercise.exercise import Endpoint, Exercise, Parameter, Topic
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from PIL import Image
 from pygments import highlight
 from pygments.formatters.html import HtmlFormatter
 
-from grader.exercise import Exercise
+from grader.exercise.exercise import Exercise
 from spinbook.build.digest import digest
 from spinbook.chapter.chapter import Cell, CellKind, Chapter
 from spinbook.course.course import Course

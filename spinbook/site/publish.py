@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from grader.exercise import Exercise, ExerciseError, load
+from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.loading import load
 from grader.files import write_if_changed
 from spinbook.course.course import Course
 from spinbook.handout.leaks import leaks, secrets_of_all

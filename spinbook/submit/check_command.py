@@ -8,12 +8,13 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from grader.exercise import Exercise, ExerciseError
-from grader.grading import Grade, grade_submission
+from grader.exercise.exercise import Exercise, ExerciseError
+from grader.grading.grade import Grade
+from grader.grading.grading import grade_submission
 from grader.report.terminal import show
-from grader.sandbox import SandboxUnavailable
-from grader.submission import Submission
-from grader.workers import HostFault
+from grader.sandbox.program import SandboxUnavailable
+from grader.submission.reading import Submission
+from grader.workers.pool import HostFault
 from spinbook.problem import SpinbookError
 from spinbook.submit.choosing import exercise_named, found, given
 

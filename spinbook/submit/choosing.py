@@ -7,9 +7,9 @@ from pathlib import Path
 
 import click
 
-from grader.exercise import Exercise, ExerciseError, load
-from grader.exercise.loading import NoExercise, find
-from grader.submission import NoSubmission, read
+from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.loading import NoExercise, find, load
+from grader.submission.reading import NoSubmission, read
 from spinbook.problem import Problem, SpinbookError
 from spinbook.submit.hand_in import Candidate, candidates
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from grader.exercise import Exercise
+from grader.exercise.exercise import Exercise
 from grader.report.terminal import show
 from spinbook.problem import Problem, SpinbookError
 from spinbook.submit import hand_in as names

@@ -9,13 +9,14 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
-from grader.exercise import Exercise, ExerciseError, starter
+from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.starter import starter
 from grader.files import write_if_changed
-from grader.grading import Grade, grade_submission
+from grader.grading.grade import Grade
+from grader.grading.grading import grade_submission
 from grader.grading.reference import versions
-from grader.sandbox import choose_middleware
-from grader.submission import Submission, read
-from grader.submission.reading import NoCell, cells_of
+from grader.sandbox.middleware import choose_middleware
+from grader.submission.reading import NoCell, Submission, cells_of, read
 from grader.submission.upload import pack
 from spinbook import __version__
 from spinbook.update.handout import BASE

@@ -14,7 +14,7 @@ import libcst as cst
 
 from grader.audit.mutants import conditions, end_points, history, loops, messages, numbers, peers, statements
 from grader.audit.mutants.program import Change, Program
-from grader.exercise import Exercise
+from grader.exercise.exercise import Exercise
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import TypeVar, cast
 import libcst as cst
 from libcst.metadata import MetadataWrapper, ParentNodeProvider, PositionProvider
 
-from grader.exercise import Exercise
+from grader.exercise.exercise import Exercise
 
 Kind = TypeVar("Kind", bound=cst.CSTNode)
 

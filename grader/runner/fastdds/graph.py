@@ -11,7 +11,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from std_msgs.msg import Empty
 
-from grader.recording import EndPoint
+from grader.recording.recording import EndPoint
 
 #: The first 12 bytes of an end point's identity name its DDS participant.
 PARTICIPANT = 12

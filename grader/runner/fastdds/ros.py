@@ -15,11 +15,10 @@ from rclpy.signals import SignalHandlerOptions
 from rosgraph_msgs.msg import Clock as ClockMessage
 
 from grader.exercise.exercise import Topic
-from grader.recording import Received, Sent
+from grader.recording.recording import Received, Sent
 from grader.runner.message import message_class, to_fields, to_message
 from grader.runner.stopped import Stopped
-from grader.scenario import Message, Scenario
-from grader.scenario.scenario import SECOND
+from grader.scenario.scenario import SECOND, Message, Scenario
 
 # The grader's end has no executor. It publishes, calls services (see `call`) and takes what has come (see `recorder`)
 # in the order that it decides on itself; waiting by executor costs more than all else.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from grader.recording import Ending, EndPoint, Recording
+from grader.recording.recording import Ending, EndPoint, Recording
 from grader.runner.ending import MAY_TAKE_S, cut_short
 from grader.runner.fastdds.barrier import AFTER_CLOCK, AFTER_MESSAGES, Barrier, Gone
 from grader.runner.fastdds.budget import TimeBudget, Watch

@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from grader.checking.verdict import Verdict
-from grader.exercise import Exercise, load
-from grader.recording import Recording
+from grader.exercise.exercise import Exercise
+from grader.exercise.loading import load
+from grader.recording.recording import Recording
 from grader.recording.store import from_plain
-from grader.scenario import Message, Scenario
+from grader.scenario.scenario import Message, Scenario
 from spinbook.browser.in_page.rig import Program, Rig
 
 _ARCHIVE = Path("/check.zip")

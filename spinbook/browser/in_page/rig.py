@@ -20,11 +20,10 @@ from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from typing import Any
 
-from grader.exercise import Exercise
-from grader.recording import Ending, EndPoint, Received, Recording, Sent
+from grader.exercise.exercise import Exercise
+from grader.recording.recording import Ending, EndPoint, Received, Recording, Sent
 from grader.runner.message import message_class, to_fields, to_message
-from grader.scenario import Message, Scenario
-from grader.scenario.scenario import SECOND, START
+from grader.scenario.scenario import SECOND, START, Message, Scenario
 from rcl_python import cdr, logs, participant
 from rcl_python import qos as quality
 from rcl_python.context import interrupt
