@@ -157,10 +157,10 @@ def grade(
     sys.exit(OUR_FAULT if result.outcome == "host-error" else NOT_FULL_MARKS if not result.full_marks else FULL_MARKS)
 
 
-def _class(exercise: Exercise, order: ClassRequest) -> int:
+def _class(exercise: Exercise, class_request: ClassRequest) -> int:
     from grader.classroom.class_run import grade_class
 
-    return grade_class(exercise, order, Console(soft_wrap=False, highlight=False))
+    return grade_class(exercise, class_request, Console(soft_wrap=False, highlight=False))
 
 
 def _graded(exercise: Exercise, submission: Submission, options: Options) -> Grade:

@@ -21,7 +21,7 @@ from grader.audit.candidates import (
 )
 from grader.audit.listing import Check, ChecksJob, problems_in_text
 from grader.audit.mutants.making import Mutant, mutants_of
-from grader.audit.recordings import Spins, tidy
+from grader.audit.recordings import RecordedRuns, tidy
 from grader.audit.result import LEAST_SCORE, Audit, MutantResult, Problem, score_of
 from grader.audit.store import Store
 from grader.audit.survivors import listed, problems_of_survivors, result_of, stale
@@ -182,7 +182,7 @@ def audit(
     workers.prepare_to_judge()
     grading = grading_of(exercise, options, workers)
     checks: tuple[Check, ...] = workers.do(ChecksJob(exercise, grading.references))
-    trials = Trials(grading, checks, Spins(grading))
+    trials = Trials(grading, checks, RecordedRuns(grading))
     store = Store(trials)
     reasons = listed(exercise)
     plan = planned(trials, quick, most, seeds)
@@ -228,6 +228,6 @@ def _low_score(exercise: Exercise, mutants: tuple[MutantResult, ...]) -> list[Pr
     score = score_of(mutants)
     if score >= LEAST_SCORE:
         return []
-    told = f"{score:.1%} of the mutants that differ from the solution are caught"
+    text = f"{score:.1%} of the mutants that differ from the solution are caught"
     fix = f"At least {LEAST_SCORE:.0%} are to be: add checks for what survives."
-    return [Problem(str(exercise.folder), exercise.name, told, fix)]
+    return [Problem(str(exercise.folder), exercise.name, text, fix)]

@@ -228,13 +228,13 @@ def _mistake(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> l
             found.append(Problem(place, name, f"{name} lets {said} through", fix))
         elif status == "blocked":
             by = ", ".join(trial.failed) or "another check"
-            told = f"{name} is to catch {said}, but is blocked: it depends on {by}, which fails"
-            found.append(Problem(place, name, told, fix))
+            text = f"{name} is to catch {said}, but is blocked: it depends on {by}, which fails"
+            found.append(Problem(place, name, text, fix))
     for name in trial.failed:
         if name not in candidate.caught_by:
-            told = f"{said} fails {name}, too, which it does not name: {trial.findings[name].text}"
+            text = f"{said} fails {name}, too, which it does not name: {trial.findings[name].text}"
             fix = "Fix the check if this is no mistake in its eyes, else add it under “Caught by:”."
-            found.append(Problem(place, name, told, fix))
+            found.append(Problem(place, name, text, fix))
     return found
 
 

@@ -69,8 +69,8 @@ def audit(
     """
     for option, file in (("--json", json_), ("--html", html)):
         if file and (file.is_dir() or not file.absolute().parent.is_dir()):
-            told = "that is a folder" if file.is_dir() else f"there is no folder {file.parent}"
-            raise click.UsageError(f"{option} {file}: {told}. Name a file in a folder that is there.")
+            text = "that is a folder" if file.is_dir() else f"there is no folder {file.parent}"
+            raise click.UsageError(f"{option} {file}: {text}. Name a file in a folder that is there.")
     if shadow and (quick or mutants is not None or seeds or json_ or html or middleware):
         raise click.UsageError("--shadow goes with no other option but --parallel.")
     options = Options(middleware=Middleware(middleware) if middleware else None)
@@ -137,8 +137,8 @@ def _audited(
     except ModuleNotFoundError as error:
         if error.name != "libcst":
             raise
-        told = "Mutants are made with libcst, which is not installed: pip install 'spinbook[audit]'"
-        raise click.UsageError(told) from None
+        text = "Mutants are made with libcst, which is not installed: pip install 'spinbook[audit]'"
+        raise click.UsageError(text) from None
     with on(Console(stderr=True)) as progress:
         result = audit_one(exercise, options, workers, progress, quick, mutants, seeds or SEEDS)
     show(result, console)

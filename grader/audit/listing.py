@@ -18,7 +18,7 @@ from grader.audit.result import Problem
 from grader.checking.judging import run_pytest
 from grader.checking.plugin import Checks
 from grader.checking.run import Run
-from grader.checking.verdict import mark_of
+from grader.checking.verdict import check_options
 from grader.exercise.exercise import Exercise
 from grader.exercise.starter import starter
 from grader.grading.reference import solution_file
@@ -81,7 +81,7 @@ class _Listing(Checks):
 
     def _listed(self, item: Any, seconds: float) -> Check:
         function = inspect.unwrap(item.function)
-        mark = mark_of(function)
+        mark = check_options(function)
         assert mark
         return Check(
             name=item.name,
@@ -113,11 +113,11 @@ def _rules(exercise: Exercise, checks: tuple[Check, ...]) -> list[Problem]:
     for check in checks:
         place = f"{check.file}:{check.line}"
         if check.hidden and not check.rule:
-            told = f"the hidden check {check.name} does not name the sentence of the task on which it stands"
-            found.append(Problem(place, check.name, told, 'Add rule="…" to @check, with the sentence of task.md.'))
+            text = f"the hidden check {check.name} does not name the sentence of the task on which it stands"
+            found.append(Problem(place, check.name, text, 'Add rule="…" to @check, with the sentence of task.md.'))
         elif check.rule and _plain(check.rule) not in task:
-            told = f"{check.name} stands on a sentence that is not in the task: “{check.rule}”"
-            found.append(Problem(place, check.name, told, "Write the sentence in task.md, or name the one there is."))
+            text = f"{check.name} stands on a sentence that is not in the task: “{check.rule}”"
+            found.append(Problem(place, check.name, text, "Write the sentence in task.md, or name the one there is."))
     return found
 
 
@@ -136,9 +136,9 @@ def _giveaways(exercise: Exercise, checks: tuple[Check, ...]) -> list[Problem]:
         for name, text in (("hint", check.hint), ("title", check.title)):
             for squeezed, line in secret.items():
                 if squeezed in _squeezed(text):
-                    told = f"the {name} of {check.name} holds a line of the solution: {line}"
+                    message = f"the {name} of {check.name} holds a line of the solution: {line}"
                     fix = "Say where to look, not what to write."
-                    found.append(Problem(f"{check.file}:{check.line}", check.name, told, fix))
+                    found.append(Problem(f"{check.file}:{check.line}", check.name, message, fix))
     return found
 
 

@@ -36,7 +36,7 @@ class Stopped(Exception):
     """Raised in place of a recording when the audit is to end at once."""
 
 
-class Spins:
+class RecordedRuns:
     """The kept recordings of one exercise's programs. Once `stopped` is set, no more are made."""
 
     def __init__(self, grading: Grading) -> None:

@@ -43,8 +43,8 @@ def show_shadow(shadow: Shadow, console: Console) -> None:
         for line in lines:
             console.print(Padding(Text(printable(line), style="dim"), (0, 0, 0, 3)))
     verdicts = shadow.equal + len(shadow.differing)
-    told = f"{shadow.programs} programs over both middlewares: {len(shadow.differing)} of {verdicts} verdicts differ"
-    console.print(Text(f"{told} ({shadow.seconds:.0f} s)", style="yellow" if shadow.differing else "bold green"))
+    text = f"{shadow.programs} programs over both middlewares: {len(shadow.differing)} of {verdicts} verdicts differ"
+    console.print(Text(f"{text} ({shadow.seconds:.0f} s)", style="yellow" if shadow.differing else "bold green"))
 
 
 def _show_programs(audit: Audit, console: Console) -> None:
@@ -91,11 +91,11 @@ def _checks(audit: Audit) -> Table:
 
 
 def _show_score(audit: Audit, console: Console) -> None:
-    told = f"{audit.count('caught')} of {audit.different} mutants that differ are caught"
-    told += f" ({audit.score:.1%}); {audit.count('equivalent')} more do not differ from the solution"
+    text = f"{audit.count('caught')} of {audit.different} mutants that differ are caught"
+    text += f" ({audit.score:.1%}); {audit.count('equivalent')} more do not differ from the solution"
     if audit.count("listed"):
-        told += f"; {audit.count('listed')} are listed as survivors"
-    console.print(Text(told, style="bold"))
+        text += f"; {audit.count('listed')} are listed as survivors"
+    console.print(Text(text, style="bold"))
     many = len(audit.problems)
     verdict = "nothing to fix" if not many else f"{many} thing{'s' if many > 1 else ''} to fix"
     console.print(Text(verdict, style="bold red" if many else "bold green"))

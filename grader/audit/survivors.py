@@ -55,8 +55,8 @@ def stale(exercise: Exercise, reasons: dict[str, str], fates: dict[str, Fate]) -
         fate = fates.get(id_, "gone")
         if fate in NOW:
             line = next((i for i, text in enumerate(lines, start=1) if id_ in text), 1)
-            told = f"the mutant {id_} is listed as a survivor, but {NOW[fate]}"
-            found.append(Problem(f"{file}:{line}", id_, told, "Take the entry out."))
+            message = f"the mutant {id_} is listed as a survivor, but {NOW[fate]}"
+            found.append(Problem(f"{file}:{line}", id_, message, "Take the entry out."))
     return found
 
 
@@ -67,8 +67,8 @@ def result_of(mutant: Mutant, trial: Trial, reasons: dict[str, str]) -> MutantRe
     """What became of one mutant, with the evidence."""
     if trial.caught:
         first = trial.failed[0]
-        told = trial.story or trial.findings[first].text
-        return MutantResult(mutant, "caught", trial.failed, f"{first}: {told}")
+        message = trial.story or trial.findings[first].text
+        return MutantResult(mutant, "caught", trial.failed, f"{first}: {message}")
     if not trial.differences:
         same = f"all {trial.messages} messages of {len(trial.spun)} scenarios, the graph and the end are the solution's"
         return MutantResult(mutant, "equivalent", (), same)
@@ -80,11 +80,11 @@ def _evidence(trial: Trial) -> str:
     """The differences that no check minds, each with the scenarios it was seen in."""
     seen = Counter(difference.what for difference in trial.differences)
     first = {difference.what: difference.scenario for difference in reversed(trial.differences)}
-    told = [
+    text = [
         f"{what} (in {first[what]}{f' and {count - 1} more' if count > 1 else ''})"
         for what, count in seen.most_common(4)
     ]
-    return "; ".join([*told, *([f"and {len(seen) - 4} more"] if len(seen) > 4 else [])])
+    return "; ".join([*text, *([f"and {len(seen) - 4} more"] if len(seen) > 4 else [])])
 
 
 def problems_of_survivors(exercise: Exercise, results: tuple[MutantResult, ...]) -> list[Problem]:

@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
 from grader.audit.listing import Check
-from grader.audit.recordings import Spins
+from grader.audit.recordings import RecordedRuns
 from grader.checking.verdict import Finding, Status, Verdict
 from grader.grading.grading import Grading
 from grader.recording.recording import Ending, Received, Recording
@@ -128,7 +128,7 @@ class Trials:
 
     grading: Grading
     checks: tuple[Check, ...]
-    spins: Spins
+    spins: RecordedRuns
     _turn: itertools.count[int] = field(default_factory=itertools.count, compare=False)
 
     def try_(self, submission: Submission, only: tuple[str, ...] = (), until: Until = "the end") -> Trial:
@@ -244,8 +244,8 @@ class Trials:
                 statuses[check.name] = verdicts[check.name].status
             elif any(statuses.get(name, "passed") != "passed" for name in check.depends):
                 statuses[check.name] = "blocked"
-        told = {name: verdicts[name] for name, status in statuses.items() if status in ("failed", "error")}
-        findings = {name: verdict.finding or Finding(verdict.error) for name, verdict in told.items()}
+        text = {name: verdicts[name] for name, status in statuses.items() if status in ("failed", "error")}
+        findings = {name: verdict.finding or Finding(verdict.error) for name, verdict in text.items()}
         references = self.grading.references
         return Trial(
             story=story,

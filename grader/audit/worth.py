@@ -43,9 +43,9 @@ def _that_fail_together(checks: tuple[Check, ...], trials: dict[str, Trial]) -> 
         judged = [pair for pair in pairs if set(pair) <= {"passed", "failed"}]
         many = judged.count(("failed", "failed"))
         if many and all(first == second for first, second in judged):
-            told = f"{one.name} and {other.name} always fail together ({many} times): do both judge the same?"
+            text = f"{one.name} and {other.name} always fail together ({many} times): do both judge the same?"
             fix = "Write a mistake that fails only one, let one depend on the other, or make them one check."
-            found.append(Problem(f"{other.file}:{other.line}", other.name, told, fix))
+            found.append(Problem(f"{other.file}:{other.line}", other.name, text, fix))
     return found
 
 
@@ -55,9 +55,9 @@ def problems_of_broken(checks: tuple[Check, ...], trials: dict[str, Trial]) -> l
     for check in checks:
         for name, trial in trials.items():
             if trial.statuses.get(check.name) == "error":
-                told = f"{check.name} breaks on what {name} publishes: {trial.findings[check.name].text}"
+                text = f"{check.name} breaks on what {name} publishes: {trial.findings[check.name].text}"
                 fix = "Whatever a student's node publishes, a check has to pass or to fail: look before you take."
-                found.append(Problem(f"{check.file}:{check.line}", check.name, told, fix))
+                found.append(Problem(f"{check.file}:{check.line}", check.name, text, fix))
                 break
     return found
 
@@ -74,8 +74,8 @@ def messages(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Proble
         for name, trial in trials.items():
             finding = trial.findings.get(check.name) if check.name in trial.failed else None
             if finding and not _broke_off(finding) and not finding.expected and not WORDS.search(finding.text):
-                told = f"{check.name} fails for {name} and does not say what was expected: “{finding.text}”"
-                found.append(Problem(f"{check.file}:{check.line}", check.name, told, "Name it in the message."))
+                message = f"{check.name} fails for {name} and does not say what was expected: “{finding.text}”"
+                found.append(Problem(f"{check.file}:{check.line}", check.name, message, "Name it in the message."))
                 break
     return found
 

@@ -61,20 +61,20 @@ class ActionChecks(Recorded):
         self._must_answer(one, accepted=True) if wanted else None
         if got != wanted:
             at = next((s.at for s, w in zip(one.states, wanted, strict=False) if s.state != w), one.at)
-            told = f"expected the states {' → '.join(wanted)}, got {' → '.join(got) or 'none'}."
-            self.wrong_at(at, told, _part(one), " → ".join(wanted), " → ".join(got), self._why(one, wanted[-1]))
+            text = f"expected the states {' → '.join(wanted)}, got {' → '.join(got) or 'none'}."
+            self.wrong_at(at, text, _part(one), " → ".join(wanted), " → ".join(got), self._why(one, wanted[-1]))
 
     def must_end(self, status: str, goal: int = 1, within: float | None = None) -> None:
         """The goal must end as "succeeded", "canceled" or "aborted", within so many seconds after it was sent."""
         one = self.goal(goal)
         self._must_answer(one, accepted=True)
         if (got := _ended_as(one)) != status:
-            told = f"it was expected to end as {status}, got {got}."
-            self.wrong_at(_ended_at(one) or one.at, told, _part(one), status, got, self._why(one, status))
+            text = f"it was expected to end as {status}, got {got}."
+            self.wrong_at(_ended_at(one) or one.at, text, _part(one), status, got, self._why(one, status))
         late = ((_ended_at(one) or one.at) - one.at) / SECOND
         if within is not None and late > within + 1e-9:
-            told = f"it was expected to end within {within:g} s, got {late:.2f} s."
-            self.wrong_at(_ended_at(one), told, _part(one), f"{within:g} s", f"{late:.2f} s")
+            text = f"it was expected to end within {within:g} s, got {late:.2f} s."
+            self.wrong_at(_ended_at(one), text, _part(one), f"{within:g} s", f"{late:.2f} s")
 
     def must_cancel(self, goal: int = 1, within: float = 1.0) -> None:
         """The node must accept the scenario's first request to cancel this goal, and end it as "canceled".
@@ -87,16 +87,16 @@ class ActionChecks(Recorded):
             raise ValueError(f"the scenario {self.scenario} never asks to cancel goal {goal}.")
         cancel = one.cancels[0]
         if (got := _ended_as(one)) != "canceled":
-            told = f"after the request to cancel it was expected to end as canceled, got {got}."
-            self.wrong_at(cancel.at, told, _part(one), "canceled", got, self._why(one, "canceled"))
+            text = f"after the request to cancel it was expected to end as canceled, got {got}."
+            self.wrong_at(cancel.at, text, _part(one), "canceled", got, self._why(one, "canceled"))
         ended = _ended_at(one) or cancel.at
         late = (ended - cancel.at) / SECOND
         if late > within + 1e-9:
-            told = f"it was expected to end within {within:g} s of the request to cancel, got {late:.2f} s."
-            self.wrong_at(cancel.at, told, _part(one), f"{within:g} s", f"{late:.2f} s")
+            text = f"it was expected to end within {within:g} s of the request to cancel, got {late:.2f} s."
+            self.wrong_at(cancel.at, text, _part(one), f"{within:g} s", f"{late:.2f} s")
         if after := [feedback for feedback in one.feedback if feedback.at > ended]:
-            told = "no feedback was expected after the goal was canceled, but your node goes on with it."
-            self.wrong_at(after[0].at, told, _part(one), "no feedback", f"{len(after)} messages")
+            text = "no feedback was expected after the goal was canceled, but your node goes on with it."
+            self.wrong_at(after[0].at, text, _part(one), "no feedback", f"{len(after)} messages")
 
     def must_match_results(self, field: str = "", action: str = "", tolerance: float = TOLERANCE) -> None:
         """Each goal's result must have the same `field` as with the solution; without one, every field counts."""
@@ -122,9 +122,9 @@ class ActionChecks(Recorded):
             self.time_at(got.at, expected.at, part, time, since=one.at)
         wanted_, came_ = len(reference.feedback), len(one.feedback)
         if wanted_ != came_:
-            told = f"expected {wanted_} feedback messages, got {came_}."
+            text = f"expected {wanted_} feedback messages, got {came_}."
             never = "" if came_ else "Your node never publishes feedback."
-            self.wrong_at(one.at, told, _part(one), f"{wanted_} messages", came_, never)
+            self.wrong_at(one.at, text, _part(one), f"{wanted_} messages", came_, never)
 
     def must_match_goals(
         self, field: str = "", action: str = "", tolerance: float = TOLERANCE, time: float | None = None
@@ -150,8 +150,8 @@ class ActionChecks(Recorded):
         """The node, a client, must not ask for the result of a goal that was rejected."""
         for one in self.goals(action, by="node"):
             if one.accepted is False and one.asked_result is not None:
-                told = "it was rejected, and your node asked for its result all the same. Look at goal_handle.accepted."
-                self.wrong_at(one.asked_result, told, _part(one), "no request for the result", "one")
+                text = "it was rejected, and your node asked for its result all the same. Look at goal_handle.accepted."
+                self.wrong_at(one.asked_result, text, _part(one), "no request for the result", "one")
 
     def _match(
         self,
@@ -178,10 +178,10 @@ class ActionChecks(Recorded):
             servers = sorted({end.topic for end in self.recording.end_points if end.kind == "action server"})
             if goal.action not in servers:
                 names = ", ".join(servers) or "none"
-                told = f"your node has no action {goal.action}. Its actions are: {names}."
-                self.wrong_at(goal.at, told, "", goal.action, names)
-            told = "your node never said whether it accepts the goal. Does a callback block it?"
-            self.wrong_at(goal.at, told, _part(goal), wanted, "no answer")
+                text = f"your node has no action {goal.action}. Its actions are: {names}."
+                self.wrong_at(goal.at, text, "", goal.action, names)
+            text = "your node never said whether it accepts the goal. Does a callback block it?"
+            self.wrong_at(goal.at, text, _part(goal), wanted, "no answer")
         if goal.accepted != accepted:
             got = "accepted" if goal.accepted else "rejected"
             self.wrong_at(goal.at, f"it must be {wanted}, but your node {got} it.", _part(goal), wanted, got)

@@ -53,8 +53,8 @@ class GraphChecks(Recorded):
                 self._lacks(kind, name)
             for end in mine:
                 if end.type != type_:
-                    told = f"your {kind} on {name} has another type. Expected {type_}, got {end.type}."
-                    _wrong(told, type_, end.type)
+                    text = f"your {kind} on {name} has another type. Expected {type_}, got {end.type}."
+                    _wrong(text, type_, end.type)
         if only:
             self._has_no_others([(kind, name) for kind, name, _ in declared])
 
@@ -67,39 +67,39 @@ class GraphChecks(Recorded):
             for end in self.end_points(_KINDS[declared.direction], declared.name):
                 got = f"{end.reliability} and {end.durability}"
                 if got != wanted:
-                    told = f"your {end.kind} on {end.topic} is {got}. Expected {wanted}."
-                    _wrong(told, wanted, got, _of_qos(end, declared.durability))
+                    text = f"your {end.kind} on {end.topic} is {got}. Expected {wanted}."
+                    _wrong(text, wanted, got, _of_qos(end, declared.durability))
 
     def must_have_nodes(self) -> None:
         """The program must create the node of exercise.toml (of each of its programs) and no other."""
         names = [program.node for program in self.exercise.programs] or [self.exercise.node_name]
         wanted = tuple(sorted(f"/{name.lstrip('/')}" for name in names))
-        got, told = ", ".join(self.nodes) or "none", ""
+        got, text = ", ".join(self.nodes) or "none", ""
         if lacking := [name for name in wanted if name not in self.nodes]:
-            told = f"there is no node {lacking[0]}. Expected {', '.join(wanted)}, got {got}."
+            text = f"there is no node {lacking[0]}. Expected {', '.join(wanted)}, got {got}."
         elif len(self.nodes) > len(wanted):
-            told = f"your program creates other nodes, too. Expected {', '.join(wanted)}, got {got}."
-        if told:
-            _wrong(told, ", ".join(wanted), got)
+            text = f"your program creates other nodes, too. Expected {', '.join(wanted)}, got {got}."
+        if text:
+            _wrong(text, ", ".join(wanted), got)
 
     def must_end_on_ctrl_c(self) -> None:
         """On Ctrl-C the program must end within 2 s, with no traceback. The scenario needs `interrupt=True`."""
         if not self.ending.interrupted:
             raise ValueError(f"the scenario {self.scenario} has no interrupt=True: Ctrl-C never comes.")
         if not self.ending.ended_in_time:
-            told = "your program was still running 2 s after Ctrl-C. Expected an end within 2 s."
-            _wrong(told, "an end within 2 s", "none")
+            text = "your program was still running 2 s after Ctrl-C. Expected an end within 2 s."
+            _wrong(text, "an end within 2 s", "none")
         if self.ending.traceback:
-            told = f"after Ctrl-C your program printed a traceback: {self.ending.traceback}"
-            _wrong(told, "no traceback", self.ending.traceback)
+            text = f"after Ctrl-C your program printed a traceback: {self.ending.traceback}"
+            _wrong(text, "no traceback", self.ending.traceback)
 
     def must_survive(self, program: str = "") -> None:
         """No program of a submission of several may end by itself; with `program` (its file), not that one."""
         for exit_ in self.recording.exits:
             if exit_.by == "itself" and program in ("", exit_.program):
                 how = f"with code {exit_.code}" if exit_.signal is None else f"by signal {exit_.signal}"
-                told = f"{exit_.program} ended by itself, {how}, but must go on."
-                self.wrong_at(exit_.at, told, "", "to go on", f"an end {how}")
+                text = f"{exit_.program} ended by itself, {how}, but must go on."
+                self.wrong_at(exit_.at, text, "", "to go on", f"an end {how}")
 
     def _has_no_others(self, declared: list[tuple[Kind, str]]) -> None:
         for end in self.recording.end_points:
@@ -117,8 +117,8 @@ class GraphChecks(Recorded):
 
 def _wrong(text: str, expected: str, got: str, at_all: str = "") -> NoReturn:
     """End the check: `text` says what is wrong with the program in any scenario."""
-    told = f"{text[0].upper()}{text[1:]} {at_all}".strip()
-    raise Wrong(Finding(told, expected=expected, got=got))
+    message = f"{text[0].upper()}{text[1:]} {at_all}".strip()
+    raise Wrong(Finding(message, expected=expected, got=got))
 
 
 def _of_qos(end: EndPoint, durability: str) -> str:

@@ -155,8 +155,8 @@ def pattern(run: Run, field: str, per: str = "", unit: str = "") -> str:
             expected, got = _values(exchange.expected[0], field, per), _values(exchange.answers[0], field, per)
             pairs += [(expected[name], got[name]) for name in expected if name in got]
             elapsed += [_elapsed(before, exchange) for name in expected if name in got]
-    if told := _fixed_step(pairs, elapsed, field, unit):
-        return told
+    if text := _fixed_step(pairs, elapsed, field, unit):
+        return text
     return common(pairs, field, unit, clock=run.recording.hold == "lockstep")
 
 
@@ -214,10 +214,10 @@ def _ratio(ratio: float, field: str, unit: str, clock: bool) -> str:
     for asked, given, factor in UNITS:
         if math.isclose(ratio, factor, rel_tol=1e-3) and (unit.split("/")[0] == asked or (not unit and asked == "rad")):
             return f" Every {field} is in {given}."
-    told = f" Every {field} is {ratio:.4g} times what it should be"
+    text = f" Every {field} is {ratio:.4g} times what it should be"
     if clock and any(math.isclose(ratio, factor, rel_tol=1e-3) for factor in (COMPUTER_CLOCK, 1 / COMPUTER_CLOCK)):
-        return f"{told}: your node measures time with the computer's clock, which goes at another speed here."
-    return f"{told}."
+        return f"{text}: your node measures time with the computer's clock, which goes at another speed here."
+    return f"{text}."
 
 
 def _copied(run: Run, field: str, per: str) -> str:
@@ -285,8 +285,8 @@ def must_answer_at_once(run: Run, within: float) -> None:
         for answer in exchange.answers if exchange.expected else ():
             if is_late(exchange, answer, within):
                 late = delay(run, exchange, answer)
-                told = f"an answer was expected at once; it arrived {late}.{in_general(run)}"
-                run.wrong(exchange, told, "", "an answer at once", late)
+                text = f"an answer was expected at once; it arrived {late}.{in_general(run)}"
+                run.wrong(exchange, text, "", "an answer at once", late)
 
 
 def must_vary(run: Run, field: str, per: str) -> None:
@@ -305,9 +305,9 @@ def must_vary(run: Run, field: str, per: str) -> None:
         shown(given[0], _unit(run, field)),
         next((name for name in got if name in varying and not alike), ""),
     )
-    told = f"every {field} is {constant}" if alike else f"{field} is {constant} in every message"
+    text = f"every {field} is {constant}" if alike else f"{field} is {constant} in every message"
     expected_, got_ = f"a {field} that changes", f"{constant} throughout"
-    run.wrong(run.exchanges[-1], f"{told}, whatever was sent.", name, expected_, got_)
+    run.wrong(run.exchanges[-1], f"{text}, whatever was sent.", name, expected_, got_)
 
 
 def _series(run: Run, field: str, per: str, reference: bool) -> dict[str, list[Any]]:
@@ -333,11 +333,11 @@ def must_be_silent(exchanges: list[Exchange], run: Run) -> None:
 def _answer(run: Run, exchange: Exchange) -> Message:
     if not exchange.answers:
         late, general = how_late(run, exchange), in_general(run)
-        told = f"an answer was expected at once; it arrived {late}." if late else "an answer was expected, got none."
-        told += general or _never(run)
+        text = f"an answer was expected at once; it arrived {late}." if late else "an answer was expected, got none."
+        text += general or _never(run)
         if not exchange.sent.heard and run.subscriptions(exchange.sent.topic):
-            told += f" Your node did not subscribe to {exchange.sent.topic} yet: create the subscription in __init__."
-        run.wrong(exchange, told, "", "a message", late or "nothing")
+            text += f" Your node did not subscribe to {exchange.sent.topic} yet: create the subscription in __init__."
+        run.wrong(exchange, text, "", "a message", late or "nothing")
     return exchange.answers[0]
 
 
@@ -356,8 +356,8 @@ def _compare(run: Run, exchange: Exchange, answer: Message, field: str, unit: st
         place += found.path if found.path.startswith("[") else f".{found.path}"
         got, expected = found.got, found.expected
     wanted, came = shown(expected, unit), shown(got, unit)
-    told = f"expected {place} {wanted}, got {came}.{pattern(run, field, unit=unit)}"
-    run.wrong(exchange, told, "", wanted, came)
+    text = f"expected {place} {wanted}, got {came}.{pattern(run, field, unit=unit)}"
+    run.wrong(exchange, text, "", wanted, came)
 
 
 def _compare_each(
@@ -365,18 +365,18 @@ def _compare_each(
 ) -> None:
     names, values = answer.value(per), answer.value(field)
     if len(names) != len(values):
-        told = (
+        text = (
             f"{per} and {field} must have the same length; {per} has {len(names)} elements, {field} has {len(values)}."
         )
-        run.wrong(exchange, told, "", f"{len(names)}", f"{len(values)}")
+        run.wrong(exchange, text, "", f"{len(names)}", f"{len(values)}")
     expected, got = exchange.expected[0].by(per, field), answer.by(per, field)
     for name, value in expected.items():
         if name not in got:
             run.wrong(exchange, f"a {field} was expected, but your message does not name it.", name, shown(value), "")
         if not equal(got[name], value, tolerance):
-            told = f"expected {field} {shown(value, unit)}, got {shown(got[name], unit)}."
-            run.wrong(exchange, told + pattern(run, field, per, unit), name, shown(value, unit), shown(got[name], unit))
+            text = f"expected {field} {shown(value, unit)}, got {shown(got[name], unit)}."
+            run.wrong(exchange, text + pattern(run, field, per, unit), name, shown(value, unit), shown(got[name], unit))
     for name, value in got.items():
         if name not in expected:
-            told = f"no {field} was expected, got {shown(value, unit)}."
-            run.wrong(exchange, told, str(name), "nothing", shown(value, unit))
+            text = f"no {field} was expected, got {shown(value, unit)}."
+            run.wrong(exchange, text, str(name), "nothing", shown(value, unit))

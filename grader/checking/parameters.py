@@ -41,8 +41,8 @@ class ParameterChecks(Recorded):
                 self._unknown(reading.at, name, reading.answered is not None)
             if type(reading.value) is not type(wanted):
                 kinds = type(wanted).__name__, type(reading.value).__name__
-                told = f"expected {shown(wanted)}, a {kinds[0]}, got {shown(reading.value)}, a {kinds[1]}."
-                self.wrong_at(reading.at, told, f"parameter {name}", shown(wanted), shown(reading.value))
+                text = f"expected {shown(wanted)}, a {kinds[0]}, got {shown(reading.value)}, a {kinds[1]}."
+                self.wrong_at(reading.at, text, f"parameter {name}", shown(wanted), shown(reading.value))
             if not equal(reading.value, wanted, tolerance):
                 unit = next((one.unit for one in self.exercise.parameters if one.name == name), "")
                 expected, got = shown(wanted, unit), shown(reading.value, unit)
@@ -52,8 +52,8 @@ class ParameterChecks(Recorded):
         found = [one for one in self.recording.parameters if one.name == name]
         wanted = [one for one in found if value is ANY or (type(one.value) is type(value) and one.value == value)]
         if not wanted:
-            told = ", ".join(shown(one.value) for one in found) or "nothing"
-            raise ValueError(f"the scenario {self.scenario} sets {name} to {told}, never to {value!r}.")
+            text = ", ".join(shown(one.value) for one in found) or "nothing"
+            raise ValueError(f"the scenario {self.scenario} sets {name} to {text}, never to {value!r}.")
         return wanted
 
     def _readings(self, readings: tuple[ParameterReading, ...], name: str) -> list[ParameterReading]:
@@ -70,9 +70,9 @@ class ParameterChecks(Recorded):
         if taken and "undeclared" in change.reason:
             self._unknown(change.at, change.name, answered=True)
         wanted, got = ("taken", "refused") if taken else ("refused", "taken")
-        told = f"the value {shown(change.value)} must be {wanted}, but your node {'took' if change.taken else got} it."
-        told += f" It said: {change.reason.rstrip('.')}." if change.reason and taken else ""
-        self.wrong_at(change.at, told, f"parameter {change.name}", wanted, got, self._never_refuses(taken))
+        text = f"the value {shown(change.value)} must be {wanted}, but your node {'took' if change.taken else got} it."
+        text += f" It said: {change.reason.rstrip('.')}." if change.reason and taken else ""
+        self.wrong_at(change.at, text, f"parameter {change.name}", wanted, got, self._never_refuses(taken))
 
     def _never_refuses(self, taken: bool) -> str:
         answers = {one.taken for one in self.recording.parameters}
@@ -86,7 +86,7 @@ class ParameterChecks(Recorded):
 
     def _unknown(self, at: int, name: str, answered: bool) -> None:
         if answered:
-            told = "your node does not have it. Declare it in __init__, with declare_parameter."
-            self.wrong_at(at, told, f"parameter {name}", "a value", "not declared")
-        told = "your node gave no answer about it. Does a callback block the node, or has it another name?"
-        self.wrong_at(at, told, f"parameter {name}", "an answer", "none")
+            text = "your node does not have it. Declare it in __init__, with declare_parameter."
+            self.wrong_at(at, text, f"parameter {name}", "a value", "not declared")
+        text = "your node gave no answer about it. Does a callback block the node, or has it another name?"
+        self.wrong_at(at, text, f"parameter {name}", "an answer", "none")

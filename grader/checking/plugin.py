@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from grader.checking.run import Run
-from grader.checking.verdict import Finding, Mark, Verdict, Wrong, mark_of
+from grader.checking.verdict import CheckOptions, Finding, Verdict, Wrong, check_options
 from grader.exercise.exercise import ExerciseError
 
 
@@ -45,7 +45,7 @@ class Checks:
         self.fixtures: dict[str, tuple[str, ...]] = {}
         self.scenarios: tuple[str, ...] = ()
         """The scenarios that there are; empty where that does not matter."""
-        self._marks: dict[str, Mark] = {}
+        self._marks: dict[str, CheckOptions] = {}
         self.verdicts: dict[str, Verdict] = {}
         self.problem: ExerciseError | None = None
 
@@ -61,10 +61,10 @@ class Checks:
         if self.problem:
             items.clear()
 
-    def _mark(self, item: pytest.Item) -> Mark:
+    def _mark(self, item: pytest.Item) -> CheckOptions:
         function = getattr(item, "function", None)
         line = inspect.unwrap(function).__code__.co_firstlineno if function else None
-        mark = mark_of(function)
+        mark = check_options(function)
         if not mark:
             found, fix = f"{item.name} is no check", "Put @check(points=…, hint=…) above it."
         elif item.name in self._marks:
@@ -93,8 +93,8 @@ class Checks:
         """A file of checks that can't be imported is its author's to fix."""
         if isinstance(report, pytest.CollectReport) and call.excinfo and not self.problem:
             error = call.excinfo.value.__cause__ or call.excinfo.value
-            told = (str(error).strip().splitlines() or [""])[0]
-            found = f"it can't be read: {type(error).__name__}: {told}"
+            text = (str(error).strip().splitlines() or [""])[0]
+            found = f"it can't be read: {type(error).__name__}: {text}"
             self.problem = ExerciseError(node.path, found, "It must import.", _line(error, node.path))
 
     @pytest.hookimpl(tryfirst=True)

@@ -17,22 +17,22 @@ from grader.checking.judging import Listed, listed
 from grader.child_process import run_program
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
-from grader.exercise.starter import MarkError, starter
+from grader.exercise.starter import MarkerError, starter
 from grader.problem import Problem
 from grader.scenario.declared import declared
 
 #: Seconds after which files that are only imported must have been read.
-PATIENCE_S = 60
+TIME_LIMIT_S = 60
 
 
 def problems_of(folder: Path) -> tuple[Problem, ...]:
     """Everything that is wrong in the files of the exercise in `folder`, as far as it shows without running a node."""
     command = [sys.executable, "-m", "grader.checking.proofreading", str(folder)]
     try:
-        run = run_program(command, PATIENCE_S)
+        run = run_program(command, TIME_LIMIT_S)
         entries = json.loads(run.stdout.splitlines()[-1])
     except subprocess.TimeoutExpired:
-        found = f"reading its Python files takes more than {PATIENCE_S} s"
+        found = f"reading its Python files takes more than {TIME_LIMIT_S} s"
         return (Problem(folder, None, found, "They must only define."),)
     except (ValueError, IndexError):
         last = (run.stderr.strip().splitlines() or ["no message"])[-1]
@@ -109,7 +109,7 @@ def _of_solution(exercise: Exercise) -> Iterator[ExerciseError]:
         return
     try:
         starter(file.read_text(encoding="utf-8"))
-    except MarkError as error:
+    except MarkerError as error:
         yield ExerciseError(
             file, str(error).partition(": ")[2], "Fix the markers; the starter is made from them.", error.line
         )

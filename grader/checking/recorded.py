@@ -48,9 +48,9 @@ class Recorded:
         where = "" if seconds is None else "Before the start" if seconds < 0 else f"At {seconds:.2f} s"
         if self.title:
             where += f" ({self.title})" if where else f"In “{self.title}”"
-        told = ", ".join(filter(None, (where, part)))
+        message = ", ".join(filter(None, (where, part)))
         text = f"{text} {at_all.strip()}".strip()
-        finding = f"{told}: {text}" if told else text
+        finding = f"{message}: {text}" if message else text
         raise Wrong(Finding(finding, self.scenario, None, seconds, part, str(expected), str(got)))
 
     def compare_at(
@@ -89,8 +89,8 @@ class Recorded:
             by_computer = expected > since and math.isclose(
                 (at - since) / (expected - since), COMPUTER_CLOCK, rel_tol=0.03
             )
-            told = f"it was expected at {wanted}, got it at {came}."
-            self.wrong_at(at, told, part, wanted, came, _SLEEPS if by_computer else "")
+            text = f"it was expected at {wanted}, got it at {came}."
+            self.wrong_at(at, text, part, wanted, came, _SLEEPS if by_computer else "")
 
     def unit_of(self, field: str, name: str = "") -> str:
         """The unit of a field by exercise.toml: of the topic, service or action `name`, or of any."""

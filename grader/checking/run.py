@@ -194,8 +194,8 @@ class Run(SeriesChecks, ServiceChecks, ActionChecks, ParameterChecks, Trajectory
         """
         where = f"Message {exchange.number} of {len(self.sent)} ({exchange.sent.at:.2f} s after the start"
         where += f"; {self.title})" if self.title else ")"
-        told = f"{where}{f', {part}' if part else ''}: {text}"
-        raise Wrong(Finding(told, self.scenario, exchange.number, exchange.sent.at, part, str(expected), str(got)))
+        message = f"{where}{f', {part}' if part else ''}: {text}"
+        raise Wrong(Finding(message, self.scenario, exchange.number, exchange.sent.at, part, str(expected), str(got)))
 
 
 def _answers(recording: Recording) -> dict[int, list[Message]]:

@@ -56,8 +56,8 @@ class SeriesChecks(Recorded):
             if time is not None and abs(came.at - wanted.at) > time * SECOND + 1:
                 self._wrong_time(part, wanted, came, pairs)
         if len(got) != len(expected):
-            told = f"expected {len(expected)} messages on {name}, got {len(got)}."
-            self.wrong_at(None, told, "", f"{len(expected)} messages", len(got), self._shift(expected, got, field))
+            text = f"expected {len(expected)} messages on {name}, got {len(got)}."
+            self.wrong_at(None, text, "", f"{len(expected)} messages", len(got), self._shift(expected, got, field))
         if shift := self._shift(expected, got, field, tolerance):
             self.wrong_at(got[0].at, "the messages are not in step.", name, "each in its turn", "one late", shift)
 
@@ -73,12 +73,12 @@ class SeriesChecks(Recorded):
             self.wrong_at(got[0].at, f"only one message was published on {name}.", "", f"{hz:g} Hz", "one message")
         rate = (len(got) - 1) * SECOND / max(got[-1].at - got[0].at, 1)
         if abs(rate / hz - 1) > tolerance:
-            told = f"expected {hz:g} messages per second on {name}, got {rate:.4g}."
-            self.wrong_at(None, told, "", f"{hz:g} Hz", f"{rate:.4g} Hz", _of_rate(rate / hz, hz, rate))
+            text = f"expected {hz:g} messages per second on {name}, got {rate:.4g}."
+            self.wrong_at(None, text, "", f"{hz:g} Hz", f"{rate:.4g} Hz", _of_rate(rate / hz, hz, rate))
         if expected and expected[-1].at - got[-1].at > 2 * SECOND / hz:
             last = seconds(got[-1].at)
-            told = f"your node published nothing on {name} after that, but must go on."
-            self.wrong_at(got[-1].at, told, "", f"{hz:g} Hz to the end", f"the last message at {last:.2f} s")
+            text = f"your node published nothing on {name} after that, but must go on."
+            self.wrong_at(got[-1].at, text, "", f"{hz:g} Hz to the end", f"the last message at {last:.2f} s")
 
     def must_have_no_gap(self, longest: float, topic: str = "", start: float = 0.0, end: float | None = None) -> None:
         """No two messages may be more than `longest` s of simulated time apart, between `start` and `end` (s).
@@ -91,10 +91,10 @@ class SeriesChecks(Recorded):
         moments = [start, *inside, *([end] if end is not None else [])]
         for before, after in itertools.pairwise(moments):
             if after - before > longest + 1e-9:
-                told = f"nothing was published on {name} for {after - before:.2f} s, from {before:.2f} s on."
-                told += " Does a callback wait or sleep meanwhile?"
+                text = f"nothing was published on {name} for {after - before:.2f} s, from {before:.2f} s on."
+                text += " Does a callback wait or sleep meanwhile?"
                 at = round(before * SECOND) + START
-                self.wrong_at(at, told, "", f"a gap of at most {longest:g} s", f"{after - before:.2f} s")
+                self.wrong_at(at, text, "", f"a gap of at most {longest:g} s", f"{after - before:.2f} s")
         if not inside:
             self._never(name, f"a message every {longest:g} s")
 
@@ -106,8 +106,8 @@ class SeriesChecks(Recorded):
         for number, (one, stamp) in enumerate(zip(messages, stamps, strict=True), start=1):
             if abs(stamp - one.at) > within * SECOND:
                 wanted, came = shown(_stamp(one.at)), shown(_stamp(stamp))
-                told = f"expected {field} {wanted}, the time when it was published, got {came}."
-                self.wrong_at(one.at, told, f"message {number} on {name}", wanted, came, _of_stamps(stamps))
+                text = f"expected {field} {wanted}, the time when it was published, got {came}."
+                self.wrong_at(one.at, text, f"message {number} on {name}", wanted, came, _of_stamps(stamps))
 
     def _heard(self, topic: str, subscriber: str, reference: bool) -> tuple[Received, ...]:
         recording = self._reference if reference else self.recording
@@ -118,14 +118,14 @@ class SeriesChecks(Recorded):
         mine = [end for end in ends if end.topic == topic]
         if not mine:
             names = ", ".join(sorted({end.topic for end in ends})) or "none"
-            told = f"your node does not publish on {topic}. It publishes on: {names}."
+            text = f"your node does not publish on {topic}. It publishes on: {names}."
         elif subscriber and self.messages_on(topic):
-            told = f"the subscriber “{subscriber}” got nothing on {topic}."
+            text = f"the subscriber “{subscriber}” got nothing on {topic}."
             if any(end.durability == "volatile" for end in mine):
-                told += " Your publisher is volatile: who joins late gets nothing that was published before."
+                text += " Your publisher is volatile: who joins late gets nothing that was published before."
         else:
-            told = f"your node has a publisher on {topic}, but never published anything."
-        self.wrong_at(None, told, "", expected, "none")
+            text = f"your node has a publisher on {topic}, but never published anything."
+        self.wrong_at(None, text, "", expected, "none")
 
     def _is_shifted(self, expected: Sequence[Received], got: Sequence[Received], field: str, tolerance: float) -> bool:
         return bool(self._shift(expected, got, field, tolerance))
@@ -138,10 +138,10 @@ class SeriesChecks(Recorded):
         came = [field_of(one.fields, field) for one in got]
         if len(wanted) < 4 or len(came) < 4 or equal(came[: len(wanted)], wanted[: len(came)], tolerance):
             return ""
-        for mine, its, told in ((came[1:], wanted, "one message late"), (came, wanted[1:], "one message early")):
+        for mine, its, text in ((came[1:], wanted, "one message late"), (came, wanted[1:], "one message early")):
             count = min(len(mine), len(its))
             if count >= 3 and equal(mine[:count], its[:count], tolerance) and len({repr(one) for one in mine}) > 1:
-                return f"Every message is {told}."
+                return f"Every message is {text}."
         return ""
 
     def _wrong_time(
@@ -151,8 +151,8 @@ class SeriesChecks(Recorded):
         at, general = seconds(wanted.at), ""
         if len(late) >= 3 and max(late) - min(late) < 0.02 * abs(late[0]):
             general = f"Every message comes {abs(late[0]):.2f} s too {'late' if late[0] > 0 else 'early'}."
-        told = f"it was expected at {at:.2f} s, got it at {seconds(came.at):.2f} s."
-        self.wrong_at(came.at, told, part, f"{at:.2f} s", f"{seconds(came.at):.2f} s", general)
+        text = f"it was expected at {at:.2f} s, got it at {seconds(came.at):.2f} s."
+        self.wrong_at(came.at, text, part, f"{at:.2f} s", f"{seconds(came.at):.2f} s", general)
 
 
 def _of_rate(ratio: float, hz: float, rate: float) -> str:

@@ -29,9 +29,9 @@ class ServiceChecks(Recorded):
                 continue
             late = (call.answered - call.at) / SECOND
             if within is not None and late > within + 1e-9:
-                told = f"a response was expected within {within:g} s, got it {late:.2f} s after the request."
+                text = f"a response was expected within {within:g} s, got it {late:.2f} s after the request."
                 self.wrong_at(
-                    call.at, told, _part(number, call), f"{within:g} s", f"{late:.2f} s", self._all_late(call)
+                    call.at, text, _part(number, call), f"{within:g} s", f"{late:.2f} s", self._all_late(call)
                 )
 
     def must_match_responses(self, field: str = "", service: str = "", tolerance: float = TOLERANCE) -> None:
@@ -54,11 +54,11 @@ class ServiceChecks(Recorded):
         wanted = count if count is not None else len(self._reference_calls(name, "node"))
         if len(got) == wanted:
             return
-        told = f"expected {wanted} requests to {name}, got {len(got)}."
+        text = f"expected {wanted} requests to {name}, got {len(got)}."
         clients = sorted({end.topic for end in self.recording.end_points if end.kind == "client"})
         never = "" if got or name in clients else f"Your node has no client of {name}. Its clients are for: "
         never += (", ".join(clients) or "none") + "." if never else ""
-        self.wrong_at(None, told, "", f"{wanted} requests", len(got), never)
+        self.wrong_at(None, text, "", f"{wanted} requests", len(got), never)
 
     def must_match_requests(
         self, field: str = "", service: str = "", tolerance: float = TOLERANCE, time: float | None = None
@@ -89,11 +89,11 @@ class ServiceChecks(Recorded):
         same = [other for other in self.calls(call.service) if other.answered is not None]
         if not call.served or call.service not in servers:
             names = ", ".join(servers) or "none"
-            told = f"your node has no service {call.service}. Its services are: {names}."
-            self.wrong_at(call.at, told, "", call.service, names)
+            text = f"your node has no service {call.service}. Its services are: {names}."
+            self.wrong_at(call.at, text, "", call.service, names)
         never = "" if same else "Your node never responds. Does the callback return the response, without blocking?"
-        told = "a response was expected, got none."
-        self.wrong_at(call.at, told, _part(number, call), "a response", "none", never)
+        text = "a response was expected, got none."
+        self.wrong_at(call.at, text, _part(number, call), "a response", "none", never)
 
     def _all_late(self, call: Call) -> str:
         late = [(one.answered - one.at) / SECOND for one in self.calls(call.service) if one.answered is not None]

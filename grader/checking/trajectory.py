@@ -49,8 +49,8 @@ class TrajectoryChecks(Recorded):
             self._beyond(way, goal, words, overshoot, unit)
         left = next((at for at, p in way if at > max(reached, start + within) and math.dist(p, goal) > tolerance), None)
         if stay and left is not None:
-            told = f"it reached {words} at {reached:.2f} s, but did not stay there."
-            self.wrong_at(_ns(left), told, "", f"to stay within {_measure(tolerance, unit)}", f"left at {left:.2f} s")
+            text = f"it reached {words} at {reached:.2f} s, but did not stay there."
+            self.wrong_at(_ns(left), text, "", f"to stay within {_measure(tolerance, unit)}", f"left at {left:.2f} s")
 
     def must_stay_between(self, topic: str, field: str, lowest: float, highest: float, start: float = 0.0) -> None:
         """Each value of `field` on `topic`, from `start` on (s), must be between these two, whoever published it."""
@@ -73,12 +73,12 @@ class TrajectoryChecks(Recorded):
     ) -> None:
         wanted = f"within {_measure(tolerance, unit)} of {words} after {within:g} s"
         if reached is not None:
-            told = f"it was expected {wanted}, but got there only after {reached - start:.2f} s."
-            self.wrong_at(_ns(reached), told, "", wanted, f"after {reached - start:.2f} s")
+            text = f"it was expected {wanted}, but got there only after {reached - start:.2f} s."
+            self.wrong_at(_ns(reached), text, "", wanted, f"after {reached - start:.2f} s")
         at, closest = min(way, key=lambda one: math.dist(one[1], goal))
         distance = math.dist(closest, goal)
-        told = f"it was expected {wanted}; the closest it got was {_measure(distance, unit)}."
-        self.wrong_at(_ns(at), told, "", wanted, _measure(distance, unit), _of_way(way, goal))
+        text = f"it was expected {wanted}; the closest it got was {_measure(distance, unit)}."
+        self.wrong_at(_ns(at), text, "", wanted, _measure(distance, unit), _of_way(way, goal))
 
     def _beyond(
         self,

@@ -33,10 +33,10 @@ class Wrong(AssertionError):
 
 def fail(text: str, *, expected: object = "", got: object = "", at: float | None = None) -> NoReturn:
     """End the check: the node does not pass it. `text` tells the student why; `at` is in seconds."""
-    told = text
+    message = text
     if expected != "" or got != "":
-        told += f" Expected {expected}, got {got}."
-    raise Wrong(Finding(told, at=at, expected=str(expected), got=str(got)))
+        message += f" Expected {expected}, got {got}."
+    raise Wrong(Finding(message, at=at, expected=str(expected), got=str(got)))
 
 
 #: `error`: the check itself broke, which is never the student's fault.
@@ -75,7 +75,7 @@ ATTRIBUTE = "__check__"
 
 
 @dataclass(frozen=True)
-class Mark:
+class CheckOptions:
     """What `check` says about a test function. `depends` are names of other checks, `rule` is a sentence of task.md."""
 
     points: float
@@ -103,13 +103,13 @@ def check(
     names = tuple(item if isinstance(item, str) else item.__name__ for item in depends)
 
     def mark(test: Test) -> Test:
-        setattr(test, ATTRIBUTE, Mark(points, hint, names, misconception, rule))
+        setattr(test, ATTRIBUTE, CheckOptions(points, hint, names, misconception, rule))
         return test
 
     return mark
 
 
-def mark_of(test: object) -> Mark | None:
+def check_options(test: object) -> CheckOptions | None:
     """What `check` said about this function, if anything."""
     mark = getattr(test, ATTRIBUTE, None)
-    return mark if isinstance(mark, Mark) else None
+    return mark if isinstance(mark, CheckOptions) else None

@@ -112,10 +112,10 @@ class ProgressDisplay:
             return
         grade = entry.grade
         what = f"{grade.score:g} of {grade.points:g} points" if grade.outcome != "host-error" else "not graded"
-        told = f"{self._done}/{self._total} {entry.student.id}: {changed or what}"
+        text = f"{self._done}/{self._total} {entry.student.id}: {changed or what}"
         if grade.outcome not in ("graded", "host-error") and not changed:
-            told += f" ({grade.outcome})"
-        self._console.print(Text(printable(told)), soft_wrap=True)
+            text += f" ({grade.outcome})"
+        self._console.print(Text(printable(text)), soft_wrap=True)
 
     def __enter__(self) -> ProgressDisplay:
         self._bar.start()
@@ -131,42 +131,48 @@ class ProgressDisplay:
 DONE, QUESTIONS, FAULTS, STOPPED = 0, 1, 3, 130
 
 
-def grade_class(exercise: Exercise, order: ClassRequest, console: Console) -> int:
+def grade_class(exercise: Exercise, class_request: ClassRequest, console: Console) -> int:
     """Grade a class, and say how it went; returns the exit code.
 
     Raises `SubmissionsError` where there is nothing to grade, `OverridesError` for a mistake in the overrides, `Busy`
     when another run is at work on the same results, and what `grading_of` raises.
     """
     with tempfile.TemporaryDirectory(prefix="spinbook-class-") as unpacked, _ended_by_signals():
-        intake = collect(order.source, exercise.name, Path(unpacked))
-        show_submissions(console, intake.kind, len(intake.handed_in), intake.skipped)
-        adjusting = _adjusting(exercise, order, {one.student.id for one in intake.handed_in})
-        submissions, unreadable = _read(intake, exercise)
-        intake = replace(intake, handed_in=tuple(one for one in intake.handed_in if one.student.id in submissions))
-        with Results(order.out) as results, WorkerPool(order.options.middleware) as workers:
-            grading = grading_of(exercise, order.options, workers)
-            with _backend(grading, order) as markers:
+        collected = collect(class_request.source, exercise.name, Path(unpacked))
+        show_submissions(console, collected.kind, len(collected.handed_in), collected.skipped)
+        adjusting = _adjusting(exercise, class_request, {one.student.id for one in collected.handed_in})
+        submissions, unreadable = _read(collected, exercise)
+        collected = replace(
+            collected, handed_in=tuple(one for one in collected.handed_in if one.student.id in submissions)
+        )
+        with Results(class_request.out) as results, WorkerPool(class_request.options.middleware) as workers:
+            grading = grading_of(exercise, class_request.options, workers)
+            with _backend(grading, class_request) as markers:
                 marking = ClassGrading(exercise, markers, results, adjusting, grading)
-                if order.rejudge:
-                    rejudge(marking, grading, intake, submissions, console, partial(_may_replace, order, console))
-                    marking.take_in(intake)
-                    return _finish(marking, grading, intake, console, adjusting.deadline, order.publish)
-                plan = marking.plan(intake, submissions, lambda who: "*" in order.regrade or who in order.regrade)
+                if class_request.rejudge:
+                    rejudge(
+                        marking, grading, collected, submissions, console, partial(_may_replace, class_request, console)
+                    )
+                    marking.take_in(collected)
+                    return _finish(marking, grading, collected, console, adjusting.deadline, class_request.publish)
+                plan = marking.plan(
+                    collected, submissions, lambda who: "*" in class_request.regrade or who in class_request.regrade
+                )
                 for one, error in unreadable:
                     marking.give_up(Entry(one.student, one.file.name, _unread(grading, one)), f"reading it: {error}")
                 try:
                     _grade(marking, plan, submissions, console)
-                    return _finish(marking, grading, intake, console, adjusting.deadline, order.publish)
+                    return _finish(marking, grading, collected, console, adjusting.deadline, class_request.publish)
                 except KeyboardInterrupt:
-                    kept, wanted = len(marking.entries), len(intake.handed_in)
-                    told = f"Stopped. {kept} of {wanted} are graded and kept; the same command goes on from there."
-                    console.print(told)
+                    kept, wanted = len(marking.entries), len(collected.handed_in)
+                    text = f"Stopped. {kept} of {wanted} are graded and kept; the same command goes on from there."
+                    console.print(text)
                     return STOPPED
 
 
-def _adjusting(exercise: Exercise, order: ClassRequest, students: set[str]) -> Adjusting:
-    overrides = overrides_in(order.overrides, students) if order.overrides else {}
-    for student in order.regrade:
+def _adjusting(exercise: Exercise, class_request: ClassRequest, students: set[str]) -> Adjusting:
+    overrides = overrides_in(class_request.overrides, students) if class_request.overrides else {}
+    for student in class_request.regrade:
         if student not in (*students, "*"):
             raise SubmissionsError(f'--regrade {student}: no submission from a student called "{student}".')
     return Adjusting(deadline_of(exercise), overrides)
@@ -183,19 +189,19 @@ def _grade(marking: ClassGrading, plan: Plan, submissions: Mapping[str, Submissi
             progress.done(entry, difference(former.grade, entry.grade) if former else "")
 
 
-def _may_replace(order: ClassRequest, console: Console, count: int) -> bool:
+def _may_replace(class_request: ClassRequest, console: Console, count: int) -> bool:
     """Ask the instructor, where there is a terminal to ask in."""
-    if order.replace or not sys.stdin.isatty():
-        if not order.replace:
+    if class_request.replace or not sys.stdin.isatty():
+        if not class_request.replace:
             console.print("To replace them: the same command with --yes.")
-        return order.replace
+        return class_request.replace
     return Confirm.ask(f"Replace {count} grades?", console=console, default=False)
 
 
 def _finish(
     marking: ClassGrading,
     grading: Grading,
-    intake: Submissions,
+    collected: Submissions,
     console: Console,
     deadline: Deadline | None,
     publishes: bool,
@@ -205,26 +211,26 @@ def _finish(
     entries = [entry for entry in every if entry.final is not None]
     folder = marking.results.folder
     write_gradebook(folder, marking.exercise, entries, deadline.due if deadline else None)
-    asked = [Skipped(", ".join(question.files), str(question)) for question in intake.questions]
+    asked = [Skipped(", ".join(question.files), str(question)) for question in collected.questions]
     misconceptions = grouped(entries, _signatures(grading, entries, console))
-    skipped = [*asked, *intake.skipped]
+    skipped = [*asked, *collected.skipped]
     write_if_changed(
         folder / "index.html", overview_page(marking.exercise, entries, skipped, faults, misconceptions), durable=True
     )
     others = marking.results.others({entry.student.id for entry in every})
     if others:
         console.print(f"of an earlier run, left as they are: {', '.join(others)}", style="yellow")
-    show_result(console, entries, faults, intake.questions)
+    show_result(console, entries, faults, collected.questions)
     if publishes:
         console.print(f"One zip per student: {publish(folder, entries)}", soft_wrap=True, markup=False)
     console.print(f"Open {folder / 'index.html'}.", soft_wrap=True, markup=False)
-    return FAULTS if faults else QUESTIONS if intake.questions else DONE
+    return FAULTS if faults else QUESTIONS if collected.questions else DONE
 
 
-def _read(intake: Submissions, exercise: Exercise) -> tuple[dict[str, Submission], list[tuple[HandedIn, str]]]:
+def _read(collected: Submissions, exercise: Exercise) -> tuple[dict[str, Submission], list[tuple[HandedIn, str]]]:
     """Read the submissions, by student. A file that breaks its reader is listed apart, and stops nobody else's."""
     submissions, unreadable = {}, []
-    for one in intake.handed_in:
+    for one in collected.handed_in:
         try:
             submissions[one.student.id] = read(str(one.file.path), exercise)
         except Exception as error:
@@ -254,14 +260,14 @@ def _signatures(grading: Grading, entries: Sequence[Entry], console: Console) ->
 
 
 @contextlib.contextmanager
-def _backend(grading: Grading, order: ClassRequest) -> Iterator[Backend]:
-    if order.scheduler:
+def _backend(grading: Grading, class_request: ClassRequest) -> Iterator[Backend]:
+    if class_request.scheduler:
         from grader.classroom.dask import dask_backend
 
-        with dask_backend(grading, order.scheduler) as workers:
+        with dask_backend(grading, class_request.scheduler) as workers:
             yield workers
     else:
-        yield LocalBackend(grading, order.jobs or at_once(grading.runner.middleware))
+        yield LocalBackend(grading, class_request.jobs or at_once(grading.runner.middleware))
 
 
 @contextlib.contextmanager

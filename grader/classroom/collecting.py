@@ -206,6 +206,6 @@ def _chosen(files: Sorted, left_out: tuple[Skipped, ...]) -> Submissions:
             questions.append(Question(student, tuple(file.name for file in theirs)))
     if not candidates:
         kinds = ", ".join(SUFFIXES)
-        told = "".join(f"\n  {skip.file}: {skip.why}" for skip in skipped[:10])
-        raise SubmissionsError(f"There is no submission in it: no file that ends with one of {kinds}.{told}")
+        text = "".join(f"\n  {skip.file}: {skip.why}" for skip in skipped[:10])
+        raise SubmissionsError(f"There is no submission in it: no file that ends with one of {kinds}.{text}")
     return Submissions(files.kind, tuple(handed_in), tuple(sorted(skipped, key=lambda s: s.file)), tuple(questions))

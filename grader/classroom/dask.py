@@ -82,25 +82,25 @@ def describe_worker(middleware: Middleware) -> dict[str, str]:
     return versions(choose_middleware(middleware).middleware)
 
 
-def grade_on_worker(parcel: ExerciseFiles, options: Options, key: str, who: str, submission: Submission) -> Graded:
+def grade_on_worker(packed: ExerciseFiles, options: Options, key: str, who: str, submission: Submission) -> Graded:
     """One submission's grade, without recordings, and the picture of it.
 
     `key` is that of whoever asks: where grades would depend on something else here, there is none, and it is told.
     """
-    bench = _prepared_grading(parcel, options)
+    bench = _prepared_grading(packed, options)
     runner = bench.grading.runner
     if bench.key != key:
-        told = f"a worker of the cluster grades otherwise than this machine: {versions(runner.middleware)}"
-        return Graded(who, host_error(runner, submission, told), None)
+        text = f"a worker of the cluster grades otherwise than this machine: {versions(runner.middleware)}"
+        return Graded(who, host_error(runner, submission, text), None)
     with own_core() as core:
         runner = replace(runner, options=replace(options, parallel=1, core=core))
         grade = replace(bench.grading, runner=runner).grade(submission)
     return Graded(who, replace(grade, recordings={}, references={}), picture(grade, runner.exercise))
 
 
-def _prepared_grading(parcel: ExerciseFiles, options: Options) -> PreparedGrading:
+def _prepared_grading(packed: ExerciseFiles, options: Options) -> PreparedGrading:
     """Made ready by whichever task comes first, for all that follow; only the newest exercise is kept."""
-    name = f"{parcel.digest} {options}"
+    name = f"{packed.digest} {options}"
     with _lock:
         if name not in _ready:
             while _ready:
@@ -108,7 +108,7 @@ def _prepared_grading(parcel: ExerciseFiles, options: Options) -> PreparedGradin
             with contextlib.ExitStack() as holds:
                 folder = holds.enter_context(tempfile.TemporaryDirectory(prefix="spinbook-exercise-"))
                 workers = holds.enter_context(WorkerPool(options.middleware))
-                grading = grading_of(load(parcel.unpack(Path(folder))), options, workers)
+                grading = grading_of(load(packed.unpack(Path(folder))), options, workers)
                 _ready[name] = PreparedGrading(grading, grade_key(grading), holds.pop_all())
         return _ready[name]
 
@@ -141,9 +141,9 @@ class DaskBackend:
         if not submissions:
             return
         runner = self.grading.runner
-        parcel = pack_exercise(runner.exercise)
+        packed = pack_exercise(runner.exercise)
         asked = {
-            self.client.submit(grade_on_worker, parcel, runner.options, self.key, who, submission, pure=False): who
+            self.client.submit(grade_on_worker, packed, runner.options, self.key, who, submission, pure=False): who
             for who, submission in submissions.items()
         }
         try:
@@ -153,8 +153,8 @@ class DaskBackend:
                 if error is None:
                     yield future.result()
                 else:
-                    told = f"the cluster could not grade it: {type(error).__name__}: {error}"
-                    grade = host_error(runner, submissions[who], told)
+                    text = f"the cluster could not grade it: {type(error).__name__}: {error}"
+                    grade = host_error(runner, submissions[who], text)
                     yield Graded(who, grade, None)
         finally:
             self.client.cancel(list(asked))
@@ -173,8 +173,8 @@ def dask_backend(grading: Grading, address: str) -> Iterator[DaskBackend]:
     try:
         client = Client(address, timeout=SCHEDULER_S, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
-        told = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise NoCluster(f"--scheduler {address}: nobody answers there as a Dask scheduler does: {told}") from None
+        text = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise NoCluster(f"--scheduler {address}: nobody answers there as a Dask scheduler does: {text}") from None
     with client:
         try:
             client.wait_for_workers(1, timeout=WORKER_S)
@@ -185,8 +185,8 @@ def dask_backend(grading: Grading, address: str) -> Iterator[DaskBackend]:
         yield DaskBackend(grading, client)
 
 
-def _same_versions(ours: Mapping[str, str], told: Mapping[str, object]) -> None:
-    for worker, theirs in sorted(told.items()):
+def _same_versions(ours: Mapping[str, str], text: Mapping[str, object]) -> None:
+    for worker, theirs in sorted(text.items()):
         if not isinstance(theirs, dict):
             raise NoCluster(f"The worker {worker} can't grade: {type(theirs).__name__}: {theirs}")
         if differs := [

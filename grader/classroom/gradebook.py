@@ -16,7 +16,7 @@ from grader.exercise.exercise import Exercise
 from grader.files import write_if_changed
 from grader.grading.entry import Entry, Student
 from grader.report.as_json import folder_of
-from grader.report.feedback import told
+from grader.report.feedback import shown_checks
 from grader.report.gradescope import results_json
 from grader.report.printable import printable
 
@@ -177,7 +177,7 @@ def _comment(entry: Entry) -> str:
     lines += [f"{a.points:+g}: {a.reason}" for a in entry.adjustments]
     if grade.message:
         lines.append(grade.message[:500])
-    for check in told(grade):
+    for check in shown_checks(grade):
         if check.status == "failed" and (check.finding or check.hint):
             lines.append(f"✗ {check.title}" + (f" Hint: {check.hint}" if check.hint else ""))
     return "<br>".join(escape(line) for line in lines)

@@ -52,22 +52,22 @@ class LocalBackend:
         done: queue.SimpleQueue[Graded | BaseException] = queue.SimpleQueue()
         for item in submissions.items():
             waiting.put(item)
-        given_up, helping = threading.Event(), WorkStealing()
+        given_up, work_stealing = threading.Event(), WorkStealing()
         threads = [
-            threading.Thread(target=self._work, args=(number, waiting, done, given_up, helping), daemon=True)
+            threading.Thread(target=self._work, args=(number, waiting, done, given_up, work_stealing), daemon=True)
             for number in range(self.jobs if submissions else 0)
         ]
         for thread in threads:
             thread.start()
         try:
             for _ in submissions:
-                marked = done.get()
-                if isinstance(marked, BaseException):
-                    raise marked
-                yield marked
+                graded = done.get()
+                if isinstance(graded, BaseException):
+                    raise graded
+                yield graded
         finally:
             given_up.set()
-            helping.close()
+            work_stealing.close()
         for thread in threads:  # nothing is under way any more, if this is reached
             thread.join()
 
@@ -77,26 +77,28 @@ class LocalBackend:
         waiting: queue.SimpleQueue[tuple[str, Submission]],
         done: queue.SimpleQueue[Graded | BaseException],
         given_up: threading.Event,
-        helping: WorkStealing,
+        work_stealing: WorkStealing,
     ) -> None:
         cores = sorted(os.sched_getaffinity(0))
         core = cores[number % len(cores)]
         options = replace(self.grading.runner.options, parallel=1, core=core)
-        grading = replace(self.grading, runner=replace(self.grading.runner, options=options, helping=helping))
+        grading = replace(
+            self.grading, runner=replace(self.grading.runner, options=options, work_stealing=work_stealing)
+        )
         while not given_up.is_set():
             try:
                 who, submission = waiting.get_nowait()
             except queue.Empty:
-                helping.help(core)
+                work_stealing.help(core)
                 return
             try:
-                done.put(_marked(who, grading, submission))
+                done.put(_graded(who, grading, submission))
             except BaseException as stopped:  # the exercise's author's, or the run's end
                 done.put(stopped)
                 return
 
 
-def _marked(who: str, grading: Grading, submission: Submission) -> Graded:
+def _graded(who: str, grading: Grading, submission: Submission) -> Graded:
     """Grade one submission. A fault in the grader is this student's `host-error`, and stops nobody else's grading."""
     try:
         grade = grading.grade(submission)

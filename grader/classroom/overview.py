@@ -130,14 +130,14 @@ def distribution(scores: Sequence[float], most: float) -> Distribution | None:
     for score in scores:
         counts[min(BINS - 1, int(BINS * score / most))] += 1
     bars = tuple(_bar(i, count, max(counts), most) for i, count in enumerate(counts))
-    told = [f"{bar.count} from {points(bar.low)} to {points(bar.high)}" for bar in bars if bar.count]
+    text = [f"{bar.count} from {points(bar.low)} to {points(bar.high)}" for bar in bars if bar.count]
     return Distribution(
         count=len(scores),
         mean=statistics.fmean(scores),
         median=statistics.median(scores),
         full=sum(score >= most for score in scores),
         bars=bars,
-        said=f"Histogram of {len(scores)} students' points: " + ", ".join(told) + ".",
+        said=f"Histogram of {len(scores)} students' points: " + ", ".join(text) + ".",
     )
 
 

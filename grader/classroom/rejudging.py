@@ -23,14 +23,14 @@ class Rejudged:
     """A student's new grade, and in words what is different."""
 
     handed_in: HandedIn
-    marked: Graded
+    graded: Graded
     changed: str
 
 
 def rejudge(
     marking: ClassGrading,
     grading: Grading,
-    intake: Submissions,
+    collected: Submissions,
     submissions: Mapping[str, Submission],
     console: Console,
     may_replace: Callable[[int], bool],
@@ -41,7 +41,7 @@ def rejudge(
     submission, scenario or version, a student's grade stays as it is, and that is said.
     """
     found, missing = [], []
-    for one in intake.handed_in:
+    for one in collected.handed_in:
         who = one.student.id
         kept = marking.results.entry(who)
         recordings = marking.results.recordings(who, recordings_key(grading, submissions[who]))
@@ -49,14 +49,14 @@ def rejudge(
             missing.append(who)
             continue
         grade = grading.judge(submissions[who], recordings)
-        marked = Graded(who, replace(grade, seconds=kept[0].grade.seconds), picture(grade, marking.exercise))
-        found.append(Rejudged(one, marked, difference(kept[0].grade, grade)))
+        graded = Graded(who, replace(grade, seconds=kept[0].grade.seconds), picture(grade, marking.exercise))
+        found.append(Rejudged(one, graded, difference(kept[0].grade, grade)))
     _tell(console, found, missing)
     changed = sum(bool(one.changed) for one in found)
     replaced = bool(changed) and may_replace(changed)
     for new in found:
         if replaced or not new.changed:
-            marking.keep(new.handed_in, new.marked, submissions[new.marked.who])
+            marking.keep(new.handed_in, new.graded, submissions[new.graded.who])
     if changed and not replaced:
         console.print("Nothing was replaced.")
 
@@ -64,13 +64,13 @@ def rejudge(
 def _tell(console: Console, found: list[Rejudged], missing: list[str]) -> None:
     for one in found:
         if one.changed:
-            console.print(Text(printable(f"{one.marked.who}: {one.changed}")), soft_wrap=True)
+            console.print(Text(printable(f"{one.graded.who}: {one.changed}")), soft_wrap=True)
     same = sum(not one.changed for one in found)
     console.print(f"{len(found)} judged again from their recordings, {same} with the same result.")
     if missing:
         names = ", ".join(missing)
-        told = f"no recordings that fit, so grade them without --rejudge: {names}"
-        console.print(Text(printable(told), style="yellow"), soft_wrap=True)
+        text = f"no recordings that fit, so grade them without --rejudge: {names}"
+        console.print(Text(printable(text), style="yellow"), soft_wrap=True)
 
 
 def difference(before: Grade, after: Grade) -> str:
@@ -84,10 +84,10 @@ def difference(before: Grade, after: Grade) -> str:
             up.append(f"{name} (+{earned[1] - earned[0]:g})")
         elif earned[1] < earned[0]:
             down.append(f"{name} (-{earned[0] - earned[1]:g})")
-    told = [f"up: {', '.join(up)}"] if up else []
-    told += [f"down: {', '.join(down)}"] if down else []
+    text = [f"up: {', '.join(up)}"] if up else []
+    text += [f"down: {', '.join(down)}"] if down else []
     if before.outcome != after.outcome:
-        told.append(f"{before.outcome}, now {after.outcome}")
-    if not told and before.score == after.score:
+        text.append(f"{before.outcome}, now {after.outcome}")
+    if not text and before.score == after.score:
         return ""
-    return "; ".join([f"{before.score:g} -> {after.score:g} points", *told])
+    return "; ".join([f"{before.score:g} -> {after.score:g} points", *text])

@@ -64,14 +64,14 @@ class Backend(Protocol):
         """
 
 
-def host_error(runner: ScenarioRunner, submission: Submission, told: str) -> Grade:
-    """The grade without a score; `told` is for the instructor."""
+def host_error(runner: ScenarioRunner, submission: Submission, text: str) -> Grade:
+    """The grade without a score; `text` is for the instructor."""
     return Grade(
         exercise=runner.exercise.name,
         submission=submission.name,
         digest=submission.digest,
         outcome="host-error",
-        message=f"This is not your fault: {told}",
+        message=f"This is not your fault: {text}",
         score=0.0,
         points=runner.exercise.points,
         verdicts=(),

@@ -190,13 +190,15 @@ class ClassGrading:
     """Set where recordings are to be kept."""
     entries: dict[str, Entry] = field(default_factory=dict)
 
-    def plan(self, intake: Submissions, submissions: Mapping[str, Submission], regrade: Callable[[str], bool]) -> Plan:
+    def plan(
+        self, collected: Submissions, submissions: Mapping[str, Submission], regrade: Callable[[str], bool]
+    ) -> Plan:
         """What has to be graded: what has no grade yet, what has changed, and what `regrade` asks for.
 
-        `submissions` are those of `intake`, read, by student.
+        `submissions` are those of `collected`, read, by student.
         """
         to_grade, unchanged, former = [], [], {}
-        for handed_in in intake.handed_in:
+        for handed_in in collected.handed_in:
             who = handed_in.student.id
             kept = self.results.entry(who)
             if kept:
@@ -207,9 +209,9 @@ class ClassGrading:
                 to_grade.append(handed_in)
         return Plan(tuple(to_grade), tuple(unchanged), former)
 
-    def take_in(self, intake: Submissions) -> None:
+    def take_in(self, collected: Submissions) -> None:
         """Take the entries that are kept of these students, where no other is known, as they are."""
-        for one in intake.handed_in:
+        for one in collected.handed_in:
             kept = self.results.entry(one.student.id)
             if kept and one.student.id not in self.entries:
                 self.entries[one.student.id] = kept[0]
@@ -222,20 +224,20 @@ class ClassGrading:
         """
         handed_in = {one.student.id: one for one in plan.to_grade}
         again: list[str] = []
-        for marked in self.markers.mark({who: submissions[who] for who in handed_in}):
-            if marked.grade.outcome == "host-error":
-                again.append(marked.who)
+        for graded in self.markers.mark({who: submissions[who] for who in handed_in}):
+            if graded.grade.outcome == "host-error":
+                again.append(graded.who)
             else:
-                yield self._kept(handed_in[marked.who], marked, submissions[marked.who])
-        for marked in self.markers.mark({who: submissions[who] for who in sorted(again)}):
-            yield self._kept(handed_in[marked.who], marked, submissions[marked.who])
+                yield self._kept(handed_in[graded.who], graded, submissions[graded.who])
+        for graded in self.markers.mark({who: submissions[who] for who in sorted(again)}):
+            yield self._kept(handed_in[graded.who], graded, submissions[graded.who])
 
-    def _kept(self, handed_in: HandedIn, marked: Graded, submission: Submission) -> Entry:
+    def _kept(self, handed_in: HandedIn, graded: Graded, submission: Submission) -> Entry:
         """Keep a grade; one whose page or files can't be written is a `host-error`, and stops nobody else's."""
         try:
-            return self.keep(handed_in, marked, submission)
+            return self.keep(handed_in, graded, submission)
         except Exception as error:
-            return self.give_up(Entry(handed_in.student, handed_in.file.name, marked.grade), not_written(error))
+            return self.give_up(Entry(handed_in.student, handed_in.file.name, graded.grade), not_written(error))
 
     def give_up(self, entry: Entry, what: str) -> Entry:
         """Turn an entry into a `host-error` that says `what` happened; the next run tries it again."""
@@ -247,16 +249,16 @@ class ClassGrading:
         self.results.forget(entry.student.id)
         return entry
 
-    def keep(self, handed_in: HandedIn, marked: Graded, submission: Submission) -> Entry:
+    def keep(self, handed_in: HandedIn, graded: Graded, submission: Submission) -> Entry:
         """Write a grade with its page into the student's folder."""
         # Who grades may see the file under another name.
-        grade = replace(marked.grade, submission=handed_in.file.name)
+        grade = replace(graded.grade, submission=handed_in.file.name)
         entry = self._entry(handed_in, Entry(handed_in.student, handed_in.file.name, grade))
         key = "" if grade.outcome == "host-error" else self._key(submission)
         if grade.recordings and self.grading:
             recorded = recordings_key(self.grading, submission)
             self.results.keep_recordings(entry.student.id, recorded, grade.recordings)
-        self.results.write(entry, key, feedback_page(entry, self.exercise, marked.plot), marked.plot)
+        self.results.write(entry, key, feedback_page(entry, self.exercise, graded.plot), graded.plot)
         # What was recorded is in the page now; kept for a whole class, it would fill the memory.
         self.entries[entry.student.id] = entry = replace(entry, grade=replace(grade, recordings={}, references={}))
         return entry

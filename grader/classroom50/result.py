@@ -11,7 +11,7 @@ from datetime import datetime, timezone
 from typing import Any
 
 from grader.grading.grade import Grade
-from grader.report.feedback import Told, told
+from grader.report.feedback import ShownCheck, shown_checks
 from grader.report.printable import printable
 
 SCHEMA = "classroom50/result/v1"
@@ -30,7 +30,7 @@ def result(grade: Grade, environment: Mapping[str, str]) -> dict[str, Any]:
     scale = (
         1 if all(float(v.points).is_integer() and float(v.earned).is_integer() for v in grade.verdicts) else HUNDREDTHS
     )
-    tests = [_test(check, scale) for check in told(grade)]
+    tests = [_test(check, scale) for check in shown_checks(grade)]
     return {
         "schema": SCHEMA,
         **_identity(grade, environment),
@@ -55,7 +55,7 @@ def _identity(grade: Grade, environment: Mapping[str, str]) -> dict[str, str]:
     }
 
 
-def _test(check: Told, scale: int) -> dict[str, Any]:
+def _test(check: ShownCheck, scale: int) -> dict[str, Any]:
     return {
         "test-name": printable(check.title, LONGEST_TEXT),
         "passed": check.status == "passed",
@@ -71,7 +71,7 @@ def summary(grade: Grade, title: str) -> str:
     if grade.message:
         lines += [_fenced(grade.message), ""]
     lines += ["| | points | check |", "| --- | --- | --- |"]
-    checks = told(grade)
+    checks = shown_checks(grade)
     lines += [f"| {check.sign} | {check.earned:g}/{check.points:g} | {_cell(check.title)} |" for check in checks]
     for check in checks:
         if check.status == "failed" and check.text:

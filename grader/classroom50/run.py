@@ -54,8 +54,8 @@ def _grade(exercise: Exercise, repository: Path, isolation: str) -> Grade:
         return grading_of(exercise, options, workers).grade(submission(repository, exercise))
 
 
-def _fault(told: str) -> int:
-    print(f"Not graded, and that is not the student's fault: {told}", file=sys.stderr)
+def _fault(text: str) -> int:
+    print(f"Not graded, and that is not the student's fault: {text}", file=sys.stderr)
     return 1
 
 

@@ -115,5 +115,5 @@ def find(name: str, start: Path) -> Path:
         if (exercises / name / "exercise.toml").exists():
             return exercises / name
         known += sorted(file.parent.name for file in exercises.glob("*/exercise.toml"))
-    told = f"There are: {', '.join(known)}." if known else "Start in a course's folder, the one with exercises/ in it."
-    raise NoExercise(f"There is no exercise {name!r} here. {told}")
+    text = f"There are: {', '.join(known)}." if known else "Start in a course's folder, the one with exercises/ in it."
+    raise NoExercise(f"There is no exercise {name!r} here. {text}")

@@ -9,7 +9,7 @@ BEGIN = re.compile(r"^(\s*)# BEGIN SOLUTION\s*$")
 END = re.compile(r"^\s*# END SOLUTION\s*$")
 
 
-class MarkError(ValueError):
+class MarkerError(ValueError):
     """Raised when the marks of a solution don't pair up; `line` counts from 1."""
 
     def __init__(self, line: int, message: str) -> None:
@@ -21,7 +21,7 @@ def starter(source: str) -> str:
     """`source` without the lines from each `# BEGIN SOLUTION` to its `# END SOLUTION`.
 
     Everything else stays as it stands, so the author's `# TODO` comments above a mark lead the student. A body
-    that would be left empty gets a `pass`. Raises `MarkError` when a mark lacks its partner, when there is none
+    that would be left empty gets a `pass`. Raises `MarkerError` when a mark lacks its partner, when there is none
     at all, or when what is left is no Python.
     """
     kept: list[str] = []
@@ -30,24 +30,24 @@ def starter(source: str) -> str:
     for number, line in enumerate(source.splitlines(), start=1):
         if match := BEGIN.match(line):
             if begun:
-                raise MarkError(number, f"BEGIN SOLUTION inside the one of line {begun[0]}")
+                raise MarkerError(number, f"BEGIN SOLUTION inside the one of line {begun[0]}")
             begun, marks = (number, match.group(1)), marks + 1
             kept.append(_PLACE + match.group(1))
         elif END.match(line):
             if not begun:
-                raise MarkError(number, "END SOLUTION without a BEGIN SOLUTION before it")
+                raise MarkerError(number, "END SOLUTION without a BEGIN SOLUTION before it")
             begun = None
         elif not begun:
             kept.append(line)
     if begun:
-        raise MarkError(begun[0], "BEGIN SOLUTION without an END SOLUTION after it")
+        raise MarkerError(begun[0], "BEGIN SOLUTION without an END SOLUTION after it")
     if not marks:
-        raise MarkError(1, "no BEGIN SOLUTION mark, so the starter would be the solution")
+        raise MarkerError(1, "no BEGIN SOLUTION mark, so the starter would be the solution")
     result = re.sub(r"\n{4,}", "\n\n\n", "\n".join(_closed(kept))) + "\n"
     try:
         ast.parse(result)
     except SyntaxError as error:
-        raise MarkError(error.lineno or 1, f"the starter made from this is not valid Python: {error.msg}") from None
+        raise MarkerError(error.lineno or 1, f"the starter made from this is not valid Python: {error.msg}") from None
     return result
 
 

@@ -33,15 +33,15 @@ def main(folder: Path, root: Path, isolation: str = "") -> None:
     """Grade what is in `root/submission`. Whatever goes wrong on our side is told, without a score."""
     keep_beside(folder)
     try:
-        told = results(_entry(load(folder), root, isolation))
+        text = results(_entry(load(folder), root, isolation))
     except (ExerciseError, SandboxUnavailable, HostFault) as error:
         print(error)
-        told = no_score("The autograder is not set up right; its output says more.")
+        text = no_score("The autograder is not set up right; its output says more.")
     except Exception:
         traceback.print_exc(file=sys.stdout)
-        told = no_score("The autograder broke; its output says more.")
+        text = no_score("The autograder broke; its output says more.")
     write_if_changed(
-        root / "results" / "results.json", json.dumps(told, indent=2, ensure_ascii=False) + "\n", durable=True
+        root / "results" / "results.json", json.dumps(text, indent=2, ensure_ascii=False) + "\n", durable=True
     )
 
 
@@ -73,10 +73,10 @@ def _metadata(file: Path) -> tuple[Student, datetime | None]:
     """Who handed in, and when, as far as Gradescope tells."""
     student, submitted = Student("student"), None
     with contextlib.suppress(OSError, ValueError, KeyError, TypeError, IndexError, AttributeError):
-        told: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
-        user = told["users"][0]
+        text: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        user = text["users"][0]
         student = Student(str(user["id"]), str(user.get("name", "")), str(user.get("email", "")))
-        submitted = datetime.fromisoformat(told["created_at"])
+        submitted = datetime.fromisoformat(text["created_at"])
     return student, submitted
 
 

@@ -36,8 +36,8 @@ class Grading:
         try:
             recordings = self._recordings(submission)
         except HostFault as fault:
-            told = str(fault).strip().splitlines()[-1]
-            return self._grade(submission, {}, (), "host-error", f"This is not your fault: {told}", began)
+            text = str(fault).strip().splitlines()[-1]
+            return self._grade(submission, {}, (), "host-error", f"This is not your fault: {text}", began)
         return self._judged(submission, recordings, began)
 
     def judge(self, submission: Submission, recordings: dict[str, Recording]) -> Grade:
@@ -50,12 +50,12 @@ class Grading:
         try:
             verdicts: tuple[Verdict, ...] = self.runner.workers.do(job)
         except HostFault as fault:
-            told = str(fault).strip().splitlines()[-1]
-            return self._grade(submission, {}, (), "host-error", f"This is not your fault: {told}", began)
+            text = str(fault).strip().splitlines()[-1]
+            return self._grade(submission, {}, (), "host-error", f"This is not your fault: {text}", began)
         broken = [verdict for verdict in verdicts if verdict.status == "error"]
         if broken:
-            told = f"This is not your fault: the check {broken[0].name} broke: {broken[0].error}"
-            return self._grade(submission, recordings, verdicts, "host-error", told, began)
+            text = f"This is not your fault: the check {broken[0].name} broke: {broken[0].error}"
+            return self._grade(submission, recordings, verdicts, "host-error", text, began)
         first = recordings[self.runner.scenarios[0].name].ending
         outcome: Outcome = "graded" if first.outcome == "completed" else first.outcome
         return self._grade(submission, recordings, verdicts, outcome, message_of(first, self.runner.exercise), began)

@@ -15,7 +15,7 @@ from pathlib import Path
 from grader.checking.proofreading import line_with, points_that_do_not_add_up, same_name_twice
 from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise, ExerciseError
-from grader.exercise.starter import MarkError, starter
+from grader.exercise.starter import MarkerError, starter
 from grader.files import write_if_changed
 from grader.grading.running import ScenarioRunner
 from grader.recording.recording import Recording
@@ -128,7 +128,7 @@ def _made(runner: ScenarioRunner) -> dict[str, Recording]:
     code = file.read_bytes()
     try:
         starter(code.decode("utf-8"))
-    except MarkError as error:
+    except MarkerError as error:
         raise ExerciseError(file, str(error), "Put every mark in order; the starter is made from them.") from None
     recordings = runner.spin(of_source("the solution", code, runner.exercise))
     for recording in recordings.values():
@@ -149,8 +149,8 @@ def _prove(runner: ScenarioRunner, recordings: dict[str, Recording]) -> None:
         if verdict.status == "error":
             raise ExerciseError(file, f"the check {verdict.name} breaks: {verdict.error}", "Fix the check.", line)
         if verdict.status == "failed":
-            told = verdict.finding.text if verdict.finding else ""
-            found = f"the solution does not pass the check {verdict.name}: {told}"
+            message = verdict.finding.text if verdict.finding else ""
+            found = f"the solution does not pass the check {verdict.name}: {message}"
             raise ExerciseError(file, found, "Fix the check or the solution.", line)
     for file in exercise.check_files:
         for fault in same_name_twice(file):

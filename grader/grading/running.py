@@ -129,7 +129,7 @@ class ScenarioRunner:
     isolation: Isolation
     options: Options
     workers: WorkerPool
-    helping: WorkStealing = field(default_factory=WorkStealing, compare=False)
+    work_stealing: WorkStealing = field(default_factory=WorkStealing, compare=False)
     """Through which others may help, beside the `options.parallel` hands that there are for each submission."""
 
     @property
@@ -138,10 +138,10 @@ class ScenarioRunner:
         middleware = choose_middleware(self.options.middleware).middleware
         beyond = next((one for one in self.scenarios if not one.is_filter), None)
         if middleware is Middleware.FASTDDS and beyond:
-            told = (
+            text = (
                 f"The scenario {beyond.name} does more than publish messages, which the middleware 'fastdds' can't do."
             )
-            raise MiddlewareUnavailable(f"{told} Grade this exercise with --middleware lockstep.")
+            raise MiddlewareUnavailable(f"{text} Grade this exercise with --middleware lockstep.")
         return middleware
 
     def spin(self, submission: Submission) -> dict[str, Recording]:
@@ -153,7 +153,7 @@ class ScenarioRunner:
         jobs = [self.job(submission, scenario, i) for i, scenario in enumerate(self.scenarios)]
         # The longest first, so that none is left over at the end; the very first is needed at once.
         spins = TaskQueue((jobs[0], *sorted(jobs[1:], key=lambda job: -job.scenario.size)), self.workers)
-        with ThreadPoolExecutor(self.options.parallel) as pool, self.helping.wanted(spins):
+        with ThreadPoolExecutor(self.options.parallel) as pool, self.work_stealing.wanted(spins):
             for _ in range(self.options.parallel):
                 pool.submit(spins.work)
             try:

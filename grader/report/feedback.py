@@ -28,7 +28,7 @@ SIGNS: dict[Status, tuple[str, str]] = {
 
 
 @dataclass(frozen=True)
-class Told:
+class ShownCheck:
     """One check as a student sees it; hidden ones without `finding`. `needs` are titles of checks to fix first."""
 
     title: str
@@ -53,18 +53,18 @@ class Told:
         return "\n".join(lines)
 
 
-def told(grade: Grade) -> tuple[Told, ...]:
+def shown_checks(grade: Grade) -> tuple[ShownCheck, ...]:
     """Every check of `grade`, in order, with what a student may know of it."""
     titles = {verdict.name: verdict.title for verdict in grade.verdicts}
-    return tuple(_told(verdict, grade, titles) for verdict in grade.verdicts)
+    return tuple(_shown_check(verdict, grade, titles) for verdict in grade.verdicts)
 
 
-def _told(verdict: Verdict, grade: Grade, titles: dict[str, str]) -> Told:
+def _shown_check(verdict: Verdict, grade: Grade, titles: dict[str, str]) -> ShownCheck:
     # Where the first scenario broke off, that is the story; each check would repeat it.
     telling = grade.outcome == "graded"
     sign, word = SIGNS[verdict.status]
     failed = verdict.status == "failed" and telling
-    return Told(
+    return ShownCheck(
         title=verdict.title,
         status=verdict.status,
         sign=sign,
@@ -168,7 +168,7 @@ def feedback_page(entry: Entry, exercise: Exercise, plot_svg: str | None) -> str
     messages, output) is shown as text and nothing else.
     """
     grade = entry.grade
-    checks = told(grade)
+    checks = shown_checks(grade)
     log, left_out = tail(grade.log)
     return render(
         "report/feedback.html",

@@ -9,7 +9,7 @@ import json
 from typing import Any
 
 from grader.grading.entry import Entry
-from grader.report.feedback import Told, tail, told
+from grader.report.feedback import ShownCheck, shown_checks, tail
 from grader.report.printable import printable
 
 LONGEST_TEXT = 20_000
@@ -32,15 +32,15 @@ def results(entry: Entry) -> dict[str, Any]:
         "output": _text(_summary(entry)),
         "output_format": "text",
         "stdout_visibility": HIDDEN,
-        "tests": [_test(check) for check in told(grade)],
+        "tests": [_test(check) for check in shown_checks(grade)],
         "extra_data": {"outcome": grade.outcome, "isolation": grade.isolation, "versions": grade.versions},
     }
 
 
 def no_score(message: str) -> dict[str, Any]:
     """What Gradescope is told where nothing could be graded by a fault of ours: a text, and no score."""
-    told = f"This could not be graded, and that is not your fault. Tell your instructor.\n{message}"
-    return {"output": _text(told), "output_format": "text", "stdout_visibility": HIDDEN}
+    text = f"This could not be graded, and that is not your fault. Tell your instructor.\n{message}"
+    return {"output": _text(text), "output_format": "text", "stdout_visibility": HIDDEN}
 
 
 def results_json(entry: Entry) -> str:
@@ -60,7 +60,7 @@ def _summary(entry: Entry) -> str:
     return "\n".join(lines)
 
 
-def _test(check: Told) -> dict[str, Any]:
+def _test(check: ShownCheck) -> dict[str, Any]:
     return {
         "name": _text(check.title),
         "name_format": "text",

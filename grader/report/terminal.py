@@ -30,12 +30,12 @@ def hidden_checks_to_come(grade: Grade) -> str:
 
 def self_check_standing(grade: Grade) -> str:
     """That this is no grade, and how the code ran."""
-    told = "This is a self-check, not your grade."
+    text = "This is a self-check, not your grade."
     if grade.isolation == Isolation.NONE.value:
-        told += " Your code ran without a sandbox, and no grade of record is made that way."
+        text += " Your code ran without a sandbox, and no grade of record is made that way."
     if grade.versions["middleware"] == Middleware.FASTDDS.value:
-        told += " It ran over Fast DDS: a node with threads or sleeps of its own may get another result each time."
-    return told
+        text += " It ran over Fast DDS: a node with threads or sleeps of its own may get another result each time."
+    return text
 
 
 def self_check_lines(grade: Grade) -> list[str]:

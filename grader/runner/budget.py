@@ -23,7 +23,7 @@ class Gone(Exception):
     """Raised when the student's program has ended by itself."""
 
 
-class HostStoodStill(Exception):
+class HostStalled(Exception):
     """Raised when the machine, and not the program, was what did not go on."""
 
 
@@ -91,12 +91,10 @@ class Budget:
             raise Stopped("timed-out", allowance.busy)
 
     def check_the_host(self) -> None:
-        """Raise `HostStoodStill` when this machine ran too little for a limit in wall time to say anything."""
+        """Raise `HostStalled` when this machine ran too little for a limit in wall time to say anything."""
         real = time.monotonic() - self._began
         if self._seen < real / 2:
-            raise HostStoodStill(
-                f"this machine was frozen or overloaded: it ran for {self._seen:.0f} s of {real:.0f} s"
-            )
+            raise HostStalled(f"this machine was frozen or overloaded: it ran for {self._seen:.0f} s of {real:.0f} s")
 
 
 #: What liblockstep calls its own thread, which looks at the others again and again while the process is not idle.

@@ -31,11 +31,11 @@ class Namespaces:
     builder: subprocess.Popen[bytes] | None = None
 
     def kill(self) -> None:
-        """Kills everything inside. It is dead when `bury` returns."""
+        """Kills everything inside. It is dead when `reap` returns."""
         with contextlib.suppress(ProcessLookupError):
             os.kill(self.init, signal.SIGKILL)
 
-    def bury(self) -> None:
+    def reap(self) -> None:
         """Returns when all is dead. Children of the caller inside have to be waited for before.
 
         The death of a namespace's first process is told to its parent only after every other process in it is gone:

@@ -120,14 +120,14 @@ class ProcessTree:
     holders: frozenset[int] = frozenset()
 
     def kill(self) -> None:
-        """Kills what the student has started. What it starts meanwhile is found by `bury`."""
+        """Kills what the student has started. What it starts meanwhile is found by `reap`."""
         alive = descendants(self.init)
         for order in (signal.SIGSTOP, signal.SIGKILL):  # first nobody forks any more
             for process in alive:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(process, order)
 
-    def bury(self) -> None:
+    def reap(self) -> None:
         """Returns when all is dead, and removes the folder."""
         while descendants(self.init):
             self.kill()

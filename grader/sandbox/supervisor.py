@@ -117,7 +117,7 @@ def _fork_student(
     if fault_told:
         house.kill()
         os.waitpid(child, 0)
-        house.bury()
+        house.reap()
         raise OSError(fault_told.decode(errors="replace"))
     return child
 
@@ -144,7 +144,7 @@ def _watch(control: int, child: int, house: namespaces.Namespaces | processes.Pr
             house.kill()
             if alive:
                 _report_end(control, child)
-            house.bury()
+            house.reap()
             return
 
 

@@ -27,9 +27,9 @@ def declared(exercise: Exercise, seed: int) -> tuple[Scenario, ...]:
     names: list[str] = []
     for scenario in found:
         if scenario.name in names or not scenario.name.isidentifier():
-            told = "twice" if scenario.name in names else "no Python name"
+            text = "twice" if scenario.name in names else "no Python name"
             fix = "Give each scenario a Python name of its own."
-            raise ExerciseError(file, f"a scenario's name is {scenario.name!r}: {told}", fix, scenario.line or None)
+            raise ExerciseError(file, f"a scenario's name is {scenario.name!r}: {text}", fix, scenario.line or None)
         names.append(scenario.name)
     return tuple(resolved(exercise, scenario) for scenario in found)
 

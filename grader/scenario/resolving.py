@@ -108,8 +108,8 @@ class Resolver:
         if found["kind"] != kind:
             fix = f"Write a type as {_EXAMPLES[kind]!r}."
             article = "an" if found["kind"] == "action" else "a"
-            told = f"{type_name!r} is the type of {article} {_KINDS[found['kind']]}, but {name} needs that of a "
-            self._fault(given.line, told + _KINDS[kind], fix)
+            text = f"{type_name!r} is the type of {article} {_KINDS[found['kind']]}, but {name} needs that of a "
+            self._fault(given.line, text + _KINDS[kind], fix)
         package, _, rest = type_name.partition("/")
         known = prefixes.interfaces(prefixes.installed())
         if rest not in known.get(package, ()):

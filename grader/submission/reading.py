@@ -238,8 +238,8 @@ def of_upload(name: str, content: bytes, exercise: Exercise) -> Submission:
     faults = list(upload.faults)
     if upload.record and upload.record.get("exercise") != exercise.name:
         faults.append(f"it was handed in for the exercise {upload.record.get('exercise')!r}")
-    told = "; ".join(faults)
-    warning = f"Not as it was handed in: {told[:500]}." if told else ""
+    text = "; ".join(faults)
+    warning = f"Not as it was handed in: {text[:500]}." if text else ""
     code = next(_codes(upload, exercise), None)
     if code is None:
         problem = f"There is no code for {exercise.name} in it. Hand in the file that `spinbook submit` writes."

@@ -20,7 +20,7 @@ from grader.files import write_if_changed
 from interface_compiler import activation
 from spinbook.build.digest import code_digest, digest, folders_digest, versions
 from spinbook.kernel.process import KeptProcess
-from spinbook.kernel.showing import NEVER_CAME, in_short
+from spinbook.kernel.showing import NEVER_APPEARED, in_short
 
 _ANSI = re.compile(r"\x1b\[[0-9;]*m")
 #: A traceback's line in a module that a node cell wrote, or in a snippet's cell.
@@ -71,7 +71,7 @@ def find_warnings(chapter: Path, ran: dict[str, Any]) -> list[CellFailure]:
     """Find the cells that waited for a text in vain (`until=`): what the chapter says of it can't be seen there."""
     found = []
     for cell in ran["cells"]:
-        if cell["cell_type"] == "code" and (never := NEVER_CAME.search(_printed(cell))):
+        if cell["cell_type"] == "code" and (never := NEVER_APPEARED.search(_printed(cell))):
             what = (
                 f"`until` never came: {never[1]} was not printed within {never[2]} s. Correct it, or raise `seconds`."
             )

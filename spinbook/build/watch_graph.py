@@ -60,7 +60,7 @@ def _ends(ends: dict[tuple[str, str], bool]) -> tuple[End, ...]:
 #: Cells during which messages may be counted: no command and no snippet looks at the graph meanwhile.
 COUNTED_CELLS = ("%%node", "%plot")
 #: An observer that has not answered for so long (s) is given up: the notebook matters more than its picture.
-_PATIENCE_S = 60.0
+_TIME_LIMIT_S = 60.0
 _PR_SET_PDEATHSIG = 1
 
 
@@ -95,7 +95,7 @@ class GraphWatch:
             return
         try:
             self._tell("look")
-            line = await asyncio.wait_for(self._observer.stdout.readline(), _PATIENCE_S)
+            line = await asyncio.wait_for(self._observer.stdout.readline(), _TIME_LIMIT_S)
             self._history.add(cell, NodeGraph.from_json(line.decode()))
         except (ValueError, OSError, asyncio.TimeoutError):
             await self.close()

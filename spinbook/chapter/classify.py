@@ -268,10 +268,10 @@ def _why_static(fence: Fence, code: PythonCode) -> str:
     return ""
 
 
-def node_name(item: Classified, told: str, file: Path) -> tuple[str, bool, list[Problem]]:
-    """(a node's file without .py, whether the author named it, problems). `told` is the file that the text names."""
+def node_name(item: Classified, text: str, file: Path) -> tuple[str, bool, list[Problem]]:
+    """(a node's file without .py, whether the author named it, problems). `text` is the file that the text names."""
     code = item.code
-    given = item.fence.title if item.fence.title and item.fence.title.endswith(".py") else told
+    given = item.fence.title if item.fence.title and item.fence.title.endswith(".py") else text
     if given:
         stem = given.rsplit("/", 1)[-1].removesuffix(".py")
         if stem.isidentifier():

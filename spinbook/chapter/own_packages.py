@@ -111,7 +111,7 @@ def _package_of(path: str) -> str:
     return name if re.fullmatch(r"[a-z][a-z0-9_]*", name) else ""
 
 
-def told_files(blocks: Iterable[Block]) -> dict[int, str]:
+def named_files(blocks: Iterable[Block]) -> dict[int, str]:
     """Line of a fence -> the Python file that its first comment, or the text just before it, says that it is."""
     found: dict[int, str] = {}
     words: list[str] = []
@@ -127,9 +127,9 @@ def told_files(blocks: Iterable[Block]) -> dict[int, str]:
             if fence.is_shell:
                 words = _edited(fence) or words
                 continue
-            told = _in_comment(fence.code) or (words[-1] if words else "")
-            if told and told.rsplit("/", 1)[-1] not in _NOT_PROGRAMS:
-                found[fence.line] = told
+            message = _in_comment(fence.code) or (words[-1] if words else "")
+            if message and message.rsplit("/", 1)[-1] not in _NOT_PROGRAMS:
+                found[fence.line] = message
             words = []
     return found
 

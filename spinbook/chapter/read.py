@@ -17,7 +17,7 @@ from spinbook.chapter.classify import Classified, FenceKind, first_look, with_la
 from spinbook.chapter.fence import Fence, interface_package
 from spinbook.chapter.files import is_elsewhere, locate, read_included
 from spinbook.chapter.layout import Layout, Piece
-from spinbook.chapter.own_packages import OwnPackages, own_packages, told_files
+from spinbook.chapter.own_packages import OwnPackages, named_files, own_packages
 from spinbook.chapter.programs import Programs
 from spinbook.chapter.shells import Shells
 from spinbook.chapter.source import Source, read_source
@@ -139,7 +139,7 @@ def _classify(parsed: _Parsed, file: Path, surroundings: Surroundings) -> tuple[
         problems += [*found, *bad]
     packages = own_packages(with_language(item.fence) for item in items)
     own_modules = _own(packages, surroundings, items)
-    programs = Programs(file, own_modules, told_files(parsed.blocks), surroundings.interfaces)
+    programs = Programs(file, own_modules, named_files(parsed.blocks), surroundings.interfaces)
     items = programs.decide(items)
     modules = surroundings.modules | {item.name for item in items if item.kind is FenceKind.NODE and item.name}
     exercise = any(block.kind is Kind.EXERCISE for top in parsed.blocks for block in top.walk())

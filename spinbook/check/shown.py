@@ -16,7 +16,7 @@ from grader.checking.verdict import Finding
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade
 from grader.report import terminal
-from grader.report.feedback import Told, advice, told
+from grader.report.feedback import ShownCheck, advice, shown_checks
 from grader.report.feedback_plot import feedback_plot
 from grader.report.printable import as_students_see_it, printable
 from grader.report.terminal import show
@@ -38,7 +38,7 @@ class Row:
     `before` stands above the first of several checks that all wait for the same one.
     """
 
-    check: Told
+    check: ShownCheck
     facts: tuple[tuple[str, str], ...] = ()
     remark: str = ""
     before: str = ""
@@ -112,7 +112,7 @@ def _end(log: str) -> str:
 
 def _rows(grade: Grade, exercise: Exercise) -> list[Row]:
     rows = []
-    for needs, group in groupby(told(grade), key=lambda check: check.needs):
+    for needs, group in groupby(shown_checks(grade), key=lambda check: check.needs):
         first, *rest = group
         if needs:
             which = f"The next {len(rest) + 1} checks" if rest else "The next check"
@@ -123,7 +123,7 @@ def _rows(grade: Grade, exercise: Exercise) -> list[Row]:
     return rows
 
 
-def _row(check: Told, grade: Grade, exercise: Exercise) -> Row:
+def _row(check: ShownCheck, grade: Grade, exercise: Exercise) -> Row:
     if not check.finding:
         return Row(check)
     return Row(check, *_facts(check.finding, grade, exercise.element_name))
@@ -131,10 +131,10 @@ def _row(check: Told, grade: Grade, exercise: Exercise) -> Row:
 
 def _facts(finding: Finding, grade: Grade, element: str) -> tuple[tuple[tuple[str, str], ...], str]:
     """What is wrong as label and value, and what of the finding's text they leave out."""
-    told = f"got {finding.got}."
-    if not (finding.expected and finding.got and told in finding.text):
+    said = f"got {finding.got}."
+    if not (finding.expected and finding.got and said in finding.text):
         return (), finding.text
-    before, _, after = finding.text.partition(told)
+    before, _, after = finding.text.partition(said)
     facts = [("expected", finding.expected), ("got", finding.got)]
     if finding.message is not None:
         recording = grade.recordings.get(finding.scenario)
@@ -149,7 +149,7 @@ def _facts(finding: Finding, grade: Grade, element: str) -> tuple[tuple[tuple[st
 
 
 def _plot_says(grade: Grade) -> str:
-    for check in told(grade):
+    for check in shown_checks(grade):
         if check.finding and check.finding.message is not None:
             where = f", {check.finding.part}" if check.finding.part else ""
             return f"Yours over the solution's. First wrong: {check.finding.at or 0.0:.2f} s{where}."

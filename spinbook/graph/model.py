@@ -66,14 +66,15 @@ class NodeGraph:
             ValueError: if the text is no such graph.
         """
         try:
-            told = json.loads(text)
+            message = json.loads(text)
             return cls(
-                tuple(SeenNode(**node) for node in told["nodes"]), tuple(_topic(topic) for topic in told["topics"])
+                tuple(SeenNode(**node) for node in message["nodes"]),
+                tuple(_topic(topic) for topic in message["topics"]),
             )
         except (KeyError, TypeError, AttributeError) as error:
             raise ValueError(f"not a node graph: {error!r}") from error
 
 
-def _topic(told: dict[str, Any]) -> Topic:
-    ends = [tuple(End(**end) for end in told[side]) for side in ("publishers", "subscriptions")]
-    return Topic(told["name"], ends[0], ends[1], told["rate_hz"])
+def _topic(text: dict[str, Any]) -> Topic:
+    ends = [tuple(End(**end) for end in text[side]) for side in ("publishers", "subscriptions")]
+    return Topic(text["name"], ends[0], ends[1], text["rate_hz"])

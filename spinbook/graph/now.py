@@ -9,19 +9,19 @@ import sys
 import time
 
 from spinbook.graph.model import NodeGraph
-from spinbook.graph.sight import Sight
+from spinbook.graph.sight import GraphWatcher
 from spinbook.ros2.cli import CommandError
 
 
 def graph_now(seconds: float) -> NodeGraph:
     """The graph, with the rates of what could be counted within `seconds`."""
-    with Sight() as sight:
-        sight.come_to_rest()
+    with GraphWatcher() as watcher:
+        watcher.wait_until_idle()
         deadline = time.monotonic() + seconds
-        while time.monotonic() < deadline and sight.count(unheard=True):
+        while time.monotonic() < deadline and watcher.count(unheard=True):
             pass
-        sight.stop_counting()
-        return sight.graph()
+        watcher.stop_counting()
+        return watcher.graph()
 
 
 def main() -> None:

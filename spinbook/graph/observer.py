@@ -15,7 +15,7 @@ import queue
 import sys
 import threading
 
-from spinbook.graph.sight import Sight
+from spinbook.graph.sight import GraphWatcher
 from spinbook.ros2.cli import CommandError
 
 
@@ -30,19 +30,19 @@ def observe(words: queue.SimpleQueue[str]) -> None:
     word = words.get()
     while word != "end":
         os.environ["ROS_DOMAIN_ID"] = word.removeprefix("domain ")
-        with Sight() as sight:
-            word = _look_at(sight, words)
+        with GraphWatcher() as watcher:
+            word = _look_at(watcher, words)
 
 
-def _look_at(sight: Sight, words: queue.SimpleQueue[str]) -> str:
+def _look_at(watcher: GraphWatcher, words: queue.SimpleQueue[str]) -> str:
     """Do what is asked of one domain; the word that ends it."""
     while (word := words.get()) != "end" and not word.startswith("domain "):
         while word == "count" and words.empty():
-            sight.count()
-        sight.stop_counting()
+            watcher.count()
+        watcher.stop_counting()
         if word == "look":
-            sight.come_to_rest()
-            print(json.dumps(json.loads(sight.graph().to_json())), flush=True)
+            watcher.wait_until_idle()
+            print(json.dumps(json.loads(watcher.graph().to_json())), flush=True)
     return word
 
 

@@ -92,7 +92,7 @@ _COUNTING_S = 2.5
 _HEARS_ALL = QoSProfile(depth=50, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE)
 
 
-class Sight(Graph):
+class GraphWatcher(Graph):
     """Sees nodes, topics and ends. Its name begins with an underscore, as ros2's own nodes' do, so it is not listed.
 
     It subscribes only while `count` is called again and again, and only to what is not yet counted.
@@ -106,10 +106,10 @@ class Sight(Graph):
         #: Topic -> how many publishers it had when it was counted, and its rate.
         self._rates: dict[str, tuple[int, float]] = {}
 
-    def __enter__(self) -> Sight:
+    def __enter__(self) -> GraphWatcher:
         return self
 
-    def come_to_rest(self) -> None:
+    def wait_until_idle(self) -> None:
         """Return when every participant of this host has been heard of and nothing changes; at once if nothing has."""
         deadline = time.monotonic() + _DEADLINE_S
         seen, changed = self._look(), time.monotonic()

@@ -40,19 +40,19 @@ def secrets(exercise: Exercise, taught: str, others: str = "") -> list[Secret]:
     `public_code`: what stands there, too, says nothing about this one.
     """
     public = exercise.folder / "checks.py"
-    told = taught + others + (public.read_text(encoding="utf-8") if public.exists() else "")
+    message = taught + others + (public.read_text(encoding="utf-8") if public.exists() else "")
     found = []
     elsewhere = bare(others)
     if exercise.solution_file:
         source = exercise.solution_file.read_text(encoding="utf-8")
-        told += starter(source)
+        message += starter(source)
         what = f"a part of the solution of {exercise.name}"
         place = f"solutions/{exercise.name}/solution.py"
-        known = bare(told)
+        known = bare(message)
         for lines in _solved(source):
             found += _pieces(what, place, lines, known)
             found += [secret for secret in _windows(what, place, lines) if secret.text not in elsewhere]
-    known = bare(told)
+    known = bare(message)
     if exercise.solution_folder:
         for file in sorted(exercise.solution_folder.rglob("*.py")):
             if file != exercise.solution_file:

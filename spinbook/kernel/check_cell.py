@@ -35,8 +35,8 @@ class Code:
 
     def note(self, what: str, command: str) -> str:
         """Return what to tell the student: `what` is "Checked" or "Handed in", `command` what to run again."""
-        told = f"{what}: {self.origin}."
-        return f"{told}\nWARNING: {self.warning.format(command=command)}" if self.warning else told
+        text = f"{what}: {self.origin}."
+        return f"{text}\nWARNING: {self.warning.format(command=command)}" if self.warning else text
 
 
 def code_of(exercise: Exercise, session: Session, notebook: Path | None) -> Code:
@@ -156,17 +156,17 @@ def check_cell(session: Session, shell: Any, name: str, course: str, seconds: fl
 def exercise_of(name: str, course: str, notebook: Path | None) -> Exercise:
     """The exercise `name`, in the folder `course`, else in this one, the notebook's, or above. Raises CellFailed."""
     places = [Path(course)] if course else [Path.cwd(), *([notebook.parent] if notebook else [])]
-    told = ""
+    text = ""
     for place in places:
         try:
             return load(find(name, place.resolve()))
         except NoExercise as error:
-            told = told or str(error)
+            text = text or str(error)
         except ExerciseError as error:
             raise CellFailed(f"The exercise is at fault, not your code.\n{error}") from None
     where = " and ".join(str(place.resolve()) for place in places)
     raise CellFailed(
-        f"{told}\nI looked in {where} and above. A notebook from the course's website: run its first code cells. "
+        f"{text}\nI looked in {where} and above. A notebook from the course's website: run its first code cells. "
         f"One from a handout: keep the notebook in the folder of the handout, or name it: %check {name} --course FOLDER"
     )
 

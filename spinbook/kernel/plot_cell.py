@@ -34,7 +34,7 @@ def run(paths: list[str], seconds: float, title: str) -> None:
     if recording.error:
         raise CellFailed(recording.error)
     if not recording.curves:
-        raise CellFailed(_nothing_came(recording, paths))
+        raise CellFailed(_nothing_received(recording, paths))
     _show(recording, title, handle)
 
 
@@ -79,7 +79,7 @@ def _show(recording: Recording, title: str, handle: Any) -> Any:
     return handle
 
 
-def _nothing_came(recording: Recording, paths: list[str]) -> str:
+def _nothing_received(recording: Recording, paths: list[str]) -> str:
     there = ", ".join(recording.published) or "none"
     if recording.waiting:
         return f"Nobody publishes {', '.join(recording.waiting)}. Topics with a publisher are: {there}."

@@ -122,12 +122,12 @@ class Shown:
         sys.stdout.flush()
 
 
-#: What is said where a text was waited for in vain: see `never_came`.
-NEVER_CAME = re.compile(r"^— the text (.+) did not come within ([\d.]+) s —$", re.MULTILINE)
+#: What is said where a text was waited for in vain: see `never_appeared`.
+NEVER_APPEARED = re.compile(r"^— the text (.+) did not come within ([\d.]+) s —$", re.MULTILINE)
 
 
-def never_came(bound: Bound) -> str:
-    """Say that the text a cell waited for was not printed in its time; `NEVER_CAME` finds it again."""
+def never_appeared(bound: Bound) -> str:
+    """Say that the text a cell waited for was not printed in its time; `NEVER_APPEARED` finds it again."""
     return f"— the text {bound.until!r} did not come within {bound.seconds:g} s —"
 
 
@@ -149,7 +149,7 @@ def show_for(process: KeptProcess, bound: Bound, rest_is: str, has_joined: Calla
             time.sleep(_POLL_S)
     shown.end(process.status.lines, rest_is)
     if bound.until is not None and not came:
-        print(never_came(bound))
+        print(never_appeared(bound))
     elif process.status.running and not shown.has_any:
         print(f"— nothing arrived in {countdown.silent_s:.0f} s —")
 

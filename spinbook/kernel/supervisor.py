@@ -74,7 +74,7 @@ def descendants(root: int) -> list[int]:
     return found
 
 
-class Keeper:
+class Supervisor:
     """One process under watch. `run` returns when the process and the kernel have both gone."""
 
     def __init__(self, control: socket.socket) -> None:
@@ -225,4 +225,4 @@ class Keeper:
 
 
 if __name__ == "__main__":
-    Keeper(socket.socket(fileno=int(sys.argv[1]))).run()
+    Supervisor(socket.socket(fileno=int(sys.argv[1]))).run()

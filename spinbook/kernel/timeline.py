@@ -30,7 +30,7 @@ class Event:
 
 
 @dataclass
-class Happenings:
+class RecordedEvents:
     """What the recorder has told so far."""
 
     events: list[Event] = field(default_factory=list)
@@ -81,7 +81,7 @@ class Lane:
     marks: tuple[Mark, ...]
 
 
-def lanes(recording: Happenings) -> tuple[Lane, ...]:
+def lanes(recording: RecordedEvents) -> tuple[Lane, ...]:
     """The lanes in the order of the names: one for each topic and service, one for each goal of an action."""
     events = sorted(recording.events, key=lambda event: event.at)
     end = max((event.at for event in events), default=0.0)
@@ -181,11 +181,11 @@ def in_words(drawn: Iterable[Lane], start: float) -> str:
     """What the picture shows, a line for each lane; times in s from `start`."""
     lines = []
     for lane in drawn:
-        told = [f"{mark.text} at {mark.at - start:.2f} s" for mark in lane.marks if mark.text]
+        message = [f"{mark.text} at {mark.at - start:.2f} s" for mark in lane.marks if mark.text]
         ticks = [mark.at for mark in lane.marks if mark.look == "tick"]
         if ticks:
-            told.insert(0, _ticks_in_words(ticks, start, "feedback" if lane.spans else "messages"))
-        lines.append(f"{lane.label}: {', '.join(told)}")
+            message.insert(0, _ticks_in_words(ticks, start, "feedback" if lane.spans else "messages"))
+        lines.append(f"{lane.label}: {', '.join(message)}")
     return "\n".join(lines)
 
 

@@ -11,7 +11,7 @@ from IPython.display import display
 
 from spinbook.kernel.plot.drawing import as_png
 from spinbook.kernel.process import CellFailed, KeptProcess
-from spinbook.kernel.timeline import Happenings, in_words, lanes
+from spinbook.kernel.timeline import RecordedEvents, in_words, lanes
 from spinbook.kernel.timeline_picture import moving_timeline, span_of, still_timeline
 
 #: How long the recorder may take to find the first name (s).
@@ -27,7 +27,7 @@ class Timeline:
         argv = [sys.executable, "-u", "-m", "spinbook.kernel.timeline_recorder", *names]
         self.names = names
         self._process = KeptProcess(argv, os.environ, Path.cwd())
-        self._happenings = Happenings()
+        self._happenings = RecordedEvents()
         self._rest = ""
 
     def wait_for_all(self) -> list[str]:
@@ -49,7 +49,7 @@ class Timeline:
         *complete, self._rest = (self._rest + data.decode(errors="replace")).split("\n")
         self._happenings.take(complete)
 
-    def end(self) -> Happenings:
+    def end(self) -> RecordedEvents:
         """Stop recording. Returns what has happened, in the order of the names."""
         time.sleep(_LATE_S)
         self._process.stop((1.0, 1.0))

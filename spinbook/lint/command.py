@@ -85,8 +85,8 @@ def _summary(reading: Reading, show_static: bool) -> None:
     if chapter is None:
         return
     counts = {kind: sum(cell.kind is kind for cell in chapter.cells) for kind in CellKind}
-    told = ", ".join(f"{counts[kind]} {kind.value}" for kind in CellKind if counts[kind])
-    click.echo(f"{chapter.file}: {told}, {len(chapter.static_fences)} fences shown and not run")
+    text = ", ".join(f"{counts[kind]} {kind.value}" for kind in CellKind if counts[kind])
+    click.echo(f"{chapter.file}: {text}, {len(chapter.static_fences)} fences shown and not run")
     if show_static:
         for fence in chapter.static_fences:
             click.echo(f"  {chapter.file}:{fence.line}: {fence.language or 'fence'}: {fence.why}")

@@ -37,8 +37,8 @@ _REGISTRY = "https://registry.npmjs.org"
 _SCRIPT = "package/dist/mermaid.min.js"
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 _NUMBER = re.compile(r"-?\d+\.\d{2,}(?:e-\d+)?")
-_DOWNLOAD_PATIENCE_S = 60
-_DRAWING_PATIENCE_S = 120
+_DOWNLOAD_LIMIT_S = 60
+_DRAWING_LIMIT_S = 120
 
 _FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif"
 _LIGHT = {"back": "#e6f2f1", "line": "#0b6b66", "ink": "#14211f", "edge": "#4a5b59"}
@@ -111,7 +111,7 @@ def _script(cache: Path) -> Path:
         registry = next((v for k, v in os.environ.items() if k.lower() == "npm_config_registry" and v), _REGISTRY)
         url = f"{registry.rstrip('/')}/mermaid/-/mermaid-{VERSION}.tgz"
         try:
-            with urllib.request.urlopen(url, timeout=_DOWNLOAD_PATIENCE_S) as answer:
+            with urllib.request.urlopen(url, timeout=_DOWNLOAD_LIMIT_S) as answer:
                 data: bytes = answer.read()
         except (urllib.error.URLError, OSError) as error:
             raise CanNotDrawError(f"mermaid {VERSION} can't be fetched from npm's registry ({error})") from None
@@ -136,7 +136,7 @@ def _drawn(codes: Sequence[str], script: Path) -> list[dict[str, str] | None]:
         argv = [browser, "--headless", "--disable-gpu", "--dump-dom", "--virtual-time-budget=60000"]
         argv += [f"--user-data-dir={folder}/profile", *(["--no-sandbox"] if os.geteuid() == 0 else []), page.as_uri()]
         try:
-            ran = run_program(argv, _DRAWING_PATIENCE_S)
+            ran = run_program(argv, _DRAWING_LIMIT_S)
         except (OSError, subprocess.TimeoutExpired) as error:
             raise CanNotDrawError(f"Chromium did not draw ({error})") from None
     answer = re.search(r"DRAWN:([^<:]*):", ran.stdout)

@@ -85,8 +85,8 @@ def prove_nothing_leaks(course: Course, contents: Contents) -> None:
         page = file.removesuffix(".frame").partition(".")[0]
         found.setdefault(contents.origins.get(page, Path("build", file)), what)
     if found:
-        told = (Problem(file, None, f"{what} would be published.", _FIX) for file, what in found.items())
-        raise SpinbookError(*told)
+        text = (Problem(file, None, f"{what} would be published.", _FIX) for file, what in found.items())
+        raise SpinbookError(*text)
 
 
 def _load(course: Course, name: str) -> Exercise:

@@ -10,7 +10,7 @@ from pathlib import Path
 from grader.child_process import run_program
 
 _GITHUB = re.compile(r"https://github\.com/([\w.-]+)/([\w.-]+?)(?:\.git)?/?")
-_GIT_PATIENCE_S = 10
+_GIT_LIMIT_S = 10
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def repository_of(root: Path, url: str) -> Repository:
 def _git(root: Path, *words: str) -> str:
     """What git prints, or "" where there is no git or no repository."""
     try:
-        ran = run_program(["git", *words], _GIT_PATIENCE_S, cwd=root)
+        ran = run_program(["git", *words], _GIT_LIMIT_S, cwd=root)
     except (OSError, subprocess.TimeoutExpired):
         return ""
     return ran.stdout.strip() if ran.returncode == 0 else ""

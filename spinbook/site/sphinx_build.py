@@ -36,7 +36,7 @@ def run_sphinx(
     Pages that have not changed are not made again. Raises SpinbookError if Sphinx can't go on.
     """
     output = cache / "html"
-    told = StringIO()
+    text = StringIO()
     try:
         app = Sphinx(
             srcdir=source,
@@ -46,7 +46,7 @@ def run_sphinx(
             buildername="html",
             confoverrides=_settings(contents, course),
             status=None,
-            warning=told,
+            warning=text,
             parallel=1,
         )
         app.connect("html-page-context", lambda app, page, *rest: on_page(page))
@@ -57,10 +57,10 @@ def run_sphinx(
         words = str(error).strip().splitlines()
         found = f"the pages could not be made: {words[-1] if words else type(error).__name__}"
         fix = "Look at what was changed last." if isinstance(error, SphinxError) else "This is a fault of Spinbook's."
-        raise SpinbookError(*_problems(told.getvalue(), contents, source), Problem(source, None, found, fix)) from None
+        raise SpinbookError(*_problems(text.getvalue(), contents, source), Problem(source, None, found, fix)) from None
     finally:
         _close_handlers()
-    return output, list(_problems(told.getvalue(), contents, source))
+    return output, list(_problems(text.getvalue(), contents, source))
 
 
 def _settings(contents: Contents, course: Course) -> dict[str, Any]:
@@ -93,9 +93,9 @@ def _settings(contents: Contents, course: Course) -> dict[str, Any]:
     }
 
 
-def _problems(told: str, contents: Contents, source: Path) -> Iterator[Problem]:
+def _problems(text: str, contents: Contents, source: Path) -> Iterator[Problem]:
     seen: set[str] = set()
-    for line in _ANSI.sub("", told).splitlines():
+    for line in _ANSI.sub("", text).splitlines():
         match = _WARNING.match(line)
         if match is None or line in seen or _NO_MATTER.search(line):
             continue

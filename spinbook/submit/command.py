@@ -67,8 +67,8 @@ def submit(
         ) from None
     console.print(f"Your code is from {chosen.origin}.", markup=False)
     if not code and (count := cells_that_differ(chosen, wanted)) > 1:
-        told = f"{count} cells there hold {wanted.name}, and they differ: this is the last of them. Delete the others."
-        console.print(told, style="bold yellow", markup=False)
+        text = f"{count} cells there hold {wanted.name}, and they differ: this is the last of them. Delete the others."
+        console.print(text, style="bold yellow", markup=False)
     if is_starter(chosen, wanted):
         console.print("It is still the starter, as it was handed out. Was your work saved?", style="bold yellow")
     if not name:

@@ -13,7 +13,7 @@ from rclpy.node import Node
 from std_srvs.srv import Empty
 
 from spinbook.turtlesim.geometry import DT, normalized
-from spinbook.turtlesim.program import Pose, spin_until_told
+from spinbook.turtlesim.program import Pose, spin_until_stopped
 
 #: Side of the square (units), speeds (units/s and rad/s), and how near is near enough (units, rad; units/s, rad/s).
 SIDE, SPEED, TURN = 2.0, 1.0, 0.4
@@ -105,7 +105,7 @@ def _ahead(pose: Pose) -> tuple[float, float]:
 
 def main() -> int:
     """Run the node until it is told to stop; the exit code."""
-    return spin_until_told(lambda: DrawSquare().node)
+    return spin_until_stopped(lambda: DrawSquare().node)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ import sys
 from geometry_msgs.msg import Twist
 from rclpy.node import Node
 
-from spinbook.turtlesim.program import Pose, spin_until_told
+from spinbook.turtlesim.program import Pose, spin_until_stopped
 
 
 def make() -> Node:
@@ -29,7 +29,7 @@ def make() -> Node:
 
 def main() -> int:
     """Run the node until it is told to stop; the exit code."""
-    return spin_until_told(make)
+    return spin_until_stopped(make)
 
 
 if __name__ == "__main__":

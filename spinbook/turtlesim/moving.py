@@ -308,8 +308,8 @@ def _axes(world: WorldPicture, key: str) -> str:
         at = n * PIXELS_PER_UNIT
         texts.append(f'<text x="{_LEFT + at}" y="{_TOP + side + 18}" text-anchor="middle">{n}</text>')
         texts.append(f'<text x="{_LEFT - 6}" y="{_TOP + side - at + 5}" text-anchor="end">{n}</text>')
-    told = escape(caption(world))
-    return f'<g class="{key}i" font-size="14">{"".join(texts)}<text x="{_LEFT}" y="20" font-size="15">{told}</text></g>'
+    text = escape(caption(world))
+    return f'<g class="{key}i" font-size="14">{"".join(texts)}<text x="{_LEFT}" y="20" font-size="15">{text}</text></g>'
 
 
 def _words(world: WorldPicture, times: Timeline, error: float) -> str:

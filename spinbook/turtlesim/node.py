@@ -15,7 +15,7 @@ from std_srvs.srv import Empty, Trigger
 from spinbook.turtlesim.events import Event, Killed, LogLine, Severity, Spawned
 from spinbook.turtlesim.geometry import TICK_NS
 from spinbook.turtlesim.interface import DEPTH, Interface
-from spinbook.turtlesim.program import spin_until_told
+from spinbook.turtlesim.program import spin_until_stopped
 from spinbook.turtlesim.world import World
 from spinbook.turtlesim.world_picture import BLUE, picture_of
 
@@ -70,11 +70,11 @@ class Turtlesim:
     def _declare_parameters(self) -> None:
         part = IntegerRange(from_value=0, to_value=255, step=1)
         for name, default in zip(("r", "g", "b"), BLUE, strict=True):
-            told = f"How much of {name} is in the background's colour"
-            descriptor = ParameterDescriptor(description=told, integer_range=[part])
+            text = f"How much of {name} is in the background's colour"
+            descriptor = ParameterDescriptor(description=text, integer_range=[part])
             self.node.declare_parameter(f"background_{name}", default, descriptor)
-        told = "Whether linear.y of a command moves a turtle sideways"
-        self.node.declare_parameter("holonomic", False, ParameterDescriptor(description=told))
+        text = "Whether linear.y of a command moves a turtle sideways"
+        self.node.declare_parameter("holonomic", False, ParameterDescriptor(description=text))
 
     def _perform(self, events: list[Event]) -> None:
         """Log and publish what has happened."""
@@ -131,7 +131,7 @@ class Turtlesim:
 def main() -> int:
     """Run the node until it is told to stop; the exit code."""
     try:
-        return spin_until_told(lambda: Turtlesim().node)
+        return spin_until_stopped(lambda: Turtlesim().node)
     except (InvalidParameterTypeException, InvalidParameterValueException) as error:
         print(f"turtlesim: a parameter can't be used: {error}", file=sys.stderr)
         return 1

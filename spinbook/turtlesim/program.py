@@ -15,7 +15,7 @@ from rclpy.signals import SignalHandlerOptions
 _NOTICE_S = 0.1
 
 
-def spin_until_told(make: Callable[[], Node]) -> int:
+def spin_until_stopped(make: Callable[[], Node]) -> int:
     """Initialize rclpy, make the node and spin it until the process is told to end; the exit code.
 
     The signals are ours and not rclpy's: its own handlers shut the context down from another thread, so that a
@@ -23,11 +23,11 @@ def spin_until_told(make: Callable[[], Node]) -> int:
     try_shutdown may find the context valid that is shut down the next moment. Here the callback at hand is
     finished first.
     """
-    told = False
+    text = False
 
     def stop(number: int, frame: FrameType | None) -> None:
-        nonlocal told
-        told = True
+        nonlocal text
+        text = True
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, stop)
@@ -35,7 +35,7 @@ def spin_until_told(make: Callable[[], Node]) -> int:
     try:
         executor = SingleThreadedExecutor()
         executor.add_node(make())
-        while not told:
+        while not text:
             executor.spin_once(timeout_sec=_NOTICE_S)
         executor.shutdown()
     finally:

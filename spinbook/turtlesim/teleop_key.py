@@ -14,7 +14,7 @@ from geometry_msgs.msg import Twist
 from rclpy.action import ActionClient
 from rclpy.node import Node
 
-from spinbook.turtlesim.program import RotateAbsolute, spin_until_told
+from spinbook.turtlesim.program import RotateAbsolute, spin_until_stopped
 
 HELP = """\
 Reading from keyboard
@@ -105,7 +105,7 @@ def main() -> int:
         return teleop.node
 
     with single_keys(terminal):
-        return spin_until_told(make)
+        return spin_until_stopped(make)
 
 
 def _listen(teleop: Teleop, terminal: int) -> None:

@@ -151,5 +151,5 @@ def _refusal(what: str, *numbers: float) -> list[Event]:
     """A warning where a number is infinite or none at all, else nothing."""
     if all(math.isfinite(number) for number in numbers):
         return []
-    told = ", ".join(f"{number:f}" for number in numbers)
-    return [LogLine(Severity.WARN, f"Ignoring a request for {what} with numbers that are not finite: {told}")]
+    text = ", ".join(f"{number:f}" for number in numbers)
+    return [LogLine(Severity.WARN, f"Ignoring a request for {what} with numbers that are not finite: {text}")]

@@ -72,7 +72,7 @@ class WorldPicture:
 
     def to_json(self) -> str:
         """As JSON in one line; the same for the same world."""
-        told = {
+        text = {
             "size": round(self.size, 6),
             "background": self.background,
             "turtles": [
@@ -97,7 +97,7 @@ class WorldPicture:
             "incomplete": self.incomplete,
             "tracks": [_told_track(track) for track in self.tracks],
         }
-        return json.dumps(told, separators=(",", ":"))
+        return json.dumps(text, separators=(",", ":"))
 
     @classmethod
     def from_json(cls, text: str) -> WorldPicture:
@@ -107,14 +107,14 @@ class WorldPicture:
             ValueError: if the text is not such a picture.
         """
         try:
-            told = json.loads(text)
+            message = json.loads(text)
             return cls(
-                size=_number(told["size"]),
-                background=_color(told["background"]),
-                turtles=tuple(_turtle(turtle) for turtle in told["turtles"]),
-                trails=tuple(_stroke(stroke) for stroke in told["trails"]),
-                incomplete=str(told.get("incomplete", "")),
-                tracks=tuple(_track(track) for track in told.get("tracks", ())),
+                size=_number(message["size"]),
+                background=_color(message["background"]),
+                turtles=tuple(_turtle(turtle) for turtle in message["turtles"]),
+                trails=tuple(_stroke(stroke) for stroke in message["trails"]),
+                incomplete=str(message.get("incomplete", "")),
+                tracks=tuple(_track(track) for track in message.get("tracks", ())),
             )
         except (KeyError, TypeError, AttributeError, RecursionError) as error:
             raise ValueError(f"not a picture of a turtles' world: {error!r}") from error
@@ -145,12 +145,12 @@ def tracks(by_turtle: Mapping[str, Track]) -> tuple[TrackPicture, ...]:
 def caption(world: WorldPicture) -> str:
     """Where the turtles are, in words; and what the picture lacks."""
     if not world.turtles:
-        told = "no turtle"
+        text = "no turtle"
     elif len(world.turtles) > _TOLD:
-        told = f"{len(world.turtles)} turtles"
+        text = f"{len(world.turtles)} turtles"
     else:
-        told = "     ".join(_told(turtle) for turtle in world.turtles)
-    return f"{told}   ({world.incomplete})" if world.incomplete else told
+        text = "     ".join(_told(turtle) for turtle in world.turtles)
+    return f"{text}   ({world.incomplete})" if world.incomplete else text
 
 
 def _told(turtle: TurtlePicture) -> str:
@@ -165,14 +165,14 @@ def strokes(drawn: Iterable[Stroke]) -> tuple[StrokePicture, ...]:
     )
 
 
-def _turtle(told: dict[str, Any]) -> TurtlePicture:
-    x, y, theta = (_number(told[key]) for key in ("x", "y", "theta"))
-    return TurtlePicture(str(told["name"]), x, y, theta, _pen(told["pen"]))
+def _turtle(text: dict[str, Any]) -> TurtlePicture:
+    x, y, theta = (_number(text[key]) for key in ("x", "y", "theta"))
+    return TurtlePicture(str(text["name"]), x, y, theta, _pen(text["pen"]))
 
 
-def _stroke(told: dict[str, Any]) -> StrokePicture:
-    points = tuple((_number(x), _number(y)) for x, y in told["points"])
-    return StrokePicture(str(told["turtle"]), _color(told["color"]), _byte(told["width"]), points)
+def _stroke(text: dict[str, Any]) -> StrokePicture:
+    points = tuple((_number(x), _number(y)) for x, y in text["points"])
+    return StrokePicture(str(text["turtle"]), _color(text["color"]), _byte(text["width"]), points)
 
 
 def _told_track(track: TrackPicture) -> dict[str, Any]:
@@ -191,36 +191,36 @@ def _told_track(track: TrackPicture) -> dict[str, Any]:
     return {"turtle": track.turtle, "pens": [vars(pen) for pen in pens], "samples": samples, "whole": track.whole}
 
 
-def _track(told: dict[str, Any]) -> TrackPicture:
-    pens = [_pen(pen) for pen in told["pens"]]
+def _track(text: dict[str, Any]) -> TrackPicture:
+    pens = [_pen(pen) for pen in text["pens"]]
     samples = []
-    for tick, x, y, theta, pen in told["samples"]:
+    for tick, x, y, theta, pen in text["samples"]:
         if not isinstance(tick, int) or not (pen is None or (isinstance(pen, int) and 0 <= pen < len(pens))):
             raise ValueError(
                 f"not a picture of a turtles' world: {[tick, x, y, theta, pen]!r} is not a sample of a track"
             )
         drawn = None if pen is None else pens[pen]
         samples.append(Sample(tick, _number(x), _number(y), _number(theta), drawn))
-    return TrackPicture(str(told["turtle"]), tuple(samples), bool(told["whole"]))
+    return TrackPicture(str(text["turtle"]), tuple(samples), bool(text["whole"]))
 
 
-def _pen(told: dict[str, Any]) -> Pen:
-    r, g, b = _color([told["r"], told["g"], told["b"]])
-    return Pen(r, g, b, _byte(told["width"]), bool(told["off"]))
+def _pen(text: dict[str, Any]) -> Pen:
+    r, g, b = _color([text["r"], text["g"], text["b"]])
+    return Pen(r, g, b, _byte(text["width"]), bool(text["off"]))
 
 
-def _number(told: object) -> float:
-    if not isinstance(told, int | float) or not math.isfinite(told):
-        raise ValueError(f"not a picture of a turtles' world: {told!r} is not a finite number")
-    return float(told)
+def _number(text: object) -> float:
+    if not isinstance(text, int | float) or not math.isfinite(text):
+        raise ValueError(f"not a picture of a turtles' world: {text!r} is not a finite number")
+    return float(text)
 
 
-def _byte(told: object) -> int:
-    if not isinstance(told, int) or not 0 <= told <= 255:
-        raise ValueError(f"not a picture of a turtles' world: {told!r} is not a whole number from 0 to 255")
-    return told
+def _byte(text: object) -> int:
+    if not isinstance(text, int) or not 0 <= text <= 255:
+        raise ValueError(f"not a picture of a turtles' world: {text!r} is not a whole number from 0 to 255")
+    return text
 
 
-def _color(told: list[object]) -> Color:
-    r, g, b = (_byte(part) for part in told)
+def _color(text: list[object]) -> Color:
+    r, g, b = (_byte(part) for part in text)
     return (r, g, b)

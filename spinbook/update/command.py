@@ -10,7 +10,7 @@ import click
 
 from spinbook.problem import Problem, SpinbookError
 from spinbook.update.handout import BASE, read_handout, refuse_another_course
-from spinbook.update.merging import Told
+from spinbook.update.merging import MergeReport
 from spinbook.update.plan import Plan, carry_out, plan
 
 #: Files that say what to install.
@@ -47,7 +47,7 @@ def update(new_handout: Path | None, dry_run: bool) -> None:
     if not made.writes:
         if not dry_run and (made.base or made.forgotten):
             carry_out(made, folder)
-        click.echo("Nothing else to do." if made.told else "Nothing to do: you have all of this handout.")
+        click.echo("Nothing else to do." if made.report else "Nothing to do: you have all of this handout.")
         return
     if dry_run:
         click.echo("Nothing was changed: this was a dry run.")
@@ -80,8 +80,8 @@ def _only_handout(folder: Path) -> Path:
     found = [file for place in (folder, folder.parent) for file in sorted(place.glob("*.zip")) if _is_handout(file)]
     if len(found) == 1:
         return found[0]
-    told = f"There are {', '.join(str(file) for file in found)}." if found else "No zip of a handout was found here."
-    raise click.UsageError(f"Which handout? {told} Name it: spinbook update NEW_HANDOUT")
+    text = f"There are {', '.join(str(file) for file in found)}." if found else "No zip of a handout was found here."
+    raise click.UsageError(f"Which handout? {text} Name it: spinbook update NEW_HANDOUT")
 
 
 def _is_handout(file: Path) -> bool:
@@ -93,7 +93,7 @@ def _is_handout(file: Path) -> bool:
 
 
 def _tell(made: Plan) -> None:
-    for place, lines in sorted(made.told.items()):
+    for place, lines in sorted(made.report.items()):
         for line in lines:
             click.echo(f"{place}: {line}")
         if place in made.notebooks:
@@ -102,17 +102,17 @@ def _tell(made: Plan) -> None:
                 click.echo(f"  {line}")
 
 
-def _lines(told: Told) -> list[str]:
+def _lines(text: MergeReport) -> list[str]:
     """What became of a notebook's cells, in words."""
-    lines = [f"CONFLICT: you and the course changed this cell; yours is kept: {name}" for name in told.conflicts]
+    lines = [f"CONFLICT: you and the course changed this cell; yours is kept: {name}" for name in text.conflicts]
     lines += [
-        f"the course has taken this cell out; yours is kept, for you changed it: {n}" for n in told.kept_though_removed
+        f"the course has taken this cell out; yours is kept, for you changed it: {n}" for n in text.kept_though_removed
     ]
-    lines += [f"you had deleted this cell, and the course has changed it: it is back: {name}" for name in told.back]
-    lines += [f"you have deleted this cell, and it stays so, but an exercise needs it: {name}" for name in told.missing]
-    if told.order_kept:
+    lines += [f"you had deleted this cell, and the course has changed it: it is back: {name}" for name in text.back]
+    lines += [f"you have deleted this cell, and it stays so, but an exercise needs it: {name}" for name in text.missing]
+    if text.order_kept:
         lines.append("you and the course moved cells: yours are in your order")
-    counted = (("changed", told.taken), ("new", told.added), ("taken out", told.removed))
+    counted = (("changed", text.taken), ("new", text.added), ("taken out", text.removed))
     counts = [f"{len(names)} {what}" for what, names in counted if names]
     return [*lines, f"other cells: {_and(counts)}. Yours are as they were."]
 

@@ -95,7 +95,7 @@ def _pair_alike(old: Sequence[Cell], new: Sequence[Cell], found: dict[int, int])
 
 
 @dataclass
-class Told:
+class MergeReport:
     """What became of cells, by their labels, for the student to read."""
 
     taken: list[str] = field(default_factory=list)
@@ -118,23 +118,23 @@ class _Item:
     below: tuple[Cell, ...] = ()
 
 
-def merged(base: Sequence[Cell], mine: Sequence[Cell], new: Sequence[Cell]) -> tuple[list[Cell], Told]:
+def merged(base: Sequence[Cell], mine: Sequence[Cell], new: Sequence[Cell]) -> tuple[list[Cell], MergeReport]:
     """The student's cells with the author's changes in them, and what became of what.
 
     With `new` equal to `base` the result equals `mine`. Every cell of `mine` that differs from its `base`, or has none,
     is in the result.
     """
     merge = _Merge(base, mine, new, found_again(base, mine), found_again(base, new))
-    return merge.cells(), merge.told
+    return merge.cells(), merge.report
 
 
-def merged_without_base(mine: Sequence[Cell], new: Sequence[Cell]) -> tuple[list[Cell], Told]:
+def merged_without_base(mine: Sequence[Cell], new: Sequence[Cell]) -> tuple[list[Cell], MergeReport]:
     """The same where nobody knows what was handed out: a cell that differs counts as changed by both."""
     pairs = sorted(found_again(new, mine).items())
     unknown: Cell = {"cell_type": "", "source": ""}
     base = [new[j] if content(new[j]) == content(mine[i]) else unknown for j, i in pairs]
     merge = _Merge(base, mine, new, {b: i for b, (_, i) in enumerate(pairs)}, {b: j for b, (j, _) in enumerate(pairs)})
-    return merge.cells(), merge.told
+    return merge.cells(), merge.report
 
 
 class _Merge:
@@ -150,7 +150,7 @@ class _Merge:
     ) -> None:
         self.base, self.mine, self.new = base, mine, new
         self.mine_of, self.new_of = mine_of, new_of
-        self.told = Told()
+        self.report = MergeReport()
 
     def cells(self) -> list[Cell]:
         items = [*self._on_both_sides(), *self._only_mine()]
@@ -158,7 +158,7 @@ class _Merge:
         in_mine = sorted((item for item in items if item.mine is not None), key=lambda item: item.mine or 0)
         in_new = sorted((item for item in items if item.new is not None), key=lambda item: item.new or 0)
         if self._moved(self.mine_of):
-            self.told.order_kept = self._moved(self.new_of)
+            self.report.order_kept = self._moved(self.new_of)
             order = _woven(in_mine, in_new)
         else:
             order = _woven(in_new, in_mine)
@@ -178,9 +178,9 @@ class _Merge:
         if content(mine) == content(new) or content(new) == content(base):
             return _refreshed(mine, base, new), ()
         if content(mine) == content(base):
-            self.told.taken.append(label(new))
+            self.report.taken.append(label(new))
             return new, ()
-        self.told.conflicts.append(label(mine))
+        self.report.conflicts.append(label(mine))
         return _refreshed(mine, base, new), (shown_below(new),)
 
     def _only_mine(self) -> list[_Item]:
@@ -196,9 +196,9 @@ class _Merge:
                 added = [j for j in added if j != same]
                 items.append(_Item(i, same, cell))
             elif b not in self.new_of and content(cell) == content(self.base[b]):
-                self.told.removed.append(label(cell))
+                self.report.removed.append(label(cell))
             elif b not in self.new_of:
-                self.told.kept_though_removed.append(label(cell))
+                self.report.kept_though_removed.append(label(cell))
                 items.append(_Item(i, None, cell))
         return items
 
@@ -210,13 +210,13 @@ class _Merge:
             if j in have:
                 continue
             if j not in base_of:
-                self.told.added.append(label(cell))
+                self.report.added.append(label(cell))
                 items.append(_Item(None, j, cell))
             elif content(cell) != content(self.base[base_of[j]]):
-                self.told.back.append(label(cell))
+                self.report.back.append(label(cell))
                 items.append(_Item(None, j, cell))
             elif _is_needed(cell):
-                self.told.missing.append(label(cell))
+                self.report.missing.append(label(cell))
         return items
 
     def _moved(self, of: dict[int, int]) -> bool:

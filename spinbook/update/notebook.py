@@ -7,7 +7,7 @@ import hashlib
 import json
 from typing import Any
 
-from spinbook.update.merging import Cell, Told, content, merged, merged_without_base
+from spinbook.update.merging import Cell, MergeReport, content, merged, merged_without_base
 
 
 class NoNotebook(Exception):
@@ -49,18 +49,18 @@ def chapter(notebook: dict[str, Any]) -> str:
     return name if isinstance(name, str) else ""
 
 
-def merged_notebook(base: bytes | None, mine: bytes, new: bytes) -> tuple[bytes, Told]:
+def merged_notebook(base: bytes | None, mine: bytes, new: bytes) -> tuple[bytes, MergeReport]:
     """The student's notebook with the author's changes in it. Raises `NoNotebook` where one of them is none.
 
     With no `base` (a handout that kept none) a cell counts as the student's wherever it differs from the new one.
     """
     ours, theirs = read(mine), read(new)
     if base == new:
-        return mine, Told()
+        return mine, MergeReport()
     if base is None:
-        result, told = merged_without_base(ours["cells"], theirs["cells"])
+        result, text = merged_without_base(ours["cells"], theirs["cells"])
     else:
-        result, told = merged(read(base)["cells"], ours["cells"], theirs["cells"])
+        result, text = merged(read(base)["cells"], ours["cells"], theirs["cells"])
     notebook = copy.deepcopy(ours)
     notebook["cells"] = _with_ids_of_their_own(copy.deepcopy(result))
     for key in ("spinbook", "title"):
@@ -70,8 +70,8 @@ def merged_notebook(base: bytes | None, mine: bytes, new: bytes) -> tuple[bytes,
     if (notebook.get("nbformat"), notebook.get("nbformat_minor", 0)) < (4, 5):
         notebook["nbformat"], notebook["nbformat_minor"] = 4, 5
     if notebook == ours:
-        return mine, told
-    return (json.dumps(notebook, ensure_ascii=False, indent=1) + "\n").encode(), told
+        return mine, text
+    return (json.dumps(notebook, ensure_ascii=False, indent=1) + "\n").encode(), text
 
 
 def _with_ids_of_their_own(cells: list[Cell]) -> list[Cell]:

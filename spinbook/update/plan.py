@@ -10,7 +10,7 @@ from pathlib import Path, PurePosixPath
 
 from grader.files import write_if_changed
 from spinbook.update.handout import BASE, Files, is_remembered
-from spinbook.update.merging import Told
+from spinbook.update.merging import MergeReport
 from spinbook.update.notebook import NoNotebook, chapter, merged_notebook, read
 
 #: Folders in which a student's notebook is not looked for.
@@ -21,18 +21,18 @@ _NOT_LOOKED_IN = {".spinbook", ".ipynb_checkpoints", ".venv", "backups", "build"
 class Plan:
     """Files to write, what to tell of each, and entries of the base that are out of date.
 
-    `told` has a line or more for each file, by the file's path; `notebooks` what became of cells.
+    `report` has a line or more for each file, by the file's path; `notebooks` what became of cells.
     """
 
     writes: Files = field(default_factory=dict)
-    told: dict[PurePosixPath, list[str]] = field(default_factory=dict)
-    notebooks: dict[PurePosixPath, Told] = field(default_factory=dict)
+    report: dict[PurePosixPath, list[str]] = field(default_factory=dict)
+    notebooks: dict[PurePosixPath, MergeReport] = field(default_factory=dict)
     base: Files = field(default_factory=dict)
     forgotten: list[PurePosixPath] = field(default_factory=list)
 
     def tell(self, place: PurePosixPath, line: str) -> None:
         """Add a line for the student about one file."""
-        self.told.setdefault(place, []).append(line)
+        self.report.setdefault(place, []).append(line)
 
 
 def plan(folder: Path, handout: Mapping[PurePosixPath, bytes]) -> Plan:
@@ -101,14 +101,14 @@ def _notebook(made: Plan, folder: Path, place: PurePosixPath, base: bytes | None
             made.tell(where, "has changed in the handout, and not here: the new one is taken.")
         return
     try:
-        data, told = merged_notebook(base, mine, new)
+        data, report = merged_notebook(base, mine, new)
     except NoNotebook as error:
         _beside(made, folder, where, new, f"Your notebook can't be read ({error}). It is kept")
         return
     if data != mine:
         made.writes[where] = data
-        made.notebooks[where] = told
-        made.told.setdefault(where, [])
+        made.notebooks[where] = report
+        made.report.setdefault(where, [])
 
 
 def _students(folder: Path, place: PurePosixPath, new: bytes) -> PurePosixPath:

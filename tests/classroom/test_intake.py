@@ -36,22 +36,22 @@ def taken(source: Path, tmp_path: Path) -> Submissions:
     return collect(source, EXERCISE, unpacked)
 
 
-def files(intake: Submissions) -> dict[str, str]:
-    return {one.student.id: one.file.name for one in intake.handed_in}
+def files(collected: Submissions) -> dict[str, str]:
+    return {one.student.id: one.file.name for one in collected.handed_in}
 
 
-def why(intake: Submissions) -> dict[str, str]:
-    return {skipped.file: skipped.why for skipped in intake.skipped}
+def why(collected: Submissions) -> dict[str, str]:
+    return {skipped.file: skipped.why for skipped in collected.skipped}
 
 
 def test_a_file_a_student_or_a_folder_a_student(tmp_path: Path) -> None:
     root = written(tmp_path / "s", "anna.py", "bert.ipynb", "cleo/node.py", "cleo/report.pdf", "notes.txt", ".DS_Store")
-    intake = taken(root, tmp_path)
-    assert files(intake) == {"anna": "anna.py", "bert": "bert.ipynb", "cleo": "cleo/node.py"}
-    assert "not one of" in why(intake)["cleo/report.pdf"]
-    assert "not one of" in why(intake)["notes.txt"]
-    assert "made by a program" in why(intake)[".DS_Store"]
-    assert not intake.questions
+    collected = taken(root, tmp_path)
+    assert files(collected) == {"anna": "anna.py", "bert": "bert.ipynb", "cleo": "cleo/node.py"}
+    assert "not one of" in why(collected)["cleo/report.pdf"]
+    assert "not one of" in why(collected)["notes.txt"]
+    assert "made by a program" in why(collected)[".DS_Store"]
+    assert not collected.questions
 
 
 def test_the_upload_that_spinbook_submit_writes_is_a_submission(tmp_path: Path) -> None:
@@ -60,16 +60,16 @@ def test_the_upload_that_spinbook_submit_writes_is_a_submission(tmp_path: Path) 
 
 def test_two_files_of_one_student_are_a_question_and_not_a_guess(tmp_path: Path) -> None:
     root = written(tmp_path / "s", "anna.py", "anna/node.py", "bert/a.py", "bert/b.ipynb", "cleo.py")
-    intake = taken(root, tmp_path)
-    assert files(intake) == {"cleo": "cleo.py"}
-    assert [question.student.id for question in intake.questions] == ["anna", "bert"]
-    assert intake.questions[1].files == ("bert/a.py", "bert/b.ipynb")
-    assert "Which one counts?" in str(intake.questions[0])
+    collected = taken(root, tmp_path)
+    assert files(collected) == {"cleo": "cleo.py"}
+    assert [question.student.id for question in collected.questions] == ["anna", "bert"]
+    assert collected.questions[1].files == ("bert/a.py", "bert/b.ipynb")
+    assert "Which one counts?" in str(collected.questions[0])
 
 
 def test_a_students_name_becomes_the_name_of_a_folder(tmp_path: Path) -> None:
-    intake = taken(written(tmp_path / "s", "Anna Müller (2).py", "-x y-/n.py", "$$$/n.py"), tmp_path)
-    assert {one.student.id: one.student.name for one in intake.handed_in} == {
+    collected = taken(written(tmp_path / "s", "Anna Müller (2).py", "-x y-/n.py", "$$$/n.py"), tmp_path)
+    assert {one.student.id: one.student.name for one in collected.handed_in} == {
         "Anna_Müller_2": "Anna Müller (2)",
         "-x_y-": "-x y-",
         "nameless": "$$$",
@@ -83,18 +83,18 @@ def test_nbgraders_folder_of_submissions(tmp_path: Path) -> None:
         *(f"submitted/bert/{EXERCISE}/joint_velocity.ipynb", "source/joint_velocity/joint_velocity.ipynb"),
     )
     (root / "submitted" / "anna" / EXERCISE / "timestamp.txt").write_text("2026-11-20 18:30:00.123456 UTC\n")
-    intake = taken(root, tmp_path)
-    assert files(intake) == {
+    collected = taken(root, tmp_path)
+    assert files(collected) == {
         "anna": f"submitted/anna/{EXERCISE}/joint_velocity.ipynb",
         "bert": f"submitted/bert/{EXERCISE}/joint_velocity.ipynb",
     }
-    anna, bert = (one.file for one in intake.handed_in)
+    anna, bert = (one.file for one in collected.handed_in)
     assert (anna.submitted, anna.submitted_from) == (
         datetime(2026, 11, 20, 18, 30, tzinfo=timezone.utc),
         "timestamp.txt",
     )
     assert bert.submitted_from == "the file's date"
-    assert why(intake) == {"*/other": "another assignment"}
+    assert why(collected) == {"*/other": "another assignment"}
 
 
 def test_nbgraders_folder_itself(tmp_path: Path) -> None:
@@ -112,9 +112,9 @@ MOODLE = (
 @pytest.mark.parametrize("packed", [True, False])
 def test_a_download_from_moodle(tmp_path: Path, packed: bool) -> None:
     source = zipped(tmp_path / "class.zip", *MOODLE) if packed else written(tmp_path / "class", *MOODLE)
-    intake = taken(source, tmp_path)
-    assert intake.kind == "a download from Moodle"
-    anna, bert = intake.handed_in
+    collected = taken(source, tmp_path)
+    assert collected.kind == "a download from Moodle"
+    anna, bert = collected.handed_in
     assert (anna.student.id, anna.student.name) == ("Anna_Müller_1234567", "Anna Müller")
     assert bert.student.lms == {"Identifier": "Participant 1234568", "Full name": "Bert O'Neil"}
     assert anna.file.path.read_text() == f"# {MOODLE[0]}\n"
@@ -123,7 +123,7 @@ def test_a_download_from_moodle(tmp_path: Path, packed: bool) -> None:
         assert anna.file.submitted
         assert anna.file.submitted.replace(tzinfo=None) == datetime(2026, 11, 20, 18, 30)
     else:
-        assert "written in Moodle" in why(intake)[MOODLE[2]]
+        assert "written in Moodle" in why(collected)[MOODLE[2]]
 
 
 CANVAS = ("muelleranna_12345_678901_joint_velocity-2.py", "oneilbert_LATE_12346_678902_joint_velocity.py")
@@ -132,10 +132,10 @@ CANVAS = ("muelleranna_12345_678901_joint_velocity-2.py", "oneilbert_LATE_12346_
 @pytest.mark.parametrize("packed", [True, False])
 def test_a_download_from_canvas(tmp_path: Path, packed: bool) -> None:
     source = zipped(tmp_path / "class.zip", *CANVAS) if packed else written(tmp_path / "class", *CANVAS)
-    intake = taken(source, tmp_path)
-    assert intake.kind == "a download from Canvas"
-    assert files(intake) == {"muelleranna_12345": CANVAS[0], "oneilbert_12346": CANVAS[1]}
-    assert [one.student.lms for one in intake.handed_in] == [{"ID": "12345"}, {"ID": "12346"}]
+    collected = taken(source, tmp_path)
+    assert collected.kind == "a download from Canvas"
+    assert files(collected) == {"muelleranna_12345": CANVAS[0], "oneilbert_12346": CANVAS[1]}
+    assert [one.student.lms for one in collected.handed_in] == [{"ID": "12345"}, {"ID": "12346"}]
 
 
 def test_a_table_that_names_files(tmp_path: Path) -> None:
@@ -147,8 +147,8 @@ def test_a_table_that_names_files(tmp_path: Path) -> None:
         "deep/2.ipynb;bert;;;2026-11-22T22:00:00Z;\n3.py;cleo;;;;\n",
         encoding="utf-8",
     )
-    intake = taken(table, tmp_path)
-    anna, bert = intake.handed_in
+    collected = taken(table, tmp_path)
+    anna, bert = collected.handed_in
     assert (anna.student.name, anna.student.email, anna.student.lms) == (
         *("Anna Müller", "anna@example.org"),
         {"SIS ID": "A1"},
@@ -157,7 +157,7 @@ def test_a_table_that_names_files(tmp_path: Path) -> None:
         datetime(2026, 11, 22, 22, tzinfo=timezone.utc),
         "the CSV file",
     )
-    assert "no such file" in why(intake)["3.py"]
+    assert "no such file" in why(collected)["3.py"]
 
 
 @pytest.mark.parametrize(
@@ -178,17 +178,17 @@ def test_a_mistake_in_a_table_is_told_with_its_line(tmp_path: Path, text: str, t
 def test_a_student_named_twice_in_a_table_is_a_question(tmp_path: Path) -> None:
     table = written(tmp_path / "s", "a.py", "b.py", "c.py") / "class.csv"
     table.write_text("file,student\na.py,anna\nb.py,anna\nc.py,cleo\n")
-    intake = taken(table, tmp_path)
-    assert list(files(intake)) == ["cleo"]
-    assert intake.questions[0].files == ("a.py", "b.py")
+    collected = taken(table, tmp_path)
+    assert list(files(collected)) == ["cleo"]
+    assert collected.questions[0].files == ("a.py", "b.py")
 
 
 def test_no_name_in_a_zip_leads_out_of_its_folder(tmp_path: Path) -> None:
     source = zipped(tmp_path / "class.zip", "../../evil.py", "/etc/evil2.py", "a\\..\\..\\evil3.py", "fine.py")
-    intake = taken(source, tmp_path)
+    collected = taken(source, tmp_path)
     unpacked = (tmp_path / "unpacked").resolve()
-    assert {one.file.path.resolve().parent for one in intake.handed_in} == {unpacked}
-    assert "fine" in files(intake)
+    assert {one.file.path.resolve().parent for one in collected.handed_in} == {unpacked}
+    assert "fine" in files(collected)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["class.zip", "unpacked"]
 
 
@@ -209,10 +209,10 @@ def test_links_and_encrypted_files_in_a_zip_are_left_out(tmp_path: Path) -> None
                 content[start + offset] |= 1
                 break
     source.write_bytes(content)
-    intake = taken(source, tmp_path)
-    assert list(files(intake)) == ["fine"]
-    assert why(intake)["link.py"] == "a symbolic link, not a file"
-    assert why(intake)["secret.py"] == "it is encrypted"
+    collected = taken(source, tmp_path)
+    assert list(files(collected)) == ["fine"]
+    assert why(collected)["link.py"] == "a symbolic link, not a file"
+    assert why(collected)["secret.py"] == "it is encrypted"
 
 
 def test_a_bomb_in_a_zip_is_cut_off_and_judged_too_large(tmp_path: Path) -> None:
@@ -220,8 +220,8 @@ def test_a_bomb_in_a_zip_is_cut_off_and_judged_too_large(tmp_path: Path) -> None
     with zipfile.ZipFile(source, "w", zipfile.ZIP_DEFLATED) as archive, archive.open("bomb.py", "w") as entry:
         for _ in range(100):
             entry.write(bytes(1_000_000))
-    intake = taken(source, tmp_path)
-    (bomb,) = intake.handed_in
+    collected = taken(source, tmp_path)
+    (bomb,) = collected.handed_in
     assert bomb.file.path.stat().st_size < 31_000_000
 
 
@@ -245,9 +245,9 @@ def test_a_damaged_file_in_a_zip_costs_only_its_own(tmp_path: Path) -> None:
         archive.writestr("anna.py", "# anna " + "x" * 100)
         archive.writestr("bert.py", "# bert")
     (tmp_path / "class.zip").write_bytes(whole.getvalue().replace(b"x" * 50, b"y" * 50, 1))
-    intake = taken(tmp_path / "class.zip", tmp_path)
-    assert list(files(intake)) == ["bert"]
-    assert "can't be read" in why(intake)["anna.py"]
+    collected = taken(tmp_path / "class.zip", tmp_path)
+    assert list(files(collected)) == ["bert"]
+    assert "can't be read" in why(collected)["anna.py"]
 
 
 def test_links_in_a_folder_are_not_followed(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from grader.exercise import load, starter
-from grader.exercise.starter import MarkError
+from grader.exercise.starter import MarkerError
 
 EXERCISES = Path(__file__).parents[2] / "exercises"
 
@@ -38,7 +38,7 @@ def test_two_blocks_in_one_body_leave_one_pass() -> None:
     ],
 )
 def test_marks_that_do_not_pair_up_are_told_with_their_line(source: str, line: int) -> None:
-    with pytest.raises(MarkError) as caught:
+    with pytest.raises(MarkerError) as caught:
         starter(source)
     assert caught.value.line == line
 

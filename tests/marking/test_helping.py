@@ -33,9 +33,9 @@ def test_whoever_has_no_submission_left_helps_with_the_last_one() -> None:
         with Counting() as workers:
             grading = grading_of(exercise, Options(), workers)
             workers.threads.clear()
-            (marked,) = LocalBackend(grading, jobs).mark({"ada": submission})
+            (graded,) = LocalBackend(grading, jobs).mark({"ada": submission})
             assert len(workers.threads) == jobs + 1, "all of them for the spins, and one for the checks"
-        grades.append(marked.grade)
+        grades.append(graded.grade)
     alone, helped = grades
     assert helped.outcome == alone.outcome == "graded"
     assert helped.verdicts == alone.verdicts

@@ -9,7 +9,7 @@ from xml.etree import ElementTree as ET
 from browser import opened
 from playwright.sync_api import Browser
 
-from spinbook.kernel.timeline import Happenings, Lane, in_words, lanes
+from spinbook.kernel.timeline import Lane, RecordedEvents, in_words, lanes
 from spinbook.kernel.timeline_picture import moving_timeline, still_timeline
 
 Told = tuple[float, str, str]
@@ -17,7 +17,7 @@ Told = tuple[float, str, str]
 
 def recorded(name: str, kind: str, *told: Told) -> tuple[Lane, ...]:
     """The lanes of events (time in s, what, goal) on one name."""
-    happenings = Happenings()
+    happenings = RecordedEvents()
     happenings.take([json.dumps(["found", name, kind]), "something that a library printed"])
     happenings.take(json.dumps(["event", at, name, what, goal, ""]) for at, what, goal in told)
     return lanes(happenings)

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.runner.budget import Allowance, Budget, HostStoodStill
+from grader.runner.budget import Allowance, Budget, HostStalled
 from grader.runner.clocks import BETWEEN_MESSAGES, Clocks
 from grader.runner.recorder import in_canonical_order
 from grader.scenario.scenario import SECOND, START
@@ -78,5 +78,5 @@ def test_a_machine_that_was_frozen_is_found_to_have_been(monkeypatch: pytest.Mon
     now[0] += 300
     budget.look()
     assert budget.blocked < 1.1, "a pause of the grader's own is nobody's"
-    with pytest.raises(HostStoodStill):
+    with pytest.raises(HostStalled):
         budget.check_the_host()

@@ -97,8 +97,8 @@ def _below(above: str, name: str) -> str:
 def _declare(argument: known.DeclareLaunchArgument, context: Context) -> None:
     if argument.name not in context.values:
         if argument.default_value is None:
-            told = f" ({argument.description})" if argument.description else ""
-            raise CommandError(f"the launch argument '{argument.name}'{told} is missing: give {argument.name}:=VALUE.")
+            text = f" ({argument.description})" if argument.description else ""
+            raise CommandError(f"the launch argument '{argument.name}'{text} is missing: give {argument.name}:=VALUE.")
         context.values[argument.name] = text_of(argument.default_value, context)
     value = context.values[argument.name]
     if argument.choices is not None and value not in argument.choices:
