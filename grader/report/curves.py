@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from grader.checking import Run
 from grader.checking.comparator import equal
-from grader.checking.run import Message
+from grader.checking.run import Message, Run
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade
 

@@ -61,7 +61,7 @@ def ros_archive() -> bytes:
         files |= _part(root / part, f"spinbook/{part}")
     files["spinbook/kernel/reply_reader.py"] = (root / "browser" / "in_page" / "replies.py").read_bytes()
     files["numpy.py"] = (root / "browser" / "numpy_standin" / "numpy.py").read_bytes()
-    files |= _messages_as_fields(root.parent / "grader")
+    files |= _used_outside_checks(root.parent / "grader")
     files |= dict(_python_files(root.parent / "grader" / "recording", "grader/recording"))
     return zipped(files)
 
@@ -101,13 +101,13 @@ def check_archive(exercises: Mapping[str, bytes]) -> bytes:
         files |= _part(root / part, f"grader/{part}")
     files |= _part(root.parent / "rmw_lockstep" / "__init__.py", "rmw_lockstep/__init__.py")
     files |= _part(root.parent / "rmw_lockstep" / "hub", "rmw_lockstep/hub")
-    return zipped({**_messages_as_fields(root), **files, **exercises})
+    return zipped({**_used_outside_checks(root), **files, **exercises})
 
 
-def _messages_as_fields(grader: Path) -> dict[str, bytes]:
-    """Of the grader's runner what reads and writes messages: plots need it, and checks."""
+def _used_outside_checks(grader: Path) -> dict[str, bytes]:
+    """Of the grader what plots, `ros2` and checks need: messages as fields, problems in files."""
     empty = {f"grader/{name}": b"" for name in ("__init__.py", "runner/__init__.py")}
-    return {**empty, "grader/runner/message.py": (grader / "runner" / "message.py").read_bytes()}
+    return empty | {f"grader/{name}": (grader / name).read_bytes() for name in ("problem.py", "runner/message.py")}
 
 
 def _needed(name: str) -> bool:

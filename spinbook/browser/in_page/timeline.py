@@ -17,16 +17,16 @@ def record(names: Sequence[str]) -> None:
 
 def drawn(names: Sequence[str], lines: Iterable[str], title: str) -> str:
     """The picture of what was recorded, as JSON: `picture`, `words` and `problem`, which is "" if all is well."""
-    from spinbook.kernel.timeline import Happenings, in_words, lanes
+    from spinbook.kernel.timeline import RecordedEvents, in_words, lanes
     from spinbook.kernel.timeline_picture import moving_timeline, span_of
 
-    happenings = Happenings()
-    happenings.take(lines)
-    kinds = happenings.kinds
-    happenings.kinds = {name: kinds[name] for name in names if name in kinds}
-    found = lanes(happenings)
-    if happenings.error or not any(lane.marks for lane in found):
+    recorded = RecordedEvents()
+    recorded.take(lines)
+    kinds = recorded.kinds
+    recorded.kinds = {name: kinds[name] for name in names if name in kinds}
+    found = lanes(recorded)
+    if recorded.error or not any(lane.marks for lane in found):
         nothing = f"Nothing has happened on {', '.join(names)} since `%timeline --record`."
-        return json.dumps({"picture": "", "words": "", "problem": happenings.error or nothing})
+        return json.dumps({"picture": "", "words": "", "problem": recorded.error or nothing})
     words = in_words(found, span_of(found)[0])
     return json.dumps({"picture": moving_timeline(found, title), "words": words, "problem": ""})
