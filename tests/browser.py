@@ -39,6 +39,8 @@ class Opened:
 
     def violations(self) -> list[str]:
         """What axe finds against accessibility, a line each: the rule, and the elements that break it."""
+        # What a page does once laid out, such as making what scrolls reachable by keyboard, is done a frame later.
+        self.page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
         found: list[dict[str, Any]] = Axe().run(self.page).response["violations"]
         return [f"{v['id']}: {v['help']}: {[node['html'][:200] for node in v['nodes']]}" for v in found]
 
