@@ -187,7 +187,7 @@ def _as_main(program: Program, scenario: Scenario, log: io.StringIO, link: Progr
         with redirect_stdout(log), redirect_stderr(log), _time_of(link):
             yield
     finally:
-        threads.govern(None)
+        link.rota.close()
         sys.modules["__main__"], sys.argv, logs.write, environment = before
         os.environ.clear()
         os.environ.update(environment)

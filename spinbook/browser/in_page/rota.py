@@ -28,6 +28,11 @@ class Rota:
         self._curious: set[int] = set()
         self._numbers = {self._main: 1}
 
+    def close(self) -> None:
+        """The program has ended; its threads go no further."""
+        threads.govern(None)
+        threads.forget(number for number in self._numbers if number != self._main)
+
     def governs(self, thread: int) -> bool:
         """Whether a thread is one of the program's."""
         return thread in self._gates

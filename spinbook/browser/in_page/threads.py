@@ -12,9 +12,10 @@ import _thread
 import _threading_local
 import itertools
 import queue
+import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from types import TracebackType
 from typing import Any, Protocol
 
@@ -128,6 +129,23 @@ class Lock:
         self._held = False
 
 
+class _RawLock(Lock):
+    """One that nobody governs."""
+
+    def release(self) -> None:
+        """Give it back."""
+        self._held = False
+        if self._wanted:
+            _page.wake()
+
+    def _wait(self, milliseconds: float) -> None:
+        self._wanted += 1
+        try:
+            _pause_in_page(milliseconds, False)
+        finally:
+            self._wanted -= 1
+
+
 class Told(threading.Condition):
     """A condition that also tells who waits for messages."""
 
@@ -161,7 +179,7 @@ class Handle:
 
 def raw_lock() -> Any:
     """A lock for those who govern: it waits by what is below all this."""
-    return Lock() if _page else _thread.allocate_lock()
+    return _RawLock() if _page else _thread.allocate_lock()
 
 
 def raw_start(run: Callable[[], None]) -> int:
@@ -260,7 +278,17 @@ def wait_for_all() -> None:
     """Wait for the threads that keep a program from ending, as Python does behind a program's last line."""
     for call in reversed(threading._threading_atexits):  # type: ignore[attr-defined]
         call()
-    threading._threading_atexits.clear()  # type: ignore[attr-defined]
     for thread in threading.enumerate():
         if thread is not threading.main_thread() and not thread.daemon:
             thread.join()
+
+
+def forget(started: Iterable[int]) -> None:
+    """Let `threading` and its pools know nothing more of these threads, so that another program can run."""
+    for number in started:
+        threading._active.pop(number, None)  # type: ignore[attr-defined]
+    getattr(threading, "_shutdown_locks", set()).clear()
+    pools = sys.modules.get("concurrent.futures.thread")
+    if pools is not None:
+        vars(pools)["_shutdown"] = False
+        vars(pools)["_threads_queues"].clear()

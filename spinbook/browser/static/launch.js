@@ -77,6 +77,9 @@ export async function launch(cell, process, line) {
   const launched = new Launch(name, cell);
   started.set(name, launched);
   launched.begin(steps);
+  // Several start at once: how long their output is shown counts from when all have started.
+  const allReady = Promise.allSettled(launched.parts.map(({ ready }) => ready));
+  await Promise.race([allReady, launched.over]);
   cell.say(`${name} runs.`);
   launched.over.then(() => cell.say(`${name} ended with ${launched.status}.`));
   await Promise.race([cell.shows(SHOWN_S), launched.over]);
