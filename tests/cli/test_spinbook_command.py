@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from spinbook import cli
 
 #: Modules that take long to import; the help of `spinbook` needs none of them.
-SLOW = ("rclpy", "matplotlib", "IPython", "nbclient", "sphinx", "pytest", "grader", "jinja2")
+SLOW = ("rclpy", "matplotlib", "IPython", "nbclient", "sphinx", "pytest", "grader.exercise", "jinja2")
 
 
 def test_help_imports_no_verb() -> None:
