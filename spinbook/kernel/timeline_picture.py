@@ -49,8 +49,6 @@ def span_of(lanes: Iterable[Lane]) -> tuple[float, float]:
 
 def moving_timeline(lanes: Sequence[Lane], title: str = "") -> str:
     """The picture of lanes of which at least one has a mark."""
-    # Web pages draw the other one, and have no matplotlib.
-
     start, end = span_of(lanes)
     across = Scale(start, max(end, start + 0.1), _LEFT, _WIDTH - _RIGHT)
     words = in_words(lanes, start)
@@ -209,6 +207,9 @@ _POINTS_AN_INCH = 72
 
 def still_timeline(lanes: Sequence[Lane], title: str = "") -> Figure:
     """The same as a figure of matplotlib, as wide as a phone: the SVG's layout. Time counts from the first event."""
+    # Web pages draw the other one, and have no matplotlib.
+    from matplotlib.figure import Figure
+
     start, end = span_of(lanes)
     across = Scale(start, max(end, start + 0.1), _LEFT, _WIDTH - _RIGHT)
     figure = Figure()

@@ -73,7 +73,7 @@ def test_a_mistake_is_told_with_what_was_expected_what_came_when_and_which_joint
         "expected": "0.499167 rad/s",
         "got": "28.6002 rad/s",
         "when": "0.10 s after the start (message 2 of 100)",
-        "which": "left_shoulder_pitch",
+        "joint": "left_shoulder_pitch",
     }.items():
         assert f'<th scope="row">{label}</th><td>{value}</td>' in html
     assert "Every velocity is in degrees." in html

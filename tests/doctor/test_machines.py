@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from running import doctor, finding_of
 
+from grader.sandbox import isolation
 from spinbook.doctor import machine, sandbox
 from spinbook.doctor.ros import wheels_installed
 from spinbook.ros2.executables import GUARD
@@ -168,10 +169,8 @@ def test_a_browser_is_one_that_shows_a_page(tmp_path: Path) -> None:
 def test_the_strongest_sandbox_that_works_decides(
     monkeypatch: pytest.MonkeyPatch, working: tuple[str, ...], state: str
 ) -> None:
-    import grader.sandbox
-
-    levels = {level: None if level.value in working else "not allowed" for level in grader.sandbox.Isolation}
-    monkeypatch.setattr(grader.sandbox, "available", lambda: levels)
+    levels = {level: None if level.value in working else "not allowed" for level in isolation.Isolation}
+    monkeypatch.setattr(isolation, "available", lambda: levels)
     finding = sandbox.examine_sandbox("Sandbox")
     assert finding.state.value == state
     assert bool(finding.fix) is (state != "ok")

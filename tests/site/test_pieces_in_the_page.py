@@ -65,7 +65,7 @@ def test_a_node_in_pieces_runs_with_the_messages_of_its_chapter(tmp_path: Path, 
 
         shown.page.get_by_role("button", name="Run robot_interfaces/msg/Count.msg").click()
         interface = shown.page.locator(".cell-interface").get_by_role("log")
-        expect(interface).to_contain_text("from robot_interfaces.msg import Count", timeout=PATIENCE_MS)
+        expect(interface).to_contain_text("robot_interfaces/msg/Count: ready.", timeout=PATIENCE_MS)
 
         part = shown.page.locator(".cell-part")
         part.get_by_role("button", name="Run cell 2", exact=True).click()

@@ -178,7 +178,7 @@ ENDS_WHILE_PUBLISHING = """
 import os, signal, sys, time
 from rclpy.node import Node
 from std_msgs.msg import String
-from spinbook.turtlesim.program import spin_until_told
+from spinbook.turtlesim.program import spin_until_stopped
 
 def make():
     node = Node("ending")
@@ -194,7 +194,7 @@ def make():
     node.create_timer(0.01, work)
     return node
 
-sys.exit(spin_until_told(make))
+sys.exit(spin_until_stopped(make))
 """
 
 
