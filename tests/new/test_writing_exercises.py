@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.checking.proofreading import faults_of
+from grader.checking.proofreading import problems_of
 from grader.exercise import load, starter
 from grader.grading import Options, grading_of
 from grader.submission.reading import of_source
@@ -72,7 +72,7 @@ def whole_exercise(name: str, course: Path) -> Path:
 @pytest.mark.parametrize("name", WHOLE)
 def test_a_whole_exercise_of_the_docs_has_nothing_to_fix_and_is_short(name: str, tmp_path: Path) -> None:
     folder = whole_exercise(name, tmp_path)
-    assert faults_of(folder) == ()
+    assert problems_of(folder) == ()
     lines = {file: len((folder / file).read_text().splitlines()) for file in ("scenarios.py", "checks.py")}
     assert lines["scenarios.py"] <= 30
     assert lines["checks.py"] <= 40

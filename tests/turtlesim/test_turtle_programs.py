@@ -127,7 +127,7 @@ def test_keys_around_f_turn_to_a_heading_and_f_stops(turtlesim: Running, keyboar
     poses = outside.hear(Pose, "/turtle1/pose")
     ended(outside, rotate(outside, 0.0, []))
     keyboard.press(b"t")
-    outside.until(lambda: poses[-1].theta == pytest.approx(0.7854, abs=0.03), "the heading")
+    outside.until(lambda: bool(poses) and poses[-1].theta == pytest.approx(0.7854, abs=0.03), "the heading")
     outside.until(lambda: len(turtlesim.log) == 4, "the rotation's end")
     keyboard.press(b"c")
     outside.until(lambda: poses[-1].theta < 0.5, "the second rotation")
