@@ -156,9 +156,16 @@ class SeriesChecks(Recorded):
         self.wrong_at(came.at, text, part, f"{at:.2f} s", f"{seconds(came.at):.2f} s", general)
 
 
+#: A rate alone does not say which of the two it is.
+_PERIOD_OR_CLOCK = (
+    "Either its period is wrong, or your node waits by the computer's clock (time.sleep or a wall timer), which runs "
+    "at another speed here."
+)
+
+
 def _of_rate(ratio: float, hz: float, rate: float) -> str:
     if abs(ratio * COMPUTER_CLOCK - 1) < 0.02:
-        return "Your node waits by the computer's clock (time.sleep or a wall timer), which goes at another speed here."
+        return _PERIOD_OR_CLOCK
     if abs(rate * hz - 1) < 0.02 * hz * rate and hz != 1:
         return f"It publishes every {hz:g} s: a timer takes the period in seconds, not the rate."
     return ""
