@@ -14,7 +14,10 @@ from grader.checking.shown import shown
 from grader.recording.events import By, Cancel, Goal
 from grader.scenario.times import SECOND
 
-_FORGOT = "The result is filled in, but the goal was aborted: a server has to call goal_handle.succeed()."
+_FORGOT = (
+    "The result is filled in, but the goal was aborted: a server that is done has to call goal_handle.succeed(), "
+    "and not abort()."
+)
 _ABORTED = "Does execute raise, return without goal_handle.succeed(), or call canceled() when nobody asked for it?"
 _DISREGARDED = "Your node accepted the request to cancel, and then called succeed() all the same."
 _REFUSED = "Your node rejected the request to cancel: without a cancel callback a server rejects each of them."

@@ -55,7 +55,10 @@ def test_a_right_server_passes() -> None:
 
 def test_succeed_is_forgotten() -> None:
     mine = run(goal(*BEGIN, (3.0, "aborted")), RIGHT)
-    forgot = "The result is filled in, but the goal was aborted: a server has to call goal_handle.succeed()."
+    forgot = (
+        "The result is filled in, but the goal was aborted: a server that is done has to call goal_handle.succeed(), "
+        "and not abort()."
+    )
     assert says(lambda: mine.must_end("succeeded")) == (
         f"At 3.00 s (as usual), {PART}: it was expected to end as succeeded, got aborted. {forgot}"
     )
