@@ -13,6 +13,7 @@ from typing import Any
 from docutils import nodes
 from latex2mathml.converter import convert
 from PIL import Image
+from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.transforms import SphinxTransform
 from sphinx.util import logging
@@ -271,7 +272,9 @@ def _words(node: nodes.Element) -> Iterator[str]:
             yield from _words(child)
 
 
-_NOT_IN = (nodes.title, nodes.reference, nodes.literal, nodes.raw, nodes.math, nodes.caption, nodes.literal_block)
+#: A link to another page is a pending_xref until all pages are read.
+_LINKS = (nodes.reference, addnodes.pending_xref)
+_NOT_IN = (nodes.title, *_LINKS, nodes.literal, nodes.raw, nodes.math, nodes.caption, nodes.literal_block)
 
 
 class LinkTerms(SphinxTransform):

@@ -132,6 +132,8 @@ Words only. <!-- NOTE_IN_A_LINE -->
 ## Last words
 
 Good-bye.
+
+Before: [publisher and messages](01-talk.md). No message is lost.
 """
 _GLOSSARY = """\
 # Glossary

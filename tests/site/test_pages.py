@@ -89,6 +89,12 @@ def test_the_first_use_of_a_term_leads_to_the_glossary(built: SmallCourse) -> No
     assert 'id="publisher"' in built.page("glossary.html")
 
 
+def test_a_term_in_a_link_to_another_page_stays_a_part_of_that_link(built: SmallCourse) -> None:
+    page = built.page("chapters/02-more.html")
+
+    assert '<span class="std std-doc">publisher and messages</span></a>. No <a class="term' in page
+
+
 def test_an_exercise_has_task_interface_starter_and_points(built: SmallCourse) -> None:
     page = text_of(built.page(EXERCISE))
 
