@@ -50,7 +50,7 @@ def test_asks_at_once(several: Run) -> None:
     hint="The done-callback has to know to which joint its future belongs.",
     depends=["test_asks_at_once", "test_publishes_the_name"],
     misconception="mixes joints up",
-    rule="Answers may come in another order than the requests.",
+    rule="Answers may come in a different order.",
 )
 def test_answers_in_another_order(several: Run) -> None:
     """Each offset is published with the name of its own joint, whatever the order of the answers."""

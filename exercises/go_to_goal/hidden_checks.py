@@ -81,7 +81,7 @@ def test_reaches_the_next_goal(next_goal: Run) -> None:
     hint="on_goal replaces the goal, whatever the turtle does.",
     depends=REACHES,
     misconception="sticks to the first goal",
-    rule="The newest goal counts, also when the turtle is still on its way to another one.",
+    rule="The newest goal counts, even if the turtle is still on its way to another one.",
 )
 def test_takes_a_new_goal_on_its_way(new_goal: Run) -> None:
     """A new goal replaces the one to which the turtle is on its way."""

@@ -13,7 +13,7 @@ SUCCESS, CHANGES = ["test_success"], ["test_publishes_each_change"]
     hint="Keep in mind what the last message on /emergency_stop said.",
     depends=SUCCESS,
     misconception="ignores the emergency stop",
-    rule="As long as the emergency stop is pressed, the motors don't go on: success is false",
+    rule="As long as the emergency stop is pressed, the motors do not switch on: success is false",
 )
 def test_refuses_in_an_emergency(emergency: Run) -> None:
     """In an emergency it refuses to switch the motors on."""

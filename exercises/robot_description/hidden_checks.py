@@ -24,7 +24,7 @@ def test_description_that_changes(changed: Run) -> None:
     points=3,
     hint="The depth is how many messages the publisher keeps for late subscribers.",
     depends=["test_late_subscriber", "test_description_that_changes"],
-    rule="Who subscribes late gets the newest description, once, and no older one.",
+    rule="Whoever subscribes late gets the newest description, once, and no older one.",
 )
 def test_late_subscriber_gets_the_newest(changed: Run) -> None:
     """Who subscribes late gets the newest description, and no older one."""
@@ -35,7 +35,7 @@ def test_late_subscriber_gets_the_newest(changed: Run) -> None:
     points=2,
     hint="Compare with the text that was published last.",
     depends=["test_description_that_changes"],
-    rule="not when the parameter is set to the text that it has.",
+    rule="not when the parameter is set to the text that it already has.",
 )
 def test_same_text_again(same: Run) -> None:
     """Nothing is published when the parameter is set to the text that it has."""

@@ -17,6 +17,7 @@ import pytest
 from grader.audit.result import Problem
 from grader.checking.judging import run_pytest
 from grader.checking.plugin import Checks
+from grader.checking.proofreading import without_marks
 from grader.checking.run import Run
 from grader.checking.verdict import check_options
 from grader.exercise.exercise import Exercise
@@ -108,22 +109,17 @@ def problems_in_text(exercise: Exercise, checks: tuple[Check, ...]) -> list[Prob
 
 
 def _rules(exercise: Exercise, checks: tuple[Check, ...]) -> list[Problem]:
-    task = _plain(exercise.task)
+    task = without_marks(exercise.task)
     found = []
     for check in checks:
         place = f"{check.file}:{check.line}"
         if check.hidden and not check.rule:
             text = f"the hidden check {check.name} does not name the sentence of the task on which it stands"
             found.append(Problem(place, check.name, text, 'Add rule="…" to @check, with the sentence of task.md.'))
-        elif check.rule and _plain(check.rule) not in task:
+        elif check.rule and without_marks(check.rule) not in task:
             text = f"{check.name} stands on a sentence that is not in the task: “{check.rule}”"
             found.append(Problem(place, check.name, text, "Write the sentence in task.md, or name the one there is."))
     return found
-
-
-def _plain(text: str) -> str:
-    """Without Markdown's marks, and with one space wherever there is some."""
-    return " ".join(re.sub(r"[*`]", "", text).split())
 
 
 def _giveaways(exercise: Exercise, checks: tuple[Check, ...]) -> list[Problem]:

@@ -10,7 +10,7 @@ import json
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from grader.checking.judging import Listed, listed
@@ -55,6 +55,7 @@ def faults(folder: Path) -> Iterator[ExerciseError]:
         scenarios = ()
     for file in exercise.check_files:
         yield from same_name_twice(file)
+    yield from rules_that_the_task_lacks(exercise.task, exercise.check_files)
     try:
         checks = listed(exercise, scenarios)
     except ExerciseError as error:
@@ -77,6 +78,31 @@ def same_name_twice(file: Path) -> Iterator[ExerciseError]:
                 found = f"there are two checks called {node.name}; the other is in line {first[node.name]}"
                 yield ExerciseError(file, found, "Give each a name of its own: Python forgets the first.", node.lineno)
             first.setdefault(node.name, node.lineno)
+
+
+def rules_that_the_task_lacks(task: str, check_files: Iterable[Path]) -> Iterator[ExerciseError]:
+    """Checks whose `rule` is no sentence of `task`, the text of task.md."""
+    words = without_marks(task)
+    for file in check_files:
+        for line, rule in _rules(file):
+            if without_marks(rule) not in words:
+                found = f"a check is based on a sentence that is not in task.md: “{rule}”"
+                yield ExerciseError(file, found, "Write the sentence in task.md, or name the one there is.", line)
+
+
+def without_marks(text: str) -> str:
+    """A text of task.md or of a rule without Markdown's marks, and with one space wherever there is some."""
+    return " ".join(re.sub(r"[*`]", "", text).split())
+
+
+def _rules(file: Path) -> Iterator[tuple[int, str]]:
+    try:
+        tree = ast.parse(file.read_text(encoding="utf-8"))
+    except (SyntaxError, ValueError, OSError):
+        return
+    for node in ast.walk(tree):
+        if isinstance(node, ast.keyword) and node.arg == "rule" and isinstance(node.value, ast.Constant):
+            yield node.value.lineno, str(node.value.value)
 
 
 def points_that_do_not_add_up(exercise: Exercise, points: list[tuple[bool, float]]) -> Iterator[ExerciseError]:

@@ -4,8 +4,16 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 
+import pytest
 from small_exercise import SmallExercise
+
+from grader.checking.proofreading import rules_that_the_task_lacks
+
+#: A sentence of the small exercise on which a hidden check is based.
+RULE = "Publish nothing on /numbers or /clock."
+EXERCISES = Path(__file__).parents[2] / "exercises"
 
 COURSE = """title = "Small"
 chapters = ["chapters/one.md"]
@@ -53,3 +61,21 @@ def test_a_scenario_that_is_not_there_is_told_with_those_that_are(small: SmallEx
     assert code == 1
     assert "test_nothing_below_zero asks for the scenario negativ, which scenarios.py does not have" in told
     assert "Its scenarios are: positive, negative, any." in told
+
+
+def test_a_rule_that_the_task_does_not_state_is_told_with_its_line(small: SmallExercise) -> None:
+    hidden = small.course / "exercises" / "doubler" / "hidden_checks.py"
+    [line] = [number for number, text in enumerate(hidden.read_text().splitlines(), 1) if RULE in text]
+    small.change("exercises/doubler/task.md", "Publish nothing on `/numbers` or `/clock`.", "Quite another sentence.")
+
+    code, told = linted(small)
+
+    assert code == 1
+    assert f"hidden_checks.py:{line}: error: a check is based on a sentence that is not in task.md: “{RULE}”" in told
+
+
+@pytest.mark.parametrize("folder", sorted(EXERCISES.iterdir()), ids=lambda folder: folder.name)
+def test_the_task_of_each_exercise_states_the_rules_of_its_checks(folder: Path) -> None:
+    task = (folder / "task.md").read_text(encoding="utf-8")
+    faults = rules_that_the_task_lacks(task, [folder / "checks.py", folder / "hidden_checks.py"])
+    assert [str(fault) for fault in faults] == []
