@@ -67,12 +67,8 @@ def faults(folder: Path) -> Iterator[ExerciseError]:
 
 def same_name_twice(file: Path) -> Iterator[ExerciseError]:
     """Two checks of one name in a file: Python keeps the last and forgets the others without a word."""
-    try:
-        tree = ast.parse(file.read_text(encoding="utf-8"))
-    except (SyntaxError, ValueError, OSError):
-        return
     first: dict[str, int] = {}
-    for node in tree.body:
+    for node in _parsed(file).body:
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.name.startswith("test"):
             if node.name in first:
                 found = f"there are two checks called {node.name}; the other is in line {first[node.name]}"
@@ -96,13 +92,17 @@ def without_marks(text: str) -> str:
 
 
 def _rules(file: Path) -> Iterator[tuple[int, str]]:
-    try:
-        tree = ast.parse(file.read_text(encoding="utf-8"))
-    except (SyntaxError, ValueError, OSError):
-        return
-    for node in ast.walk(tree):
+    for node in ast.walk(_parsed(file)):
         if isinstance(node, ast.keyword) and node.arg == "rule" and isinstance(node.value, ast.Constant):
             yield node.value.lineno, str(node.value.value)
+
+
+def _parsed(file: Path) -> ast.Module:
+    """A file of checks; one that can't be read, which is a fault told elsewhere, is as an empty one."""
+    try:
+        return ast.parse(file.read_text(encoding="utf-8"))
+    except (SyntaxError, ValueError, OSError):
+        return ast.Module(body=[], type_ignores=[])
 
 
 def points_that_do_not_add_up(exercise: Exercise, points: list[tuple[bool, float]]) -> Iterator[ExerciseError]:
