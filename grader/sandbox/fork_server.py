@@ -157,7 +157,7 @@ class _Process:
 
 
 def _namespaces(program: Program) -> list[int]:
-    """Return the namespaces a student joins, as descriptors: its user namespace, and without a hub the runner's network."""
+    """Return the namespaces a student joins, as descriptors: the user namespace, and without a hub the network."""
     if program.hub:
         return [os.dup(namespaces.user_namespace_of_this_process())]
     rig = [os.open(f"/proc/self/ns/{name}", os.O_RDONLY) for name in ("user", "net")]
