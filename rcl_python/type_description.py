@@ -28,7 +28,7 @@ class TypeDescriptionService(Destroyable):
         return self._service
 
     def handle_request(self, request: Any, response_class: Any, node: Node) -> Any:
-        """Say that the description is not known: types are known by their Python classes alone."""
+        """Answer that the description is not known: types are known by their Python classes alone."""
         response = response_class()
         response.successful = False
         response.failure_reason = "Type descriptions are not available."

@@ -92,7 +92,7 @@ def student_id(text: str) -> str:
 
 
 def moment(text: str) -> datetime | None:
-    """Return the time in `2026-11-22 23:59` or any ISO 8601 form, by default in this machine's zone. None for other texts."""
+    """Return the time in `2026-11-22 23:59` or any ISO 8601 form, by default in local time. None for other texts."""
     try:
         # Python 3.10 does not accept Z.
         written = datetime.fromisoformat(text.strip().replace("Z", "+00:00"))

@@ -74,7 +74,7 @@ def _tell(console: Console, found: list[Rejudged], missing: list[str]) -> None:
 
 
 def difference(before: Grade, after: Grade) -> str:
-    """Return the difference in words: the two scores, then which checks went up and which down. Empty if there is none."""
+    """Return the difference in words: the two scores, then the checks that went up or down. Empty if there is none."""
     old = {verdict.name: verdict for verdict in before.verdicts}
     new = {verdict.name: verdict for verdict in after.verdicts}
     up, down = [], []

@@ -57,7 +57,7 @@ class Schedule:
 
 
 def nanoseconds(seconds: float) -> int:
-    """Seconds as nanoseconds."""
+    """Return seconds as nanoseconds."""
     return round(seconds * SECOND)
 
 

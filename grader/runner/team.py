@@ -83,7 +83,7 @@ class Team:
         return next((one.pid for one in self._running.values()), 0)
 
     def pids(self) -> Collection[int]:
-        """The ids of all the student's processes."""
+        """Return the ids of all the student's processes."""
         return [pid for one in self._running.values() for pid in one.pids()]
 
     def output(self) -> Output:
