@@ -108,7 +108,7 @@ def _similar(reference: Reference, package: str, name: str, known: Known) -> str
 
 
 def _same_names(definitions: Sequence[Definition]) -> Iterator[Fault]:
-    """Find two definitions that would write the same file: with the same name, or names that differ in capitals only."""
+    """Find definitions that would write the same file: with the same name, or names that differ in capitals only."""
     first: dict[tuple[str, str, str], Definition] = {}
     for definition in definitions:
         known = first.setdefault((definition.package, definition.kind, definition.name.lower()), definition)

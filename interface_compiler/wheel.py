@@ -99,7 +99,7 @@ def _project(package: str) -> str:
 
 
 def _files(package: str, prefix: Path, data: str) -> Iterator[tuple[str, bytes]]:
-    """Yield the wheel's own files by name: the Python package, and the files for the environment's share and include."""
+    """Yield the wheel's own files by name: the Python package, and files for the environment's share and include."""
     for file in _below(prefix / PYTHON / package):
         if "__pycache__" not in file.parts:
             yield file.relative_to(prefix / PYTHON).as_posix(), file.read_bytes()

@@ -45,7 +45,7 @@ class Graph:
         return end_point
 
     def readers(self, publisher: EndPoint) -> tuple[EndPoint, ...]:
-        """Return the subscriptions that get what `publisher` sends. Cached until a change, as every message needs it."""
+        """Return the subscriptions that get what `publisher` sends. Cached until a change: each message needs it."""
         found = self._readers.get(publisher.id)
         if found is None:
             found = tuple(e for e in self._named(publisher, SUBSCRIPTION) if compatible(publisher.qos, e.qos))

@@ -286,7 +286,7 @@ class Hub:
         return not self._awaited and self._is_confirmed()
 
     def _is_confirmed(self) -> bool:
-        """Return whether each of several processes has reported twice to be idle, without any thread running in between.
+        """Return whether each of several processes has reported twice to be idle, with no thread running in between.
 
         One may wake another in a way that is not seen here, such as a pipe, after the other has reported to be idle.
         """
@@ -351,7 +351,7 @@ class Hub:
         return bool(waiting)
 
     def _take(self) -> None:
-        """Wait for at most 20 ms until something arrives, and take it. Raises `Violation`, and what `patience` raises."""
+        """Wait at most 20 ms for something to arrive, and take it. Raises `Violation`, and what `patience` raises."""
         links = self.links
         if len(links) == 1 and not self._awaited and not links[0].unsent:
             self._read(links[0], 0)

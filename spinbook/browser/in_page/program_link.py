@@ -1,7 +1,7 @@
-"""The program's end of the connection to a page's hub: what rcl_python says and hears, as frames of PROTOCOL.md.
+"""The program's end of the connection to a page's hub: what rcl_python sends and receives, as frames of PROTOCOL.md.
 
-Time is what the hub grants. The program waits in one place only, and that it waits means that it has nothing left to
-do: then it is the hub's turn.
+Time is what the hub grants. The program waits in one place only, and when it waits there, it is idle: then it is the
+hub's turn.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _DATA, _CALL = struct.Struct("<QQqQqI"), struct.Struct("<QqqQqI")
 _IN_DATA, _IN_REQUEST, _IN_RESPONSE = struct.Struct("<QQq"), struct.Struct("<QQqq"), struct.Struct("<Qqq")
 _TIME = struct.Struct("<qB")
 _BARRIER, _TIME_KIND = ord("|"), ord("T")
-#: A program that only looks and never waits is done after so many looks.
+#: A program that polls and never waits is considered idle after so many polls.
 _LOOKS = 4
 
 
@@ -46,15 +46,15 @@ class ProgramLink:
     # --- out
 
     def send(self, frame: Frame, data: bytes = b"") -> None:
-        """Hand a frame to the hub, which takes it at once."""
+        """Send a frame to the hub, which handles it at once."""
         if self._turns.is_over or self._turns.has_ended:
-            return  # such as an object of the program's that is collected later
+            return  # such as an object of the program's that is garbage-collected later
         thread = self.rota.number()
         for kind, payload in _encoded(frame, data, (self._connection.handled, self._now, thread)):
             try:
                 self._hub.router.handle(self._connection, ord(kind), payload)
             except Exception as fault:
-                # The hub's thread raises it, and the program goes no further.
+                # The hub's thread raises it, and the program stops here.
                 self._turns.fault = fault
                 self._turns.let_hub_go_on()
                 self.heed()
@@ -62,7 +62,7 @@ class ProgramLink:
     # --- in
 
     def receive(self) -> Iterator[tuple[Frame, bytes]]:
-        """Yield what has come, up to where time goes on."""
+        """Yield the frames that have arrived, up to the next advance of time."""
         queued = self._connection.queued
         while queued and queued[0][4] not in (_BARRIER, _TIME_KIND):
             frame = queued.popleft()
@@ -75,7 +75,7 @@ class ProgramLink:
     # --- time
 
     def wait(self, nanoseconds: int | None) -> None:
-        """Wait for what comes, for another thread, or for so long."""
+        """Wait for a frame, for another thread, or until the time is up."""
         self._looks = 0
         held = self.lock._release_save()  # type: ignore[attr-defined]
         try:
@@ -84,20 +84,20 @@ class ProgramLink:
             self.lock._acquire_restore(held)  # type: ignore[attr-defined]
 
     def sleep(self, seconds: SupportsFloat) -> None:
-        """Do what time.sleep does, by the hub's time."""
+        """Sleep as time.sleep does, in the hub's time."""
         until = self._now + round(float(seconds) * 1e9)
         while self._now < until:
             self.rota.wait(until - self._now, in_ros=False)
             participant.current().pump()
 
     def rest(self, until: int | None, in_ros: int) -> None:
-        """All threads wait, of which so many in ROS: until something has come, or the time has, or a signal."""
+        """Wait while all threads wait, so many of them in ROS: until a frame, the time `until`, or a signal arrives."""
         while not self._goes_on(until) and not self._turns.is_over and not self._turns.signal:
             self._connection.rests(self._now, until, in_ros)
             self._turns.let_hub_go_on()
 
     def heed(self) -> None:
-        """Do, in the main thread, what the hub wants: end, or handle a signal. Raises `Over`."""
+        """Do, in the main thread, what the hub requests: end, or handle a signal. Raises `Over`."""
         if self._turns.is_over:
             raise Over
         if self._turns.signal:
@@ -106,16 +106,16 @@ class ProgramLink:
 
     @property
     def is_wanted(self) -> bool:
-        """Whether the main thread has something to heed."""
+        """Whether the main thread has a request to handle."""
         return self._turns.is_over or bool(self._turns.signal)
 
     @property
     def has_frames(self) -> bool:
-        """Whether anything waits to be taken in."""
+        """Whether frames are waiting."""
         return bool(self._connection.queued)
 
     def _goes_on(self, until: int | None) -> bool:
-        """Whether there is anything to take in, or the time has come; time goes on as far as it was granted."""
+        """Advance time as far as it was granted. Return whether a frame is waiting, or the time has come."""
         queued = self._connection.queued
         while queued:
             if queued[0][4] == _TIME_KIND:
@@ -131,17 +131,17 @@ class ProgramLink:
         return until is not None and until <= self._now
 
     def breathe(self) -> None:
-        """A program that looks again and again without waiting waits."""
+        """Make a program wait that polls repeatedly without waiting."""
         self._looks += 1
         if self._looks > _LOOKS:
             self.wait(None)
 
     def steady(self) -> int:
-        """What the hub says that the time is (ns)."""
+        """Return the hub's time (ns)."""
         return self._now
 
     def system(self) -> int:
-        """What the hub's calendar says (ns since the epoch)."""
+        """Return the hub's calendar time (ns since the epoch)."""
         return EPOCH + self._now
 
     def run(self, main: Callable[[], None]) -> None:
@@ -160,7 +160,7 @@ class ProgramLink:
 
 
 def _encoded(frame: Frame, data: bytes, moment: tuple[int, int, int]) -> Iterator[tuple[str, bytes]]:
-    """What the hub is told: kind and payload of each frame. `moment` is what was handled, the time, and the thread."""
+    """Yield kind and payload of each frame for the hub. `moment` has the handled frames, the time, and the thread."""
     op = frame["op"]
     if op == "hello":
         yield "J", b""
@@ -209,7 +209,7 @@ def _end_point(frame: Frame) -> frames.EndPoint:
 
 
 def _decoded(kind: int, payload: bytes, number: int) -> tuple[Frame, bytes] | None:
-    """What rcl_python is told, if anything."""
+    """Return what rcl_python receives, if anything."""
     decode = _DECODERS.get(chr(kind))
     return decode(payload, number) if decode else None
 
