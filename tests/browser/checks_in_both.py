@@ -1,9 +1,9 @@
-"""Checks every program of an exercise's solutions as a page does, and by the real grader, and says what differs.
+"""Checks every program of an exercise's solutions as a page does, and by the real grader, and prints the differences.
 
     python tests/browser/checks_in_both.py EXERCISE [NAME …]
 
 Prints a JSON object: name of the program -> "same", why a page does not check it, or how the two differ. NAME is a
-file's name without `.py`. A process of its own, since it uses the course's interfaces.
+file's name without `.py`. It runs in its own process, since it uses the course's interfaces.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ CHECK_FILE = Path(__file__).with_name("check_file.py")
 
 
 def handed_out(name: str, folder: Path) -> Exercise:
-    """A student's copy of the exercise, in `folder`."""
+    """Return a student's copy of the exercise, in `folder`."""
     with WorkerPool() as workers:
         for file, content in exercise_files(load(ROOT / "exercises" / name), workers).items():
             (folder / file).parent.mkdir(parents=True, exist_ok=True)
@@ -42,7 +42,7 @@ def handed_out(name: str, folder: Path) -> Exercise:
 
 
 def in_the_page(exercise: Exercise, file: Path, out: Path) -> dict[str, Any]:
-    """What the page's check comes to, from a process that runs over rcl_python."""
+    """Return the result of the page's check, from a process that runs over rcl_python."""
     command = [sys.executable, os.fspath(CHECK_FILE), os.fspath(exercise.folder), os.fspath(file), os.fspath(out)]
     done = subprocess.run(["timeout", "-k", "1", "60", *command], capture_output=True, text=True, cwd=ROOT, check=False)
     assert done.returncode == 0, f"exit code {done.returncode}: {done.stderr}"
@@ -51,12 +51,12 @@ def in_the_page(exercise: Exercise, file: Path, out: Path) -> dict[str, Any]:
 
 
 def comparable(recording: Recording) -> Recording:
-    """Without the words about an end, which name folders that differ."""
+    """Return the result without messages about an end, which name folders that differ."""
     return replace(recording, ending=replace(recording.ending, story=""))
 
 
 def compared(exercise: Exercise, file: Path, folder: Path) -> str:
-    """How the page's check of a program differs from the real grader's."""
+    """Return how the page's check of a program differs from the real grader's."""
     try:
         here = in_the_page(exercise, file, folder / "result.json")
     except AssertionError as error:
