@@ -19,7 +19,7 @@ from grader.submission.reading import of_source
 
 SOLUTIONS = Path(__file__).parents[2] / "solutions" / "joint_velocity"
 
-#: Both handle the computer's clock correctly, which may differ from one run to the next.
+#: Neither misuses the computer's clock, whose time may differ from one run to the next.
 SUBMISSIONS = ("mistakes/joints_by_index.py", "right/several_threads.py")
 
 

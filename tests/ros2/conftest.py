@@ -22,7 +22,7 @@ def _own_command(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(autouse=True)
 def _without_a_course(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An earlier test of this process may use a course's interfaces: `ros2` would list them, too."""
+    """Undoes an earlier test's use of a course's interfaces in this process: `ros2` would list them, too."""
     compiled = {str(prefix) for prefix in activation.active()}
     for variable in (activation.VARIABLE, "AMENT_PREFIX_PATH", "PYTHONPATH"):
         entries = os.environ.get(variable, "").split(os.pathsep)
@@ -31,13 +31,13 @@ def _without_a_course(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def within(entry: str, folders: set[str]) -> bool:
-    """Whether a path is one of these folders, or below one."""
+    """Return whether a path is one of these folders, or below one."""
     return any(entry == folder or entry.startswith(folder + os.sep) for folder in folders)
 
 
 @pytest.fixture
 def terminal() -> Iterator[Terminal]:
-    """Whatever it started and the test did not stop is killed."""
+    """A terminal; everything it started that the test did not stop is killed."""
     it = Terminal()
     yield it
     for process in it.started:
@@ -47,7 +47,7 @@ def terminal() -> Iterator[Terminal]:
 
 
 def start(*parts: str) -> subprocess.Popen[str]:
-    """A process with parts of ros2_robot.py, ready."""
+    """Start a process with parts of ros2_robot.py; return when it is ready."""
     process = subprocess.Popen(
         [sys.executable, os.fspath(ROBOT), *parts], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
     )
@@ -77,9 +77,9 @@ def robot(ros_domain: int) -> Iterator[Robot]:
 
 @pytest.fixture(scope="module")
 def standing_robots() -> Iterator[tuple[dict[tuple[str, ...], tuple[int, subprocess.Popen[str]]], ExitStack]]:
-    """Robots that go on from test to test, by their parts, each with a domain of its own.
+    """Robots that run from test to test, by their parts, each with a domain of its own.
 
-    They end with the file: robots publish without a pause, at the cost of whatever else the machine has to do.
+    They end with the file: robots publish without a pause, which slows down everything else on the machine.
     """
     robots: dict[tuple[str, ...], tuple[int, subprocess.Popen[str]]] = {}
     with ExitStack() as domains:
