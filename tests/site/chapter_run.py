@@ -2,8 +2,8 @@
 
     python tests/site/chapter_run.py SITE EXECUTED_NOTEBOOK …
 
-prints the cells that differ. Numbers that depend on time count as equal; what a page's cell shows of something that
-goes on for ever must hold every kind of line that was recorded.
+prints the cells that differ. Numbers that depend on time count as equal; if a page's cell shows something endless,
+it must contain every kind of line that was recorded.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ _NUMBER = re.compile(r"\b([0-9a-f]{2}\.){8,}[0-9a-f]{2}\b|-?(?<![\w.])\d+(\.\d+)
 _FILE = re.compile(r'File "[^"]*?([^/"<>]+|<[^>]*>)"')
 _OF_THE_NOTEBOOK = re.compile(
     r"^— .* —$|^\(restarting .*\)$|^env: |^\.\.\. \(\d+ lines|^~?\^+~?$"
-    # Who looks too early waits, in a notebook as in a page.
+    # Loading that is asked for too early waits, in a notebook as in a page.
     r"|^waiting for service"
 )
-#: The longest that a cell is waited for (ms): machines may have much else to do.
+#: How long to wait for a cell (ms): the machine may be busy.
 PATIENCE_MS = 120_000
 
 
@@ -45,17 +45,17 @@ class Recorded:
 
     @property
     def endless(self) -> bool:
-        """Whether what it shows depends on when one stops looking."""
+        """Return whether what it shows depends on when one stops looking."""
         return bool(_ENDLESS.search(self.source))
 
     @property
     def kinds(self) -> set[str]:
-        """The kinds of lines that it shows."""
+        """Return the kinds of lines that it shows."""
         return set(map(shape, self.lines))
 
 
 def recorded(notebook: Path) -> list[Recorded]:
-    """The code cells of an executed notebook that a page can run."""
+    """Return the code cells of an executed notebook that a page can run."""
     cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
     return [
         Recorded(cell["id"], "".join(cell["source"]), _lines_of(cell["outputs"]), _error_of(cell["outputs"]))
@@ -84,18 +84,18 @@ def _error_of(outputs: list[dict[str, Any]]) -> str:
 
 
 def meaningful(text: str) -> list[str]:
-    """The lines without what only a notebook says."""
+    """Return the lines without what only a notebook prints."""
     lines = (line.rstrip() for line in re.sub(r"\x1b\[[0-9;]*m", "", text).splitlines())
     return [line for line in lines if line and not _OF_THE_NOTEBOOK.match(line.strip())]
 
 
 def shape(line: str) -> str:
-    """The line without numbers and folders."""
+    """Return the line without numbers and folders."""
     return _NUMBER.sub("#", _FILE.sub(r'File "\1"', line)).strip()
 
 
 def run_chapter(page: Page, cells: list[Recorded]) -> dict[str, str]:
-    """Run each cell of the open page in order; what differs, by the cell's id."""
+    """Run each cell of the open page in order; return what differs, by the cell's id."""
     places = page.locator(CELLS)
     assert places.count() == len(cells), f"{places.count()} cells on the page, {len(cells)} in the notebook"
     differences = {}
@@ -122,7 +122,7 @@ _SHOWS = """([cell, wanted, picture]) => {
 
 
 def _wait_for_kinds(page: Page, place: Locator, cell: Recorded) -> None:
-    """Until a line of each recorded kind is there, or the patience is over: then it differs."""
+    """Wait until a line of each recorded kind is there, or the time is up: then it differs."""
     wanted = [_pattern(kind) for kind in cell.kinds]
     try:
         page.wait_for_function(_SHOWS, arg=[place.element_handle(), wanted, PICTURE], timeout=15_000)
@@ -135,13 +135,13 @@ def _pattern(kind: str) -> str:
 
 
 def shown(place: Locator) -> list[str]:
-    """What a cell of the page shows now."""
+    """Return what a cell of the page shows now."""
     pictures = place.locator(".ran figure svg").count()
     return [*meaningful(place.locator(".ran pre").text_content() or ""), *([PICTURE] if pictures else [])]
 
 
 def compared(cell: Recorded, lines: list[str]) -> str:
-    """How the lines differ from the recorded ones; "" if they do not."""
+    """Return how the lines differ from the recorded ones; "" if they do not."""
     here = [shape(line) for line in lines]
     missing = sorted(cell.kinds - set(here))
     if cell.error and cell.error != "CellFailed" and not any(line.startswith(cell.error) for line in lines):
@@ -156,7 +156,7 @@ def compared(cell: Recorded, lines: list[str]) -> str:
 
 
 def _exact(cell: Recorded) -> bool:
-    """Whether each number must be the same: plain code, and what only reads files."""
+    """Return whether each number must be the same: plain code, and what only reads files."""
     return not re.search(r"^%", cell.source, re.MULTILINE) or cell.source.startswith("%ros2 interface")
 
 
