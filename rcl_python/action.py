@@ -96,7 +96,7 @@ class ActionClient(_Action):
             wait_set.add_client(client)
 
     def is_action_server_available(self) -> bool:
-        """Return whether a complete server is there."""
+        """Return whether there is a complete server."""
         services = all(client.service_server_is_available() for client in (self.goal, self.cancel, self.result))
         return bool(services and all(topic.get_publisher_count() for topic in (self.feedback, self.status)))
 

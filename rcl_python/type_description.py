@@ -11,7 +11,7 @@ from rcl_python.qos import Profile
 
 
 class TypeDescriptionService(Destroyable):
-    """Answers what a type looks like, where the interface packages' descriptions are installed."""
+    """Answers with a type's description, if the interface packages' descriptions are installed."""
 
     def __init__(self, node: Node) -> None:
         super().__init__()

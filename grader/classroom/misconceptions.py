@@ -107,8 +107,8 @@ def _digits(value: str) -> int:
     return len(found[0].replace(".", "")) if found else 0
 
 
-#: How well a submission's failure fits a signature's: the same words that tell, or with a value that hardly any other
-#: mistake gives; the same words; the same kind of words that tell; or a comparison of two other values.
+#: How well a submission's failure fits a signature's: the same specific words, or words with a value that hardly any
+#: other mistake gives; the same words; the same kind of specific words; or a comparison of two other values.
 SAME, SAME_WORDS, SAME_KIND, OTHER_VALUE = 1.0, 0.8, 0.75, 0.25
 
 #: How well all of a signature's failures have to fit, on average: if the submission fails just those checks, and if

@@ -15,7 +15,7 @@ from grader.submission.reading import Submission
 
 @dataclass(frozen=True)
 class ClassRequest:
-    """A class to grade: where the submissions are, where the results go, and how.
+    """A class to grade: where the submissions are, where to write the results, and how.
 
     `jobs` is how many submissions are graded at once, None for as many as suit
     this machine. `regrade` names students whose submissions are graded again
@@ -54,7 +54,7 @@ class Backend(Protocol):
 
     @property
     def key(self) -> str:
-        """A key that is the same as long as everything is that a grade depends on, besides the submission."""
+        """A key of everything that a grade depends on, except the submission."""
 
     def mark(self, submissions: Mapping[str, Submission]) -> Iterator[Graded]:
         """Yield the grade of each submission, in the order in which they are done.

@@ -95,7 +95,7 @@ class Results:
             (folder_of(self.folder, student) / "grade.json").unlink(missing_ok=True)
 
     def others(self, students: set[str]) -> tuple[str, ...]:
-        """Return whose results are here besides those of `students`."""
+        """Return the ids of students with results here who are not in `students`."""
         return tuple(
             sorted(
                 file.parent.name

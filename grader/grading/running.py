@@ -63,7 +63,7 @@ class TaskQueue:
         return self._recordings[scenario].result()
 
     def give_up(self) -> None:
-        """Start no more, and end those in progress."""
+        """Start no further runs, and end those in progress."""
         self._waiting.clear()
         self._given_up.set()
 

@@ -60,7 +60,7 @@ def run(
     programs: Mapping[str, Start] | None = None,
     companions: Sequence[Start] = (),
 ) -> Recording:
-    """Start the student's program and run it through the scenario; every fault of the student's is in the recording.
+    """Start the student's program and run it through the scenario; every fault of the program is in the recording.
 
     `start` gets the socket of the hub, to which each of the program's processes has to connect before it runs any of
     the student's code. A submission of several programs has `programs` instead, by their files; `companions` are the

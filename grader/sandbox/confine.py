@@ -52,7 +52,7 @@ def confine(
         keep_open: a descriptor that the caller still needs.
 
     Raises:
-        OSError: if the kernel refuses one of the steps; nothing of the student's may run then.
+        OSError: if the kernel refuses one of the steps; none of the student's code may run then.
     """
     os.setsid()
     _take_output(output, keep_open)

@@ -134,7 +134,7 @@ def test_two_processes_talk_and_neither_gets_ahead_of_the_other(hub: Hub, proces
 
 
 def test_the_hub_does_not_wait_before_it_has_asked(hub: Hub, process: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It would wait in vain, for 20 ms each time, as no process knows yet what it is asked."""
+    """Otherwise it would wait 20 ms each time for nothing, as no process has got the question yet."""
     queued: list[Link] = []
 
     def take(hub: Hub, take: Callable[[Hub], None] = Hub._take) -> None:

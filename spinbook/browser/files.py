@@ -44,7 +44,7 @@ _STATIC = Path(__file__).with_name("static")
 
 
 def can_run() -> bool:
-    """Return whether pages can run nodes: Pyodide is there."""
+    """Return whether pages can run nodes, that is, whether Pyodide is there."""
     return pyodide_folder() is not None
 
 

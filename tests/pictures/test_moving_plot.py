@@ -1,4 +1,4 @@
-"""The plot that is drawn again: all curves, at the recorded speed, and without motion for those who want none."""
+"""The plot that is drawn again: all curves, at the recorded speed, and without motion if preferred."""
 
 from __future__ import annotations
 

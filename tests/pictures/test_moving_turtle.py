@@ -1,4 +1,4 @@
-"""The turtle that drives again: where it was when, within the stated tolerance, and still for those who want that."""
+"""The turtle that drives again: its positions, within the stated tolerance, and without motion if preferred."""
 
 from __future__ import annotations
 

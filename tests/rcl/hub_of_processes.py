@@ -118,7 +118,7 @@ class Hub:
                         _write(connection, head, data)
 
     def close(self) -> None:
-        """Accept no more processes."""
+        """Stop accepting processes."""
         self._listener.close()
 
 

@@ -201,7 +201,7 @@ def test_no_cell_of_the_students_is_ever_lost(base: list[Cell], mine: list[Any],
     own = counted(students) - counted(base)
     assert own <= counted(once)
     # Nor when the update is done again, after one that was interrupted before it was remembered; only a mere copy of a
-    # cell that the author took out can't be told from that cell then.
+    # cell that the author removed can't be distinguished from that cell then.
     theirs = Counter({cell: count for cell, count in own.items() if cell not in counted(base)})
     assert theirs <= counted(merged(base, once, authors)[0])
 

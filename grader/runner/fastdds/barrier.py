@@ -48,7 +48,7 @@ CHECK_S = 0.02
 #: After so much idle time, a call that has had no answer is repeated.
 AGAIN_S = 0.5
 
-#: How often to look for what the graph may show at any time.
+#: How often to look for changes of the graph.
 LOOK_S = 0.002
 
 #: A node may be blocked this long in one scenario, over all messages.
@@ -62,7 +62,7 @@ class Gone(Exception):
 class Barrier:
     """Holds the rig until the student's nodes have handled what was published.
 
-    `hear` takes what they publish; it is called repeatedly, and may raise what ends the run.
+    `hear` takes what they publish; it is called repeatedly, and may raise an exception that ends the run.
     """
 
     def __init__(self, node: Any, watch: Watch, hear: Callable[[], None]) -> None:

@@ -41,7 +41,7 @@ AFTERWARDS = SECOND // 2
 
 
 def run(task: Task, start: Callable[[], Student]) -> Recording:
-    """Start the student's program and run it through the scenario; every fault of the student's is in the recording.
+    """Start the student's program and run it through the scenario; every fault of the program is in the recording.
 
     Any exception is a fault of the machine or of ours.
     """
