@@ -19,12 +19,12 @@ _STATES = {
     12: "shuttingdown", 13: "activating", 14: "deactivating", 15: "errorprocessing",
 }  # fmt: skip
 
-#: What a node can be asked to do: (id, label, from, via).
+#: What a node can be asked to do: (id, label, from, over).
 _ASKED = [
     (1, "configure", 1, 10), (2, "cleanup", 2, 11), (3, "activate", 2, 13), (4, "deactivate", 3, 14),
     (5, "shutdown", 1, 12), (6, "shutdown", 2, 12), (7, "shutdown", 3, 12),
 ]  # fmt: skip
-#: Where it goes from there, by how its callback ended: (via, first id, success, failure, error).
+#: Where it goes from there, by how its callback ended: (over, first id, success, failure, error).
 _ENDED = [
     (10, 10, 2, 1, 15), (11, 20, 1, 2, 15), (13, 30, 3, 2, 15), (14, 40, 2, 3, 15), (12, 50, 4, 4, 15),
     (15, 60, 1, 4, 4),

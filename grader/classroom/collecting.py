@@ -112,7 +112,7 @@ BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplemented
 
 
 def unpacked(archive: Path, into: Path) -> Iterator[File | Skipped]:
-    """Return the files in `archive` that can be submissions, written into the folder `into` with numbers as names.
+    """Yield the files in `archive` that can be submissions, written into the folder `into` with numbers as names.
 
     Raises `SubmissionsError` when it is not a zip, or holds more than any class submits.
     """

@@ -55,7 +55,7 @@ class ExerciseFiles:
 
 
 def pack_exercise(exercise: Exercise) -> ExerciseFiles:
-    """Pack the exercise's folder, and the author's own solutions."""
+    """Pack the exercise's folder, and the author's own solution."""
     name = exercise.name
     found = [file for file in sorted(exercise.folder.rglob("*")) if file.is_file() and "__pycache__" not in file.parts]
     files = {f"exercises/{name}/{file.relative_to(exercise.folder).as_posix()}": file.read_bytes() for file in found}
@@ -162,7 +162,7 @@ class DaskBackend:
 
 @contextlib.contextmanager
 def dask_backend(grading: Grading, address: str) -> Iterator[DaskBackend]:
-    """Return the cluster whose scheduler is at `address`, such as tcp://10.0.0.5:8786, with at least one worker.
+    """Yield the cluster whose scheduler is at `address`, such as tcp://10.0.0.5:8786, with at least one worker.
 
     Raises `NoCluster` if there is none, or if a worker's versions differ from this machine's.
     """

@@ -76,7 +76,7 @@ def to_json(exercise: Exercise, public: PublicPart) -> str:
 
 
 def modules_of(public: PublicPart) -> Iterator[Path]:
-    """Return the author's files that the public scenarios need code of, once each. `to_json` refuses hidden ones."""
+    """Yield the author's files that the public scenarios need code of, once each. `to_json` refuses hidden ones."""
     files = {code.file for scenario in public.scenarios for code in code_in(scenario)}
     yield from sorted(Path(file) for file in files if Path(file).name not in HIDDEN_FILES)
 

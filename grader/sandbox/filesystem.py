@@ -209,7 +209,7 @@ def own_packages() -> tuple[Path, ...]:
 
 
 def _masks(hidden: Iterable[Path], shown: Iterable[Path]) -> Iterator[Path]:
-    """Return where hidden files and folders would be visible: under each name by which a shown folder has them."""
+    """Yield where hidden files and folders would be visible: under each name by which a shown folder has them."""
     to_hide = [path.resolve() for path in hidden if path.exists()]
     for source in shown:
         real = _real(source)
@@ -230,7 +230,7 @@ def _real(folder: Path) -> Path:
 
 
 def _without_nested(paths: Iterable[Path]) -> Iterator[Path]:
-    """Return the folders without those inside another one, which are therefore shown anyway."""
+    """Yield the folders without those inside another one, which are therefore shown anyway."""
     ordered = sorted(set(paths), key=lambda path: len(path.parts))
     for at, path in enumerate(ordered):
         if not any(path.is_relative_to(earlier) and not path.is_symlink() for earlier in ordered[:at]):

@@ -36,7 +36,7 @@ class Namespaces:
             os.kill(self.init, signal.SIGKILL)
 
     def reap(self) -> None:
-        """Return when everything is dead. The caller has to wait for its own children inside first.
+        """Wait until everything is dead. The caller has to wait for its own children inside first.
 
         The parent is notified of the death of a namespace's first process only after every other process in it is gone:
         pid_namespaces(7).

@@ -128,7 +128,7 @@ class ProcessTree:
                     os.kill(process, order)
 
     def reap(self) -> None:
-        """Return when everything is dead, and remove the folder."""
+        """Wait until everything is dead, and remove the folder."""
         while descendants(self.init):
             self.kill()
             with contextlib.suppress(ChildProcessError):

@@ -116,7 +116,7 @@ def _needed(name: str) -> bool:
 
 
 def _module(name: str) -> Iterator[tuple[str, bytes]]:
-    """Return the files of an installed module: one, or a package's."""
+    """Yield the files of an installed module: one, or a package's."""
     spec = importlib.util.find_spec(name)
     if spec is None or spec.origin is None:
         raise ModuleNotFoundError(f"{name} is not installed in {sys.prefix}")

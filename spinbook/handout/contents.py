@@ -148,7 +148,7 @@ def _notebooks(course: Course) -> dict[str, bytes]:
 
 
 def _nodes(notebooks: dict[str, bytes]) -> Iterator[str]:
-    """Return the code of the chapters' own nodes."""
+    """Yield the code of the chapters' own nodes."""
     for content in notebooks.values():
         for cell in json.loads(content)["cells"]:
             if cell["metadata"].get("spinbook", {}).get("kind") == "node":

@@ -134,7 +134,7 @@ def _windows(what: str, place: str, lines: list[Line]) -> list[Secret]:
 
 
 def _solved(source: str) -> Iterator[list[Line]]:
-    """Return the lines of each block between markers, without spaces."""
+    """Yield the lines of each block between markers, without spaces."""
     block: list[Line] | None = None
     for number, line in enumerate(source.splitlines(), start=1):
         if BEGIN.match(line):
@@ -188,7 +188,7 @@ class Leak:
 
 
 def leaks(files: Mapping[str, bytes], known: list[Secret]) -> Iterator[tuple[str, str]]:
-    """Return (file, what it is) for each file and each secret in it: see `located`."""
+    """Yield (file, what it is) for each file and each secret in it: see `located`."""
     for leak in located(files, known):
         yield leak.file, leak.what
 

@@ -98,7 +98,7 @@ def interface_wheels(course: Course, texts: Iterable[bytes]) -> dict[str, bytes]
 
 
 def _packages(course: Course, text: bytes) -> Iterator[tuple[str, Path]]:
-    """Return the packages, each with the prefix that has it."""
+    """Yield the packages, each with the prefix that has it."""
     environment = Path(sys.prefix)
     for package in (*shipped.standard(), *shipped.optional()):
         wanted = package in shipped.standard() or package.encode() in text

@@ -29,7 +29,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def mistakes_of(exercise: Exercise) -> Iterator[tuple[str, str]]:
-    """Return name and source: first the mistakes that `solutions/` lists, then the others."""
+    """Yield name and source: first the mistakes that `solutions/` lists, then the others."""
     folder = ROOT / "solutions" / exercise.name
     for file in sorted((folder / "mistakes").glob("*.py")):
         yield file.stem, file.read_text(encoding="utf-8")

@@ -25,7 +25,7 @@ class Recorded:
 
     @property
     def failures(self) -> dict[str, Failure]:
-        """Return the failures as the grouping sees them: nothing for a program that did not complete."""
+        """The failures as the grouping sees them: nothing for a program that did not complete."""
         if self.outcome != "graded":
             return {}
         return {

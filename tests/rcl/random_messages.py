@@ -22,7 +22,7 @@ _NUMPY = {"float": "float32", "double": "float64"}
 
 
 def message_classes() -> Iterator[Any]:
-    """Return every message class of every installed interface package; of services and actions, each part."""
+    """Yield every message class of every installed interface package; of services and actions, each part."""
     for listing in sorted(_INDEX.iterdir()):
         for line in listing.read_text().split():
             kind, _, file = line.partition("/")

@@ -70,7 +70,7 @@ class Checkout:
 
     @property
     def calls(self) -> list[str]:
-        """Return the arguments of the simulated programs' calls, in order."""
+        """The arguments of the simulated programs' calls, in order."""
         notes = self.stage / "calls"
         return notes.read_text().splitlines() if notes.exists() else []
 

@@ -45,12 +45,12 @@ class Recorded:
 
     @property
     def endless(self) -> bool:
-        """Return whether what it shows depends on when one stops looking."""
+        """Whether what it shows depends on when one stops looking."""
         return bool(_ENDLESS.search(self.source))
 
     @property
     def kinds(self) -> set[str]:
-        """Return the kinds of lines that it shows."""
+        """The kinds of lines that it shows."""
         return set(map(shape, self.lines))
 
 

@@ -165,7 +165,7 @@ class SmallCourse:
 
     @property
     def pages(self) -> list[str]:
-        """Return every page's path."""
+        """Every page's path."""
         return sorted(page.relative_to(self.site).as_posix() for page in self.site.rglob("*.html"))
 
     def page(self, name: str) -> str:

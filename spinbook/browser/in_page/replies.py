@@ -27,7 +27,7 @@ class ReplyReader:
             self._heard.append((frame["sent"] / 1e9, data))
 
     def take(self) -> Iterator[tuple[float, Any]]:
-        """Return what has arrived since the last call: (when it was sent in s since the epoch, the answer)."""
+        """Yield what has arrived since the last call: (when it was sent in s since the epoch, the answer)."""
         while self._heard:
             sent, data = self._heard.popleft()
             yield sent, cdr.deserialize(data, self._answer)
