@@ -46,7 +46,7 @@ def extend(environment: MutableMapping[str, str], prefix: Path, instead_of: Iter
 
 
 def active_packages() -> list[str]:
-    """Return the packages in the prefixes that are in use, sorted."""
+    """The packages in the prefixes that are in use, sorted."""
     return sorted(prefixes.interfaces(active()))
 
 

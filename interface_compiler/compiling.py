@@ -68,7 +68,7 @@ class Dependency:
 
 
 def module_name(package: str) -> str:
-    """Return the file name of a package's extension module, which rosidl's Python code imports by this name."""
+    """The file name of a package's extension module, which rosidl's Python code imports by this name."""
     return f"{package}_s__rosidl_typesupport_c{sysconfig.get_config_var('EXT_SUFFIX')}"
 
 

@@ -23,9 +23,9 @@ from interface_compiler.prefixes import PYTHON, RESOURCES
 
 #: Wheels whose version affects the generated code.
 _WHEELS = ("ros-rosidl-adapter", "ros-rosidl-generator-py", "ros-rosidl-typesupport-fastrtps-c", "ros-fastcdr")
-#: The files of this folder that affect it, too.
+#: The files of this folder that decide it, too.
 _OWN = ("generating.py", "compiling.py", "building.py", "dispatch.cpp.in")
-#: How many prefixes a store keeps: open notebooks may still use one of an earlier text.
+#: Prefixes that a store keeps: notebooks that are open may still use one of an earlier text.
 _KEPT = 8
 _KEY = "spinbook-key"
 

@@ -34,7 +34,7 @@ class Link(Protocol):
         """
 
     def breathe(self) -> None:
-        """Let frames and signals in, for a program that never waits."""
+        """Let frames and signals in, where a program never waits."""
 
     def steady(self) -> int:
         """Return the steady clock (ns)."""
@@ -61,7 +61,7 @@ class LocalLink:
         self.lock.wait(None if nanoseconds is None else nanoseconds / 1e9)
 
     def breathe(self) -> None:
-        """Do nothing: threads and signals need no help."""
+        """Threads and signals come in by themselves."""
 
     def steady(self) -> int:
         """Return the steady clock (ns)."""

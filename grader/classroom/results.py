@@ -68,7 +68,7 @@ class Results:
             return None
 
     def keep_recordings(self, student: str, key: str, recordings: dict[str, Recording]) -> None:
-        """Store the recordings of a student's run, so that changed checks can judge them."""
+        """Keep what was recorded of a student's run, so that changed checks can judge it."""
         content = gzip.compress(f"{key}\n{recordings_to_json(recordings)}".encode(), mtime=0)
         write_if_changed(folder_of(self.folder, student) / RECORDINGS, content, durable=True)
 

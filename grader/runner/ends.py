@@ -71,6 +71,6 @@ def hub_qos(qos: Qos) -> HubQos:
 
 
 def node_of(ends: Ends, end_point: EndPoint) -> str:
-    """Return the full name of the node that an end point belongs to."""
+    """The full name of the node that an end point belongs to."""
     node = ends.hub.graph.nodes.get(end_point.node)
     return node.full_name if node else ""

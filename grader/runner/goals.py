@@ -172,7 +172,7 @@ class Goals:
         self._clients[step.action].send(step, number)
 
     def cancel(self, step: CancelGoal | CancelAll) -> None:
-        """Request to cancel."""
+        """Ask to cancel."""
         if isinstance(step, CancelAll):
             self._clients[step.action].cancel(step.at, 0)
         else:

@@ -13,7 +13,7 @@ from rmw_lockstep.hub.qos import INFINITE, KEEP_ALL
 #: Topics that every node has.
 OWN_TO_ROS = ("/rosout", "/parameter_events")
 
-#: Services that every node of rclpy has, under its own name.
+#: Services that every node of rclpy has by itself, under its own name.
 OWN_SERVICES = (
     "describe_parameters",
     "get_parameter_types",
@@ -24,7 +24,7 @@ OWN_SERVICES = (
     "get_type_description",
 )
 
-#: The name of the service by which an action accepts goals.
+#: How the service is called by which an action takes goals.
 SEND_GOAL = "/_action/send_goal"
 
 _KINDS: dict[int, EndPointKind] = {

@@ -27,7 +27,7 @@ class ReferencePublishers:
         self._speaking: dict[str, int] = {}
         for message in scenario.messages:
             self._add(message)
-        # One entry per message object: a stream may contain the same message several times.
+        # Once for each that is made: a stream may have one message several times.
         self._serialized = {id(m): serialized(message_class(m.type), m.fields) for m in scenario.messages}
         self.sent: list[Sent] = []
         self.stages: list[int] = []

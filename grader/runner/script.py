@@ -93,7 +93,7 @@ class Script:
         return self._schedule.due
 
     def do(self, step: Step) -> None:
-        """Do one step."""
+        """Carry out one step."""
         if isinstance(step, (Request, SetParameter, GetParameter)):
             self._calls.make(step)
         elif isinstance(step, SendGoal):

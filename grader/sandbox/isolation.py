@@ -61,7 +61,7 @@ def choose(wanted: Isolation | None = None) -> Isolation:
 
 
 def _reason_against(level: Isolation) -> str | None:
-    """Return None if the level works, or has worked under the same circumstances; otherwise the reason in words."""
+    """None where the level works, or has worked under the same circumstances; else the reason in words."""
     if trials.has_worked(level.value):
         return None
     reason = _tried(level)

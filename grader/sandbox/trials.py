@@ -1,7 +1,7 @@
-"""Which levels have been tried and work, stored until something changes that this depends on.
+"""Which levels have been tried and work, kept until something changes that this depends on.
 
-A trial takes as long as the runs of four scenarios. A stored result makes no start less safe: each start makes its
-sandbox anew, and if a step of that fails nothing runs. Failed trials are not stored.
+A trial takes as long as the spins of four scenarios. What is kept makes no start less safe: each start makes its
+sandbox anew, and where a step of that fails nothing runs. What did not work is not kept.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _STATUS = ("Uid", "Gid", "CapEff", "CapBnd", "NoNewPrivs", "Seccomp", "Seccomp_f
 
 
 def has_worked(level: str) -> bool:
-    """Return whether a trial of this level has worked, under exactly the same circumstances."""
+    """Whether a trial of this level has worked, under all the same circumstances."""
     try:
         return _file(level).exists()
     except OSError:  # another user's folder: it is tried each time
@@ -41,13 +41,13 @@ def has_worked(level: str) -> bool:
 
 
 def keep(level: str) -> None:
-    """Store that a trial has worked."""
-    with contextlib.suppress(OSError):  # if nothing can be stored, the level is tried each time
+    """Remember that a trial has worked."""
+    with contextlib.suppress(OSError):  # where nothing can be kept, it is tried each time
         write_if_changed(_file(level), "")
 
 
 def forget() -> None:
-    """Try every level again the next time: a sandbox could not be made that should work."""
+    """Try every level again the next time: a sandbox could not be made that ought to work."""
     shutil.rmtree(cached("sandbox"), ignore_errors=True)
 
 
@@ -65,7 +65,7 @@ def _circumstances() -> Iterator[str]:
     yield repr([resource.getrlimit(which) for which in (resource.RLIMIT_NPROC, resource.RLIMIT_AS)])
     yield repr((sys.executable, sys.version))
     for name in sorted({*filesystem.RUNTIME_VARIABLES} - {"PATH"}):
-        yield f"{name}={sorted(os.environ.get(name, '').split(os.pathsep))}"  # ROS's wheels list theirs in any order
+        yield f"{name}={sorted(os.environ.get(name, '').split(os.pathsep))}"  # ROS's wheels give theirs in any order
     bubblewrap = shutil.which("bwrap")
     for file in (*sorted(Path(__file__).parent.glob("*.py")), *([Path(bubblewrap)] if bubblewrap else [])):
         found = file.stat()

@@ -43,7 +43,7 @@ class Worker:
     """
 
     def __init__(self, process: Callable[[], Connection]) -> None:
-        """`process` connects to a new process; it raises OSError if none can be had."""
+        """`process` connects to a new process; it raises OSError where there is none to be had."""
         self._new = process
         self._process: Connection | None = None
 
@@ -161,7 +161,7 @@ class WorkerPool:
             return hand.do(job, cancelled)
 
     def hand(self) -> Worker:
-        """Return a process that does one job after another."""
+        """A process that does one job after another."""
         return Worker(self._process)
 
     def prepare_types(self, modules: Iterable[str]) -> None:

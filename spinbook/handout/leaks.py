@@ -24,7 +24,7 @@ _PIECE = 8
 
 @dataclass(frozen=True)
 class Secret:
-    """A piece of text that students must not see, without spaces, and what it is; `at` is its file and first line."""
+    """A piece of text that no student may see, without spaces, and what it is; `at` is its file and first line."""
 
     what: str
     text: str

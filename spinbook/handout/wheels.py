@@ -110,7 +110,7 @@ def _packages(course: Course, text: bytes) -> Iterator[tuple[str, Path]]:
 
 
 def requirement(file: str) -> str:
-    """Return the line of a requirements.txt for a wheel, for the Python and the machine that it was compiled for."""
+    """The line of a requirements.txt for a wheel, for the Python and the machine that it was compiled for."""
     version, platform = file.removesuffix(".whl").split("-")[2:5:2]
     minor = version.removeprefix("cp3")
     machine = platform.partition("_")[2]

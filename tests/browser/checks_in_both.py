@@ -42,7 +42,7 @@ def handed_out(name: str, folder: Path) -> Exercise:
 
 
 def in_the_page(exercise: Exercise, file: Path, out: Path) -> dict[str, Any]:
-    """Return the result of the page's check, from a process that runs over rcl_python."""
+    """What the page's check comes to, from a process that runs over rcl_python."""
     command = [sys.executable, os.fspath(CHECK_FILE), os.fspath(exercise.folder), os.fspath(file), os.fspath(out)]
     done = subprocess.run(["timeout", "-k", "1", "60", *command], capture_output=True, text=True, cwd=ROOT, check=False)
     assert done.returncode == 0, f"exit code {done.returncode}: {done.stderr}"
@@ -56,7 +56,7 @@ def comparable(recording: Recording) -> Recording:
 
 
 def compared(exercise: Exercise, file: Path, folder: Path) -> str:
-    """Return how the page's check of a program differs from the real grader's."""
+    """How the page's check of a program differs from the real grader's."""
     try:
         here = in_the_page(exercise, file, folder / "result.json")
     except AssertionError as error:

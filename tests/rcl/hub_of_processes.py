@@ -69,7 +69,7 @@ class SocketLink:
             self.lock.wait(None if nanoseconds is None else nanoseconds / 1e9)
 
     def breathe(self) -> None:
-        """Do nothing: frames and signals need no help."""
+        """Frames and signals come in by themselves."""
 
     def steady(self) -> int:
         """The steady clock (ns)."""

@@ -22,7 +22,7 @@ def _own_command(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(autouse=True)
 def _without_a_course(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Undoes an earlier test's use of a course's interfaces in this process: `ros2` would list them, too."""
+    """An earlier test of this process may use a course's interfaces: `ros2` would list them, too."""
     compiled = {str(prefix) for prefix in activation.active()}
     for variable in (activation.VARIABLE, "AMENT_PREFIX_PATH", "PYTHONPATH"):
         entries = os.environ.get(variable, "").split(os.pathsep)
@@ -31,7 +31,7 @@ def _without_a_course(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def within(entry: str, folders: set[str]) -> bool:
-    """Return whether a path is one of these folders, or below one."""
+    """Whether a path is one of these folders, or below one."""
     return any(entry == folder or entry.startswith(folder + os.sep) for folder in folders)
 
 

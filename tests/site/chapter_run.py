@@ -2,8 +2,8 @@
 
     python tests/site/chapter_run.py SITE EXECUTED_NOTEBOOK …
 
-prints the cells that differ. Numbers that depend on time count as equal; if a page's cell shows something endless,
-it must contain every kind of line that was recorded.
+prints the cells that differ. Numbers that depend on time count as equal; what a page's cell shows of something that
+goes on for ever must hold every kind of line that was recorded.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ def shape(line: str) -> str:
 
 
 def run_chapter(page: Page, cells: list[Recorded]) -> dict[str, str]:
-    """Run each cell of the open page in order; return what differs, by the cell's id."""
+    """Run each cell of the open page in order; what differs, by the cell's id."""
     places = page.locator(CELLS)
     assert places.count() == len(cells), f"{places.count()} cells on the page, {len(cells)} in the notebook"
     differences = {}

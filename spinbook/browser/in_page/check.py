@@ -31,7 +31,7 @@ _SEVERAL = "This exercise has several programs, which a web page can't check tog
 
 
 def check(name: str, source: str) -> str:
-    """Return the public checks' results for the code, as JSON: `problem` alone, or `total`, `full`, `rows` and more."""
+    """What the public checks say of the code, as JSON: `problem` alone, or `total`, `full`, `rows` and more."""
     hindrance = hindrance_of(source) or _threads_in(source)
     if hindrance:
         return json.dumps({"problem": hindrance})
@@ -61,7 +61,7 @@ _SIGNS = ("MultiThreadedExecutor", "threading", "concurrent.futures")
 
 
 def _threads_in(source: str) -> str:
-    """Return the sentence for a program with threads: Pyodide crashes when a check has several stacks."""
+    """The sentence for a program with threads: Pyodide ends with a fault of its own when a check has several stacks."""
     return _THREADS if any(sign in source for sign in _SIGNS) else ""
 
 

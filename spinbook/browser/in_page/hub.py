@@ -32,7 +32,7 @@ class Turns:
         self._program.acquire()
         self._hub.acquire()
         self.is_over = False
-        """Whether the program has to end now, as if it were killed."""
+        """Whether the program is to end now, as one that is killed."""
         self.has_ended = False
         self.fault: BaseException | None = None
         """The exception in the hub's code while it handled what the program sent."""

@@ -51,7 +51,7 @@ class PageLink:
         threads.pause(-1 if nanoseconds is None else nanoseconds / 1e6, True)
 
     def breathe(self) -> None:
-        """Let frames in, if none could arrive for a while."""
+        """Let frames in, if none could come for a while."""
         if time.monotonic() - self._breathed > _BREATH_S:
             self.wait(0)
 

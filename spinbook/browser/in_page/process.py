@@ -35,7 +35,7 @@ def open_process(page: Any, identity: str) -> None:
     participant.use(link, identity)
     time.sleep = link.sleep  # type: ignore[assignment]
     logs.write = lambda line: print(line, file=sys.stderr)
-    # A pool of one thread would be useless; a page does not know the number of cores.
+    # A pool of one thread would be none; how many there are is not the page's to know.
     os.cpu_count = lambda: _PROCESSORS
     rcl_python.install()
     builtins.input = _refuse_input

@@ -29,7 +29,7 @@ _DATA, _CALL = struct.Struct("<QQqQqI"), struct.Struct("<QqqQqI")
 _IN_DATA, _IN_REQUEST, _IN_RESPONSE = struct.Struct("<QQq"), struct.Struct("<QQqq"), struct.Struct("<Qqq")
 _TIME = struct.Struct("<qB")
 _BARRIER, _TIME_KIND = ord("|"), ord("T")
-#: A program that polls and never waits is considered idle after so many polls.
+#: A program that only looks and never waits is done after so many looks.
 _LOOKS = 4
 
 
@@ -75,7 +75,7 @@ class ProgramLink:
     # --- time
 
     def wait(self, nanoseconds: int | None) -> None:
-        """Wait for a frame, for another thread, or until the time is up."""
+        """Wait for what comes, for another thread, or for so long."""
         self._looks = 0
         held = self.lock._release_save()  # type: ignore[attr-defined]
         try:
@@ -131,7 +131,7 @@ class ProgramLink:
         return until is not None and until <= self._now
 
     def breathe(self) -> None:
-        """Make a program wait that polls repeatedly without waiting."""
+        """A program that looks again and again without waiting waits."""
         self._looks += 1
         if self._looks > _LOOKS:
             self.wait(None)

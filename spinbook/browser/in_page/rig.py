@@ -75,7 +75,7 @@ class PageStudent:
         return Printed(self._log.getvalue())
 
     def poll(self) -> Ended | None:
-        """Return how it ended, if it has."""
+        """How it ended, if it has."""
         return Ended(self.code) if self._turns.has_ended else None
 
     def wait(self, timeout_s: float) -> Ended | None:
@@ -171,7 +171,7 @@ def _forget_rclpy_s() -> None:
 
 @contextmanager
 def _as_main(program: Program, scenario: Scenario, log: io.StringIO, link: ProgramLink) -> Iterator[None]:
-    """Let the program be `__main__`, started as the grader starts it; keep its output; clean up after it."""
+    """Let the program be `__main__`, started as the grader starts it; keep what it prints; clean up behind it."""
     before = sys.modules["__main__"], sys.argv, logs.write, dict(os.environ)
     handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     main = types.ModuleType("__main__")

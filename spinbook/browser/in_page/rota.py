@@ -29,7 +29,7 @@ class Rota:
         self._numbers = {self._main: 1}
 
     def close(self) -> None:
-        """Stop the threads, because the program has ended."""
+        """The program has ended; its threads go no further."""
         threads.govern(None)
         threads.forget(number for number in self._numbers if number != self._main)
 
