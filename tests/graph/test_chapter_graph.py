@@ -41,7 +41,7 @@ def speak():
 node.create_timer(0.1, speak)
 print("talking", flush=True)
 """
-#: Prints the rate of what it receives once there has been enough to count.
+#: Prints a line once it has received enough messages to count their rate.
 _LISTENER = """
 heard = []
 def hear(message):

@@ -27,7 +27,7 @@ _NUMBER = re.compile(r"\b([0-9a-f]{2}\.){8,}[0-9a-f]{2}\b|-?(?<![\w.])\d+(\.\d+)
 _FILE = re.compile(r'File "[^"]*?([^/"<>]+|<[^>]*>)"')
 _OF_THE_NOTEBOOK = re.compile(
     r"^— .* —$|^\(restarting .*\)$|^env: |^\.\.\. \(\d+ lines|^~?\^+~?$"
-    # Loading that is asked for too early waits, in a notebook as in a page.
+    # A call that is made too early waits, in a notebook as in a page.
     r"|^waiting for service"
 )
 #: How long to wait for a cell (ms): the machine may be busy.
