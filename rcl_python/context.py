@@ -45,11 +45,11 @@ class Context(Destroyable):
         participant.current().join()
 
     def ok(self) -> bool:
-        """Return whether nodes may continue."""
+        """Whether nodes may go on."""
         return self._valid
 
     def require_valid(self, what: str, place: str) -> None:
-        """Raise RCLError unless nodes may continue."""
+        """Raise RCLError unless nodes may go on."""
         if not self._valid:
             reason = "the given context is not valid, either rcl_init() was not called or rcl_shutdown() was called."
             raise RCLError(f"{what}: {at(reason, place)}")

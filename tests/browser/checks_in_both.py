@@ -3,7 +3,7 @@
     python tests/browser/checks_in_both.py EXERCISE [NAME …]
 
 Prints a JSON object: name of the program -> "same", why a page does not check it, or how the two differ. NAME is a
-file's name without `.py`. It runs in its own process, since it uses the course's interfaces.
+file's name without `.py`. A process of its own, since it uses the course's interfaces.
 """
 
 from __future__ import annotations

@@ -141,7 +141,7 @@ def shown(place: Locator) -> list[str]:
 
 
 def compared(cell: Recorded, lines: list[str]) -> str:
-    """Return how the lines differ from the recorded ones; "" if they do not."""
+    """How the lines differ from the recorded ones; "" if they do not."""
     here = [shape(line) for line in lines]
     missing = sorted(cell.kinds - set(here))
     if cell.error and cell.error != "CellFailed" and not any(line.startswith(cell.error) for line in lines):

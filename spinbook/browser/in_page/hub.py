@@ -53,7 +53,7 @@ class Turns:
         self._program.acquire()
 
     def let_hub_go_on(self) -> None:
-        """Wait, on the program's side, until something happens, or its run is over."""
+        """The program waits until something happens, or its run is over."""
         if not self.is_over and not self.has_ended:
             self._hub.release()
             self._program.acquire()

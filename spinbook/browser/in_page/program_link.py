@@ -46,9 +46,9 @@ class ProgramLink:
     # --- out
 
     def send(self, frame: Frame, data: bytes = b"") -> None:
-        """Send a frame to the hub, which handles it at once."""
+        """Hand a frame to the hub, which takes it at once."""
         if self._turns.is_over or self._turns.has_ended:
-            return  # such as an object of the program's that is garbage-collected later
+            return  # such as an object of the program's that is collected later
         thread = self.rota.number()
         for kind, payload in _encoded(frame, data, (self._connection.handled, self._now, thread)):
             try:
@@ -91,13 +91,13 @@ class ProgramLink:
             participant.current().pump()
 
     def rest(self, until: int | None, in_ros: int) -> None:
-        """Wait while all threads wait, so many of them in ROS: until a frame, the time `until`, or a signal arrives."""
+        """All threads wait, of which so many in ROS: until something has come, or the time has, or a signal."""
         while not self._goes_on(until) and not self._turns.is_over and not self._turns.signal:
             self._connection.rests(self._now, until, in_ros)
             self._turns.let_hub_go_on()
 
     def heed(self) -> None:
-        """Do, in the main thread, what the hub requests: end, or handle a signal. Raises `Over`."""
+        """Do, in the main thread, what the hub wants: end, or handle a signal. Raises `Over`."""
         if self._turns.is_over:
             raise Over
         if self._turns.signal:
