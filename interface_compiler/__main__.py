@@ -1,4 +1,4 @@
-"""`python -m interface_compiler`: what scripts call that set up an environment.
+"""`python -m interface_compiler`: called by the scripts that set up an environment.
 
 python -m interface_compiler                  install what every environment has
 python -m interface_compiler install COURSE   the same, and compile the folder interfaces/ of a course
@@ -18,7 +18,7 @@ from interface_compiler.wheel import install
 
 
 def main() -> int:
-    """Do what the words on the command line say; the exit code is 3 if this machine can't compile."""
+    """Do what the command line says; the exit code is 3 if this machine can't compile."""
     if sys.argv[1:] == ["needs"]:
         print(*toolchain.debian_packages())
         return 0

@@ -1,4 +1,4 @@
-"""Lets this process, and those that it starts, import compiled packages and find their definitions."""
+"""Lets this process, and its child processes, import compiled packages and find their definitions."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from pathlib import Path
 from interface_compiler import prefixes
 from interface_compiler.prefixes import PYTHON
 
-#: Names the prefixes that are in use, in the environment of every process that uses them.
+#: The environment variable, in every process that uses prefixes, that lists them.
 VARIABLE = "SPINBOOK_INTERFACES"
 
 
 def active(environment: MutableMapping[str, str] | None = None) -> list[Path]:
-    """The prefixes in use, those that are still there."""
+    """Return the prefixes in use that still exist."""
     named = (os.environ if environment is None else environment).get(VARIABLE, "").split(os.pathsep)
     return [Path(entry) for entry in named if entry and Path(entry).is_dir()]
 
 
 def activate(prefix: Path, instead_of: Iterable[Path] = ()) -> None:
-    """Use the packages in `prefix` from now on, also in child processes, and no longer those in `instead_of`.
+    """Use the packages in `prefix` from now on, also in child processes, and stop using those in `instead_of`.
 
-    A package that this process has imported already stays as it is: see `imported`.
+    A package that this process has already imported stays as it is: see `imported`.
     """
     extend(os.environ, prefix, instead_of)
     gone = {str(old / PYTHON) for old in instead_of}
     sys.path[:] = [entry for entry in sys.path if entry not in gone]
     if str(prefix / PYTHON) not in sys.path:
-        # Before what is installed: a course's newer text counts.
+        # Before what is installed: a course's newer text takes precedence.
         sys.path.insert(0, str(prefix / PYTHON))
     importlib.invalidate_caches()
 
@@ -51,7 +51,7 @@ def active_packages() -> list[str]:
 
 
 def imported(packages: Iterable[str], prefix: Path) -> list[str]:
-    """Those of these packages that this process has imported from elsewhere than `prefix`."""
+    """Return those of these packages that this process has imported from elsewhere than `prefix`."""
     own = str(prefix / PYTHON)
     loaded = ((name, sys.modules[name]) for name in packages if name in sys.modules)
     return [name for name, module in loaded if not str(getattr(module, "__file__", "")).startswith(own)]

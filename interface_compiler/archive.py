@@ -1,4 +1,4 @@
-"""Zip archives that are the same bytes whenever the same files go in."""
+"""Zip archives that have the same bytes whenever they contain the same files."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import stat
 import zipfile
 from collections.abc import Mapping
 
-#: The earliest moment that a zip can name.
+#: The earliest moment that a zip can contain.
 _DATE = (1980, 1, 1, 0, 0, 0)
 
 
 def zipped(files: Mapping[str, bytes], last: str = "") -> bytes:
-    """An archive of `files`, by name, sorted; `last` names one that goes to the end."""
+    """Return an archive of `files`, sorted by name; `last` names one that goes to the end."""
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w") as archive:
         for name in sorted(files, key=lambda name: (name == last, name)):

@@ -1,6 +1,6 @@
 """Makes packages in a prefix, in a process of its own: `python -m interface_compiler.building PREFIX PACKAGE …`.
 
-The generators change global state and import much, which no notebook's kernel should keep.
+The generators change global state and import many modules, which a notebook's kernel should not keep.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from interface_compiler.definition import CompileError, read_folder
 from interface_compiler.generating import Generated, Sources, generate
 from interface_compiler.prefixes import PYTHON, RESOURCES
 
-#: Where a prefix keeps the definitions that it is made of.
+#: Where a prefix keeps the definitions that it was made from.
 DEFINITIONS = "definitions"
 
 _PACKAGE_XML = """\
@@ -56,7 +56,7 @@ def build(prefix: Path, package: str) -> None:
 
 
 def _used(sources: Sources, needed: Sequence[str]) -> list[str]:
-    """The packages whose types are in this one's, those inside nested types too."""
+    """Return the packages whose types this one uses, including those inside nested types."""
     used = set(needed)
     for interface in sources.interfaces():
         told = json.loads((sources.share / interface).with_suffix(".json").read_text(encoding="utf-8"))
@@ -99,7 +99,7 @@ def _write_index(prefix: Path, sources: Sources, needed: Sequence[str]) -> None:
 
 
 def main() -> int:
-    """Build the packages that the command line names, in that order; the exit code."""
+    """Build the packages that the command line names, in that order; return the exit code."""
     try:
         for package in sys.argv[2:]:
             build(Path(sys.argv[1]), package)

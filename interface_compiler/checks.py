@@ -11,7 +11,7 @@ from interface_compiler import shipped
 from interface_compiler.definition import Definition, Fault, by_package
 from interface_compiler.grammar import Reading, Reference, read, usual_name
 
-#: ROS's rule for the names of packages (REP 144), and for those of interfaces.
+#: ROS's rule for the names of packages (REP 144), and that for the names of interfaces.
 _PACKAGE = re.compile(r"(?!.*__)(?!.*_$)[a-z][a-z0-9_]*")
 _NAME = re.compile(r"[A-Z][A-Za-z0-9]*")
 #: Package -> its interfaces as `msg/String`.
@@ -19,7 +19,7 @@ Known = Mapping[str, frozenset[str]]
 
 
 def check(definitions: Sequence[Definition], known: Known) -> list[Fault]:
-    """What is wrong in definitions that are to be compiled together, sorted by file and line.
+    """Return what is wrong in definitions that are to be compiled together, sorted by file and line.
 
     `known` are the packages that are installed.
     """
@@ -36,7 +36,7 @@ def check(definitions: Sequence[Definition], known: Known) -> list[Fault]:
 
 
 def dependencies(definitions: Sequence[Definition]) -> dict[str, set[str]]:
-    """Package -> the other packages that its definitions need, of definitions without faults."""
+    """Return package -> the other packages that its definitions need, for valid definitions."""
     needed = {}
     for package, members in by_package(definitions).items():
         found = {reference.type.split("/")[0] for member in members for reference in read(member).references}
@@ -49,7 +49,7 @@ def dependencies(definitions: Sequence[Definition]) -> dict[str, set[str]]:
 
 
 def in_order(definitions: Sequence[Definition]) -> list[str]:
-    """The packages, each after those that it needs."""
+    """Return the packages, each after those that it needs."""
     own = by_package(definitions)
     needed = dependencies(definitions)
     return list(TopologicalSorter({package: sorted(needed[package] & own.keys()) for package in own}).static_order())
@@ -108,7 +108,7 @@ def _similar(reference: Reference, package: str, name: str, known: Known) -> str
 
 
 def _same_names(definitions: Sequence[Definition]) -> Iterator[Fault]:
-    """Two definitions that would write the same file: of one name, or of names that differ in their capitals only."""
+    """Find definitions that would write the same file: with the same name, or names that differ in capitals only."""
     first: dict[tuple[str, str, str], Definition] = {}
     for definition in definitions:
         known = first.setdefault((definition.package, definition.kind, definition.name.lower()), definition)
@@ -120,7 +120,7 @@ def _same_names(definitions: Sequence[Definition]) -> Iterator[Fault]:
 
 
 def _circles(readings: Mapping[Definition, Reading]) -> Iterator[Fault]:
-    """Messages that contain themselves."""
+    """Find messages that contain themselves."""
     messages = {f"{item.package}/{item.name}": item for item in readings if item.kind == "msg"}
     graph = {name: {ref.type for ref in readings[item].references} & messages.keys() for name, item in messages.items()}
     if cycle := _cycle(graph):
@@ -148,10 +148,10 @@ def _package_circles(definitions: Sequence[Definition], readings: Mapping[Defini
 
 
 def _cycle(graph: Mapping[str, set[str]]) -> list[str] | None:
-    """Names in a circle, the first one again at the end, each needing the next; None if there is no circle."""
+    """Return names in a cycle, the first one again at the end, each needing the next; None if there is no cycle."""
     try:
         TopologicalSorter({name: sorted(names) for name, names in sorted(graph.items())}).prepare()
     except CycleError as error:
-        # graphlib names each before the one that needs it.
+        # graphlib lists each before the one that needs it.
         return list(reversed(error.args[1]))
     return None

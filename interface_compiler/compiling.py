@@ -1,7 +1,7 @@
 """Runs gcc over the generated code of one package: everything native becomes one Python extension module.
 
-CMake makes eight libraries of a package, which find one another by name on LD_LIBRARY_PATH. Here they are one, so
-nothing has to be found: a table in it (`dispatch.cpp`) stands in for the search of `librosidl_typesupport_c`.
+CMake makes eight libraries per package, which find one another by name on LD_LIBRARY_PATH. Here they are one, so
+nothing has to be found: a table in it (`dispatch.cpp`) replaces the search of `librosidl_typesupport_c`.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _PARTS_BY_CMAKE = (
 _FLAGS = ("-O1", "-fPIC", "-g0", "-w", "-fvisibility=default")
 _DISPATCH = Path(__file__).with_name("dispatch.cpp.in")
 _SYMBOL = re.compile(r"STRINGIFY\(ROSIDL_TYPESUPPORT_INTERFACE__(MESSAGE|SERVICE)_SYMBOL_NAME\((\w+), ([^)]*)\)\)")
-#: The file in which the compiler's own words are kept where it fails.
+#: The file with the compiler's output if it fails.
 LOG = "compiler.log"
 
 
@@ -51,7 +51,7 @@ class Dependency:
 
     @property
     def module(self) -> Path:
-        """Its extension module, where the package was compiled here; absent where CMake made it."""
+        """Its extension module, if the package was compiled here; absent if CMake made it."""
         return self.prefix / PYTHON / self.package / module_name(self.package)
 
     @property
@@ -60,7 +60,7 @@ class Dependency:
         return self.module.is_file()
 
     def libraries(self) -> list[Path]:
-        """What to link against."""
+        """Return what to link against."""
         if self.is_ours:
             return [self.module]
         found = [self.prefix / "lib" / f"lib{self.package}__{part}.so" for part in _PARTS_BY_CMAKE]
@@ -73,7 +73,7 @@ def module_name(package: str) -> str:
 
 
 def compile_package(generated: Generated, work: Path, dependencies: Sequence[Dependency], wheels: Path) -> Path:
-    """Compile a package's code. Returns the extension module, which is in its Python package.
+    """Compile a package's code. Return the extension module, which is in its Python package.
 
     Args:
         generated: the code.
@@ -85,7 +85,7 @@ def compile_package(generated: Generated, work: Path, dependencies: Sequence[Dep
         CompileError: if gcc fails.
     """
     units = _units(generated, work)
-    # Assertions in the code name its file: without the folder, so that the result is the same wherever it is made.
+    # Assertions in the code name its file: without the folder, so that the result is the same in every folder.
     places = [f"-ffile-prefix-map={folder}=." for folder in (work, generated.python)]
     flags = [*_FLAGS, *places, *_includes(generated, dependencies, wheels)]
     objects = [work / f"{number}.o" for number in range(len(units))]
@@ -104,7 +104,7 @@ def compile_package(generated: Generated, work: Path, dependencies: Sequence[Dep
 
 
 def _units(generated: Generated, work: Path) -> list[Path]:
-    """What the compiler is started for: as few as there can be, as most of its time goes into reading headers."""
+    """Return the compiler's inputs: as few as possible, as most of its time is spent on reading headers."""
     c, introspection = generated.c / generated.package, generated.introspection / generated.package
     units = []
     for kind in ("msg", "srv", "action"):
@@ -135,7 +135,7 @@ def _python_sources(generated: Generated) -> list[Path]:
 
 
 def _dispatch(c: Path) -> str:
-    """The table's code: each type support that the generated code would search for, by the name it searches for."""
+    """Return the table's code: each type support that the generated code would search for, by that name."""
     found: dict[str, list[str]] = {"message": [], "service": []}
     for source in sorted(c.glob("*/*__type_support.cpp")):
         for kind, support, names in _SYMBOL.findall(source.read_text(encoding="utf-8")):

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-#: Folder and ending of a definition -> how many lines `---` it has.
+#: Folder and ending of a definition -> its number of `---` lines.
 KINDS = {"msg": 0, "srv": 1, "action": 2}
 
 
@@ -15,7 +15,7 @@ class Definition:
     """One interface as its author wrote it.
 
     `kind` is msg, srv or action. `file` and `line` say where the text begins, with lines counted from 1: `line` is 1
-    for a file of its own, and more for a fence in a chapter.
+    for a file of its own, and more for a code fence in a chapter.
     """
 
     package: str
@@ -38,7 +38,7 @@ class Definition:
 
 @dataclass(frozen=True)
 class Fault:
-    """One thing to fix in one file: `line` counts from 1, and is None where the whole file is meant."""
+    """One thing to fix in one file: `line` counts from 1, and is None if it concerns the whole file."""
 
     file: Path
     line: int | None
@@ -59,13 +59,13 @@ class DefinitionError(Exception):
 
 
 class CompileError(Exception):
-    """Raised where correct definitions can't be compiled on this machine. The message says what to do."""
+    """Raised when correct definitions can't be compiled on this machine. The message says what to do."""
 
 
 def read_folder(folder: Path, relative_to: Path | None = None) -> tuple[list[Definition], list[Fault]]:
-    """The definitions in `folder/PACKAGE/{msg,srv,action}/`, and the files among them that can't be read.
+    """Return the definitions in `folder/PACKAGE/{msg,srv,action}/`, and the files among them that can't be read.
 
-    Their `file` is given relative to `relative_to`.
+    Their `file` is relative to `relative_to`.
     """
     definitions: list[Definition] = []
     faults: list[Fault] = []
@@ -93,7 +93,7 @@ def _definition_files(folder: Path) -> Iterator[Path]:
 
 
 def by_package(definitions: Iterable[Definition]) -> dict[str, list[Definition]]:
-    """The definitions of each package, sorted by path."""
+    """Return the definitions of each package, sorted by path."""
     packages: dict[str, list[Definition]] = {}
     for definition in sorted(definitions, key=lambda item: (item.package, item.path)):
         packages.setdefault(definition.package, []).append(definition)

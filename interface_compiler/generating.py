@@ -1,7 +1,7 @@
 """Runs ROS's code generators over the definitions of one package.
 
-They are the ones that `rosidl_generate_interfaces` of CMake runs, so types and hashes are the same. What they take is
-described by their command lines: https://github.com/ros2/rosidl and https://github.com/ros2/rosidl_python.
+They are the ones that `rosidl_generate_interfaces` of CMake runs, so types and hashes are the same. Their command
+lines describe their input: https://github.com/ros2/rosidl and https://github.com/ros2/rosidl_python.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _HEADERS_OF_OWN = ("rosidl_generator_c", *TYPE_SUPPORTS)
 
 @dataclass(frozen=True)
 class Generated:
-    """Where the code of one package was written: C and C++, introspection's C, and Python with its C."""
+    """Where the code of one package was written: C and C++, the C of introspection, and Python with its C."""
 
     package: str
     c: Path
@@ -34,7 +34,7 @@ class Generated:
 
 @dataclass(frozen=True)
 class Sources:
-    """One package's definitions: `folder/{msg,srv,action}/…`, and `share`, where installed files of it go.
+    """One package's definitions: `folder/{msg,srv,action}/…`, and `share` for their installed files.
 
     `known` are the folders of the other packages' shared files, by package.
     """
@@ -45,7 +45,7 @@ class Sources:
     known: Mapping[str, Path]
 
     def interfaces(self) -> list[Path]:
-        """The definitions, relative to the folder, sorted."""
+        """Return the definitions, relative to the folder, sorted."""
         files = (file for kind in ("msg", "srv", "action") for file in self.folder.glob(f"{kind}/*.{kind}"))
         return sorted(file.relative_to(self.folder) for file in files)
 
@@ -148,7 +148,7 @@ def _write_visibility(generated: Generated, templates: Path) -> None:
 
 @functools.cache
 def _read_each_idl_once() -> None:
-    """Let the generators share what they parse: each would read every .idl again, which is most of their time."""
+    """Let the generators share what they parse: otherwise each would read every .idl, which is most of their time."""
     import rosidl_generator_py.generate_py_impl
     import rosidl_generator_type_description
     import rosidl_parser.parser

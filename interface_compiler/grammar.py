@@ -1,8 +1,8 @@
 """The lines of a definition: fields, constants and separators, each with what is wrong in it.
 
 The language is described at https://docs.ros.org/en/jazzy/Concepts/Basic/About-Interfaces.html. ROS's own parser says
-what is wrong without saying where, so each line is read here first; whether a value fits its type is asked of that
-parser, `rosidl_adapter.parser`.
+what is wrong without saying where, so each line is read here first; that parser, `rosidl_adapter.parser`, only
+decides whether a value fits its type.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ PRIMITIVES = (
     *("bool", "byte", "char", "float32", "float64", "int8", "uint8", "int16", "uint16", "int32", "uint32"),
     *("int64", "uint64", "string", "wstring"),
 )
-#: Names of types that people write -> what ROS 2 calls them.
+#: Type names that people write -> their names in ROS 2.
 _USUAL_MISTAKES = {
     "Header": "std_msgs/Header",
     "time": "builtin_interfaces/Time",
@@ -46,7 +46,7 @@ _ARRAY = re.compile(r"\[(?:(?:<=)?[1-9]\d*)?\]")
 
 @dataclass(frozen=True)
 class Reference:
-    """A field's message type in full, `PACKAGE/NAME`, and the definition's line that it stands on."""
+    """A field's message type in full, `PACKAGE/NAME`, and the definition's line that it is on."""
 
     type: str
     written: str
@@ -69,7 +69,7 @@ def read(definition: Definition) -> Reading:
 
 
 class _LineReader:
-    """Reads one definition line by line. A field's name must be the only one in its part, between two `---`."""
+    """Reads one definition line by line. A field's name must be unique in its part, between two `---`."""
 
     def __init__(self, definition: Definition, reading: Reading) -> None:
         self._definition = definition
@@ -119,7 +119,7 @@ class _LineReader:
         text, hash_sign, _ = raw.partition("#")
         text = text.strip()
         if not text:
-            # Comments at the top of a part are about the part; others about what follows.
+            # Comments at the top of a part are about the part; others are about what follows.
             self._commented = bool(hash_sign) and not self._at_top
             self._at_top = self._at_top and bool(hash_sign)
             return
@@ -152,7 +152,7 @@ class _LineReader:
             self._value(written, name, value, "value")
 
     def _must_be_distinct(self, *constant: str) -> None:
-        """ROS's parser takes two constants for one if all of them is the same, and its C code does not compile."""
+        """Report equal constants: ROS's parser confuses two identical ones, and its C code does not compile."""
         written, name, value = constant
         if (written, name, value) in self._bare:
             found = f"`{name}={value}` is in line {self._bare[written, name, value]} too, and ROS 2 mixes the two up."
@@ -193,18 +193,18 @@ class _LineReader:
             self._value(written, name, default, "default")
 
     def _value(self, written: str, name: str, value: str, what: str) -> None:
-        # Also there where ROS 2 is sourced. Loaded when a value has to be looked at.
+        # Also available if ROS 2 is sourced. Loaded when a value has to be checked.
         from rosidl_adapter.parser import Type, parse_value_string
 
         try:
             parse_value_string(Type(written), value)
-        except Exception as error:  # the parser raises whatever it meets
+        except Exception as error:  # the parser lets all kinds of exceptions through
             reason = str(error).partition(": ")[2] or _expectation(written)
             found = f"the {what} of `{name}` is `{value}`, which is not a valid {written}."
             self._fault(found, f"{reason[:1].upper()}{reason[1:]}." if reason else "Write another one.")
 
     def _type(self, written: str) -> bool:
-        """Check a field's type, and note the message it refers to. Whether it can be one."""
+        """Check a field's type, and note the message it refers to. Return whether the type is valid."""
         match = _TYPE.fullmatch(written)
         if match is None:
             return self._no_type(written, "Write a type such as float64, string, float64[] or geometry_msgs/Pose.")
@@ -236,7 +236,7 @@ class _LineReader:
 
 
 def usual_name(written: str) -> str | None:
-    """What ROS 2 calls a type that is often written in another way, such as `Header`."""
+    """Return ROS 2's name of a type that is often written in another way, such as `Header`."""
     return _USUAL_MISTAKES.get(written)
 
 
@@ -257,6 +257,6 @@ def _as_field(name: str) -> str:
 
 
 def _words(name: str) -> Iterator[str]:
-    """The words of a name in any style, with what no name may have left out."""
+    """Yield the words of a name in any style, without the characters that a name can't have."""
     for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z0-9]+", name):
         yield word.lstrip("0123456789") if not name[:1].isalpha() else word

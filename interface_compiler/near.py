@@ -1,4 +1,4 @@
-"""What was compiled for a course before: found from a folder in it, and used by this process."""
+"""What was compiled for a course earlier: found from a folder in it, and used by this process."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ from interface_compiler.prefixes import PYTHON
 
 #: The file that makes a folder a course.
 _COURSE = "course.toml"
-#: Names the prefix that is the newest, in the store's folder.
+#: The file in the store's folder that names the newest prefix.
 _CURRENT = "current"
 
 
 def make_current(folder: Path, prefix: Path) -> None:
-    """Note which of a store's prefixes is in use, for processes that begin later."""
+    """Note which of a store's prefixes is in use, for processes that start later."""
     new = folder / f".{_CURRENT}-{os.getpid()}"
     new.write_text(prefix.name + "\n", encoding="utf-8")
     new.replace(folder / _CURRENT)
 
 
 def use(prefix: Path, folder: Path) -> None:
-    """Use a store's prefix in this process and those that it starts, in place of earlier ones of the same store."""
+    """Use a store's prefix in this process and its child processes, instead of earlier ones of the same store."""
     earlier = [old for old in activation.active() if old.parent == folder.resolve() and old != prefix]
     activation.activate(prefix, earlier)
 
 
 def current(folder: Path) -> Path | None:
-    """The prefix that was made current in a store, if it is there and for this version of Python."""
+    """Return the prefix that was made current in a store, if it exists and is for this version of Python."""
     try:
         name = (folder / _CURRENT).read_text(encoding="utf-8").strip()
     except OSError:
@@ -38,7 +38,7 @@ def current(folder: Path) -> Path | None:
 
 
 def use_near(start: Path) -> Path | None:
-    """Use what was compiled for the course in whose folder, or below it, `start` is; the prefix, if there is one."""
+    """Use what was compiled for the course that contains the folder `start`; return the prefix, if there is one."""
     for folder in (start.absolute(), *start.absolute().parents):
         if (folder / _COURSE).is_file():
             store_folder = folder / "build" / "interfaces"

@@ -13,7 +13,7 @@ PYTHON = Path("lib", f"python{sys.version_info.major}.{sys.version_info.minor}",
 
 
 def installed() -> list[Path]:
-    """The prefixes of AMENT_PREFIX_PATH, then this Python's own (the wheels'), each once and in that order."""
+    """Return the prefixes of AMENT_PREFIX_PATH, then this Python's own (the wheels'), once each, in that order."""
     named = [Path(entry) for entry in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]
     own = Path(sys.prefix)
     found = [prefix for prefix in [*named, own] if (prefix / RESOURCES).is_dir()]
@@ -21,7 +21,7 @@ def installed() -> list[Path]:
 
 
 def packages(prefixes: Iterable[Path]) -> dict[str, Path]:
-    """Package -> its prefix; the first prefix that has it wins."""
+    """Return package -> its prefix; the first prefix that has it wins."""
     found: dict[str, Path] = {}
     for prefix in prefixes:
         for marker in sorted(_markers(prefix, "packages")):
@@ -30,7 +30,7 @@ def packages(prefixes: Iterable[Path]) -> dict[str, Path]:
 
 
 def prefix_of(package: str, prefixes: Iterable[Path]) -> Path | None:
-    """The first prefix that has `package`."""
+    """Return the first prefix that has `package`."""
     for prefix in prefixes:
         if (prefix / RESOURCES / "packages" / package).is_file():
             return prefix
@@ -38,7 +38,7 @@ def prefix_of(package: str, prefixes: Iterable[Path]) -> Path | None:
 
 
 def resources(kind: str, prefixes: Iterable[Path]) -> dict[str, Path]:
-    """Name -> marker file of every resource of a `kind`, such as `rosidl_interfaces` or `rmw_typesupport`."""
+    """Return name -> marker file of every resource of a `kind`, such as `rosidl_interfaces` or `rmw_typesupport`."""
     found: dict[str, Path] = {}
     for prefix in prefixes:
         for marker in sorted(_markers(prefix, kind)):
@@ -47,18 +47,18 @@ def resources(kind: str, prefixes: Iterable[Path]) -> dict[str, Path]:
 
 
 def interfaces(prefixes: Iterable[Path]) -> dict[str, frozenset[str]]:
-    """Package -> its interfaces as `msg/String`, of every package in these prefixes that has any."""
+    """Return package -> its interfaces as `msg/String`, for every package in these prefixes that has any."""
     return {package: _listed(marker) for package, marker in resources("rosidl_interfaces", prefixes).items()}
 
 
 def interfaces_of(package: str, prefixes: Iterable[Path]) -> frozenset[str]:
-    """The interfaces of one package as `msg/String`, in the first prefix that has any; empty where none has."""
+    """Return one package's interfaces as `msg/String`, from the first prefix that has any; empty if none has."""
     markers = (prefix / RESOURCES / "rosidl_interfaces" / package for prefix in prefixes)
     return next((_listed(marker) for marker in markers if marker.is_file()), frozenset())
 
 
 def definitions_of(package: str, prefix: Path) -> dict[str, str]:
-    """Path such as `msg/String.msg` -> text, of the definitions that an installed package keeps."""
+    """Return path such as `msg/String.msg` -> text, for the definitions that an installed package keeps."""
     share = prefix / "share" / package
     files = (file for kind in ("msg", "srv", "action") for file in sorted(share.glob(f"{kind}/*.{kind}")))
     return {file.relative_to(share).as_posix(): file.read_text(encoding="utf-8") for file in files}

@@ -12,18 +12,18 @@ _FOLDER = Path(__file__).with_name("definitions")
 
 @functools.cache
 def standard() -> tuple[str, ...]:
-    """The packages that every installation has."""
+    """Return the packages that every installation has."""
     return _packages("standard")
 
 
 @functools.cache
 def optional() -> tuple[str, ...]:
-    """The packages that are compiled when they are asked for."""
+    """Return the packages that are compiled on request."""
     return _packages("optional")
 
 
 def definitions(package: str) -> list[Definition]:
-    """The definitions of one of these packages. Raises KeyError for any other."""
+    """Return the definitions of one of these packages. Raises KeyError for any other."""
     for group in ("standard", "optional"):
         if package in _packages(group):
             return [item for item in read_folder(_FOLDER / group)[0] if item.package == package]

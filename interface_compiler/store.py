@@ -1,4 +1,4 @@
-"""Compiled packages, kept for as long as nothing that they are made of changes."""
+"""Compiled packages, stored for as long as nothing changes that they are made from."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from interface_compiler.building import DEFINITIONS
 from interface_compiler.definition import CompileError, Definition, DefinitionError, by_package
 from interface_compiler.prefixes import PYTHON, RESOURCES
 
-#: Wheels whose version decides how the code turns out.
+#: Wheels whose version affects the generated code.
 _WHEELS = ("ros-rosidl-adapter", "ros-rosidl-generator-py", "ros-rosidl-typesupport-fastrtps-c", "ros-fastcdr")
 #: The files of this folder that decide it, too.
 _OWN = ("generating.py", "compiling.py", "building.py", "dispatch.cpp.in")
@@ -45,14 +45,14 @@ class Compiled:
 
     @property
     def key(self) -> str:
-        """What stands for the definitions and for all else that decides the result."""
+        """The key of the definitions and everything else that decides the result."""
         return self.prefix.name
 
 
 def ensure(definitions: Sequence[Definition], store: Path) -> Compiled:
-    """The compiled packages of these definitions, compiled now if they are not in the store yet.
+    """Return the compiled packages of these definitions, compiled now if they are not in the store yet.
 
-    Two processes that want the same wait for one another.
+    Two processes that want the same wait for each other.
 
     Raises:
         DefinitionError: if a definition is wrong.
@@ -72,14 +72,14 @@ def ensure(definitions: Sequence[Definition], store: Path) -> Compiled:
 
 
 def find(definitions: Sequence[Definition], store: Path) -> Compiled | None:
-    """The compiled packages of these definitions, if the store has them."""
+    """Return the compiled packages of these definitions, if the store has them."""
     found = keys(definitions)
     prefix = store.resolve() / digest(*found.values())
     return Compiled(prefix, tuple(found)) if prefix.is_dir() else None
 
 
 def digest(*texts: str) -> str:
-    """SHA-256 of these texts and their borders, the first 16 hexadecimal digits."""
+    """Return the SHA-256 of these texts and their boundaries, the first 16 hexadecimal digits."""
     total = hashlib.sha256()
     for text in texts:
         data = text.encode()
@@ -88,7 +88,7 @@ def digest(*texts: str) -> str:
 
 
 def key_of(package: str, prefix: Path) -> str:
-    """The key of a package that was compiled into a prefix, or of an installed one; empty if CMake made it."""
+    """Return the key of a package that was compiled into a prefix, or of an installed one; empty if CMake made it."""
     with contextlib.suppress(OSError):
         return (prefix / "share" / package / _KEY).read_text(encoding="utf-8")
     return ""
@@ -101,7 +101,7 @@ def _check(definitions: Sequence[Definition]) -> None:
 
 
 def keys(definitions: Sequence[Definition]) -> dict[str, str]:
-    """Package -> its key: two texts that differ, also in a package that it needs, never have the same one."""
+    """Return package -> its key: texts that differ, also in a package that it needs, never have the same key."""
     packages = by_package(definitions)
     plain = {
         package: digest(_machine(), package, *(part for item in members for part in (item.path, item.text)))
@@ -115,7 +115,7 @@ def keys(definitions: Sequence[Definition]) -> dict[str, str]:
 
 @functools.cache
 def _machine() -> str:
-    """What decides the result besides the definitions: how it is made here, Python, and ROS's generators."""
+    """Return what decides the result besides the definitions: how it is made here, Python, and ROS's generators."""
     own = [Path(__file__).with_name(name) for name in _OWN]
     told = [sysconfig.get_config_var("EXT_SUFFIX") or "", *(file.read_text(encoding="utf-8") for file in own)]
     for wheel in _WHEELS:
@@ -133,7 +133,7 @@ def _locked(store: Path) -> Iterator[None]:
 
 
 def _compile(definitions: Sequence[Definition], found: dict[str, str], prefix: Path) -> None:
-    """Compile everything beside its place and move it there once it is whole."""
+    """Compile everything next to its final place and move it there once it is complete."""
     if reason := toolchain.missing():
         raise CompileError(reason)
     unfinished = prefix.with_name(f"{prefix.name}.part")
@@ -161,7 +161,7 @@ def _run_compiler(prefix: Path, packages: Sequence[str]) -> None:
 
 
 def _python_path() -> str:
-    """PYTHONPATH with the folder of this package, which a process started elsewhere may not find."""
+    """Return PYTHONPATH with the folder of this package, which a process started elsewhere might not find."""
     here = str(Path(__file__).resolve().parents[1])
     return os.pathsep.join(filter(None, [os.environ.get("PYTHONPATH"), here]))
 
@@ -175,7 +175,7 @@ def _prune(store: Path, newest: Path) -> None:
 
 
 def is_installed(package: str, members: Sequence[Definition], places: Sequence[Path]) -> bool:
-    """Whether one of these prefixes has the package with exactly these definitions."""
+    """Return whether one of these prefixes has the package with exactly these definitions."""
     prefix = prefixes.prefix_of(package, places)
     if prefix is None or not (prefix / RESOURCES / "rosidl_interfaces" / package).is_file():
         return False

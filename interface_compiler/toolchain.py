@@ -1,4 +1,4 @@
-"""What compiling needs of the machine: gcc, g++ and Python's headers."""
+"""What compiling needs from the machine: gcc, g++ and Python's headers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 
 
 def missing_compiler() -> str | None:
-    """One sentence with the package to install, if gcc or g++ is missing."""
+    """Return one sentence with the package to install, if gcc or g++ is missing."""
     absent = [program for program in ("gcc", "g++") if shutil.which(program) is None]
     if not absent:
         return None
@@ -18,7 +18,7 @@ def missing_compiler() -> str | None:
 
 
 def missing_headers() -> str | None:
-    """One sentence with the package to install, if Python.h is missing."""
+    """Return one sentence with the package to install, if Python.h is missing."""
     if (headers() / "Python.h").is_file():
         return None
     if sys.base_prefix != "/usr":
@@ -29,7 +29,7 @@ def missing_headers() -> str | None:
 
 
 def missing() -> str | None:
-    """What is missing, with the packages to install; None where interfaces can be compiled."""
+    """Return what is missing, with the packages to install; None if interfaces can be compiled."""
     if ros := sourced_ros():
         return (
             f"ROS 2 is sourced from {ros}, whose own tools compile interfaces: "
@@ -39,18 +39,18 @@ def missing() -> str | None:
 
 
 def debian_packages() -> list[str]:
-    """What Debian and Ubuntu call that which is missing."""
+    """Return the names of the missing packages in Debian and Ubuntu."""
     packages = ["g++"] if missing_compiler() else []
     return packages + ([_python_dev()] if missing_headers() and sys.base_prefix == "/usr" else [])
 
 
 def headers() -> Path:
-    """The folder that has Python.h where it is installed."""
+    """Return the folder that has Python.h if it is installed."""
     return Path(sysconfig.get_path("include"))
 
 
 def sourced_ros() -> Path | None:
-    """The prefix of a sourced ROS 2, which has its own tools for interfaces; None where ROS 2 came from PyPI."""
+    """Return the prefix of a sourced ROS 2, which has its own tools for interfaces; None if ROS 2 came from PyPI."""
     if (Path(sys.prefix) / "share" / "rosidl_adapter").is_dir():
         return None
     for entry in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):

@@ -27,9 +27,9 @@ _VERSION = "0.1.0"
 
 
 def wheel(package: str, prefix: Path) -> tuple[str, bytes]:
-    """The file name and content of the wheel with one package of a prefix.
+    """Return the file name and content of the wheel with one package of a prefix.
 
-    Its version ends in the package's key, so that pip replaces one that was made of other definitions.
+    Its version ends in the package's key, so that pip replaces one that was made from other definitions.
     """
     version = f"{_VERSION}+{store.key_of(package, prefix)}"
     name = f"{_project(package).replace('-', '_')}-{version}"
@@ -49,7 +49,7 @@ def wheel(package: str, prefix: Path) -> tuple[str, bytes]:
 
 
 def record(files: dict[str, bytes], listing: str) -> bytes:
-    """The content of a wheel's RECORD, which is the file `listing` itself."""
+    """Return the content of a wheel's RECORD, which is the file `listing` itself."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     for name in sorted(set(files) - {listing}):
@@ -60,9 +60,9 @@ def record(files: dict[str, bytes], listing: str) -> bytes:
 
 
 def install(package: str) -> bool:
-    """Compile a package that comes with Spinbook and install it into this environment. False: it is there already.
+    """Compile and install a package that comes with Spinbook. Return False if it is there already.
 
-    Raises KeyError for a package that does not come with it, and CompileError where it can't be compiled or installed.
+    Raises KeyError for any other package, and CompileError if it can't be compiled or installed.
     """
     definitions = shipped.definitions(package)
     if _is_current(package, definitions):
@@ -77,7 +77,7 @@ def install(package: str) -> bool:
 
 
 def needed(package: str) -> list[str]:
-    """The packages that one of these needs, each after those that it needs itself."""
+    """Return the packages that one of these needs, each after those that it needs itself."""
     found: list[str] = []
     for name in sorted(dependencies(shipped.definitions(package))[package]):
         if name in (*shipped.standard(), *shipped.optional()):
@@ -86,7 +86,7 @@ def needed(package: str) -> list[str]:
 
 
 def _is_current(package: str, definitions: Sequence[Definition]) -> bool:
-    """Whether this environment has the wheel of just these definitions, made by just this compiler."""
+    """Return whether this environment has the wheel of exactly these definitions, made by exactly this compiler."""
     try:
         version = metadata.version(_project(package))
     except metadata.PackageNotFoundError:
@@ -99,7 +99,7 @@ def _project(package: str) -> str:
 
 
 def _files(package: str, prefix: Path, data: str) -> Iterator[tuple[str, bytes]]:
-    """The wheel's own files by name: the Python package, and what goes into the environment's share and include."""
+    """Yield the wheel's own files by name: the Python package, and files for the environment's share and include."""
     for file in _below(prefix / PYTHON / package):
         if "__pycache__" not in file.parts:
             yield file.relative_to(prefix / PYTHON).as_posix(), file.read_bytes()

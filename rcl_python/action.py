@@ -50,7 +50,7 @@ class _Action(Destroyable):
             end.destroy_when_not_in_use()
 
     def is_ready(self, wait_set: WaitSet) -> tuple[bool, ...]:
-        """Which of its parts the last wait found ready."""
+        """Return which of its parts the last wait found ready."""
         return tuple(wait_set.found_ready(end) for end in self._waited())
 
     def _waited(self) -> tuple[Any, ...]:
@@ -58,7 +58,7 @@ class _Action(Destroyable):
 
 
 class ActionClient(_Action):
-    """What sends goals."""
+    """The client end of an action: it sends goals."""
 
     def __init__(
         self,
@@ -85,7 +85,7 @@ class ActionClient(_Action):
         return self.feedback, self.status, self.goal, self.cancel, self.result
 
     def get_num_entities(self) -> tuple[int, int, int, int, int]:
-        """Subscriptions, guard conditions, timers, clients, services."""
+        """Return subscriptions, guard conditions, timers, clients, services."""
         return 2, 0, 0, 3, 0
 
     def add_to_waitset(self, wait_set: WaitSet) -> None:
@@ -96,40 +96,40 @@ class ActionClient(_Action):
             wait_set.add_client(client)
 
     def is_action_server_available(self) -> bool:
-        """Whether a whole server is there."""
+        """Return whether there is a complete server."""
         services = all(client.service_server_is_available() for client in (self.goal, self.cancel, self.result))
         return bool(services and all(topic.get_publisher_count() for topic in (self.feedback, self.status)))
 
     def send_goal_request(self, request: Any) -> int:
-        """Send a goal; the request's number."""
+        """Send a goal; return the request's number."""
         return int(self.goal.send_request(request))
 
     def send_cancel_request(self, request: Any) -> int:
-        """Ask for goals to be canceled; the request's number."""
+        """Request that goals be canceled; return the request's number."""
         return self.cancel.send_request(request)
 
     def send_result_request(self, request: Any) -> int:
-        """Ask for a goal's result; the request's number."""
+        """Request a goal's result; return the request's number."""
         return self.result.send_request(request)
 
     def take_goal_response(self, response_class: Any) -> tuple[int | None, Any]:
-        """The number of a request and its response, or (None, None)."""
+        """Return the number of a request and its response, or (None, None)."""
         return _numbered(self.goal, response_class)
 
     def take_cancel_response(self, response_class: Any) -> tuple[int | None, Any]:
-        """The number of a request and its response, or (None, None)."""
+        """Return the number of a request and its response, or (None, None)."""
         return _numbered(self.cancel, response_class)
 
     def take_result_response(self, response_class: Any) -> tuple[int | None, Any]:
-        """The number of a request and its response, or (None, None)."""
+        """Return the number of a request and its response, or (None, None)."""
         return _numbered(self.result, response_class)
 
     def take_feedback(self, message_class: Any) -> Any:
-        """Feedback, or None."""
+        """Return feedback, or None."""
         return _message(self.feedback, message_class)
 
     def take_status(self, message_class: Any) -> Any:
-        """The states of the server's goals, or None."""
+        """Return the states of the server's goals, or None."""
         return _message(self.status, message_class)
 
 
@@ -158,7 +158,7 @@ def _message(subscription: Subscription, message_class: Any) -> Any:
 
 
 class ActionServer(_Action):
-    """What works on goals. `result_timeout` (s) is how long a result is kept; for ever where it is negative."""
+    """The server end of an action. `result_timeout` (s) is how long a result is kept; negative means for ever."""
 
     def __init__(
         self,
@@ -191,7 +191,7 @@ class ActionServer(_Action):
         return self.goal, self.cancel, self.result, self.expiry
 
     def get_num_entities(self) -> tuple[int, int, int, int, int]:
-        """Subscriptions, guard conditions, timers, clients, services."""
+        """Return subscriptions, guard conditions, timers, clients, services."""
         return 0, 0, 1, 0, 3
 
     def add_to_waitset(self, wait_set: WaitSet) -> None:
@@ -201,15 +201,15 @@ class ActionServer(_Action):
         wait_set.add_timer(self.expiry)
 
     def take_goal_request(self, request_class: Any) -> tuple[rmw_request_id_t | None, Any]:
-        """A request's header and the request, or (None, None)."""
+        """Return a request's header and the request, or (None, None)."""
         return _headed(self.goal, request_class)
 
     def take_cancel_request(self, request_class: Any) -> tuple[rmw_request_id_t | None, Any]:
-        """A request's header and the request, or (None, None)."""
+        """Return a request's header and the request, or (None, None)."""
         return _headed(self.cancel, request_class)
 
     def take_result_request(self, request_class: Any) -> tuple[rmw_request_id_t | None, Any]:
-        """A request's header and the request, or (None, None)."""
+        """Return a request's header and the request, or (None, None)."""
         return _headed(self.result, request_class)
 
     def send_goal_response(self, header: rmw_request_id_t, response: Any) -> None:
@@ -236,7 +236,7 @@ class ActionServer(_Action):
         self.status.publish(self._kinds.GoalStatusMessage(status_list=states))
 
     def goal_exists(self, info: Any) -> bool:
-        """Whether the goal is known."""
+        """Return whether the goal is known."""
         return self._find(info) is not None
 
     def _find(self, info: Any) -> ActionGoalHandle | None:
@@ -244,7 +244,7 @@ class ActionServer(_Action):
         return next((goal for goal in self.goals if goal.identity == wanted), None)
 
     def accept(self, goal: ActionGoalHandle) -> None:
-        """Keep track of a goal. Raises RCLError if it is known."""
+        """Keep track of a goal. Raises RCLError if it is already known."""
         if self.goal_exists(goal.info):
             raise RCLError("Failed to accept new goal: goal ID already exists")
         self.goals.append(goal)
@@ -258,7 +258,7 @@ class ActionServer(_Action):
             self.expiry.cancel_timer()
 
     def expire_goals(self, most: int) -> tuple[Any, ...]:
-        """Forget at most so many goals whose results have been kept long enough; their GoalInfo."""
+        """Forget at most so many goals whose results have been kept long enough; return their GoalInfo."""
         now = self._clock.now()
         old = [goal for goal in self.goals if goal.ended is not None and now - goal.ended >= self._timeout >= 0]
         for goal in old[:most]:
@@ -267,7 +267,7 @@ class ActionServer(_Action):
         return tuple(goal.info for goal in old[:most])
 
     def process_cancel_request(self, request: Any, response_class: Any) -> Any:
-        """Which goals a request means: one, those accepted up to a time, or all."""
+        """Return the goals that a request means: one, those accepted up to a time, or all."""
         identity, stamp = bytes(request.goal_info.goal_id.uuid), _nanoseconds(request.goal_info.stamp)
         response = response_class()
         if any(identity) and not stamp:
@@ -306,19 +306,19 @@ class ActionGoalHandle(Destroyable):
         server.accept(self)
 
     def get_status(self) -> int:
-        """The state, as in action_msgs/msg/GoalStatus."""
+        """Return the state, as in action_msgs/msg/GoalStatus."""
         return self.state
 
     def is_active(self) -> bool:
-        """Whether it has not come to an end."""
+        """Return whether it has not ended."""
         return self.state in _ACTIVE
 
     def is_cancelable(self) -> bool:
-        """Whether it can still be canceled."""
+        """Return whether it can still be canceled."""
         return (self.state, GoalEvent.CANCEL_GOAL) in _NEXT
 
     def update_goal_state(self, event: GoalEvent) -> None:
-        """Go on to the next state. Raises RCLError where there is none."""
+        """Go to the next state. Raises RCLError if there is none."""
         following = _NEXT.get((self.state, GoalEvent(int(event))))
         if following is None:
             reason = "goal_handle attempted invalid transition from state"

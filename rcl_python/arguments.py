@@ -31,7 +31,7 @@ _NODE_NAME = re.compile(r"[A-Za-z_]\w*$")
 
 @dataclass(frozen=True)
 class Remap:
-    """A rule: what `name` becomes, for the node `node` or for all. `only` is "topic", "service" or "" for both."""
+    """A rule: the new name for `name`, for the node `node` or for all. `only` is "topic", "service" or "" for both."""
 
     name: str
     to: str
@@ -41,7 +41,7 @@ class Remap:
 
 @dataclass
 class Arguments:
-    """What a program's arguments say to ROS. `parameters` are (pattern of the node's name, parameter, value)."""
+    """A program's arguments for ROS. `parameters` are (pattern of the node's name, parameter, value)."""
 
     remaps: list[Remap] = field(default_factory=list)
     parameters: list[tuple[str, str, Any]] = field(default_factory=list)
@@ -51,18 +51,18 @@ class Arguments:
     rosout: bool = True
     stdout: bool = True
     others: list[str] = field(default_factory=list)
-    """What is not for ROS."""
+    """The arguments that are not for ROS."""
     unknown: list[str] = field(default_factory=list)
-    """What is for ROS, but nobody knows."""
+    """The arguments that are for ROS, but unknown."""
 
     def refuse_unknown(self) -> None:
-        """Raise UnknownROSArgsError if there is anything that nobody knows."""
+        """Raise UnknownROSArgsError if there are unknown arguments."""
         if self.unknown:
             raise UnknownROSArgsError(repr(self.unknown))
 
 
 def parse(args: Sequence[str]) -> Arguments:
-    """Read a program's arguments. Raises RCLInvalidROSArgsError for what can't be read."""
+    """Read a program's arguments. Raises RCLInvalidROSArgsError if they can't be read."""
     found = Arguments()
     rest, ours = list(args), False
     while rest:
@@ -146,7 +146,7 @@ def _enclave(found: Arguments, flag: str, text: str) -> None:
 
 
 def _nothing(found: Arguments, flag: str, text: str) -> None:
-    """Accept what changes nothing here."""
+    """Accept an option that has no effect here."""
 
 
 _PARSERS: dict[str, Callable[[Arguments, str, str], None]] = {
@@ -157,7 +157,7 @@ _PARSERS: dict[str, Callable[[Arguments, str, str], None]] = {
 
 
 def remapped_node(remaps: Sequence[Remap], special: str, name: str) -> str | None:
-    """What `__node` or `__ns` becomes for the node that the program calls `name`; None where no rule says."""
+    """Return the value of `__node` or `__ns` for the node that the program calls `name`; None without a rule."""
     for rule in remaps:
         if rule.name == special and rule.node in ("", name):
             return rule.to
@@ -165,7 +165,7 @@ def remapped_node(remaps: Sequence[Remap], special: str, name: str) -> str | Non
 
 
 def remapped(remaps: Sequence[Remap], kind: str, absolute: str, node: str, namespace: str) -> str:
-    """What a topic or a service (`kind`) is called after the rules: the first that fits wins."""
+    """Return the name of a topic or a service (`kind`) after the rules: the first that fits wins."""
     for rule in remaps:
         if rule.name.startswith("__") or rule.only not in ("", kind) or rule.node not in ("", node):
             continue
@@ -175,7 +175,7 @@ def remapped(remaps: Sequence[Remap], kind: str, absolute: str, node: str, names
 
 
 def without_ros_args(args: Sequence[str]) -> list[str]:
-    """The arguments that are not for ROS. Raises where those for ROS can't be read."""
+    """Return the arguments that are not for ROS. Raises if those for ROS can't be read."""
     found = parse(args)
     found.refuse_unknown()
     return found.others

@@ -1,8 +1,8 @@
 """CDR of ROS messages, from the SLOT_TYPES of their generated classes.
 
 Plain CDR, little endian, as Fast DDS writes it for ROS 2 (OMG Common Data Representation, version 1): four bytes of
-header, then the fields, each aligned to its own size, counted from behind the header. Where a C converter reads a value
-of the wrong Python type (an int for a double), this reads what it would find in memory.
+header, then the fields, each aligned to its own size, counted from the end of the header. If a C converter reads a
+value of the wrong Python type (an int for a double), this reads what it would find in memory.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any, TypeAlias
 
 HEADER = b"\x00\x01\x00\x00"
 PADDING = b"\x00"
-"""What stands before a field that has to be aligned. Fast DDS leaves there whatever the memory held."""
+"""The padding before a field that has to be aligned. Fast DDS leaves whatever the memory held."""
 
 Writer: TypeAlias = Callable[[bytearray, Any], None]
 Reader: TypeAlias = "Callable[[Cursor], Any]"
@@ -26,14 +26,14 @@ _BASIC = {
     "boolean": "?", "octet": "B", "char": "B", "wchar": "I", "float": "f", "double": "d", "long double": "d",
     "int8": "b", "uint8": "B", "int16": "h", "uint16": "H", "int32": "i", "uint32": "I", "int64": "q", "uint64": "Q",
 }  # fmt: skip
-#: What a sequence of these becomes: array.array; of others: list.
+#: The Python type of a sequence of these: array.array; of others: list.
 _ARRAYS = {"float", "double", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64"}
 _UTF16 = "utf-16-le" if sys.byteorder == "little" else "utf-16-be"
 _NUMPY = {"float": "float32", "double": "float64"}
 
 
 class Cursor:
-    """A place in the bytes of a message."""
+    """A position in the bytes of a message."""
 
     __slots__ = ("at", "data")
 
@@ -53,7 +53,7 @@ class Cursor:
         return int(value)
 
     def take(self, size: int) -> bytes:
-        """Read bytes. Raises ValueError where there are too few."""
+        """Read bytes. Raises ValueError if there are too few."""
         found = bytes(self.data[self.at : self.at + size])
         if len(found) < size:
             raise ValueError("the message ends too early")
@@ -62,14 +62,14 @@ class Cursor:
 
 
 def serialize(message: Any) -> bytes:
-    """The bytes of a message."""
+    """Return the bytes of a message."""
     out = bytearray(HEADER)
     _write_fields(out, message)
     return bytes(out)
 
 
 def deserialize(data: bytes, message_class: type) -> Any:
-    """The message in the bytes `data`. Raises ValueError or struct.error where they hold none of this class."""
+    """Return the message in the bytes `data`. Raises ValueError or struct.error if they are not of this class."""
     return _read_fields(Cursor(data), message_class)
 
 
@@ -101,13 +101,13 @@ def _read_fields(cursor: Cursor, kind: type) -> Any:
 
 
 def slots(kind: Any) -> list[tuple[str, Any]]:
-    """The fields of a message class: the slot's name and its IDL type."""
+    """Return the fields of a message class: the slot's name and its IDL type."""
     names = [name for name in kind.__slots__ if name != "_check_fields"]
     return list(zip(names, kind.SLOT_TYPES, strict=True))
 
 
 def writer(slot: Any) -> Writer:
-    """What writes a value of this IDL type."""
+    """Return a function that writes a value of this IDL type."""
     kind = type(slot).__name__
     if kind == "BasicType":
         return _basic_writer(slot.typename)
@@ -149,7 +149,7 @@ def _as_double(value: Any) -> float:
 
 
 def int_as_double(value: int) -> float:
-    """What C finds where it reads a Python int as a float: the int's own bookkeeping (CPython's longintrepr.h)."""
+    """Return what C finds if it reads a Python int as a float: the int's own bookkeeping (CPython's longintrepr.h)."""
     digits = -(-abs(value).bit_length() // 30)
     if sys.version_info >= (3, 12):
         word = digits << 3 | (2 if value < 0 else 1 if value == 0 else 0)
@@ -168,7 +168,7 @@ def _write_text(out: bytearray, value: str) -> None:
 
 
 def _write_wide(out: bytearray, value: str) -> None:
-    """Fast DDS gives each unit of UTF-16 the four bytes of a wchar_t."""
+    """Write a text as Fast DDS does, which gives each unit of UTF-16 the four bytes of a wchar_t."""
     units = array.array("H", value.encode(_UTF16))
     out += PADDING * (-(len(out) - 4) % 4)
     out += struct.pack(f"<I{len(units)}I", len(units), *units)
@@ -197,7 +197,7 @@ def _write_packed(out: bytearray, values: array.array[Any], size: int) -> None:
 
 
 def _packed(slot: Any) -> tuple[str, int]:
-    """The type code and size of the elements of a sequence that is one block of memory; "" for any other."""
+    """Return the type code and size of the elements of a sequence that is one block of memory; "" for any other."""
     name = getattr(slot.value_type, "typename", "")
     if name in _ARRAYS:
         return _BASIC[name], struct.calcsize(_BASIC[name])
@@ -205,7 +205,7 @@ def _packed(slot: Any) -> tuple[str, int]:
 
 
 def reader(slot: Any) -> Reader:
-    """What reads a value of this IDL type."""
+    """Return a function that reads a value of this IDL type."""
     kind = type(slot).__name__
     if kind == "BasicType":
         return _basic_reader(slot.typename)
@@ -244,7 +244,7 @@ def _message_reader(slot: Any) -> Reader:
     found: list[type] = []
 
     def read(cursor: Cursor) -> Any:
-        # Looked up when it is needed: a class may be defined after the one that names it.
+        # Looked up when it is needed: a class may be defined after the one that refers to it.
         if not found:
             found.append(_class(".".join(slot.namespaces), slot.name))
         return _read_fields(cursor, found[0])
@@ -253,7 +253,7 @@ def _message_reader(slot: Any) -> Reader:
 
 
 def _class(package: str, name: str) -> type:
-    """A message class by its name. Parts of services and actions stand only in the module of the whole."""
+    """Return a message class by its name. Parts of services and actions are only in the module of the whole."""
     whole = getattr(importlib.import_module(package), name.split("_")[0])
     kind: type = getattr(sys.modules[whole.__module__], name)
     return kind
@@ -276,7 +276,7 @@ def _sequence_reader(slot: Any, *, fixed: bool) -> Reader:
 
 
 def _numbers(values: array.array[Any], name: str) -> Any:
-    """A fixed number of numbers, which the generated classes hold as numpy arrays."""
+    """Read a fixed number of numbers, which the generated classes hold as numpy arrays."""
     import numpy
 
     return numpy.array(values, dtype=getattr(numpy, _NUMPY.get(name, name)))

@@ -11,13 +11,13 @@ from rcl_python.handle import Destroyable
 from rcl_python.values import ClockChange, ClockType, RCLError, rcl_time_point_t
 
 Jump: TypeAlias = "Callable[[ClockChange, int, bool], None]"
-"""Told before and after a jump: what changed, by how much (ns), and whether it is before."""
+"""Called before and after a jump with: what changed, by how much (ns), and whether it is before."""
 
 _ON_OFF = (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED)
 
 
 class Clock(Destroyable):
-    """A clock. Raises RCLError for a type that is none."""
+    """A clock. Raises RCLError for an invalid type."""
 
     def __init__(self, clock_type: int) -> None:
         self._destroyed = True
@@ -30,18 +30,18 @@ class Clock(Destroyable):
         self._jumps: list[tuple[Any, Jump, bool, int, int]] = []
 
     def now(self) -> int:
-        """The time (ns)."""
+        """Return the time (ns)."""
         link = participant.current().link
         if self.type is ClockType.STEADY_TIME:
             return link.steady()
         return self._override if self.overridden else link.system()
 
     def get_now(self) -> rcl_time_point_t:
-        """The time."""
+        """Return the time."""
         return rcl_time_point_t(self.now(), self.type)
 
     def get_ros_time_override_is_enabled(self) -> bool:
-        """Whether the clock follows what it is told. Raises RCLError for a clock that can't."""
+        """Return whether the clock follows a time that is set. Raises RCLError for a clock that can't."""
         self._require_ros_time("failed to get ROS time override status")
         return self.overridden
 
@@ -57,7 +57,7 @@ class Clock(Destroyable):
         wake()
 
     def set_ros_time_override(self, point: rcl_time_point_t) -> None:
-        """Say what time it is."""
+        """Set the time."""
         self._require_ros_time("failed to set ROS time override")
         delta = point.nanoseconds - self._override
         if self.overridden:
@@ -72,7 +72,7 @@ class Clock(Destroyable):
             raise RCLError(f"{what}: Clock is not of type RCL_ROS_TIME")
 
     def add_clock_callback(self, handle: Any, on_clock_change: bool, forward: int, backward: int) -> None:
-        """Tell rclpy's JumpHandle about jumps: of at least `forward` or `backward` ns, where they are not 0."""
+        """Notify rclpy's JumpHandle of jumps of at least `forward` or `backward` ns, unless these are 0."""
 
         def jumped(change: ClockChange, delta: int, before: bool) -> None:
             if before and handle._pre_callback is not None:
@@ -83,7 +83,7 @@ class Clock(Destroyable):
         self.watch(handle, jumped, on_clock_change, forward, backward)
 
     def watch(self, key: object, jumped: Jump, on_change: bool, forward: int, backward: int) -> None:
-        """Call `jumped` about jumps; `key` names it for `unwatch`. Raises RCLError for senseless thresholds."""
+        """Call `jumped` on jumps; `key` names it for `unwatch`. Raises RCLError for invalid thresholds."""
         if forward < 0 or backward > 0:
             raise RCLError("failed to add time jump callback: forward jump threshold must be positive or zero")
         self._jumps.append((key, jumped, on_change, forward, backward))
@@ -93,7 +93,7 @@ class Clock(Destroyable):
         self._jumps = [jump for jump in self._jumps if jump[0] is not key]
 
     def remove_clock_callback(self, handle: Any) -> None:
-        """Tell rclpy's JumpHandle no more."""
+        """Stop notifying rclpy's JumpHandle."""
         if all(jump[0] is not handle for jump in self._jumps):
             raise RCLError("failed to remove time jump callback: jump callback was not found")
         self.unwatch(handle)
@@ -107,17 +107,17 @@ class Clock(Destroyable):
 
 
 class ClockEvent:
-    """Something that a program can wait for until a time."""
+    """An event that a program can wait for, up to a time."""
 
     def __init__(self) -> None:
         self._set = False
 
     def is_set(self) -> bool:
-        """Whether it has been set."""
+        """Return whether it has been set."""
         return self._set
 
     def set(self) -> None:
-        """Set it, and wake who waits."""
+        """Set it, and wake those who wait."""
         self._set = True
         wake()
 
@@ -126,7 +126,7 @@ class ClockEvent:
         self._set = False
 
     def wait_until_steady(self, clock: Clock, until: rcl_time_point_t) -> None:
-        """Wait until it is set, or until the time."""
+        """Wait until it is set, or until that time."""
         self._wait(clock, until.nanoseconds)
 
     wait_until_system = wait_until_steady
@@ -181,13 +181,13 @@ class Timer(Destroyable):
             self._credit = 0
 
     def is_timer_ready(self) -> bool:
-        """Whether its time has come."""
+        """Return whether it is due."""
         return not self.canceled and self.clock.now() >= self._next
 
     is_ready = is_timer_ready
 
     def due(self) -> int | None:
-        """How long it takes until then (ns); None where waiting does not bring it about."""
+        """Return how long until it is due (ns); None if waiting does not make it due."""
         if self.canceled or self.clock.overridden:
             return None
         return self._next - self.clock.now()
@@ -200,19 +200,19 @@ class Timer(Destroyable):
         self._last = now
         self._next += self.period
         if self._next <= now:
-            # Periods that have passed meanwhile are left out; what would be due at this very moment has passed, too.
+            # Periods that have passed meanwhile are left out; one that is due at this very moment has passed, too.
             self._next = now if not self.period else self._next + self.period * (1 + (now - self._next) // self.period)
 
     def cancel_timer(self) -> None:
-        """Let it come no more."""
+        """Cancel it: it no longer fires."""
         self.canceled = True
 
     def is_timer_canceled(self) -> bool:
-        """Whether it comes no more."""
+        """Return whether it is canceled."""
         return self.canceled
 
     def reset_timer(self) -> None:
-        """Begin a period now."""
+        """Start a new period now."""
         self._next = self.clock.now() + self.period
         self.canceled = False
         wake()
@@ -222,17 +222,17 @@ class Timer(Destroyable):
         self.period = period
 
     def get_timer_period(self) -> int:
-        """The period (ns)."""
+        """Return the period (ns)."""
         return self.period
 
     def time_since_last_call(self) -> int:
-        """How long ago the period began (ns)."""
+        """Return how long ago the period began (ns)."""
         return self.clock.now() - self._last
 
     def time_until_next_call(self) -> int | None:
-        """How long it takes until its time comes (ns); None for a canceled timer."""
+        """Return how long until it is due (ns); None for a canceled timer."""
         return None if self.canceled else self._next - self.clock.now()
 
     def expire_at(self, moment: int) -> None:
-        """Let it come once, at a time of its clock (ns)."""
+        """Let it fire once, at a time of its clock (ns)."""
         self._next, self.canceled = moment, False

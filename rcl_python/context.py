@@ -25,7 +25,7 @@ _contexts: weakref.WeakSet[Context] = weakref.WeakSet()
 
 
 class Context(Destroyable):
-    """What the nodes of one `init` share: arguments, a domain, and whether they may go on."""
+    """What the nodes of one `init` share: arguments, a domain, and whether they may continue."""
 
     def __init__(self, args: Sequence[str], domain_id: int) -> None:
         self._valid = False
@@ -55,20 +55,20 @@ class Context(Destroyable):
             raise RCLError(f"{what}: {at(reason, place)}")
 
     def shutdown(self) -> None:
-        """End it. Raises RCLError if that has happened before."""
+        """End it. Raises RCLError if that has already happened."""
         if not self._valid:
             reason = at("rcl_shutdown already called on the given context", "rcl/init.c:333")
             raise RCLError(f"failed to shutdown: {reason}")
         self.invalidate()
 
     def invalidate(self) -> None:
-        """Tell everybody who waits that it is over."""
+        """End every wait in this context."""
         self._valid = False
         _contexts.discard(self)
         wake()
 
     def get_domain_id(self) -> int:
-        """The ROS domain."""
+        """Return the ROS domain."""
         return self.domain
 
     def _destroy(self) -> None:
@@ -86,7 +86,7 @@ def _domain(given: int) -> int:
 
 
 def wake() -> None:
-    """Let everybody who waits look again."""
+    """Let every wait check again."""
     lock = participant.current().link.lock
     with lock:
         lock.notify_all()
@@ -116,11 +116,11 @@ class GuardCondition(Destroyable):
         wake()
 
     def is_ready(self) -> bool:
-        """Whether it has been set since the last wait that it ended."""
+        """Return whether it has been set since the last wait that it ended."""
         return self.triggered
 
     def taken(self) -> None:
-        """Reset it: a wait has ended by it."""
+        """Reset it after it has ended a wait."""
         self.triggered = False
 
 
@@ -130,7 +130,7 @@ _before: dict[int, Any] = {}
 
 
 def register_sigint_guard_condition(guard: GuardCondition) -> None:
-    """Set this guard condition when a signal comes."""
+    """Set this guard condition when a signal arrives."""
     _interruptible.append(guard)
 
 
@@ -149,7 +149,7 @@ def end_all() -> None:
 
 
 def interrupt(name: str) -> None:
-    """What a signal from the hub does: as a signal in Python's main thread, SIGINT raises KeyboardInterrupt."""
+    """Handle a signal from the hub as Python's main thread does: SIGINT raises KeyboardInterrupt."""
     number = getattr(signal, name)
     if _installed in (SignalHandlerOptions.ALL, getattr(SignalHandlerOptions, name)):
         end_all()
@@ -161,7 +161,7 @@ def interrupt(name: str) -> None:
 
 
 def install_signal_handlers(options: SignalHandlerOptions) -> None:
-    """Handle these signals: shut everything down first, then do what was done before."""
+    """Handle these signals: shut everything down first, then call the earlier handler."""
     global _installed
     _installed = SignalHandlerOptions(options)
     if threading.current_thread() is not threading.main_thread() or sys.platform == "emscripten":
@@ -173,7 +173,7 @@ def install_signal_handlers(options: SignalHandlerOptions) -> None:
 
 
 def uninstall_signal_handlers() -> None:
-    """Handle signals as before."""
+    """Restore the earlier signal handlers."""
     global _installed
     _installed = SignalHandlerOptions.NO
     if threading.current_thread() is threading.main_thread():
@@ -183,7 +183,7 @@ def uninstall_signal_handlers() -> None:
 
 
 def get_current_signal_handlers_options() -> SignalHandlerOptions:
-    """The signals that are handled."""
+    """Return the signals that are handled."""
     return _installed
 
 

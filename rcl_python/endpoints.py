@@ -33,13 +33,13 @@ _DEFAULT = Profile()
 
 
 def type_name_of(message_class: Any) -> str:
-    """A type's name in the graph: std_msgs/msg/String."""
+    """Return a type's name in the graph: std_msgs/msg/String."""
     package, middle, *_ = message_class.__module__.split(".")
     return f"{package}/{middle}/{message_class.__name__}"
 
 
 class _End(Destroyable):
-    """What the four have in common: a node, a name and a place in the graph."""
+    """What all four have in common: a node, a name and a place in the graph."""
 
     def __init__(self, node: Node, kind: str, the_type: Any, name: str, profile: Profile | None, what: str) -> None:
         self._destroyed = True
@@ -62,11 +62,11 @@ class _End(Destroyable):
         self.end.close()
 
     def is_ready(self) -> bool:
-        """Whether anything has arrived."""
+        """Return whether anything has arrived."""
         return bool(self.end.inbox)
 
     def get_logger_name(self) -> str:
-        """The name of the node's logger."""
+        """Return the name of the node's logger."""
         return self.node.logger_name()
 
     def _matches(self) -> int:
@@ -85,23 +85,23 @@ class Publisher(_End):
         self.publish_raw(serialize(message))
 
     def publish_raw(self, data: bytes) -> None:
-        """Publish bytes that hold a message already."""
+        """Publish bytes that are already a serialized message."""
         if self._destroyed:
             raise RCLError(f"Failed to publish: {at('publisher pointer is invalid', 'rcl/publisher.c:434')}")
         self.end.publish(bytes(data))
 
     def get_topic_name(self) -> str:
-        """The absolute name of the topic."""
+        """Return the absolute name of the topic."""
         if self._destroyed:
             raise RCLError(f"failed to get topic name: {at('publisher pointer is invalid', 'rcl/publisher.c:434')}")
         return self.end.info.topic
 
     def get_subscription_count(self) -> int:
-        """How many subscriptions have been met."""
+        """Return the number of matched subscriptions."""
         return self._matches()
 
     def wait_for_all_acked(self, timeout: rcl_duration_t) -> bool:
-        """Nothing is ever on its way: publishing hands over."""
+        """Return at once: publishing delivers immediately, so every message is acknowledged."""
         return True
 
 
@@ -112,7 +112,7 @@ class Subscription(_End):
         super().__init__(node, SUBSCRIPTION, message_class, topic, profile, "subscription")
 
     def take_message(self, message_class: Any, raw: bool) -> tuple[Any, dict[str, int | None]] | None:
-        """The oldest message and what is known about it, or None."""
+        """Return the oldest message and what is known about it, or None."""
         arrival = self.end.take()
         if arrival is None:
             return None
@@ -125,16 +125,16 @@ class Subscription(_End):
         }
 
     def get_topic_name(self) -> str:
-        """The absolute name of the topic."""
+        """Return the absolute name of the topic."""
         return self.end.info.topic
 
     def get_publisher_count(self) -> int:
-        """How many publishers have been met."""
+        """Return the number of matched publishers."""
         return self._matches()
 
 
 def read(data: bytes, message_class: Any) -> Any:
-    """The message in these bytes. Raises RMWError where there is none."""
+    """Return the message in these bytes. Raises RMWError if there is none."""
     try:
         return deserialize(data, message_class)
     except (ValueError, struct.error, UnicodeError) as error:
@@ -142,14 +142,14 @@ def read(data: bytes, message_class: Any) -> Any:
 
 
 class _Introspected(_End):
-    """A service or a client, which can publish what passes through it (REP 2012)."""
+    """A service or a client, which can publish its requests and responses (REP 2012)."""
 
     _introspection: ServiceIntrospectionState = ServiceIntrospectionState.OFF
     _publisher: Publisher | None = None
     _clock: Clock | None = None
 
     def configure_introspection(self, clock: Clock, profile: Any, state: ServiceIntrospectionState) -> None:
-        """Say how much is published on the topic NAME/_service_event."""
+        """Set how much is published on the topic NAME/_service_event."""
         self._clock = clock
         self._introspection = ServiceIntrospectionState(int(state))
         if self._introspection is ServiceIntrospectionState.OFF:
@@ -189,7 +189,7 @@ def _client_gid(client: str) -> Any:
 
 
 class Service(_Introspected):
-    """What answers a service."""
+    """The server end of a service."""
 
     def __init__(self, node: Node, service_class: Any, name: str, profile: Profile | None) -> None:
         super().__init__(node, SERVICE, service_class, name, profile, "service")
@@ -201,11 +201,11 @@ class Service(_Introspected):
 
     @property
     def qos(self) -> dict[str, Any]:
-        """The profile, as rclpy's QoSProfile takes it."""
+        """The profile in the form of rclpy's QoSProfile."""
         return self.end.info.qos.to_dict()
 
     def service_take_request(self, request_class: Any) -> tuple[Any, rmw_service_info_t | None]:
-        """The oldest request and its header, or (None, None)."""
+        """Return the oldest request and its header, or (None, None)."""
         arrival = self.end.take()
         if arrival is None:
             return None, None
@@ -222,12 +222,12 @@ class Service(_Introspected):
 
 
 def header_of(arrival: Arrival) -> rmw_service_info_t:
-    """Which request it is, or answers, and when."""
+    """Return the header: the number of a request, or of the one it answers, and times."""
     return rmw_service_info_t(rmw_request_id_t(arrival.sequence, arrival.source), arrival.sent, arrival.came)
 
 
 class Client(_Introspected):
-    """What calls a service."""
+    """The client end of a service."""
 
     def __init__(self, node: Node, service_class: Any, name: str, profile: Profile | None) -> None:
         super().__init__(node, CLIENT, service_class, name, profile, "client")
@@ -238,17 +238,17 @@ class Client(_Introspected):
         return self.end.info.topic
 
     def service_server_is_available(self) -> bool:
-        """Whether anybody answers."""
+        """Return whether there is a server."""
         return self._matches() > 0
 
     def send_request(self, request: Any) -> int:
-        """Send a request; its number."""
+        """Send a request; return its number."""
         number = self.end.participant.request(self.end, serialize(request))
         self._report(0, number, self.end.info.gid, "request", request)
         return number
 
     def take_response(self, response_class: Any) -> tuple[rmw_service_info_t | None, Any]:
-        """The oldest response and its header, or (None, None)."""
+        """Return the oldest response and its header, or (None, None)."""
         arrival = self.end.take()
         if arrival is None:
             return None, None
@@ -274,7 +274,7 @@ _SUBSCRIPTION_STATUS = {
 
 
 class EventHandle(Destroyable):
-    """What tells a program about its publisher or its subscription."""
+    """Reports events of a publisher or a subscription to a program."""
 
     def __init__(self, parent: Publisher | Subscription, event_type: Any) -> None:
         super().__init__()
@@ -284,17 +284,17 @@ class EventHandle(Destroyable):
         self._kind = kinds.get(event_type, "")
 
     def is_ready(self) -> bool:
-        """Whether anything has changed since the last time."""
+        """Return whether anything has changed since the last time."""
         self.parent.end.late()
         status = getattr(self.parent.end.statuses, self._kind, None)
         return status is not None and any(value for name, value in vars(status).items() if name.endswith("_change"))
 
     def due(self) -> int | None:
-        """When the next deadline passes (ns, steady), if this reports deadlines."""
+        """Return when the next deadline passes (ns, steady), if this reports deadlines."""
         return self.parent.end.due if self._kind.endswith("deadline") else None
 
     def take_event(self) -> Any:
-        """The counts, and what has changed of them since the last time; None where nothing is counted."""
+        """Return the counts, and their changes since the last time; None if nothing is counted."""
         self.parent.end.late()
         status = getattr(self.parent.end.statuses, self._kind, None)
         if status is None:
@@ -306,6 +306,6 @@ class EventHandle(Destroyable):
         return taken
 
     def _nothing(self) -> Any:
-        """What is said of messages lost and of liveliness lost: nothing of the kind ever happens here."""
+        """Return zeros for lost messages and lost liveliness: neither ever happens here."""
         kinds = {"RCL_PUBLISHER_LIVELINESS_LOST": rmw_liveliness_lost_status_t}
         return kinds.get(self._event.name, rmw_message_lost_status_t)()

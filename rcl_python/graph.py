@@ -1,4 +1,4 @@
-"""The graph of nodes as one process sees it: who is there, and who publishes, subscribes, serves and calls what."""
+"""The graph of nodes as one process sees it: the nodes, and who publishes, subscribes, serves and calls what."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ OPPOSITE = {PUBLISHER: SUBSCRIPTION, SUBSCRIPTION: PUBLISHER, SERVICE: CLIENT, C
 
 @dataclass(frozen=True)
 class NodeInfo:
-    """A node: the key by which endpoints name it, and its names."""
+    """A node: the key by which endpoints refer to it, and its names."""
 
     key: str
     name: str
@@ -43,22 +43,22 @@ class EndpointInfo:
 
 
 def process_of(key: str) -> str:
-    """The identity of the process that made a gid or a node's key."""
+    """Return the identity of the process that made a gid or a node's key."""
     return key.rpartition(".")[0]
 
 
 def to_plain(info: NodeInfo | EndpointInfo) -> dict[str, Any]:
-    """The info ready for JSON."""
+    """Return the info ready for JSON."""
     return dataclasses.asdict(info)
 
 
 def node_from(plain: dict[str, Any]) -> NodeInfo:
-    """The node that `to_plain` made this of."""
+    """Return the node that `to_plain` was called on."""
     return NodeInfo(**_fields(NodeInfo, plain))
 
 
 def endpoint_from(plain: dict[str, Any]) -> EndpointInfo:
-    """The endpoint that `to_plain` made this of."""
+    """Return the endpoint that `to_plain` was called on."""
     fields = _fields(EndpointInfo, plain)
     return EndpointInfo(**{**fields, "qos": Profile(**fields["qos"])})
 
@@ -69,13 +69,13 @@ def _fields(kind: Any, plain: dict[str, Any]) -> dict[str, Any]:
 
 @dataclass
 class Graph:
-    """Every node and endpoint that is known, of this process and of others."""
+    """Every known node and endpoint, of this process and of others."""
 
     nodes: dict[str, NodeInfo] = field(default_factory=dict)
     endpoints: dict[str, EndpointInfo] = field(default_factory=dict)
 
     def ends(self, domain: int, *kinds: str, topic: str | None = None, node: str | None = None) -> list[EndpointInfo]:
-        """The endpoints of these kinds in a domain, of one topic or one node where it is given."""
+        """Return the endpoints of these kinds in a domain, for one topic or one node if given."""
         return [
             end
             for end in self.endpoints.values()
@@ -86,15 +86,15 @@ class Graph:
         ]
 
     def nodes_in(self, domain: int) -> list[NodeInfo]:
-        """The nodes in a domain."""
+        """Return the nodes in a domain."""
         return [node for node in self.nodes.values() if node.domain == domain]
 
     def named(self, domain: int, name: str, namespace: str) -> list[NodeInfo]:
-        """The nodes with this name."""
+        """Return the nodes with this name."""
         return [node for node in self.nodes_in(domain) if (node.name, node.namespace) == (name, namespace)]
 
     def forget_process(self, process: str) -> list[EndpointInfo]:
-        """Drop all that a process had; its endpoints."""
+        """Drop everything of a process; return its endpoints."""
         for key in [key for key in self.nodes if process_of(key) == process]:
             del self.nodes[key]
         gone = [end for end in self.endpoints.values() if end.process == process]
@@ -104,7 +104,7 @@ class Graph:
 
 
 def names_and_types(ends: Iterable[EndpointInfo], *, mangled: bool = False) -> list[tuple[str, list[str]]]:
-    """Topics, or services, and their types, both sorted. `mangled` gives them as DDS has them."""
+    """Return topics, or services, and their types, both sorted. `mangled` gives them as in DDS."""
     found: dict[str, set[str]] = {}
     for end in ends:
         name, kind = (f"rt{end.topic}", dds_type(end.type)) if mangled else (end.topic, end.type)
@@ -113,6 +113,6 @@ def names_and_types(ends: Iterable[EndpointInfo], *, mangled: bool = False) -> l
 
 
 def dds_type(kind: str) -> str:
-    """The name of a type in DDS: std_msgs/msg/String is std_msgs::msg::dds_::String_."""
+    """Return the name of a type in DDS: std_msgs/msg/String is std_msgs::msg::dds_::String_."""
     package, middle, name = kind.split("/")
     return f"{package}::{middle}::dds_::{name}_"

@@ -1,4 +1,4 @@
-"""What rclpy holds: objects that are destroyed when nobody uses them any more."""
+"""The objects that rclpy holds, which are destroyed when they are no longer used."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Destroyable:
     """An object that `destroy_when_not_in_use` ends once the last `with` around it is left."""
 
     pointer: int = 0
-    """What wait sets name it by."""
+    """The name by which wait sets refer to it."""
 
     def __init__(self) -> None:
         self.pointer = next(_pointers)
@@ -49,7 +49,7 @@ class Destroyable:
             self._destroy()
 
     def _destroy(self) -> None:
-        """Let go of what the object holds."""
+        """Release what the object holds."""
 
     def __del__(self) -> None:
         if not getattr(self, "_destroyed", True) and not sys.is_finalizing():

@@ -1,4 +1,4 @@
-"""Puts this package in the place of rclpy's compiled modules."""
+"""Replaces rclpy's compiled modules by this package."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _TYPE_SUPPORT = "_s__rosidl_typesupport_c"
 
 
 class _TypeSupport(types.ModuleType):
-    """The converters of a package's messages, which nobody calls: messages are read and written by cdr.py."""
+    """The converters of a package's messages, which are never called: cdr.py reads and writes messages."""
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
@@ -23,7 +23,7 @@ class _TypeSupport(types.ModuleType):
 
 
 class _Finder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
-    """Finds the compiled modules here, before anybody looks for them on the path."""
+    """Finds the compiled modules here, before Python looks for them on the path."""
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: types.ModuleType | None = None
@@ -40,11 +40,11 @@ class _Finder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         return _TypeSupport(spec.name)
 
     def exec_module(self, module: types.ModuleType) -> None:
-        """Everything is there already."""
+        """Do nothing: the module is complete already."""
 
 
 def install() -> None:
-    """Let rclpy find this package instead of its compiled module. Raises RuntimeError where it is too late."""
+    """Let rclpy find this package instead of its compiled module. Raises RuntimeError if rclpy is already imported."""
     if _PYBIND in sys.modules:
         raise RuntimeError("rclpy has been imported already: call rcl_python.install() first")
     if not any(isinstance(finder, _Finder) for finder in sys.meta_path):

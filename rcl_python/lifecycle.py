@@ -12,14 +12,14 @@ from rcl_python.qos import Profile
 from rcl_python.values import RCLError
 
 Transition: TypeAlias = "tuple[int, str, int, str, int, str]"
-"""A transition's id and label, its start's, its goal's."""
+"""A transition's id and label, its start state, its goal state."""
 
 _STATES = {
     0: "unknown", 1: "unconfigured", 2: "inactive", 3: "active", 4: "finalized", 10: "configuring", 11: "cleaningup",
     12: "shuttingdown", 13: "activating", 14: "deactivating", 15: "errorprocessing",
 }  # fmt: skip
 
-#: What a node is asked to do: (id, label, from, over).
+#: What a node can be asked to do: (id, label, from, over).
 _ASKED = [
     (1, "configure", 1, 10), (2, "cleanup", 2, 11), (3, "activate", 2, 13), (4, "deactivate", 3, 14),
     (5, "shutdown", 1, 12), (6, "shutdown", 2, 12), (7, "shutdown", 3, 12),
@@ -36,7 +36,7 @@ def _transition(number: int, label: str, start: int, goal: int) -> Transition:
 
 
 def _graph() -> list[Transition]:
-    """Every transition, in rcl_lifecycle's order: each followed by its ends."""
+    """Return every transition, in rcl_lifecycle's order: each followed by its ends."""
     found: list[Transition] = []
     ends = {over: (first, goals) for over, first, *goals in _ENDED}
     for number, label, start, over in _ASKED:
@@ -52,7 +52,7 @@ def _ends(over: int, first: int, goals: list[int]) -> list[Transition]:
 
 
 class LifecycleStateMachine(Destroyable):
-    """The states of one node, and, if `enable_com_interface`, the services that move and show them."""
+    """The states of one node, and, with `enable_com_interface`, the services that change and show them."""
 
     def __init__(self, node: Node, enable_com_interface: bool) -> None:
         if not isinstance(enable_com_interface, bool):
@@ -109,7 +109,7 @@ class LifecycleStateMachine(Destroyable):
         return [item for item in self.transition_graph if item[2] == self._state]
 
     def get_transition_by_label(self, label: str) -> int:
-        """The id of the transition from the state that is called so. Raises RCLError if there is none."""
+        """Return the id of the transition with this label from the state. Raises RCLError if there is none."""
         for item in self.available_transitions:
             if item[1] == label:
                 return item[0]
@@ -146,25 +146,25 @@ class LifecycleStateMachine(Destroyable):
 
     @property
     def service_change_state(self) -> Service | None:
-        """What moves the state."""
+        """The service that changes the state."""
         return self._services.get("change_state")
 
     @property
     def service_get_state(self) -> Service | None:
-        """What says the state."""
+        """The service that returns the state."""
         return self._services.get("get_state")
 
     @property
     def service_get_available_states(self) -> Service | None:
-        """What lists the states."""
+        """The service that lists the states."""
         return self._services.get("get_available_states")
 
     @property
     def service_get_available_transitions(self) -> Service | None:
-        """What lists the transitions from the state."""
+        """The service that lists the transitions from the state."""
         return self._services.get("get_available_transitions")
 
     @property
     def service_get_transition_graph(self) -> Service | None:
-        """What lists every transition."""
+        """The service that lists every transition."""
         return self._services.get("get_transition_graph")

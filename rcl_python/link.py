@@ -1,6 +1,6 @@
-"""How a process of nodes reaches others, how it waits, and what time it is.
+"""How a process of nodes reaches others, how it waits, and how it gets the time.
 
-A link is all that differs between a process of its own, a web page and a check in simulated time.
+A link is the only thing that differs between a process of its own, a web page and a check in simulated time.
 """
 
 from __future__ import annotations
@@ -11,15 +11,15 @@ from collections.abc import Iterable
 from typing import Any, Protocol, TypeAlias
 
 Frame: TypeAlias = "dict[str, Any]"
-"""What participants tell one another, ready for JSON: `op` says what it is (participant.py)."""
+"""What participants send each other, ready for JSON: `op` says what it is (participant.py)."""
 
 
 class Link(Protocol):
-    """What carries frames to the other participants of a graph, and waits for theirs."""
+    """Carries frames to the other participants of a graph, and waits for theirs."""
 
     @property
     def lock(self) -> threading.Condition:
-        """Held while the graph or a queue changes; told whenever something may have become ready."""
+        """Held while the graph or a queue changes; notified whenever something may have become ready."""
 
     def send(self, frame: Frame, data: bytes = b"") -> None:
         """Hand a frame to every other participant that may want it."""
@@ -28,7 +28,7 @@ class Link(Protocol):
         """Yield the frames that have arrived since the last call."""
 
     def wait(self, nanoseconds: int | None) -> None:
-        """Wait for a frame, for `lock` to be told, or for this long; None stands for as long as it takes.
+        """Wait for a frame, for `lock` to be notified, or for this long; None means without a limit.
 
         Called with `lock` held.
         """
@@ -37,10 +37,10 @@ class Link(Protocol):
         """Let frames and signals in, where a program never waits."""
 
     def steady(self) -> int:
-        """The steady clock (ns)."""
+        """Return the steady clock (ns)."""
 
     def system(self) -> int:
-        """The system clock (ns since the epoch)."""
+        """Return the system clock (ns since the epoch)."""
 
 
 class LocalLink:
@@ -50,23 +50,23 @@ class LocalLink:
         self.lock = threading.Condition(threading.RLock())
 
     def send(self, frame: Frame, data: bytes = b"") -> None:
-        """Nobody else is there."""
+        """Do nothing: there is no other process."""
 
     def receive(self) -> Iterable[tuple[Frame, bytes]]:
-        """Nobody else says anything."""
+        """Yield nothing: there is no other process."""
         return ()
 
     def wait(self, nanoseconds: int | None) -> None:
-        """Wait for another thread, or for the time."""
+        """Wait for another thread, or until the time is up."""
         self.lock.wait(None if nanoseconds is None else nanoseconds / 1e9)
 
     def breathe(self) -> None:
         """Threads and signals come in by themselves."""
 
     def steady(self) -> int:
-        """The steady clock (ns)."""
+        """Return the steady clock (ns)."""
         return time.monotonic_ns()
 
     def system(self) -> int:
-        """The system clock (ns since the epoch)."""
+        """Return the system clock (ns since the epoch)."""
         return time.time_ns()

@@ -23,7 +23,7 @@ _COLOURS = {10: "\033[32m", 20: "\033[0m", 30: "\033[33m", 40: "\033[31m", 50: "
 
 _levels: dict[str, int] = {}
 _rosout: dict[str, list[Callable[[Any], None]]] = {}
-"""By the logger's name: what publishes its lines on /rosout."""
+"""The functions that publish lines on /rosout, by the logger's name."""
 
 
 def _to_standard_error(line: str) -> None:
@@ -38,7 +38,7 @@ write: Callable[[str], None] = _to_standard_error
 
 
 def set_level(name: str, level: int, detailed_error: bool = False) -> None:
-    """Set a logger's level; 0 lets it inherit again. Raises RuntimeError for a level that is none."""
+    """Set a logger's level; 0 lets it inherit again. Raises RuntimeError for an invalid level."""
     if int(level) not in _NAMES:
         reason = f"Failed reason: Unable to determine severity_string for severity: {level}"
         raise RuntimeError(reason if detailed_error else "Failed to set level for logger")
@@ -46,12 +46,12 @@ def set_level(name: str, level: int, detailed_error: bool = False) -> None:
 
 
 def get_level(name: str) -> int:
-    """A logger's own level, 0 where it has none."""
+    """Return a logger's own level, 0 if it has none."""
     return _levels.get(name, 0)
 
 
 def effective_level(name: str) -> int:
-    """A logger's level: its own, else its nearest ancestor's, else the default."""
+    """Return a logger's level: its own, otherwise its nearest ancestor's, otherwise the default."""
     while name:
         if _levels.get(name):
             return _levels[name]
@@ -60,12 +60,12 @@ def effective_level(name: str) -> int:
 
 
 def is_enabled_for(name: str, severity: int) -> bool:
-    """Whether a logger lets lines of this severity through."""
+    """Return whether a logger prints lines of this severity."""
     return int(severity) >= effective_level(name)
 
 
 def severity_from(text: str) -> int:
-    """The number of a severity's name. Raises RuntimeError for any other word."""
+    """Return the number of a severity's name. Raises RuntimeError for any other word."""
     for number, name in _NAMES.items():
         if name == text.upper():
             return number
@@ -73,13 +73,13 @@ def severity_from(text: str) -> int:
 
 
 def directory() -> str:
-    """Where log files would go (rcl_logging_interface)."""
+    """Return where log files would go (rcl_logging_interface)."""
     home = os.environ.get("ROS_HOME") or os.path.join("~", ".ros")  # noqa: PTH118
     return str(Path(os.environ.get("ROS_LOG_DIR") or os.path.join(home, "log")).expanduser())  # noqa: PTH118
 
 
 def initialize() -> None:
-    """Nothing has to be got ready."""
+    """Do nothing: there is nothing to prepare."""
 
 
 def shutdown() -> None:
@@ -88,11 +88,11 @@ def shutdown() -> None:
 
 
 def finish() -> None:
-    """Nothing has to be let go."""
+    """Do nothing: there is nothing to release."""
 
 
 def log(severity: int, name: str, message: str, function: str, file: str, line: int) -> None:
-    """Write a line if the logger lets it through, and publish it on /rosout."""
+    """Write a line if the logger's level allows it, and publish it on /rosout."""
     if not is_enabled_for(name, severity):
         return
     now = participant.current().link.system()
@@ -140,7 +140,7 @@ def add_rosout(name: str, publish: Callable[[Any], None]) -> None:
 
 
 def remove_rosout(name: str, publish: Callable[[Any], None]) -> None:
-    """Publish them no more, nor those of the loggers below it."""
+    """Stop publishing them, and those of the loggers below it."""
     for logger in list(_rosout):
         if publish in _rosout[logger] and (logger == name or logger.startswith(f"{name}.")):
             _rosout[logger].remove(publish)
@@ -149,7 +149,7 @@ def remove_rosout(name: str, publish: Callable[[Any], None]) -> None:
 
 
 def add_sublogger(name: str, child: str) -> bool:
-    """Publish the lines of `name.child` as those of `name`. False where nobody publishes those."""
+    """Publish the lines of `name.child` as those of `name`. Return False if those are not published."""
     if name not in _rosout:
         return False
     _rosout.setdefault(f"{name}.{child}", []).append(_rosout[name][0])

@@ -1,6 +1,6 @@
 """Names of topics, services, nodes and namespaces: what is valid, and how they expand.
 
-The rules, their order and their words are those of rcl and rmw: rcl/validate_topic_name.h,
+The rules, their order and their messages are those of rcl and rmw: rcl/validate_topic_name.h,
 rmw/validate_full_topic_name.h, rmw/validate_namespace.h, rmw/validate_node_name.h and
 https://design.ros2.org/articles/topic_and_service_names.html.
 """
@@ -18,11 +18,11 @@ Fault: TypeAlias = "tuple[str, int] | None"
 NAME_LIMIT = 255
 _TOPIC_LIMIT = 247
 _NAMESPACE_LIMIT = 245
-"""DDS allows 255 characters, of which rmw takes some for its own prefix and the name of a node."""
+"""DDS allows 255 characters, of which rmw uses some for its own prefix and the name of a node."""
 
 
 def topic_fault(name: str) -> Fault:
-    """Check a topic's name as a program gives it, which may be relative and hold substitutions."""
+    """Check a topic's name as written in a program, which may be relative and contain substitutions."""
     if not name:
         return "topic name must not be empty string", 0
     if name[0].isdigit() and name[0].isascii():
@@ -32,7 +32,7 @@ def topic_fault(name: str) -> Fault:
     fault = _braces_fault(name)
     if fault:
         return fault
-    # As in rcl, which looks at longer names only.
+    # As in rcl, which checks longer names only.
     if len(name) > 2 and name.startswith("~") and name[1] != "/":
         return "topic name must not have a tilde '~' that is not followed by a forward slash '/'", 1
     return _token_fault(name, "topic name token must not start with a number")
@@ -121,7 +121,7 @@ def node_name_fault(name: str) -> Fault:
 
 
 def expand(topic: str, node: str, namespace: str) -> str:
-    """The absolute name of a topic that the node `node` in `namespace` names so. Raises ValueError for a wrong name."""
+    """Return the absolute name of a topic as `node` in `namespace` names it. Raises ValueError for an invalid name."""
     _refuse(topic_fault(topic), f"topic name '{topic}'", 73)
     _refuse(node_name_fault(node), f"node name '{node}'", 84)
     _refuse(namespace_fault(namespace), f"node namespace '{namespace}'", 94)

@@ -19,7 +19,7 @@ _FEEDBACK_TYPE = "_FeedbackMessage"
 
 
 class Node(Destroyable):
-    """A node. Raises ValueError for a name or a namespace that is none."""
+    """A node. Raises ValueError for an invalid name or namespace."""
 
     def __init__(
         self,
@@ -72,28 +72,28 @@ class Node(Destroyable):
         participant.current().remove_node(self.info.key)
 
     def get_node_name(self) -> str:
-        """The name without its namespace."""
+        """Return the name without its namespace."""
         return self.name
 
     def get_namespace(self) -> str:
-        """The namespace, `/` for none."""
+        """Return the namespace, `/` for none."""
         return self.namespace
 
     def get_fully_qualified_name(self) -> str:
-        """The namespace and the name."""
+        """Return the namespace and the name."""
         return f"{self.namespace.rstrip('/')}/{self.name}"
 
     def logger_name(self) -> str:
-        """The name of the node's logger: its full name with dots."""
+        """Return the name of the node's logger: its full name with dots."""
         return self.get_fully_qualified_name().strip("/").replace("/", ".")
 
     def resolve(self, name: str, kind: str, only_expand: bool = False) -> str:
-        """The absolute name of a topic or a service (`kind`), remapped."""
+        """Return the absolute name of a topic or a service (`kind`), remapped."""
         absolute = names.expand(name, self.name, self.namespace)
         return absolute if only_expand else remapped(self.remaps, kind, absolute, self.name, self.namespace)
 
     def get_parameters(self, parameter_class: Any) -> dict[str, Any]:
-        """The parameters that the arguments give this node: name -> Parameter."""
+        """Return the parameters that the arguments give this node: name -> Parameter."""
         found: dict[str, Any] = {}
         for source in reversed(self.sources):
             for pattern, name, value in source.parameters:
@@ -102,33 +102,33 @@ class Node(Destroyable):
         return found
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
-        """Every node of the domain."""
+        """Return every node of the domain."""
         return [(node.name, node.namespace) for node in self.seen().nodes_in(self.info.domain)]
 
     def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
-        """Every node of the domain, and its enclave."""
+        """Return every node of the domain, and its enclave."""
         return [(node.name, node.namespace, node.enclave) for node in self.seen().nodes_in(self.info.domain)]
 
     def seen(self) -> Any:
-        """The graph as it is now."""
+        """Return the graph as it is now."""
         here = participant.current()
         here.pump()
         return here.graph
 
     def get_count_publishers(self, topic: str) -> int:
-        """How many publish on a topic."""
+        """Return how many publishers a topic has."""
         return self._count(PUBLISHER, topic, "publishers", "topic_name")
 
     def get_count_subscribers(self, topic: str) -> int:
-        """How many subscribe to a topic."""
+        """Return how many subscribers a topic has."""
         return self._count(SUBSCRIPTION, topic, "subscribers", "topic_name")
 
     def get_count_services(self, service: str) -> int:
-        """How many answer a service."""
+        """Return how many servers a service has."""
         return self._count(SERVICE, service, "services", "service_name")
 
     def get_count_clients(self, service: str) -> int:
-        """How many call a service."""
+        """Return how many clients a service has."""
         return self._count(CLIENT, service, "clients", "service_name")
 
     def _count(self, kind: str, topic: str, what: str, argument: str) -> int:
@@ -139,15 +139,15 @@ class Node(Destroyable):
         return len(self.seen().ends(self.info.domain, kind, topic=topic))
 
     def get_action_names_and_types(self) -> list[tuple[str, list[str]]]:
-        """Every action that a server or a client has."""
+        """Return every action that a server or a client has."""
         return _actions(self.seen().ends(self.info.domain, PUBLISHER, SUBSCRIPTION))
 
     def get_action_server_names_and_types_by_node(self, name: str, namespace: str) -> list[tuple[str, list[str]]]:
-        """The actions that a node serves."""
+        """Return the actions that a node serves."""
         return _actions(ends_of(self, name, namespace, PUBLISHER, "action server"))
 
     def get_action_client_names_and_types_by_node(self, name: str, namespace: str) -> list[tuple[str, list[str]]]:
-        """The actions that a node calls."""
+        """Return the actions that a node calls."""
         return _actions(ends_of(self, name, namespace, SUBSCRIPTION, "action client"))
 
 
@@ -157,7 +157,7 @@ def _refuse(what: str, fault: names.Fault, line: int) -> None:
 
 
 def _namespace_result(text: str) -> int:
-    """The number that rmw gives a fault of a namespace (rmw/validate_namespace.h)."""
+    """Return rmw's number for a fault of a namespace (rmw/validate_namespace.h)."""
     endings = [
         "must not be empty",
         "lead with a '/'",
@@ -178,7 +178,7 @@ def _actions(ends: Sequence[EndpointInfo]) -> list[tuple[str, list[str]]]:
 
 
 def ends_of(node: Node, name: str, namespace: str, kind: str, what: str) -> list[EndpointInfo]:
-    """What a node has of one kind. Raises NodeNameNonExistentError if nobody is called so."""
+    """Return a node's endpoints of one kind. Raises NodeNameNonExistentError if no node has that name."""
     graph = node.seen()
     found = graph.named(node.info.domain, name, namespace)
     if not found:
@@ -188,46 +188,46 @@ def ends_of(node: Node, name: str, namespace: str, kind: str, what: str) -> list
 
 
 def topic_names_and_types(node: Node, no_demangle: bool) -> list[tuple[str, list[str]]]:
-    """Every topic and its types."""
+    """Return every topic and its types."""
     return names_and_types(node.seen().ends(node.info.domain, PUBLISHER, SUBSCRIPTION), mangled=no_demangle)
 
 
 def service_names_and_types(node: Node) -> list[tuple[str, list[str]]]:
-    """Every service and its types."""
+    """Return every service and its types."""
     return names_and_types(node.seen().ends(node.info.domain, SERVICE, CLIENT))
 
 
 def publisher_names_and_types_by_node(
     node: Node, no_demangle: bool, name: str, namespace: str
 ) -> list[tuple[str, list[str]]]:
-    """What a node publishes."""
+    """Return what a node publishes."""
     return names_and_types(ends_of(node, name, namespace, PUBLISHER, "publisher"), mangled=no_demangle)
 
 
 def subscriber_names_and_types_by_node(
     node: Node, no_demangle: bool, name: str, namespace: str
 ) -> list[tuple[str, list[str]]]:
-    """What a node subscribes to."""
+    """Return what a node subscribes to."""
     return names_and_types(ends_of(node, name, namespace, SUBSCRIPTION, "subscriber"), mangled=no_demangle)
 
 
 def service_names_and_types_by_node(node: Node, name: str, namespace: str) -> list[tuple[str, list[str]]]:
-    """What a node answers."""
+    """Return what a node serves."""
     return names_and_types(ends_of(node, name, namespace, SERVICE, "service"))
 
 
 def client_names_and_types_by_node(node: Node, name: str, namespace: str) -> list[tuple[str, list[str]]]:
-    """What a node calls."""
+    """Return what a node calls."""
     return names_and_types(ends_of(node, name, namespace, CLIENT, "client"))
 
 
 def publishers_info_by_topic(node: Node, topic: str, no_mangle: bool) -> list[dict[str, object]]:
-    """Who publishes on a topic, and how."""
+    """Return the publishers on a topic, with their profiles."""
     return _infos(node, PUBLISHER, topic, 1)
 
 
 def subscriptions_info_by_topic(node: Node, topic: str, no_mangle: bool) -> list[dict[str, object]]:
-    """Who subscribes to a topic, and how."""
+    """Return the subscribers to a topic, with their profiles."""
     return _infos(node, SUBSCRIPTION, topic, 2)
 
 
@@ -250,13 +250,13 @@ def _info(graph: Any, end: EndpointInfo, number: int) -> dict[str, object]:
 
 
 def _gid(text: str) -> list[int]:
-    """Sixteen numbers that no other endpoint has."""
+    """Return sixteen numbers that no other endpoint has."""
     process, _, number = text.rpartition(".")
     return list(process.encode()[-12:].rjust(12, b"\0") + int(number).to_bytes(4, "big"))
 
 
 def resolve_name(node: Node, name: str, only_expand: bool, is_service: bool) -> str:
-    """The absolute name of a topic or a service, remapped unless `only_expand`. Raises RCLError for a wrong name."""
+    """Return a topic's or service's absolute name, remapped unless `only_expand`. Raises RCLError if it is invalid."""
     try:
         return node.resolve(name, "service" if is_service else "topic", only_expand)
     except ValueError as error:
@@ -264,5 +264,5 @@ def resolve_name(node: Node, name: str, only_expand: bool, is_service: bool) -> 
 
 
 def remap_topic_name(node: Node, name: str) -> str:
-    """What an absolute name of a topic becomes."""
+    """Return a topic's absolute name after remapping."""
     return remapped(node.remaps, "topic", name, node.name, node.namespace)

@@ -1,6 +1,6 @@
-"""Parameters as they stand in arguments and in YAML files.
+"""Parameters as written in arguments and in YAML files.
 
-The rules are those of rcl_yaml_param_parser: what is quoted is text, sequences hold one type, and a file names nodes,
+The rules are those of rcl_yaml_param_parser: quoted values are text, sequences hold one type, and a file names nodes,
 `ros__parameters`, then parameters, whose names are joined by dots.
 """
 
@@ -24,12 +24,12 @@ class ParameterError(ValueError):
 
 
 def value_of(text: str) -> Any:
-    """The value that YAML text stands for: bool, int, float, str, bytes or a list of one of them."""
+    """Return the value of YAML text: bool, int, float, str, bytes or a list of one of them."""
     return _value(_composed(text), text)
 
 
 def in_files(text: str) -> Iterator[tuple[str, str, Any]]:
-    """Yield what a file of parameters gives: (pattern of the node's name, parameter, value)."""
+    """Yield the parameters in a file: (pattern of the node's name, parameter, value)."""
     root = _composed(text)
     if not isinstance(root, yaml.MappingNode):
         raise ParameterError("a file of parameters has to name nodes")
@@ -102,7 +102,7 @@ def _sequence(node: yaml.SequenceNode) -> list[Any]:
 
 
 def applies(pattern: str, node: str) -> bool:
-    """Whether parameters for `pattern` (as in `/**`, `/ns/*`) are for the node with this full name."""
+    """Return whether parameters for `pattern` (as in `/**`, `/ns/*`) are for the node with this full name."""
     absolute = pattern if pattern.startswith("/") else f"/{pattern}"
     expression = absolute.replace("/**", "\0").replace("/*", r"(/\w+)").replace("\0", r"(/\w+)*")
     return re.fullmatch(expression, node) is not None

@@ -1,8 +1,8 @@
-"""One process of a graph: its endpoints, whom they have met, and what they send and get.
+"""One process of a graph: its endpoints, their matches, and what they send and receive.
 
-Discovery: a newcomer says `hello`, everybody then tells it their nodes and endpoints, and whoever makes or drops one
-says so. Each participant finds its matches by itself. The writing side decides who gets a message, so nothing comes
-twice, and what a late joiner gets of the past comes before the present.
+Discovery: a new participant sends `hello`, all others then send it their nodes and endpoints, and each announces those
+that it creates or drops. Each participant finds its matches by itself. The writing side decides who gets a message, so
+nothing arrives twice, and a late joiner gets the past before the present.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ from rcl_python.values import (
 
 @dataclass(frozen=True)
 class Arrival:
-    """Something that has arrived: its bytes, when it was sent and when it came (ns since the epoch), from whom."""
+    """Something that has arrived: its bytes, when it was sent and received (ns since the epoch), and the sender."""
 
     data: bytes
     sent: int
@@ -84,14 +84,14 @@ class Endpoint:
         self.statuses = Statuses()
         self.sequence = 0
         self.due: int | None = None
-        """When the next message has to be there (ns, steady), where the profile names a deadline."""
+        """When the next message is due (ns, steady), if the profile has a deadline."""
 
     def close(self) -> None:
-        """Take the endpoint out of the graph."""
+        """Remove the endpoint from the graph."""
         self.participant.remove_endpoint(self)
 
     def publish(self, data: bytes) -> None:
-        """Hand a message to every subscription that has been met, and keep it for late joiners if asked to."""
+        """Send a message to every matched subscription, and keep it for late joiners if configured."""
         link = self.participant.link
         with link.lock:
             self.sequence += 1
@@ -107,7 +107,7 @@ class Endpoint:
         self.inbox.append(message)
 
     def take(self) -> Arrival | None:
-        """The oldest thing in the inbox that has not outlived its lifespan, or None."""
+        """Return the oldest thing in the inbox whose lifespan has not passed, or None."""
         with self.participant.link.lock:
             while self.inbox:
                 message = self.inbox.popleft()
@@ -117,11 +117,11 @@ class Endpoint:
         return None
 
     def meet(self, other: EndpointInfo) -> None:
-        """See whether this endpoint and another go together, and remember it if they do."""
+        """Check whether this endpoint and another match, and remember it if they do."""
         mine = self.info
         if other.kind != OPPOSITE[mine.kind] or other.topic != mine.topic or other.domain != mine.domain:
             return
-        # Fast DDS says nothing of another type either.
+        # Fast DDS does not report another type either.
         if other.gid in self.matched or other.type != mine.type:
             return
         policy = self._incompatible(other)
@@ -165,7 +165,7 @@ class Endpoint:
                     self.participant.deliver(message, {other.gid: other})
 
     def _punctual(self) -> None:
-        """Start the time to the next deadline."""
+        """Restart the time to the next deadline."""
         self.late()
         if 0 < self.info.qos.deadline < RMW_DURATION_INFINITE:
             self.due = self.participant.link.steady() + self.info.qos.deadline
@@ -195,23 +195,23 @@ class Participant:
         self.local: dict[str, Endpoint] = {}
         self.on_signal: Callable[[str], None] = lambda name: None
         self.overhearing: list[Callable[[Frame, bytes], None]] = []
-        """Who gets each response that has come, to whomever it goes."""
+        """Called with each response that arrives, for any client."""
         self._numbers = itertools.count(1)
         self._joined = False
 
     def join(self) -> None:
-        """Say hello, once."""
+        """Send `hello`, once."""
         if not self._joined:
             self._joined = True
             self.link.send({"op": "hello", "from": self.identity})
             self.pump()
 
     def new_key(self) -> str:
-        """A key that nothing else has."""
+        """Return a key that nothing else has."""
         return f"{self.identity}.{next(self._numbers)}"
 
     def add_node(self, name: str, namespace: str, domain: int, enclave: str) -> NodeInfo:
-        """Make a node known."""
+        """Announce a node."""
         with self.link.lock:
             info = NodeInfo(self.new_key(), name, namespace, domain, enclave)
             self.graph.nodes[info.key] = info
@@ -220,14 +220,14 @@ class Participant:
         return info
 
     def remove_node(self, key: str) -> None:
-        """Say that a node has gone."""
+        """Announce that a node is gone."""
         with self.link.lock:
             self.graph.nodes.pop(key, None)
             self.link.send({"op": "node_gone", "key": key})
             self._changed()
 
     def add_endpoint(self, kind: str, node: NodeInfo, topic: str, type_name: str, given: Profile) -> Endpoint:
-        """Make an endpoint known, and find whom it meets."""
+        """Announce an endpoint, and find its matches."""
         with self.link.lock:
             self.pump()
             others = self.graph.ends(node.domain, OPPOSITE[kind], topic=topic)
@@ -241,7 +241,7 @@ class Participant:
         return mine
 
     def _introduce(self, mine: Endpoint) -> None:
-        """Readers first, so that what a writer keeps finds the reader ready."""
+        """Introduce readers first, so that the messages kept by a writer find the reader ready."""
         for other in list(self.graph.endpoints.values()):
             there = self.local.get(other.gid)
             for one, two in ((mine, other), (there, mine.info)):
@@ -252,7 +252,7 @@ class Participant:
                     one.meet(two)
 
     def remove_endpoint(self, mine: Endpoint) -> None:
-        """Say that an endpoint has gone."""
+        """Announce that an endpoint is gone."""
         with self.link.lock:
             self.local.pop(mine.info.gid, None)
             self._forget(mine.info.gid)
@@ -260,7 +260,7 @@ class Participant:
             self._changed()
 
     def deliver(self, message: Arrival, readers: dict[str, EndpointInfo]) -> None:
-        """Hand a message to these subscriptions, here and in other processes."""
+        """Send a message to these subscriptions, here and in other processes."""
         far = []
         for gid in readers:
             mine = self.local.get(gid)
@@ -274,14 +274,14 @@ class Participant:
         self._changed()
 
     def request(self, client: Endpoint, data: bytes) -> int:
-        """Send a request to every server that has been met; its number."""
+        """Send a request to every matched server; return its number."""
         with self.link.lock:
             client.sequence += 1
             self._exchange("request", list(client.matched), client.info.gid, client.sequence, data)
         return client.sequence
 
     def respond(self, service: Endpoint, client: str, number: int, data: bytes) -> None:
-        """Send a response to the client that asked."""
+        """Send a response to the client that sent the request."""
         with self.link.lock:
             self._exchange("response", [client], service.info.gid, number, data)
 
@@ -297,7 +297,7 @@ class Participant:
         self._changed()
 
     def pump(self, enough: Callable[[], bool] = lambda: False) -> None:
-        """Take in what others have sent, until there is no more of it or it is `enough`."""
+        """Process what others have sent, until nothing is left or `enough` returns true."""
         with self.link.lock:
             for frame, data in self.link.receive():
                 _HANDLERS[frame["op"]](self, frame, data)
@@ -380,7 +380,7 @@ _current = Participant(LocalLink(), f"p{os.getpid()}")
 
 
 def current() -> Participant:
-    """The participant of this process."""
+    """Return the participant of this process."""
     return _current
 
 

@@ -94,7 +94,7 @@ _FUNCTIONS: dict[str, Any] = {
 
 
 def module(name: str) -> types.ModuleType:
-    """The module, ready for sys.modules."""
+    """Return the module, ready for sys.modules."""
     made = types.ModuleType(name, "ROS 2 Python client library.")
     for source, offered in _CLASSES.items():
         for item in offered:
@@ -112,7 +112,7 @@ def module(name: str) -> types.ModuleType:
 
 
 def _late(name: str) -> Any:
-    """What needs rclpy's own files: events arrive here one after another, so one executor does for both."""
+    """Return what needs rclpy's own files: events arrive here one after another, so one executor serves for both."""
     if name == "EventsExecutor":
         from rclpy.executors import SingleThreadedExecutor
 

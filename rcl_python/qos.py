@@ -1,4 +1,4 @@
-"""Quality of service: profiles, and which publishers and subscriptions meet.
+"""Quality of service: profiles, and which publishers and subscriptions match.
 
 Numbers are those of rmw/types.h; the rules of rmw/qos_profiles.h and rmw_dds_common's qos.cpp.
 """
@@ -28,7 +28,7 @@ _HISTORY_OF_DEFAULT, _DEPTH_OF_DEFAULT = KEEP_LAST, 1
 
 @dataclass(frozen=True)
 class Profile:
-    """A profile of quality of service. Times are in ns; 0 stands for "not given"."""
+    """A profile of quality of service. Times are in ns; 0 means "not given"."""
 
     history: int = KEEP_LAST
     depth: int = 10
@@ -41,7 +41,7 @@ class Profile:
     avoid_ros_namespace_conventions: bool = False
 
     def to_dict(self) -> dict[str, Any]:
-        """The profile as rclpy's QoSProfile takes it."""
+        """Return the profile in the form of rclpy's QoSProfile."""
         from rclpy.duration import Duration
 
         return {
@@ -80,7 +80,7 @@ class rmw_qos_profile_t:  # noqa: N801
 
     @staticmethod
     def predefined(name: str) -> Profile:
-        """The profile with this name. Raises ValueError for any other."""
+        """Return the profile with this name. Raises ValueError for any other."""
         if name not in PREDEFINED:
             raise ValueError(f"Requested unknown rmw_qos_profile: {name}")
         return PREDEFINED[name]
@@ -110,14 +110,14 @@ _ACTION_STATUS = Profile(depth=1, durability=TRANSIENT_LOCAL)
 
 
 def action_profile(name: str) -> dict[str, Any]:
-    """The profile of an action's topic. Raises RuntimeError for a name that is none."""
+    """Return the profile of an action's topic. Raises RuntimeError for an invalid name."""
     if name != "rcl_action_qos_profile_status_default":
         raise RuntimeError(f"Requested unknown rmw_qos_profile: {name}")
     return _ACTION_STATUS.to_dict()
 
 
 def resolved(given: Profile, others: Iterable[Profile], *, publishes: bool) -> Profile:
-    """The profile that an endpoint really gets: defaults filled in, "best available" chosen by who is there already."""
+    """Return the profile that an endpoint really gets: with defaults, and "best available" chosen by existing ends."""
     others = list(others)
     found = replace(given, reliability=given.reliability or RELIABLE, durability=given.durability or VOLATILE)
     if given.history == SYSTEM_DEFAULT:
@@ -132,7 +132,7 @@ def resolved(given: Profile, others: Iterable[Profile], *, publishes: bool) -> P
 
 
 def _best_times(given: Profile, others: list[Profile], *, publishes: bool) -> Profile:
-    """Of times the longest that publishers offer, or the shortest that subscriptions ask for."""
+    """Return the longest of the times that publishers offer, or the shortest that subscriptions request."""
     choose = min if publishes else max
     found = given
     if given.deadline == RMW_QOS_DEADLINE_BEST_AVAILABLE:
@@ -146,12 +146,12 @@ def _best_times(given: Profile, others: list[Profile], *, publishes: bool) -> Pr
 
 
 def _span(time: int) -> int:
-    """A time in ns, with "not given" as for ever."""
+    """Return a time in ns, with "not given" as for ever."""
     return time or RMW_DURATION_INFINITE
 
 
 def reported(profile: Profile) -> Profile:
-    """The profile as the graph shows it: without history, which is nobody else's business, and with times spelt out."""
+    """Return the profile as the graph shows it: without history, which is private, and with explicit times."""
     return replace(
         profile,
         history=UNKNOWN,
@@ -164,7 +164,7 @@ def reported(profile: Profile) -> Profile:
 
 
 def first_incompatible(offered: Profile, requested: Profile) -> rmw_qos_policy_kind_t | None:
-    """The policy that keeps a publisher and a subscription apart (DDS 1.4, 2.2.3), or None. Both are resolved."""
+    """Return the policy that prevents a match (DDS 1.4, 2.2.3), or None. Both profiles are resolved."""
     kinds = rmw_qos_policy_kind_t
     if offered.durability == VOLATILE and requested.durability == TRANSIENT_LOCAL:
         return kinds.RMW_QOS_POLICY_DURABILITY
@@ -181,14 +181,14 @@ def first_incompatible(offered: Profile, requested: Profile) -> rmw_qos_policy_k
 
 @dataclass(frozen=True)
 class QoSCheckCompatibleResult:
-    """Whether two profiles go together, and why not."""
+    """Whether two profiles match, and why not."""
 
     compatibility: QoSCompatibility = QoSCompatibility.OK
     reason: str = ""
 
 
 def check_compatible(publisher: Profile, subscription: Profile) -> QoSCheckCompatibleResult:
-    """What rmw says of two profiles before any endpoint is made of them."""
+    """Return rmw's verdict on two profiles before any endpoint is made with them."""
     errors = list(_errors(publisher, subscription))
     warnings = [] if errors else list(_warnings(publisher, subscription))
     kind = QoSCompatibility.ERROR if errors else QoSCompatibility.WARNING if warnings else QoSCompatibility.OK

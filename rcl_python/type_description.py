@@ -11,7 +11,7 @@ from rcl_python.qos import Profile
 
 
 class TypeDescriptionService(Destroyable):
-    """Answers what a type looks like, where the interface packages' descriptions are installed."""
+    """Answers with a type's description, if the interface packages' descriptions are installed."""
 
     def __init__(self, node: Node) -> None:
         super().__init__()
@@ -28,7 +28,7 @@ class TypeDescriptionService(Destroyable):
         return self._service
 
     def handle_request(self, request: Any, response_class: Any, node: Node) -> Any:
-        """Say that the description is not known: types are known by their Python classes alone."""
+        """Answer that the description is not known: types are known by their Python classes alone."""
         response = response_class()
         response.successful = False
         response.failure_reason = "Type descriptions are not available."

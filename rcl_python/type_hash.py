@@ -1,4 +1,4 @@
-"""The hashes of types (REP 2016), as the interface packages bring them."""
+"""The hashes of types (REP 2016), as the interface packages install them."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from pathlib import Path
 
 _PREFIX = "RIHS01_"
 _TABLE = "type_hashes.json"
-"""Beside this file where there is no folder of interface files: type -> hash, as hexadecimal digits."""
+"""Next to this file if there is no folder of interface files: type -> hash, as hexadecimal digits."""
 
 
 @cache
 def hash_of(type_name: str) -> bytes:
-    """The 32 bytes of a type's hash; zeros where nothing says it."""
+    """Return the 32 bytes of a type's hash; zeros if it is unknown."""
     text = _table().get(type_name) or _from_index(type_name)
     return bytes.fromhex(text.removeprefix(_PREFIX)) if text else bytes(32)
 

@@ -43,7 +43,7 @@ class UnsupportedEventTypeError(RCLError):
 
 
 class UnknownROSArgsError(RuntimeError):
-    """There are flags after --ros-args that nobody knows."""
+    """There are unknown flags after --ros-args."""
 
 
 class InvalidHandle(RuntimeError):
@@ -55,7 +55,7 @@ class NotImplementedError(builtins.NotImplementedError):
 
 
 def at(text: str, place: str) -> str:
-    """An error's text as rcl ends it, with the place in its C source, so that logs compare equal to the real ones."""
+    """Return an error's text as rcl ends it, with the place in its C source, so that logs equal the real ones."""
     return f"{text}, at /project/src/{place}"
 
 
@@ -109,7 +109,7 @@ class GoalEvent(Constant):
 
 
 class QoSCompatibility(Constant):
-    """Whether a publisher and a subscription can meet."""
+    """Whether a publisher and a subscription can match."""
 
     OK = 0
     WARNING = 1
@@ -126,7 +126,7 @@ class SignalHandlerOptions(Constant):
 
 
 class rcl_publisher_event_type_t(Constant):  # noqa: N801
-    """What a publisher can be told about."""
+    """The events of a publisher."""
 
     RCL_PUBLISHER_OFFERED_DEADLINE_MISSED = 0
     RCL_PUBLISHER_LIVELINESS_LOST = 1
@@ -136,7 +136,7 @@ class rcl_publisher_event_type_t(Constant):  # noqa: N801
 
 
 class rcl_subscription_event_type_t(Constant):  # noqa: N801
-    """What a subscription can be told about."""
+    """The events of a subscription."""
 
     RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED = 0
     RCL_SUBSCRIPTION_LIVELINESS_CHANGED = 1
@@ -169,7 +169,7 @@ class TransitionCallbackReturnType(Constant):
     ERROR = 99
 
     def to_label(self) -> str:
-        """The label of the transition that follows."""
+        """Return the label of the transition that follows."""
         return f"transition_{self.name.lower()}"
 
 
@@ -209,7 +209,7 @@ class rcl_duration_t:  # noqa: N801
 
 @dataclass
 class rmw_matched_status_t:  # noqa: N801
-    """How many endpoints have been met, and how many are there now."""
+    """How many endpoints have been matched, and how many are matched now."""
 
     total_count: int = 0
     total_count_change: int = 0
@@ -219,7 +219,7 @@ class rmw_matched_status_t:  # noqa: N801
 
 @dataclass
 class rmw_requested_qos_incompatible_event_status_t:  # noqa: N801
-    """How many endpoints wanted another quality of service, and the policy that kept the last one away."""
+    """How many endpoints requested another quality of service, and the policy that prevented the last match."""
 
     total_count: int = 0
     total_count_change: int = 0
@@ -252,7 +252,7 @@ class rmw_message_lost_status_t:  # noqa: N801
 
 @dataclass
 class rmw_liveliness_lost_status_t:  # noqa: N801
-    """How often a publisher forgot to say that it is alive."""
+    """How often a publisher failed to assert its liveliness."""
 
     total_count: int = 0
     total_count_change: int = 0
@@ -260,7 +260,7 @@ class rmw_liveliness_lost_status_t:  # noqa: N801
 
 @dataclass
 class rmw_liveliness_changed_status_t:  # noqa: N801
-    """How many publishers are alive, and how many have stopped saying so."""
+    """How many publishers are alive, and how many are not any more."""
 
     alive_count: int = 0
     alive_count_change: int = 0
@@ -286,7 +286,7 @@ class rmw_request_id_t:  # noqa: N801
 
 @dataclass(frozen=True)
 class rmw_service_info_t:  # noqa: N801
-    """A request or a response on its way (times in ns since the epoch)."""
+    """A request or a response in transit (times in ns since the epoch)."""
 
     request_id: rmw_request_id_t = rmw_request_id_t()
     source_timestamp: int = 0

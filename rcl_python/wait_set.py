@@ -1,4 +1,4 @@
-"""Wait sets: where a program waits until one of its things is ready."""
+"""Wait sets: they wait until one of a program's entities is ready."""
 
 from __future__ import annotations
 
@@ -30,27 +30,27 @@ class WaitSet(Destroyable):
         self._ready: dict[str, list[bool]] = {kind: [] for kind in KINDS}
 
     def add_subscription(self, entity: Any) -> int:
-        """Wait for a subscription's messages; its index."""
+        """Wait for a subscription's messages; return its index."""
         return self._add("subscription", entity)
 
     def add_guard_condition(self, entity: GuardCondition) -> int:
-        """Wait for a guard condition; its index."""
+        """Wait for a guard condition; return its index."""
         return self._add("guard_condition", entity)
 
     def add_timer(self, entity: Any) -> int:
-        """Wait for a timer; its index."""
+        """Wait for a timer; return its index."""
         return self._add("timer", entity)
 
     def add_client(self, entity: Any) -> int:
-        """Wait for a client's responses; its index."""
+        """Wait for a client's responses; return its index."""
         return self._add("client", entity)
 
     def add_service(self, entity: Any) -> int:
-        """Wait for a service's requests; its index."""
+        """Wait for a service's requests; return its index."""
         return self._add("service", entity)
 
     def add_event(self, entity: Any) -> int:
-        """Wait for an event; its index."""
+        """Wait for an event; return its index."""
         return self._add("event", entity)
 
     def _add(self, kind: str, entity: Any) -> int:
@@ -58,7 +58,7 @@ class WaitSet(Destroyable):
         return len(self._entities[kind]) - 1
 
     def wait(self, timeout: int) -> None:
-        """Wait until something is ready, or for `timeout` ns; for ever where it is negative."""
+        """Wait until something is ready, or for `timeout` ns; without a limit if it is negative."""
         if not any(self._entities.values()):
             raise RCLError("failed to wait on wait set: wait set is empty")
         here = participant.current()
@@ -71,7 +71,7 @@ class WaitSet(Destroyable):
                 here.pump(self._event_is_ready)
 
     def _event_is_ready(self) -> bool:
-        """Whether an event can be reported: two in a row are two reports, as over a network."""
+        """Return whether an event can be reported: two in a row are two reports, as over a network."""
         return any(event.is_ready() for event in self._entities["event"])
 
     def _collect(self) -> bool:
@@ -84,7 +84,7 @@ class WaitSet(Destroyable):
         return any(map(any, self._ready.values()))
 
     def _left(self, until: int | None) -> int | None:
-        """How long the wait can be at most (ns): until the time is up, a timer comes or a deadline passes."""
+        """Return how long the wait can be at most (ns): until the time is up, a timer is due or a deadline passes."""
         now = participant.current().link.steady()
         spans = [] if until is None else [until - now]
         spans += [span for span in (timer.due() for timer in self._entities["timer"]) if span is not None]
@@ -92,7 +92,7 @@ class WaitSet(Destroyable):
         return max(0, min(spans)) if spans else None
 
     def is_ready(self, kind: str, index: int) -> bool:
-        """Whether the last wait found this one ready. Raises RuntimeError for a kind that is none."""
+        """Return whether the last wait found this one ready. Raises RuntimeError for an invalid kind."""
         if kind not in KINDS:
             raise RuntimeError(f"'{kind}' is not a known entity")
         if index >= len(self._entities[kind]):
@@ -100,13 +100,13 @@ class WaitSet(Destroyable):
         return bool(self._ready[kind]) and self._ready[kind][index]
 
     def get_ready_entities(self, kind: str) -> list[int]:
-        """The pointers of those of a kind that the last wait found ready."""
+        """Return the pointers of the entities of a kind that the last wait found ready."""
         if kind not in KINDS or kind == "event":
             raise RuntimeError(f"'{kind}' is not a known entity")
         return [entity.pointer for entity, ready in zip(self._entities[kind], self._ready[kind], strict=False) if ready]
 
     def found_ready(self, entity: Any) -> bool:
-        """Whether the last wait found this very thing ready."""
+        """Return whether the last wait found this very thing ready."""
         return any(
             ready and one is entity
             for kind in KINDS

@@ -31,7 +31,7 @@ from rmw_lockstep.ros import Ros, installed_ros
 _COMPILE = ("-std=c++17", "-O2", "-fPIC", "-fvisibility=hidden", "-pthread", "-Wall", "-Wextra", "-c")
 _LINK = ("-shared", "-s", "-pthread", "-Wl,-z,defs")
 
-#: liblockstep is loaded into every program. It brings its own C++ library, and shows only what the map names.
+#: liblockstep is loaded into every program. It includes its own C++ library, and exports only what the map names.
 _ALONE = (
     *("-static-libstdc++", "-static-libgcc", "-Wl,--exclude-libs,ALL", "-ldl"),
     f"-Wl,--version-script={SOURCES / 'lockstep/exports.map'}",
@@ -40,18 +40,18 @@ _ALONE = (
 #: Compilers that run at once: each takes some 300 MB.
 _AT_ONCE = 2
 
-#: How many former sets of libraries are kept, for programs that still use them.
+#: How many earlier sets of libraries are kept, for programs that still use them.
 _FORMER = 3
 
 _NO_COMPILER = Unavailable("g++ is not installed", "Install it: sudo apt-get install g++")
 
 
 class BuildError(Exception):
-    """Raised where the compiler or the linker fails; the text has what it printed."""
+    """Raised when the compiler or the linker fails; the text has its output."""
 
 
 def build() -> Library | Unavailable:
-    """The compiled middleware, which is compiled now if there is none yet (seconds, and about 300 MB of memory).
+    """Return the compiled middleware; compile it now if there is none yet (seconds, and about 300 MB of memory).
 
     Raises:
         BuildError: if the compiler or the linker fails.
@@ -66,7 +66,7 @@ def build() -> Library | Unavailable:
     if place is None:
         return Unavailable("there is no folder for it that can be written to", "Set HOME to a folder of your own.")
     with _turn(place):
-        found = library()  # somebody else may have compiled it meanwhile
+        found = library()  # another process may have compiled it meanwhile
         return found if isinstance(found, Library) else Library(_compiled(ros, place), ros.prefix)
 
 
@@ -126,7 +126,7 @@ def _writable(place: Path) -> bool:
 
 @contextlib.contextmanager
 def _turn(place: Path) -> Iterator[None]:
-    """Of several processes that want to compile, one does; the others wait for it."""
+    """Let one of several processes that want to compile do it; the others wait for it."""
     with (place / ".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         yield

@@ -1,4 +1,4 @@
-"""Finds the compiled middleware, and says how a process is made to load it."""
+"""Finds the compiled middleware, and knows how to make a process load it."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from pathlib import Path
 
 from rmw_lockstep.ros import Ros, installed_ros
 
-#: What `rclpy.get_rmw_implementation_identifier()` returns where this middleware was loaded.
+#: What `rclpy.get_rmw_implementation_identifier()` returns if this middleware was loaded.
 IDENTIFIER = "rmw_lockstep_cpp"
 
 #: The folder with the C++ sources.
 SOURCES = Path(__file__).parent
 
-#: The package in which a prebuilt wheel brings the libraries.
+#: The package in which a prebuilt wheel contains the libraries.
 PREBUILT = "rmw_lockstep_prebuilt"
 
 #: Describes what a folder of libraries was made from.
@@ -35,7 +35,7 @@ class Library:
     """The compiled middleware.
 
     Attributes:
-        folder: holds `liblockstep.so`, `librmw_lockstep_cpp.so` and the folder `wheels/`.
+        folder: contains `liblockstep.so`, `librmw_lockstep_cpp.so` and the folder `wheels/`.
         prefix: the ROS 2 that it is for.
     """
 
@@ -44,12 +44,12 @@ class Library:
 
     @property
     def preload(self) -> Path:
-        """What `LD_PRELOAD` names: the connection to the hub, simulated time and the detection of idleness."""
+        """The value of `LD_PRELOAD`: the connection to the hub, simulated time and idle detection."""
         return self.folder / "liblockstep.so"
 
     @property
     def search_folder(self) -> Path:
-        """What comes first in `LD_LIBRARY_PATH`.
+        """The first entry of `LD_LIBRARY_PATH`.
 
         PyPI's wheels are linked to librmw_fastrtps_cpp.so by name, so for them a library of this name comes first. Any
         other ROS 2 loads the library that `RMW_IMPLEMENTATION` names.
@@ -57,10 +57,10 @@ class Library:
         return self.folder if Ros(self.prefix).chooses_at_run_time else self.folder / "wheels"
 
     def environment(self, of: Mapping[str, str]) -> dict[str, str]:
-        """The variables with which a process loads this middleware, given those that it would have otherwise.
+        """Return the variables with which a process loads this middleware, given those that it would have otherwise.
 
         With PyPI's wheels `RMW_IMPLEMENTATION` chooses nothing. But rcl compares it with the middleware that was
-        loaded, and ends the process with exit code 102 if that is another one.
+        loaded, and ends the process with exit code 102 if they differ.
         """
         searched = filter(None, (str(self.search_folder), of.get("LD_LIBRARY_PATH")))
         return {
@@ -79,7 +79,7 @@ class Unavailable:
 
 
 def library() -> Library | Unavailable:
-    """The compiled middleware for the ROS 2 in use, or why there is none. Compiles nothing: see `build.build`."""
+    """Return the compiled middleware for the ROS 2 in use, or why there is none. Never compiles: see `build.build`."""
     ros = installed_ros()
     if ros is None:
         return Unavailable("ROS 2's headers are not installed here", "Install ROS 2: make setup")
@@ -98,7 +98,7 @@ def _folders(ros: Ros) -> Iterator[Path]:
     if compiler():
         name = key(ros)
         yield from (place / name for place in places())
-    else:  # such as in an image that was made smaller after set-up
+    else:  # for example in a container image that was made smaller after set-up
         compiled = (folder for place in places() if place.is_dir() for folder in sorted(place.iterdir()))
         yield from (folder for folder in compiled if _fits(folder, ros))
     if (prebuilt := _prebuilt()) and _fits(prebuilt, ros):
@@ -106,7 +106,7 @@ def _folders(ros: Ros) -> Iterator[Path]:
 
 
 def places() -> Iterator[Path]:
-    """Where compiled libraries are kept, each set in a folder named by its key: the first that is writable is used."""
+    """Yield the folders for compiled libraries, each set named by its key: the first writable one is used."""
     yield Path(sys.prefix) / "lib/rmw_lockstep"
     if cache_home := os.environ.get("XDG_CACHE_HOME"):
         yield Path(cache_home) / "rmw_lockstep"
@@ -115,7 +115,7 @@ def places() -> Iterator[Path]:
 
 
 def sources() -> list[Path]:
-    """Every C++ file, in a fixed order."""
+    """Return every C++ file, in a fixed order."""
     found = (SOURCES / folder for folder in ("lockstep", "src"))
     return sorted(
         file for folder in found for file in folder.rglob("*") if file.suffix in (".cpp", ".hpp", ".h", ".map")
@@ -124,7 +124,7 @@ def sources() -> list[Path]:
 
 @cache
 def sources_digest() -> str:
-    """SHA-256 of the C++ sources and of how they are compiled."""
+    """Return the SHA-256 of the C++ sources and of how they are compiled."""
     total = hashlib.sha256()
     for file in (*sources(), SOURCES / "build.py"):
         content = file.read_bytes()
@@ -134,13 +134,13 @@ def sources_digest() -> str:
 
 
 def compiler() -> list[str] | None:
-    """The C++ compiler, `CXX` or else g++, as the beginning of a command line; None if it is not installed."""
+    """Return the C++ compiler, `CXX` or otherwise g++, as the beginning of a command line; None if not installed."""
     command = shlex.split(os.environ.get("CXX", "")) or ["g++"]
     return command if shutil.which(command[0]) else None
 
 
 def key(ros: Ros) -> str:
-    """Names the libraries that would be compiled now: a digest of sources, compiler, processor and ROS 2's versions."""
+    """Return the key of the libraries that would be compiled now: a digest of sources, compiler, CPU and ROS 2."""
     command = compiler()
     described: list[object] = [sources_digest(), description(ros), command]
     if command:
@@ -150,12 +150,12 @@ def key(ros: Ros) -> str:
 
 
 def description(ros: Ros) -> dict[str, object]:
-    """What decides whether libraries that were compiled elsewhere fit here."""
+    """Return what decides whether libraries that were compiled elsewhere fit here."""
     return {"sources": sources_digest(), "machine": platform.machine(), "ros": dict(ros.versions)}
 
 
 def _built_by_colcon() -> Path | None:
-    """The lib/ of a sourced workspace into which CMakeLists.txt beside this file has installed the libraries."""
+    """Return the lib/ of a sourced workspace into which the CMakeLists.txt in this folder installed the libraries."""
     for prefix in filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
         if Path(prefix, "share", IDENTIFIER, "package.xml").exists():
             return Path(prefix, "lib")
@@ -163,13 +163,13 @@ def _built_by_colcon() -> Path | None:
 
 
 def _prebuilt() -> Path | None:
-    """The folder of an installed prebuilt wheel."""
+    """Return the folder of an installed prebuilt wheel."""
     found = importlib.util.find_spec(PREBUILT)
     return Path(found.origin).parent if found and found.origin else None
 
 
 def _fits(folder: Path, ros: Ros) -> bool:
-    """Whether prebuilt libraries are of these sources, this processor and these versions of ROS 2 (but for patches)."""
+    """Return whether prebuilt libraries fit these sources, this CPU and these versions of ROS 2 (except patches)."""
     try:
         built = json.loads((folder / DESCRIPTION).read_text(encoding="utf-8"))
     except (OSError, ValueError):

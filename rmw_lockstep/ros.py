@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-#: Whose headers the middleware includes. Each has a folder of its own below include/.
+#: The packages whose headers the middleware includes. Each has its own folder in include/.
 HEADERS = (
     *("rmw", "rcutils", "rcpputils", "fastcdr"),
     *("rosidl_runtime_c", "rosidl_runtime_cpp", "rosidl_typesupport_interface", "rosidl_dynamic_typesupport"),
@@ -39,7 +39,7 @@ class Ros:
 
     @property
     def versions(self) -> Mapping[str, str]:
-        """The versions of all that decides whether a compiled middleware fits: the API's, and Fast CDR's."""
+        """The versions of everything that decides whether a compiled middleware fits: the API's, and Fast CDR's."""
         found = {name: _version(self.prefix / "share" / name / "package.xml", _PACKAGE_VERSION) for name in _DECISIVE}
         return found | {"fastcdr": _version(self.prefix / "include/fastcdr/config.h", _FAST_CDR_VERSION)}
 
@@ -51,7 +51,7 @@ class Ros:
 
     @property
     def libraries(self) -> tuple[Path, ...]:
-        """What is linked."""
+        """The libraries to link."""
         return tuple(self.prefix / "lib" / f"lib{name}.so" for name in LIBRARIES)
 
 
@@ -59,9 +59,9 @@ _DECISIVE = ("rmw", "rcutils", "rosidl_runtime_c", "rosidl_typesupport_fastrtps_
 
 
 def installed_ros() -> Ros | None:
-    """The ROS 2 that this Python imports, with its headers; None if there is none.
+    """Return the ROS 2 that this Python imports, with its headers; None if there is none.
 
-    A sourced ROS 2 comes first, as it does in Python's own search: its packages are on `PYTHONPATH`.
+    A sourced ROS 2 comes first, as in Python's own search: its packages are on `PYTHONPATH`.
     """
     return next((Ros(prefix) for prefix in _prefixes() if (prefix / "include/rmw/rmw/rmw.h").exists()), None)
 

@@ -1,6 +1,6 @@
 """Makes a wheel of the compiled libraries, for machines without a compiler: `python -m rmw_lockstep.wheel FOLDER`.
 
-Nothing in it depends on Python's version. It fits ROS 2 of the same versions (but for patches) on the same kind of
+It does not depend on Python's version. It fits ROS 2 of the same versions (except patches) on the same kind of
 processor, with the C library of the machine that made it or a newer one.
 """
 
@@ -32,7 +32,7 @@ setup(
 
 
 def make_wheel(ros: Ros, folder: Path) -> Path:
-    """Compile the libraries for `ros` and write them as a wheel into `folder`; returns the wheel's path.
+    """Compile the libraries for `ros` and write them as a wheel into `folder`; return the wheel's path.
 
     Raises:
         BuildError: if they can't be compiled or packed.

@@ -17,7 +17,7 @@ from playwright.sync_api import Browser, ConsoleMessage, Page, Request, expect, 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 LOCAL = ("file:", "data:", "blob:", "about:")
 
-#: How long anything that has to happen in a page may take, on a machine with much else to do (ms).
+#: How long anything that has to happen in a page may take, on a busy machine (ms).
 PATIENCE_MS = 90_000
 
 #: No calls home, and no GPU that a test machine would not have.
@@ -26,7 +26,7 @@ ARGUMENTS = ["--disable-gpu", "--disable-background-networking", "--disable-comp
 
 @dataclass
 class Opened:
-    """An open page, and what it did that no page of ours may do."""
+    """An open page, and what it did that our pages must not do."""
 
     page: Page
     console: list[str] = field(default_factory=list)
@@ -38,21 +38,21 @@ class Opened:
         return [*self.console, *(f"outside request: {url}" for url in self.outside)]
 
     def violations(self) -> list[str]:
-        """What axe finds against accessibility, a line each: the rule, and the elements that break it."""
-        # What a page does once laid out, such as making what scrolls reachable by keyboard, is done a frame later.
+        """Return what axe finds against accessibility, one line each: the rule, and the elements that break it."""
+        # Some things happen a frame after the layout, such as making scrollable areas reachable by keyboard.
         self.page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
         found: list[dict[str, Any]] = Axe().run(self.page).response["violations"]
         return [f"{v['id']}: {v['help']}: {[node['html'][:200] for node in v['nodes']]}" for v in found]
 
     def scrolls_sideways(self) -> bool:
-        """Whether the page is wider than its window."""
+        """Return whether the page is wider than its window."""
         root = "document.documentElement"
         return bool(self.page.evaluate(f"{root}.scrollWidth > {root}.clientWidth"))
 
 
 @contextmanager
 def chromium() -> Iterator[Browser]:
-    """A running Chromium without a window. Fails the test where none is installed: `make test` installs it."""
+    """Yield a running Chromium without a window. Fails the test if none is installed: `make test` installs it."""
     path = next(filter(None, map(shutil.which, NAMES)), None)
     if path is None:
         pytest.fail("There is no Chromium here. Install it: sudo apt-get install chromium")
@@ -70,7 +70,7 @@ def chromium() -> Iterator[Browser]:
 def opened(
     browser: Browser, where: Path | str, *, width: int = 1280, height: int = 900, dark: bool = False
 ) -> Iterator[Opened]:
-    """The page at a file's path or a URL, loaded, in a window of `width` pixels."""
+    """Yield the page at a file's path or a URL, loaded, in a window of `width` pixels."""
     url = where.resolve().as_uri() if isinstance(where, Path) else where
     context = browser.new_context(viewport={"width": width, "height": height}, color_scheme="dark" if dark else "light")
     context.set_default_timeout(PATIENCE_MS)

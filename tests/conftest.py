@@ -1,4 +1,4 @@
-"""What every test may use: a ROS domain of its own, a small course, a mark on its processes, a browser."""
+"""What every test may use: its own ROS domain, a small course, a mark on its processes, a browser."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from interface_compiler.activation import VARIABLE
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    # Started in a shell's background, tests would hand on to every program that they start that Ctrl-C is ignored.
+    # Started in a shell's background, tests would make every program that they start ignore Ctrl-C.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    # Each run makes the solutions' recordings anew, once for all its processes: the user's own cache proves nothing.
+    # Each run makes the solutions' recordings again, once for all its processes: the user's own cache proves nothing.
     if "PYTEST_XDIST_WORKER" not in os.environ:
         os.environ["SPINBOOK_CACHE"] = tempfile.mkdtemp(prefix="spinbook-tests-")
         config.add_cleanup(lambda: shutil.rmtree(os.environ["SPINBOOK_CACHE"], ignore_errors=True))
@@ -50,7 +50,7 @@ def ros_domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
 
 @pytest.fixture(scope="module", autouse=True)
 def only_here() -> Iterator[None]:
-    """Lets the interfaces that a file's tests activate end with the file; those of later ones would see them, too.
+    """Ends the interfaces that a file's tests activate with the file; later tests would use them, too.
 
     Reading an exercise is enough to activate what was compiled for its course.
     """

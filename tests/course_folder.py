@@ -11,14 +11,14 @@ import nbformat
 
 
 class CourseFolder:
-    """A small course in a temporary folder, and what `spinbook` says when it is run there."""
+    """A small course in a temporary folder, in which `spinbook` can be run."""
 
     def __init__(self, root: Path) -> None:
         self.root = root
         (root / "chapters").mkdir(parents=True, exist_ok=True)
 
     def write(self, **chapters: str | bytes) -> CourseFolder:
-        """Write chapters by name, and a course.toml that lists every chapter there is, by name."""
+        """Write chapters by name, and a course.toml that lists every chapter, by name."""
         for name, text in chapters.items():
             file = self.root / "chapters" / f"{name}.md"
             file.write_bytes(text if isinstance(text, bytes) else text.encode())
@@ -36,11 +36,11 @@ class CourseFolder:
         )
 
     def notebook(self, name: str, folder: str = "notebooks") -> Any:
-        """A built notebook (or an executed one)."""
+        """Return a built notebook (or an executed one)."""
         return nbformat.read(self.root / "build" / folder / f"{name}.ipynb", as_version=4)
 
     def outputs(self, name: str) -> dict[str, str]:
-        """Cell id -> all the text that an executed chapter's cell shows, errors included."""
+        """Return cell id -> all the text that an executed chapter's cell shows, errors included."""
         return {
             cell.id: "".join(output.get("text", "") + "\n".join(output.get("traceback", [])) for output in cell.outputs)
             for cell in self.notebook(name, "executed").cells

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 PROGRAM = next(filter(None, map(shutil.which, ("firefox-esr", "firefox"))), None)
-#: What it takes to start on a machine with much else to do (s).
+#: How long it takes to start on a busy machine (s).
 PATIENCE_S = 180
 _PREFERENCES = """\
 user_pref("marionette.port", {port});
@@ -57,7 +57,7 @@ class Firefox:
         self._call("WebDriver:Navigate", url=address)
 
     def evaluate(self, script: str, *given: Any) -> Any:
-        """What the body of an async function returns in the page; `given` are its `arguments`."""
+        """Return what the body of an async function returns in the page; `given` are its `arguments`."""
         body = (
             "const done = arguments[arguments.length - 1];"
             f"(async function () {{ {script} }}).apply(null, arguments)"
@@ -66,7 +66,7 @@ class Firefox:
         return self._call("WebDriver:ExecuteAsyncScript", script=body, args=list(given))["value"]
 
     def wait_for(self, selector: str, text: str) -> str:
-        """The text of the first element that this selects, once it holds `text`. Raises TimeoutError."""
+        """Return the text of the first element that this selects, once it contains `text`. Raises TimeoutError."""
         deadline = time.monotonic() + PATIENCE_S
         while text not in (found := self.evaluate(_TEXT, selector)):
             if time.monotonic() > deadline:

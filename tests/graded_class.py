@@ -41,9 +41,9 @@ TWO = ("super().__init__('joint_velocity')", "super().__init__('velocity_node')"
 
 
 def graded_class(factory: pytest.TempPathFactory) -> tuple[Exercise, dict[str, Grade], Path]:
-    """The exercise, a grade for each of several submissions, and the cache in which the solution's recordings are.
+    """Return the exercise, a grade for each of several submissions, and the cache with the solution's recordings.
 
-    Whichever test process comes first grades them.
+    The first test process that needs them grades them.
     """
     base = factory.getbasetemp()
     shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
@@ -63,7 +63,7 @@ def _grades(exercise: Exercise, cache: Path) -> dict[str, Grade]:
         with WorkerPool() as workers:
             grading = grading_of(exercise, Options(), workers)
             grades = {name: grading.grade(submission) for name, submission in _submissions(exercise).items()}
-        # The worker is gone by now: a fault of ours, as the grader tells of it.
+        # The worker is gone by now: a fault of ours, as the grader reports it.
         grades["host_error"] = grading.grade(_submissions(exercise)["solution"])
         return grades
     finally:

@@ -1,4 +1,4 @@
-"""Grades and entries as plain data, for what is made of them."""
+"""Grades and entries as plain data, for tests of what is made from them."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ def exercise() -> Exercise:
 
 
 def failed(verdict: Verdict, finding: Finding = SECRET) -> Verdict:
-    """The same check, not passed."""
+    """Return the same check, not passed."""
     return replace(verdict, status="failed", finding=finding)
 
 
 def grade(*verdicts: Verdict, **fields: object) -> Grade:
-    """A grade of 10 points with these verdicts."""
+    """Return a grade of 10 points with these verdicts."""
     made = Grade(
         exercise="joint_velocity",
         submission="node.py",
@@ -53,7 +53,7 @@ def grade(*verdicts: Verdict, **fields: object) -> Grade:
 
 
 def entry(of: Grade, student: Student | None = None, **fields: object) -> Entry:
-    """An entry of the class's."""
+    """Return a student's entry."""
     made = Entry(student or Student("ada", "Ada Lovelace", "ada@example.org"), "ada/node.py", of, WHEN)
     return replace(made, **fields)  # type: ignore[arg-type]
 

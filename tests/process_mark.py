@@ -11,14 +11,14 @@ import pytest
 
 
 class ProcessMark:
-    """Tells the processes that come from one test from all others, by a variable in their environment."""
+    """Distinguishes the processes of one test from all others, by a variable in their environment."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self._value = uuid.uuid4().hex
         monkeypatch.setenv("SPINBOOK_TEST_MARK", self._value)
 
     def alive(self) -> list[str]:
-        """The command lines of those that run."""
+        """Return the command lines of those that run."""
         found = []
         for process in psutil.process_iter():
             try:
@@ -30,7 +30,7 @@ class ProcessMark:
         return found
 
     def wait_until_none(self, timeout_s: float = 60) -> None:
-        """Wait until none runs any more; fails the test where one stays."""
+        """Wait until none runs any more; fail the test if one stays."""
         deadline = time.monotonic() + timeout_s
         while left := self.alive():
             assert time.monotonic() < deadline, f"left behind: {left}"

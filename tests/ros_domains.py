@@ -1,4 +1,4 @@
-"""ROS domains for tests: each is one test's, or one fixture's, alone on this machine."""
+"""ROS domains for tests: each belongs to one test, or one fixture, alone on this machine."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ LOOPBACK = Path(__file__).parents[1] / "spinbook" / "kernel" / "loopback.xml"
 
 @contextmanager
 def reserved() -> Iterator[int]:
-    """A ROS domain that no other test and no notebook on this machine uses meanwhile."""
-    # Domains above 60 are the tests'; notebooks take theirs from below.
+    """Reserve a ROS domain that no other test and no notebook on this machine uses meanwhile."""
+    # Domains above 60 are for tests; notebooks use those below.
     locks = Path(tempfile.gettempdir()) / "spinbook-test-domains"
     locks.mkdir(exist_ok=True)
     for domain in range(61, 100):
@@ -29,7 +29,7 @@ def reserved() -> Iterator[int]:
 
 
 def environment(domain: int) -> dict[str, str]:
-    """The variables with which rclpy, here and in children, uses a domain, on loopback only."""
+    """Return the variables with which rclpy, here and in children, uses a domain, on loopback only."""
     return {
         "ROS_DOMAIN_ID": str(domain),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",

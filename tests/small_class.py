@@ -44,13 +44,13 @@ class SmallClass:
         self.hand_in("fay", "import rclpy\n\nrclpy.spin(\n")
 
     def hand_in(self, student: str, source: str) -> None:
-        """One student's file, with a date that is the same each time."""
+        """Write one student's file, with a fixed date."""
         file = self.submissions / f"{student}.py"
         file.write_text(source, encoding="utf-8")
         os.utime(file, (1_795_000_000, 1_795_000_000))
 
     def start(self, *arguments: str, out: str = "results") -> subprocess.Popen[str]:
-        """The command, under way, in a process group of its own."""
+        """Start the command, in a process group of its own."""
         command = [sys.executable, "-m", "grader", EXERCISE, "submissions", "--out", out, *arguments]
         return subprocess.Popen(
             command,
@@ -63,7 +63,7 @@ class SmallClass:
         )
 
     def grade(self, *arguments: str, out: str = "results") -> tuple[int, str]:
-        """The command's exit code, and all that it printed."""
+        """Return the command's exit code, and everything it printed."""
         process = self.start(*arguments, out=out)
         printed, _ = process.communicate(timeout=560)
         return process.returncode, printed
@@ -74,19 +74,19 @@ class SmallClass:
         wait_until(lambda: len(list(students.glob("*/grade.json"))) >= count or process.poll() is not None)
 
     def entry(self, student: str, out: str = "results") -> dict[str, Any]:
-        """What is in a student's grade.json."""
+        """Return the content of a student's grade.json."""
         file = self.folder / out / "students" / student / "grade.json"
         entry: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
         return entry
 
     def finals(self, out: str = "results") -> dict[str, float]:
-        """The points that count, by student."""
+        """Return the points that count, by student."""
         students = sorted(file.parent.name for file in (self.folder / out).glob("students/*/grade.json"))
         return {student: self.entry(student, out)["final"] for student in students}
 
 
 def wait_until(happened: Callable[[], object], timeout_s: float = 240) -> None:
-    """Wait for a condition; fails the test where it never comes true."""
+    """Wait for a condition; fail the test if it never becomes true."""
     deadline = time.monotonic() + timeout_s
     while not happened():
         assert time.monotonic() < deadline, "it never happened"
@@ -94,10 +94,10 @@ def wait_until(happened: Callable[[], object], timeout_s: float = 240) -> None:
 
 
 def without_timings(results: Path) -> dict[str, str]:
-    """Every file in a folder of results, by its path; timings are left out."""
+    """Return every file in a folder of results, by its path, without timings."""
     found = {}
     for file in sorted(results.rglob("*")):
-        # Recordings are compressed, and hold timings, too.
+        # Recordings are compressed, and contain timings, too.
         if file.is_file() and file.name not in (".lock", "recordings.json.gz"):
             text = file.read_text(encoding="utf-8")
             text = re.sub(r'"(seconds|execution_time)": [\d.e-]+', r'"\1": 0', text)

@@ -1,4 +1,4 @@
-"""Which of pytest-xdist's workers runs which tests: what is expensive is made once, and the longest comes first."""
+"""Which of pytest-xdist's workers runs which tests: expensive set-up is done once, and the longest tests come first."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from xdist.workermanage import WorkerController
 #: expensive to make: a chapter that has run, a whole site, a class that was graded.
 TOGETHER = ("audit", "check", "feedback", "graph", "handout", "interfaces", "marking", "site")
 
-#: What takes longest, in this order. It is begun first: begun last, it would leave the other workers without work.
+#: What takes longest, in this order. It is started first: started last, it would leave the other workers idle.
 LONGEST = (
     *("site", "audit", "handout", "marking", "interfaces", "course/test_week3_notebook.py", "build/test_execution.py"),
     *("new/test_kinds.py", "grader/test_course_solutions.py", "hostile/test_through_the_grader.py", "check"),
@@ -22,7 +22,7 @@ LONGEST = (
 
 
 def piece_of(nodeid: str) -> str:
-    """The piece of work that a test belongs to: a folder of `TOGETHER`, or its file."""
+    """Return the piece of work that a test belongs to: a folder of `TOGETHER`, or its file."""
     folder, file = Path(nodeid.partition("::")[0]).parts[-2:]
     return folder if folder in TOGETHER else f"{folder}/{file}"
 
@@ -39,7 +39,7 @@ class ByPiece(LoadScopeScheduling):
 
 
 def _rank(piece: str) -> int:
-    """Small for what takes long; pieces of the same rank stay in their order."""
+    """Return a small number for what takes long; pieces of the same rank keep their order."""
     folder = piece.partition("/")[0]
     found = [LONGEST.index(name) for name in (piece, folder) if name in LONGEST]
     return min(found, default=len(LONGEST))

@@ -1,4 +1,4 @@
-"""A class of students and what grading them came to."""
+"""A class of students and the results of grading them."""
 
 from grader.grading.entry import Adjustment, Entry, Skipped, Student
 

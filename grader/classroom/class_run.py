@@ -1,4 +1,4 @@
-"""Grades a class, from the folder of submissions to the gradebook, and shows how far it is."""
+"""Grades a class, from the folder of submissions to the gradebook, and shows the progress."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ from grader.report.printable import printable
 from grader.submission.reading import Submission, read
 from grader.workers.pool import WorkerPool
 
-#: How many files that were skipped for one reason are named; the overview page names all.
+#: How many files that were skipped for the same reason are named; the overview page names all.
 MOST_NAMED = 5
 
 
 def show_submissions(console: Console, kind: str, count: int, skipped: Sequence[Skipped]) -> None:
-    """Say as what the submissions were read, and what was left out of them."""
+    """Print how the submissions were read, and what was left out."""
     _say(console, f"{count} submissions in {kind}.")
     reasons: dict[str, list[str]] = {}
     for one in skipped:
@@ -55,7 +55,7 @@ def show_submissions(console: Console, kind: str, count: int, skipped: Sequence[
 def show_result(
     console: Console, entries: Sequence[Entry], faults: Sequence[Entry], questions: Sequence[Question]
 ) -> None:
-    """Say what the class came to, and what is left to do for the instructor."""
+    """Print the class's result, and what is left to do for the instructor."""
     finals = sorted(entry.final for entry in entries if entry.final is not None)
     if finals:
         points = entries[0].grade.points
@@ -87,7 +87,7 @@ def _say(console: Console, text: str, style: str = "") -> None:
 
 
 class ProgressDisplay:
-    """Tells of each entry as it is done. Use it as a context manager."""
+    """Prints each entry as it is done. Use it as a context manager."""
 
     def __init__(self, console: Console, total: int) -> None:
         self._console, self._total, self._done = console, total, 0
@@ -105,7 +105,7 @@ class ProgressDisplay:
         self._task = self._bar.add_task("grading", total=total)
 
     def done(self, entry: Entry, changed: str) -> None:
-        """One more is done; `changed` tells what a former grade was, where there was another one."""
+        """Count one more as done; `changed` says what an earlier grade was, if it was different."""
         self._done += 1
         self._bar.update(self._task, advance=1)
         if self._console.is_terminal and not changed:
@@ -127,15 +127,15 @@ class ProgressDisplay:
         self._bar.stop()
 
 
-#: Exit codes, beside click's 2 for usage and a shell's 130 for Ctrl-C.
+#: Exit codes, besides click's 2 for usage and a shell's 130 for Ctrl-C.
 DONE, QUESTIONS, FAULTS, STOPPED = 0, 1, 3, 130
 
 
 def grade_class(exercise: Exercise, class_request: ClassRequest, console: Console) -> int:
-    """Grade a class, and say how it went; returns the exit code.
+    """Grade a class, and print the result; return the exit code.
 
-    Raises `SubmissionsError` where there is nothing to grade, `OverridesError` for a mistake in the overrides, `Busy`
-    when another run is at work on the same results, and what `grading_of` raises.
+    Raises `SubmissionsError` when there is nothing to grade, `OverridesError` for a mistake in the overrides, `Busy`
+    when another run is using the same results folder, and what `grading_of` raises.
     """
     with tempfile.TemporaryDirectory(prefix="spinbook-class-") as unpacked, _ended_by_signals():
         collected = collect(class_request.source, exercise.name, Path(unpacked))
@@ -190,7 +190,7 @@ def _grade(marking: ClassGrading, plan: Plan, submissions: Mapping[str, Submissi
 
 
 def _may_replace(class_request: ClassRequest, console: Console, count: int) -> bool:
-    """Ask the instructor, where there is a terminal to ask in."""
+    """Ask the instructor, if there is a terminal to ask in."""
     if class_request.replace or not sys.stdin.isatty():
         if not class_request.replace:
             console.print("To replace them: the same command with --yes.")
@@ -228,7 +228,7 @@ def _finish(
 
 
 def _read(collected: Submissions, exercise: Exercise) -> tuple[dict[str, Submission], list[tuple[HandedIn, str]]]:
-    """Read the submissions, by student. A file that breaks its reader is listed apart, and stops nobody else's."""
+    """Read the submissions, by student. A file that its reader can't read is listed separately."""
     submissions, unreadable = {}, []
     for one in collected.handed_in:
         try:
@@ -272,7 +272,7 @@ def _backend(grading: Grading, class_request: ClassRequest) -> Iterator[Backend]
 
 @contextlib.contextmanager
 def _ended_by_signals() -> Iterator[None]:
-    """SIGTERM, which a machine sends that shuts down, ends a run as cleanly as Ctrl-C."""
+    """End a run on SIGTERM, which a machine sends when it shuts down, as cleanly as on Ctrl-C."""
 
     def stop(number: int, frame: FrameType | None) -> None:
         raise KeyboardInterrupt

@@ -1,4 +1,4 @@
-"""Finds out who handed in what: in a folder, a zip, a learning platform's download, or by a CSV file."""
+"""Finds out who submitted what: in a folder, a zip, a learning platform's download, or by a CSV file."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ WHY_NOISE = "made by a program, not handed in"
 
 
 def is_noise(name: str) -> bool:
-    """Whether a file or folder of this name is of no interest."""
+    """Return whether a file or folder of this name can be ignored."""
     return name in NOISE or name.startswith(".")
 
 
 def walk(root: Path) -> Iterator[File | Skipped]:
-    """Every file below `root`, in order of names; symbolic links are not followed."""
+    """Yield every file below `root`, sorted by name; symbolic links are not followed."""
     for folder, folders, names in os.walk(root):
         inside = Path(folder).relative_to(root)
         for name in sorted([*folders, *names]):
@@ -51,7 +51,7 @@ def walk(root: Path) -> Iterator[File | Skipped]:
 
 
 def date_of(path: Path) -> datetime | None:
-    """Return the file's date; an archive can give a file one that no calendar has."""
+    """Return the file's date, if any; an archive can give a file a date that does not exist."""
     try:
         return datetime.fromtimestamp(path.lstat().st_mtime, timezone.utc)
     except (OSError, ValueError, OverflowError):
@@ -59,7 +59,7 @@ def date_of(path: Path) -> datetime | None:
 
 
 def by_student(files: list[File]) -> Sorted:
-    """STUDENT.py, or one folder per student with a file in it."""
+    """Sort files named STUDENT.py, or in one folder per student, by student."""
     found = []
     for file in files:
         top = file.parts[0]
@@ -73,10 +73,10 @@ KNOWN = (*NEEDED, "name", "email", "submitted")
 
 
 def by_row(table: Path) -> Sorted:
-    """The files that the rows name, found from the CSV file's folder. Raises `SubmissionsError` for a row with a
+    """Return the files in the rows, relative to the CSV file's folder. Raises `SubmissionsError` for a row with a
     mistake.
 
-    Columns beyond those known are kept for each student, as their learning platform's.
+    Other columns are kept for each student, as their learning platform's.
     """
     found, skipped = [], []
     for number, row in table_rows(table, NEEDED):
@@ -112,9 +112,9 @@ BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplemented
 
 
 def unpacked(archive: Path, into: Path) -> Iterator[File | Skipped]:
-    """The files in `archive` that can be submissions, written into the folder `into` under numbers.
+    """Yield the files in `archive` that can be submissions, written into the folder `into` with numbers as names.
 
-    Raises `SubmissionsError` when it is no zip, or holds more than any class hands in.
+    Raises `SubmissionsError` when it is not a zip, or holds more than any class submits.
     """
     try:
         opened = zipfile.ZipFile(archive)
@@ -151,19 +151,19 @@ def _name(entry: zipfile.ZipInfo) -> str:
 
 
 def _why_not(entry: zipfile.ZipInfo, name: str) -> str:
-    """Why an entry is left out, or nothing."""
+    """Return why an entry is left out, or an empty text."""
     if any(is_noise(part) for part in name.split("/")):
         return WHY_NOISE
     if stat.S_ISLNK(entry.external_attr >> 16):
         return "a symbolic link, not a file"
     if entry.flag_bits & 1:
         return "it is encrypted"
-    # nbgrader's time stamps are no submissions, but they tell when one was handed in.
+    # nbgrader's time stamps are not submissions, but they say when one was submitted.
     return "" if name.endswith((*SUFFIXES, "/timestamp.txt")) else f"not one of {', '.join(SUFFIXES)}"
 
 
 def _date(entry: zipfile.ZipInfo) -> datetime | None:
-    """A zip tells the local time of whoever made it, without a zone: taken as this machine's."""
+    """Return an entry's date. A zip has the local time of its creator, without a zone: taken as this machine's."""
     try:
         return datetime(*entry.date_time).astimezone()
     except (ValueError, OverflowError, OSError):
@@ -171,10 +171,10 @@ def _date(entry: zipfile.ZipInfo) -> datetime | None:
 
 
 def collect(source: Path, exercise: str, unpack_into: Path) -> Submissions:
-    """What the class handed in, from a folder, a zip or a CSV file; as which of them it reads is seen from the names.
+    """Return what the class submitted, from a folder, a zip or a CSV file; the file names decide how to read it.
 
-    A zip's files are written into the folder `unpack_into`, which has to be empty. Raises `SubmissionsError` where
-    there is nothing to grade at all.
+    A zip's files are written into the folder `unpack_into`, which has to be empty. Raises `SubmissionsError` when
+    there is nothing at all to grade.
     """
     if not source.exists():
         raise SubmissionsError(f"{source}: there is no such file or folder.")
@@ -190,7 +190,7 @@ def collect(source: Path, exercise: str, unpack_into: Path) -> Submissions:
 
 
 def _chosen(files: Sorted, left_out: tuple[Skipped, ...]) -> Submissions:
-    """One file a student; where there are several, it is a question and never a guess."""
+    """Choose one file per student; several files become a question, never a guess."""
     skipped = [*left_out, *files.skipped]
     candidates: dict[str, tuple[Student, list[File]]] = {}
     for student, file in files.files:

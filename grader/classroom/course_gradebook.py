@@ -1,4 +1,4 @@
-"""The gradebook of a course, as a table and as a page: a row per student, a column per exercise."""
+"""The gradebook of a course, as a table and as a page: one row per student, one column per exercise."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from grader.report.pages import render
 
 @dataclass(frozen=True)
 class GradedExercise:
-    """One exercise that a class was graded for: `entries` by the student's id, `points` is full marks."""
+    """One exercise that a class was graded for: `entries` by the student's id, `points` for full marks."""
 
     name: str
     title: str
@@ -27,10 +27,10 @@ class GradedExercise:
 
 @dataclass(frozen=True)
 class CourseRow:
-    """One student in all exercises: `entries` has one per exercise, None where nothing was handed in.
+    """One student in all exercises: `entries` has one per exercise, None if nothing was submitted.
 
-    `earned` and `of` are points so far. One without a submission counts as 0 of its points; one that could not be
-    graded counts neither way.
+    `earned` and `of` are points so far. A missing submission counts as 0 of its points; one that could not be graded
+    does not count at all.
     """
 
     student: Student
@@ -40,17 +40,17 @@ class CourseRow:
 
     @property
     def percent(self) -> float:
-        """Points so far, in percent of those there were."""
+        """Points so far, in percent of those possible."""
         return 100 * self.earned / self.of if self.of else 0.0
 
 
 def graded_exercises(
     results: Path, order: Sequence[str] = (), titles: Mapping[str, str] | None = None
 ) -> tuple[GradedExercise, ...]:
-    """Every exercise that has grades in `results/EXERCISE/students/STUDENT/grade.json`.
+    """Return every exercise that has grades in `results/EXERCISE/students/STUDENT/grade.json`.
 
-    First those of `order`, in that order, then all others by name. A grade that can't be read is left out, as `spinbook
-    grade` grades it again.
+    First those of `order`, in that order, then all others by name. A grade that can't be read is left out, because
+    `spinbook grade` grades it again.
     """
     names = {file.parents[2].name for file in results.glob(f"*/{STUDENTS}/*/grade.json")}
     ordered = [*(name for name in order if name in names), *sorted(names - set(order))]
@@ -73,7 +73,7 @@ def _entry(file: Path) -> Entry | None:
 
 
 def course_rows(exercises: Sequence[GradedExercise]) -> tuple[CourseRow, ...]:
-    """A row per student who handed in anything, by name."""
+    """Return one row per student who submitted anything, by name."""
     students: dict[str, Student] = {}
     for exercise in exercises:
         for who, entry in exercise.entries.items():
@@ -94,7 +94,7 @@ def _row(student: Student, exercises: Sequence[GradedExercise]) -> CourseRow:
 
 
 def course_csv(exercises: Sequence[GradedExercise], rows: Sequence[CourseRow]) -> str:
-    """The gradebook as CSV: student, name, email, a column per exercise, points so far, of how many, percent."""
+    """Return the gradebook as CSV: student, name, email, a column per exercise, points so far, of how many, percent."""
     header = ["student", "name", "email", *(exercise.name for exercise in exercises), "points so far", "of", "percent"]
     table: list[list[Cell]] = []
     for row in rows:
@@ -104,13 +104,13 @@ def course_csv(exercises: Sequence[GradedExercise], rows: Sequence[CourseRow]) -
     return csv_text(header, table)
 
 
-#: How many checks are shown that the class struggles with.
+#: How many of the checks that most students fail are shown.
 MOST_SHOWN = 10
 
 
 @dataclass(frozen=True)
 class Column:
-    """One exercise: how many handed in, how they did on average, and how many have full marks."""
+    """One exercise: how many students submitted, their average, and how many have full marks."""
 
     exercise: GradedExercise
     page: str
@@ -128,7 +128,7 @@ class Struggle:
 
 
 def course_page(title: str, exercises: Sequence[GradedExercise], rows: Sequence[CourseRow]) -> str:
-    """The page `results/index.html` of a course, one HTML file.
+    """Return the page `results/index.html` of a course, one HTML file.
 
     Its links lead to `EXERCISE/index.html` and `EXERCISE/students/STUDENT/feedback.html` next to it.
     """
@@ -148,7 +148,7 @@ def course_page(title: str, exercises: Sequence[GradedExercise], rows: Sequence[
 
 
 def column_of(exercise: GradedExercise) -> Column:
-    """What the page says of one exercise."""
+    """Return what the page says about one exercise."""
     finals = [entry.final for entry in exercise.entries.values() if entry.final is not None]
     return Column(
         exercise=exercise,
@@ -160,19 +160,19 @@ def column_of(exercise: GradedExercise) -> Column:
 
 
 def points_so_far(exercises: Sequence[GradedExercise], rows: Sequence[CourseRow]) -> Distribution | None:
-    """How the class's points so far are spread."""
+    """Return the distribution of the class's points so far."""
     most = sum(exercise.points for exercise in exercises)
     return distribution([row.earned for row in rows], most) if most else None
 
 
 def struggles(columns: Sequence[Column]) -> tuple[Struggle, ...]:
-    """The checks of all exercises that the largest part of those who were graded fail, worst first."""
+    """Return the checks of all exercises that the largest part of the graded students fail, worst first."""
     found = [Struggle(column, tally) for column in columns for tally in tallies(list(column.exercise.entries.values()))]
     return tuple(sorted(found, key=lambda one: -one.tally.share)[:MOST_SHOWN])
 
 
 def feedback_of(exercise: GradedExercise, row: CourseRow) -> str:
-    """Where a student's page for an exercise is, as seen from the course's."""
+    """Return the link from the course's page to a student's page for an exercise."""
     return f"{quote(exercise.name, safe='')}/{STUDENTS}/{quote(row.student.id, safe='')}/feedback.html"
 
 

@@ -38,7 +38,7 @@ class ExerciseFiles:
 
     @property
     def digest(self) -> str:
-        """SHA-256 of all of it."""
+        """The SHA-256 of all of it."""
         total = hashlib.sha256(self.exercise.encode())
         for name, content in sorted(self.files.items()):
             total.update(f"{name} {len(content)}\n".encode())
@@ -46,7 +46,7 @@ class ExerciseFiles:
         return total.hexdigest()
 
     def unpack(self, into: Path) -> Path:
-        """Write the files into the folder `into`; returns the exercise's folder."""
+        """Write the files into the folder `into`; return the exercise's folder."""
         for name, content in self.files.items():
             file = into / name
             file.parent.mkdir(parents=True, exist_ok=True)
@@ -55,7 +55,7 @@ class ExerciseFiles:
 
 
 def pack_exercise(exercise: Exercise) -> ExerciseFiles:
-    """The exercise's folder, and of its solutions the author's own."""
+    """Pack the exercise's folder, and the author's own solution."""
     name = exercise.name
     found = [file for file in sorted(exercise.folder.rglob("*")) if file.is_file() and "__pycache__" not in file.parts]
     files = {f"exercises/{name}/{file.relative_to(exercise.folder).as_posix()}": file.read_bytes() for file in found}
@@ -66,7 +66,7 @@ def pack_exercise(exercise: Exercise) -> ExerciseFiles:
 
 @dataclass(frozen=True)
 class PreparedGrading:
-    """One exercise, ready to be graded in this process for as long as that lives. `holds` is closed after it."""
+    """One exercise, ready to be graded for as long as this process lives. `holds` is closed after it."""
 
     grading: Grading
     key: str
@@ -78,14 +78,14 @@ _lock = threading.Lock()
 
 
 def describe_worker(middleware: Middleware) -> dict[str, str]:
-    """What grades depend on here, besides the exercise. Raises `MiddlewareUnavailable`."""
+    """Return what grades depend on here, besides the exercise. Raises `MiddlewareUnavailable`."""
     return versions(choose_middleware(middleware).middleware)
 
 
 def grade_on_worker(packed: ExerciseFiles, options: Options, key: str, who: str, submission: Submission) -> Graded:
-    """One submission's grade, without recordings, and the picture of it.
+    """Return one submission's grade, without recordings, and its plot.
 
-    `key` is that of whoever asks: where grades would depend on something else here, there is none, and it is told.
+    `key` is the caller's: if grades would depend on anything different here, the result is a `host-error` that says so.
     """
     bench = _prepared_grading(packed, options)
     runner = bench.grading.runner
@@ -99,7 +99,7 @@ def grade_on_worker(packed: ExerciseFiles, options: Options, key: str, who: str,
 
 
 def _prepared_grading(packed: ExerciseFiles, options: Options) -> PreparedGrading:
-    """Made ready by whichever task comes first, for all that follow; only the newest exercise is kept."""
+    """Return the exercise, prepared by the first task for all that follow; only the newest one is kept."""
     name = f"{packed.digest} {options}"
     with _lock:
         if name not in _ready:
@@ -113,8 +113,8 @@ def _prepared_grading(packed: ExerciseFiles, options: Options) -> PreparedGradin
         return _ready[name]
 
 
-# Each worker has the same version of this software and of ROS 2, and gets the exercise with the first task. What
-# `dask.distributed` does with tasks of a worker that has died is in
+# Each worker has the same version of this software and of ROS 2, and gets the exercise with the first task. How
+# `dask.distributed` handles tasks of a worker that has died is described in
 # https://distributed.dask.org/en/stable/resilience.html.
 
 
@@ -135,7 +135,7 @@ class DaskBackend:
         return grade_key(self.grading)
 
     def mark(self, submissions: Mapping[str, Submission]) -> Iterator[Graded]:
-        """See `Backend`. A worker that dies costs another try; after four deaths it is a fault of ours."""
+        """See `Backend`. A worker that dies costs another attempt; after four deaths it is a fault of ours."""
         from distributed import as_completed
 
         if not submissions:
@@ -162,9 +162,9 @@ class DaskBackend:
 
 @contextlib.contextmanager
 def dask_backend(grading: Grading, address: str) -> Iterator[DaskBackend]:
-    """The cluster whose scheduler is at `address`, such as tcp://10.0.0.5:8786, with a worker at least.
+    """Yield the cluster whose scheduler is at `address`, such as tcp://10.0.0.5:8786, with at least one worker.
 
-    Raises `NoCluster` where there is none, or where a worker's versions are not this machine's.
+    Raises `NoCluster` if there is none, or if a worker's versions differ from this machine's.
     """
     try:
         from distributed import Client

@@ -1,4 +1,4 @@
-"""Deadlines: the table `[deadline]` of exercise.toml, exceptions per student, and what a score counts after them."""
+"""Deadlines: the table `[deadline]` of exercise.toml, exceptions per student, and the penalty for late work."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ KEYS = ("due", "grace", "penalty", "closes")
 class Deadline:
     """When work is due and what lateness costs.
 
-    Work that comes within `grace` after `due` is on time. Later work loses `percent` of its score for each `unit` that
+    Work submitted within `grace` after `due` is on time. Later work loses `percent` of its score for each `unit` that
     has begun since `due`, at most `at_most` percent; after `closes` it loses everything.
     """
 
@@ -47,9 +47,9 @@ class Deadline:
     closes: datetime | None = None
 
     def lost(self, submitted: datetime, due: datetime | None = None) -> float:
-        """How many percent of its score work loses that was handed in then; `due` is a later due date of one student's.
+        """Return how many percent of its score work loses if submitted then; `due` is a student's own later due date.
 
-        A student's own due date moves the closing, too, where it lies before.
+        A student's own due date also postpones the closing date if that is earlier.
         """
         due = due or self.due
         if self.closes and submitted > max(self.closes, due):
@@ -61,7 +61,7 @@ class Deadline:
 
 
 def deadline_of(exercise: Exercise) -> Deadline | None:
-    """What exercise.toml says of it; None where it says nothing. Raises `ExerciseError` where that is not clear."""
+    """Return the deadline in exercise.toml; None if there is none. Raises `ExerciseError` if it is not clear."""
     file = exercise.folder / "exercise.toml"
     entries = tomllib.loads(file.read_text(encoding="utf-8")).get("deadline")
     if entries is None:
@@ -112,12 +112,12 @@ NUMBER = re.compile(r"[+-]?\d+(\.\d+)?")
 
 
 class OverridesError(Exception):
-    """Raised for a row with a mistake; tells the instructor which."""
+    """Raised for a row with a mistake; the text is for the instructor."""
 
 
 @dataclass(frozen=True)
 class Override:
-    """One row: `points` that count in place of the score, or `added` to it; or another `due` date."""
+    """One row: `points` that count instead of the score, or are `added` to it; or another `due` date."""
 
     student: str
     reason: str
@@ -127,7 +127,7 @@ class Override:
 
 
 def overrides_in(file: Path, students: set[str]) -> dict[str, tuple[Override, ...]]:
-    """The rows by student, each of whom must be one of `students`.
+    """Return the rows by student, each of whom must be one of `students`.
 
     Columns: student, reason, and points or due. `85` are the points that count; `+5` and `-5` are added to the score.
     Raises `OverridesError`.
@@ -170,10 +170,10 @@ class Adjusting:
     overrides: Mapping[str, tuple[Override, ...]] = field(default_factory=dict)
 
     def __call__(self, entry: Entry) -> tuple[Adjustment, ...]:
-        """What is added to or taken from this entry's score, with reasons. Its own adjustments don't count.
+        """Return what is added to or taken from this entry's score, with reasons. Earlier adjustments don't count.
 
-        Lateness is that of the hand-in, whenever it is graded. Points that the instructor sets are what counts, late
-        or not; of several rows for one student the last that sets points, or a due date, holds.
+        Lateness depends on when the work was submitted, not on when it was graded. Points set by the instructor always
+        count, late or not; of several rows for one student the last one with points, or with a due date, is used.
         """
         theirs = self.overrides.get(entry.student.id, ())
         fixed = [override for override in theirs if override.points is not None]
@@ -202,12 +202,12 @@ class Adjusting:
 
 
 def told(moment: datetime | None) -> str:
-    """A time for people, with its zone."""
+    """Return a time as text, with its zone."""
     return moment.strftime("%Y-%m-%d %H:%M %z") if moment else ""
 
 
 def length(time: timedelta) -> str:
-    """`2 days 3 h`, `3 h 20 min` or `5 min`; a minute that has begun counts."""
+    """Return `2 days 3 h`, `3 h 20 min` or `5 min`; a minute that has begun counts."""
     minutes = -(-time // timedelta(minutes=1))
     days, minutes = divmod(minutes, 24 * 60)
     hours, minutes = divmod(minutes, 60)

@@ -22,14 +22,14 @@ from grader.report.printable import printable
 
 Cell = str | float | None
 
-#: A text that begins like this is a formula to a spreadsheet (OWASP, "CSV Injection").
+#: A spreadsheet takes a text that begins like this for a formula (OWASP, "CSV Injection").
 FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "＝", "＋", "－", "＠")
 
 LONGEST_CELL = 20_000
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
-    """Header and rows as CSV (RFC 4180): quoted where needed, numbers as `number` writes them, None as nothing.
+    """Return header and rows as CSV (RFC 4180): quoted if needed, numbers as `number` writes them, None as nothing.
 
     A text that a spreadsheet would take for a formula gets an apostrophe in front of it. Control characters are
     replaced.
@@ -44,7 +44,7 @@ def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
 
 
 def number(value: float) -> str:
-    """Points with two decimals at most, as learning platforms keep them: 81, 80.5, 33.33."""
+    """Return points with at most two decimals, as learning platforms store them: 81, 80.5, 33.33."""
     return f"{value:.2f}".rstrip("0").rstrip(".")
 
 
@@ -55,7 +55,7 @@ def _text(cell: str | None) -> str:
 
 
 def last_and_first(student: Student) -> tuple[str, str]:
-    """Last and first name: "Müller, Jörg" is parted at the comma, "Jörg Müller" before the last word."""
+    """Return last and first name: "Müller, Jörg" is split at the comma, "Jörg Müller" before the last word."""
     name = student.name.strip()
     if "," in name:
         last, _, first = name.partition(",")
@@ -65,12 +65,12 @@ def last_and_first(student: Student) -> tuple[str, str]:
 
 
 def last_first(student: Student) -> str:
-    """The name as Canvas sorts it: "Müller, Jörg"; the id of a student without a name."""
+    """Return the name as Canvas sorts it: "Müller, Jörg"; the id of a student without a name."""
     return ", ".join(filter(None, last_and_first(student))) or student.id
 
 
 def grades(exercise: Exercise, entries: Sequence[Entry]) -> str:
-    """Everything, for people and their spreadsheets: a row a student, a column a check at the end."""
+    """Return everything, for people and their spreadsheets: one row per student, one column per check at the end."""
     checks = list(dict.fromkeys(verdict.name for entry in entries for verdict in entry.grade.verdicts))
     header = ["student", "name", "email", "points", "of", "before adjustments", "adjustments", "outcome", "failed"]
     rows: list[list[Cell]] = []
@@ -91,7 +91,7 @@ def grades(exercise: Exercise, entries: Sequence[Entry]) -> str:
 
 
 def nbgrader(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = None) -> str:
-    """What `nbgrader export` writes (nbgrader/plugins/export.py, CsvExportPlugin): its columns, times in UTC.
+    """Return what `nbgrader export` writes (nbgrader/plugins/export.py, CsvExportPlugin): its columns, times in UTC.
 
     `late_submission_penalty` is what was taken for lateness, `raw_score` the score before that.
     """
@@ -112,12 +112,12 @@ def nbgrader(exercise: Exercise, entries: Sequence[Entry], due: datetime | None 
 
 
 def canvas(exercise: Exercise, entries: Sequence[Entry]) -> str:
-    """What Canvas exports and imports (canvas-lms, lib/gradebook_exporter.rb and gradebook_importer.rb).
+    """Return what Canvas exports and imports (canvas-lms, lib/gradebook_exporter.rb and gradebook_importer.rb).
 
-    What Canvas calls a student comes from `Student.lms`; Canvas finds students by ID, else by SIS User ID, SIS Login
-    ID, name. The assignment's column is the one of `lms` that is called as Canvas calls assignments, "Name (1234)", or
-    else the exercise's title, from which Canvas makes a new assignment. Without a score the cell stays empty, and
-    Canvas leaves the grade as it is.
+    The name Canvas has for a student comes from `Student.lms`; Canvas finds students by ID, otherwise by SIS User ID,
+    SIS Login ID, name. The assignment's column is the one of `lms` with a name as Canvas gives to assignments,
+    "Name (1234)", or otherwise the exercise's title, from which Canvas creates a new assignment. Without a score the
+    cell stays empty, and Canvas leaves the grade as it is.
     """
     given = [name for entry in entries for name in entry.student.lms]
     assignment = next((name for name in given if re.fullmatch(r".+ \(\d+\)", name)), exercise.title)
@@ -134,12 +134,12 @@ def canvas(exercise: Exercise, entries: Sequence[Entry]) -> str:
 
 
 def moodle(exercise: Exercise, entries: Sequence[Entry]) -> str:
-    """Moodle's offline grading worksheet (mod/assign/feedback/offline/importgradeslib.php), to upload as it is.
+    """Return Moodle's offline grading worksheet (mod/assign/feedback/offline/importgradeslib.php), ready to upload.
 
-    Moodle finds students by Identifier, "Participant 1234567", which only Moodle's own download or a table can tell: it
-    is empty where neither did, and Moodle then finds nobody. It leaves out a row whose grade is above the maximum,
-    so extra credit is cut off there, and told in the comment; and a row without a grade, so a fault of ours changes
-    nothing. Columns of a worksheet that was read are given back as they were.
+    Moodle finds students by Identifier, "Participant 1234567", which is only in Moodle's own download or a table: it is
+    empty if neither had it, and Moodle then does not find the student. It leaves out a row whose grade is above the
+    maximum, so extra credit is cut off there, which the comment says; and a row without a grade, so a fault of ours
+    changes nothing. Columns of a worksheet that was read are returned as they were.
     """
     columns = ["Identifier", "Full name", "Email address", "Status", "Grade", "Maximum Grade"]
     columns += ["Grade can be changed", "Last modified (submission)", "Last modified (grade)", "Feedback comments"]
@@ -164,12 +164,12 @@ def moodle(exercise: Exercise, entries: Sequence[Entry]) -> str:
 
 
 def unknown_to_moodle(entries: Sequence[Entry]) -> int:
-    """Return how many students Moodle can't find, because nothing has told how Moodle identifies them."""
+    """Return how many students Moodle can't find, because their Moodle identifier is unknown."""
     return sum(not entry.student.lms.get("Identifier") for entry in entries)
 
 
 def _comment(entry: Entry) -> str:
-    """What a student reads on a platform, as the HTML that Moodle expects of comments."""
+    """Return what a student reads on a platform, as the HTML that Moodle expects in comments."""
     grade, final = entry.grade, entry.final
     if final is None:
         return ""
@@ -187,14 +187,14 @@ def _utc(moment: datetime | None) -> str:
     return str(moment.astimezone(timezone.utc).replace(tzinfo=None)) if moment else ""
 
 
-# For the instructor alone: it names hidden checks, and tells why they fail.
+# For the instructor alone: it names hidden checks, and says why they fail.
 
 
 def junit(exercise: Exercise, entries: Sequence[Entry]) -> str:
-    """All entries as one JUnit XML document (the form that Jenkins and pytest share).
+    """Return all entries as one JUnit XML document (the form that Jenkins and pytest share).
 
-    A blocked check is skipped. A run that did not come through is one more test case, `outcome`, that failed; a
-    fault of ours is one with an error.
+    A blocked check is skipped. A run that did not complete is one more test case, `outcome`, that failed; a fault of
+    ours is one with an error.
     """
     root = ET.Element("testsuites", name=exercise.name)
     for entry in entries:
@@ -242,11 +242,11 @@ def _case(exercise: Exercise, verdict: Verdict) -> ET.Element:
 
 
 def _xml_text(text: str) -> str:
-    """What XML can hold."""
+    """Return the text without the characters that XML can't contain."""
     return printable(text, 20_000)
 
 
-#: Excel takes a CSV file for UTF-8 only if it begins with this. Only in the file that is for people.
+#: Excel reads a CSV file as UTF-8 only if it begins with this. Only in the file for people.
 BYTE_ORDER_MARK = "\ufeff"
 
 
@@ -256,8 +256,8 @@ def write_gradebook(
     """Write a class's grades into the folder `results`, and return the files, in order of students' ids.
 
     `grades.csv`, `nbgrader.csv`, `canvas.csv`, `moodle.csv`, `junit.xml`, and in each student's folder `results.json`
-    for Gradescope. `due` is when the work was due, which nbgrader tells. Each is written whole or not at all. Raises
-    OSError when the folder can't be written.
+    for Gradescope. `due` is when the work was due, which nbgrader's file contains. Each is written whole or not at all.
+    Raises OSError when the folder can't be written.
     """
     contents = gradebook(results, exercise, entries, due)
     for file, content in contents.items():

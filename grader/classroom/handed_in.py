@@ -1,4 +1,4 @@
-"""What was handed in, as plain data, and the tables and times that instructors write."""
+"""What was submitted, as plain data, and the tables and times that instructors write."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ SUFFIXES = tuple(MOST_BYTES)
 
 
 class SubmissionsError(Exception):
-    """Raised when what was given holds no class's submissions, or can't be read; tells the instructor why."""
+    """Raised when the source contains no class's submissions, or can't be read; the text is for the instructor."""
 
 
 @dataclass(frozen=True)
 class File:
-    """A file that somebody handed in. `name` is what it is called in the class's folder or zip, `path` where it is."""
+    """A submitted file. `name` is its name in the class's folder or zip, `path` where it is."""
 
     name: str
     path: Path
@@ -32,12 +32,12 @@ class File:
 
     @property
     def parts(self) -> tuple[str, ...]:
-        """The folders that it lies in, and its own name."""
+        """The folders that it is in, and its own name."""
         return tuple(self.name.split("/"))
 
     @property
     def can_be_graded(self) -> bool:
-        """Whether its kind is one that submissions have."""
+        """Whether submissions can be of this kind."""
         return self.name.endswith(SUFFIXES)
 
 
@@ -51,21 +51,21 @@ class HandedIn:
 
 @dataclass(frozen=True)
 class Question:
-    """Several files of one student, of which only the instructor can say which one counts."""
+    """Several files from one student; only the instructor can say which one counts."""
 
     student: Student
     files: tuple[str, ...]
 
     def __str__(self) -> str:
-        """The question in words."""
+        """Return the question as text."""
         return f"{self.student.id} handed in {len(self.files)} files: {', '.join(self.files)}. Which one counts?"
 
 
 @dataclass(frozen=True)
 class Submissions:
-    """What a class handed in, sorted by student; what was left out, and why; and what has to be asked.
+    """What a class submitted, sorted by student; what was left out, and why; and the questions to ask.
 
-    `kind` says in words as what it was read, such as "a download from Moodle".
+    `kind` says in words how it was read, such as "a download from Moodle".
     """
 
     kind: str
@@ -76,7 +76,7 @@ class Submissions:
 
 @dataclass(frozen=True)
 class Sorted:
-    """Files, sorted by whose they are, before it is decided which one counts."""
+    """Files, sorted by student, before it is decided which one counts."""
 
     kind: str
     files: tuple[tuple[Student, File], ...]
@@ -84,7 +84,7 @@ class Sorted:
 
 
 def student_id(text: str) -> str:
-    """`text` as a name that a folder can have on any system: letters, digits and `.@+-_`."""
+    """Return `text` as a name that a folder can have on any system: letters, digits and `.@+-_`."""
     kept = re.sub(r"[^\w.@+-]+", "_", text).strip("._")
     while len(kept.encode("utf-8", errors="replace")) > 120:
         kept = kept[:-1]
@@ -92,9 +92,9 @@ def student_id(text: str) -> str:
 
 
 def moment(text: str) -> datetime | None:
-    """`2026-11-22 23:59`, or any ISO 8601 form; this machine's time zone where none is named. None for other texts."""
+    """Return the time in `2026-11-22 23:59` or any ISO 8601 form, by default in local time. None for other texts."""
     try:
-        # Python 3.10 knows no Z.
+        # Python 3.10 does not accept Z.
         written = datetime.fromisoformat(text.strip().replace("Z", "+00:00"))
         return written if written.tzinfo else written.astimezone()
     except (ValueError, OverflowError):
@@ -102,9 +102,9 @@ def moment(text: str) -> datetime | None:
 
 
 def table_rows(table: Path, needed: Sequence[str]) -> list[tuple[int, dict[str, str]]]:
-    """The rows, each with its line's number; values without the spaces around them. Empty rows are left out.
+    """Return the rows, each with its line number; values without the spaces around them. Empty rows are left out.
 
-    Commas, semicolons and tabs part columns. Raises `SubmissionsError` when the file can't be read or lacks a column.
+    Commas, semicolons or tabs separate columns. Raises `SubmissionsError` if the file can't be read or lacks a column.
     """
     try:
         text = table.read_bytes().decode("utf-8-sig")

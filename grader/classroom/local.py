@@ -21,13 +21,13 @@ from grader.report.feedback_plot import picture
 from grader.sandbox.program import Middleware
 from grader.submission.reading import Submission
 
-#: How many submissions to grade at once on each core: grader and program wait for one another, and over Fast DDS both
+#: How many submissions to grade at once per core: grader and program wait for each other, and over Fast DDS both
 #: wait for the network most of the time.
 PER_CORE = {Middleware.LOCKSTEP: 2, Middleware.FASTDDS: 4}
 
 
 def at_once(middleware: Middleware) -> int:
-    """How many submissions to grade at once on this machine."""
+    """Return how many submissions to grade at once on this machine."""
     return PER_CORE[middleware] * len(os.sched_getaffinity(0))
 
 
@@ -35,7 +35,7 @@ def at_once(middleware: Middleware) -> int:
 class LocalBackend:
     """One worker pool on this machine. Each submission goes through its scenarios one after the other, on one core.
 
-    Once no submission waits any more, whoever is done helps with the scenarios of those under way.
+    When no submission is waiting any more, an idle worker runs scenarios of those in progress.
     """
 
     grading: Grading
@@ -68,7 +68,7 @@ class LocalBackend:
         finally:
             given_up.set()
             work_stealing.close()
-        for thread in threads:  # nothing is under way any more, if this is reached
+        for thread in threads:  # nothing is in progress any more when this is reached
             thread.join()
 
     def _work(
@@ -93,13 +93,13 @@ class LocalBackend:
                 return
             try:
                 done.put(_graded(who, grading, submission))
-            except BaseException as stopped:  # the exercise's author's, or the run's end
+            except BaseException as stopped:  # an error of the exercise's author, or the end of the run
                 done.put(stopped)
                 return
 
 
 def _graded(who: str, grading: Grading, submission: Submission) -> Graded:
-    """Grade one submission. A fault in the grader is this student's `host-error`, and stops nobody else's grading."""
+    """Grade one submission. A fault in the grader becomes this student's `host-error`; all others are still graded."""
     try:
         grade = grading.grade(submission)
     except ExerciseError:
@@ -111,7 +111,7 @@ def _graded(who: str, grading: Grading, submission: Submission) -> Graded:
 
 @contextlib.contextmanager
 def own_core() -> Iterator[int]:
-    """A CPU to keep a program on: that of the first number that nobody on this machine holds."""
+    """Yield a CPU to keep a program on: that of the lowest number that no process on this machine holds."""
     folder = Path(tempfile.gettempdir()) / f"spinbook-cores-{os.getuid()}"
     folder.mkdir(mode=0o700, exist_ok=True)
     cores = sorted(os.sched_getaffinity(0))

@@ -1,4 +1,4 @@
-"""Known mistakes, what each of them fails, and which submissions fail the same."""
+"""Known mistakes, which checks each of them fails, and which submissions fail the same way."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ from grader.submission.reading import of_source
 
 @dataclass(frozen=True)
 class Failure:
-    """How a check fails. `text` is the finding word for word, `kind` the same without what is each program's own.
+    """How a check fails. `text` is the finding word for word, `kind` the same without the parts specific to a program.
 
-    `exact` says whether the value that came is one that hardly another mistake gives: a number of three digits or more.
+    `exact` says whether the value is one that hardly any other mistake gives: a number of three digits or more.
     """
 
     text: str
@@ -41,10 +41,10 @@ class Failure:
 
 @dataclass(frozen=True)
 class Signature:
-    """One or several known mistakes that nothing tells apart.
+    """One or several known mistakes that nothing distinguishes.
 
     `names` are their files' names, `sentences` the first lines of their docstrings. `failures` are the checks that
-    they fail, by name; what is blocked by these does not count.
+    they fail, by name; checks blocked by these do not count.
     """
 
     names: tuple[str, ...]
@@ -57,25 +57,25 @@ class Signature:
         return " Or: ".join(self.sentences)
 
 
-#: "Message 3 of 16 (0.30 s after the start; one in three messages is lost), left_elbow: ", or what stands before a
-#: finding that is about no message of ours: "At 2.00 s (a goal, canceled), goal 1 for /count (order 3): "
+#: "Message 3 of 16 (0.30 s after the start; one in three messages is lost), left_elbow: ", or the beginning of a
+#: finding that is not about one of our messages: "At 2.00 s (a goal, canceled), goal 1 for /count (order 3): "
 WHERE = re.compile(r"^(Message \d+ of \d+|At [\d.]+ s|Before the start) \([^)]*\)(, [^:]*)?: |^In “[^”]*”(, [^:]*)?: ")
 GUESS = re.compile(r" Is \S+ a misspelling of \S+\?")
 ENDED = re.compile(r"\b([A-Z]\w*(?:Error|Exception|Interrupt))\b.* in line \d+")
-#: A full stop that ends no sentence, as in header.stamp, or any other character.
+#: A full stop that does not end a sentence, as in header.stamp, or any other character.
 INSIDE = r"(?:[^.]|\.(?=\S))*"
-#: One sentence in which something was expected, or was not; what it may lie between tells which rule is broken.
+#: A sentence that says what was expected, or was not; the range in it shows which rule is broken.
 COMPARISON = re.compile(
     rf"(?!.* between ){INSIDE}\b(expected|must|came|got|never published|published nothing)\b{INSIDE}\."
 )
 NUMBER = re.compile(r"(?<![\w.])-?\d+(\.\d+)?(e[+-]?\d+)?(?![\w.]*\w)")
 DIGITS = re.compile(r"[1-9](?:[\d.]*[1-9])?")
-#: Of so many significant digits is a value that hardly two mistakes share.
+#: A value with this many significant digits is hardly ever shared by two mistakes.
 ENOUGH_DIGITS = 3
 
 
 def failures_of(grade: Grade) -> dict[str, Failure]:
-    """The checks that a graded submission fails, and how; empty for one that did not come through."""
+    """Return the checks that a graded submission fails, and how; nothing if its run did not complete."""
     if grade.outcome != "graded":
         return {}
     failed = [verdict for verdict in grade.verdicts if verdict.status == "failed" and verdict.finding]
@@ -83,10 +83,10 @@ def failures_of(grade: Grade) -> dict[str, Failure]:
 
 
 def failure_of(finding: Finding) -> Failure:
-    """The failure that a finding tells of.
+    """Return the failure that a finding describes.
 
-    Its kind is the finding without the message and joint at which it was seen first, and without the values: "expected
-    velocity ⟨expected⟩, got ⟨got⟩. Every value has the wrong sign." Of a run that ended by itself the
+    Its kind is the finding without the message and joint at which it was first seen, and without the values: "expected
+    velocity ⟨expected⟩, got ⟨got⟩. Every value has the wrong sign." For a run that ended by itself, only the
     exception is left.
     """
     if ended := ENDED.search(finding.text):
@@ -101,24 +101,24 @@ def failure_of(finding: Finding) -> Failure:
 
 
 def _digits(value: str) -> int:
-    """How many significant digits the first number in `value` has."""
+    """Return how many significant digits the first number in `value` has."""
     number = NUMBER.search(value)
     found = DIGITS.search(number[0].partition("e")[0]) if number else None
     return len(found[0].replace(".", "")) if found else 0
 
 
-#: How well a submission's failure fits a signature's: the same words that tell, or with a value that hardly another
-#: mistake gives; the same words; the same kind of words that tell; or a comparison of two other values.
+#: How well a submission's failure fits a signature's: the same specific words, or words with a value that hardly any
+#: other mistake gives; the same words; the same kind of specific words; or a comparison of two other values.
 SAME, SAME_WORDS, SAME_KIND, OTHER_VALUE = 1.0, 0.8, 0.75, 0.25
 
-#: How well all of a signature's failures have to fit, on average: where the submission fails just those checks, and
-#: where it fails others, too.
+#: How well all of a signature's failures have to fit, on average: if the submission fails just those checks, and if
+#: it fails others, too.
 FITS, FITS_AMONG_OTHERS = 0.7, 0.9
 
 
 @dataclass(frozen=True)
 class Group:
-    """Students whose submissions fail as a known mistake does."""
+    """Students whose submissions fail in the same way as a known mistake."""
 
     signature: Signature
     entries: tuple[Entry, ...]
@@ -126,13 +126,13 @@ class Group:
 
 @dataclass(frozen=True)
 class Misconceptions:
-    """Groups, the largest first; and under `other` who fails checks in ways that no known mistake does."""
+    """Groups, the largest first; and under `other` the students who fail checks in ways that no known mistake does."""
 
     groups: tuple[Group, ...]
     other: tuple[Entry, ...]
 
     def of(self, entry: Entry) -> tuple[Signature, ...]:
-        """The known mistakes that a student makes."""
+        """Return the known mistakes that a student makes."""
         return tuple(group.signature for group in self.groups if entry in group.entries)
 
 
@@ -156,11 +156,11 @@ def _blocked(grade: Grade) -> frozenset[str]:
 
 
 def mistakes_in(failed: Mapping[str, Failure], blocked: Set[str], signatures: Sequence[Signature]) -> list[int]:
-    """Numbers of the signatures that explain how a submission fails, the one that explains most first.
+    """Return the numbers of the signatures that explain how a submission fails, the one that explains most first.
 
-    What one explains is set aside, and the rest is looked at again. Where two explain the same equally well, neither
-    is named; and where something is left unexplained, only those are that fit nearly word for word: more often it is
-    a mistake that nobody has listed.
+    What one explains is set aside, and the rest is matched again. If two explain the same equally well, neither is
+    named; and if something is left unexplained, only those are named that fit nearly word for word: most of the time
+    it is a mistake that is not in the list.
     """
     left, made = set(failed), dict[int, float]()
     while left:
@@ -174,14 +174,14 @@ def mistakes_in(failed: Mapping[str, Failure], blocked: Set[str], signatures: Se
 
 
 def _has_rival(best: int, scores: Mapping[int, tuple[float, float]], signatures: Sequence[Signature]) -> bool:
-    """Whether another signature explains some of the same checks, and the whole as well."""
+    """Return whether another signature explains some of the same checks, and the whole as well."""
     checks = signatures[best].failures.keys()
     equal = [number for number, score in scores.items() if score == scores[best] and number != best]
     return any(checks & signatures[number].failures.keys() for number in equal)
 
 
 def _stands_alone(signature: Signature, fit: float) -> bool:
-    """Whether a signature may be named though the submission fails other checks that nothing explains."""
+    """Return whether a signature may be named though the submission fails other checks that nothing explains."""
     failures = signature.failures.values()
     return fit >= FITS_AMONG_OTHERS and (len(failures) > 1 or any(failure.telling for failure in failures))
 
@@ -189,10 +189,10 @@ def _stands_alone(signature: Signature, fit: float) -> bool:
 def _score(
     failed: Mapping[str, Failure], left: Set[str], blocked: Set[str], signature: Signature
 ) -> tuple[float, float]:
-    """How much of what is `left` a signature explains, and how well it fits on average; zeros where it does not.
+    """Return how much of what is `left` a signature explains, and how well it fits on average; zeros if it doesn't.
 
-    A check that can't be judged speaks neither for nor against it; nor does one that another mistake explains, if
-    that is not the most of them.
+    A check that can't be judged counts neither for nor against it; nor does one that another mistake explains, unless
+    most of its checks are like that.
     """
     judged = [name for name in signature.failures if name not in blocked and (name in left or name not in failed)]
     if not judged or 2 * len(judged) < len(signature.failures):
@@ -210,7 +210,7 @@ def _fit(failure: Failure | None, known: Failure) -> float:
     return SAME_KIND if known.telling else OTHER_VALUE
 
 
-#: Gradings at once. Each has several spins at once already.
+#: Gradings at once. Each already runs several scenarios at once.
 AT_ONCE = 2
 
 #: A check that a mistake's docstring names, under "Caught by:".
@@ -218,13 +218,13 @@ NAMED = re.compile(r"^- (test_\w+)\s*$", re.MULTILINE)
 
 
 def signatures(grading: Grading, failing: Sequence[Set[str]] | None = None) -> tuple[Signature, ...]:
-    """The signatures of the exercise's `solutions/NAME/mistakes/*.py`, in the order of their names.
+    """Return the signatures of the exercise's `solutions/NAME/mistakes/*.py`, sorted by name.
 
-    `failing` has the checks that each student fails: mistakes that explain none of these, by the checks that they name,
-    are left out without being graded. Without it, all are looked at.
+    `failing` has the checks that each student fails: a mistake is left out, without being graded, if the checks that
+    its file names explain none of these. Without `failing`, all are graded.
 
-    A mistake is graded when anything that its grade depends on has changed since it was last. Mistakes that fail the
-    same checks with the same words are one signature; one that fails no check, or does not come through, is none.
+    A mistake is graded again when anything that its grade depends on has changed. Mistakes that fail the same checks
+    with the same words are one signature; one that fails no check, or does not complete, is left out.
     """
     folder = grading.runner.exercise.solution_folder
     files = sorted((folder / "mistakes").glob("*.py")) if folder else []
@@ -247,7 +247,7 @@ def signatures(grading: Grading, failing: Sequence[Set[str]] | None = None) -> t
 
 
 def _may_explain(file: Path, failing: Sequence[Set[str]]) -> bool:
-    """Whether a student fails half of the checks that the file names, without which no signature fits."""
+    """Return whether a student fails half of the checks that the file names; otherwise no signature fits."""
     named = set(NAMED.findall(_header(file)))
     return not named or any(2 * len(named & failed) >= len(named) for failed in failing)
 
@@ -265,7 +265,7 @@ def _failures(file: Path, grading: Grading) -> dict[str, Failure]:
     grade = grading.grade(of_source(file.name, code, exercise))
     failures = failures_of(grade)
     if grade.outcome != "host-error":
-        with contextlib.suppress(OSError):  # where nothing can be kept, it is graded anew each time
+        with contextlib.suppress(OSError):  # if nothing can be stored, it is graded again each time
             write_if_changed(
                 kept,
                 json.dumps({name: dataclasses.asdict(failure) for name, failure in failures.items()}),
@@ -275,7 +275,7 @@ def _failures(file: Path, grading: Grading) -> dict[str, Failure]:
 
 
 def _sentence(file: Path) -> str:
-    """The first line of the file's docstring, else its name in words."""
+    """Return the first line of the file's docstring, or its name in words if there is none."""
     return next(iter(_header(file).splitlines()), file.stem.replace("_", " "))
 
 

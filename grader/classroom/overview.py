@@ -41,13 +41,13 @@ class Row:
 
     @property
     def adjusted(self) -> float:
-        """All adjustments together, in points."""
+        """The sum of all adjustments, in points."""
         return sum(adjustment.points for adjustment in self.entry.adjustments)
 
 
 @dataclass(frozen=True)
 class Tally:
-    """One check: how many students fail it, and for how many it can't be judged, in numbers and in percent."""
+    """One check: how many students fail it, and for how many it can't be judged, as numbers and in percent."""
 
     verdict: Verdict
     failed: int
@@ -56,12 +56,12 @@ class Tally:
 
 
 def page_of(entry: Entry) -> str:
-    """Where a student's page lies, as seen from the instructor's."""
+    """Return the link from the instructor's page to a student's page."""
     return f"{STUDENTS}/{quote(entry.student.id, safe='')}/feedback.html"
 
 
 def row(entry: Entry, misconceptions: Misconceptions) -> Row:
-    """What the page tells of `entry`."""
+    """Return what the page shows of `entry`."""
     verdicts = entry.grade.verdicts
     return Row(
         entry=entry,
@@ -75,7 +75,7 @@ def row(entry: Entry, misconceptions: Misconceptions) -> Row:
 
 
 def tallies(entries: Sequence[Entry]) -> tuple[Tally, ...]:
-    """The checks that students fail, most failed first; of those who did not come through nothing is counted."""
+    """Return the checks that students fail, most failed first; runs that did not complete are not counted."""
     graded = [entry.grade for entry in entries if entry.grade.outcome == "graded"]
     checks = {verdict.name: verdict for grade in graded for verdict in grade.verdicts}
     counted = []
@@ -109,7 +109,7 @@ class Bar:
 
 @dataclass(frozen=True)
 class Distribution:
-    """What may be said of the points of a class."""
+    """What the page says about the points of a class."""
 
     count: int
     mean: float
@@ -120,9 +120,9 @@ class Distribution:
 
 
 def distribution(scores: Sequence[float], most: float) -> Distribution | None:
-    """The distribution of `scores`, of which `most` is full marks; None of an empty class.
+    """Return the distribution of `scores`, with `most` for full marks; None for an empty class.
 
-    Ten bins of one width; the last holds full marks, and whoever has more.
+    Ten bins of equal width; the last holds full marks and anything above.
     """
     if not scores:
         return None
@@ -157,11 +157,11 @@ def overview_page(
     faults: Sequence[Entry],
     misconceptions: Misconceptions,
 ) -> str:
-    """The page `results/index.html`: how the class did, a row a student, which checks and mistakes cost most.
+    """Return the page `results/index.html`: the class's results, a row per student, the costliest checks and mistakes.
 
-    `entries` have a score; `faults` are those that have none, by a fault of ours. Each row opens
-    `students/STUDENT/feedback.html` beside the page. The page is one HTML file; its one script sorts the table,
-    which is in order without it, too.
+    `entries` have a score; `faults` have none, through a fault of ours. Each row links to
+    `students/STUDENT/feedback.html` next to the page. The page is one HTML file; its one script sorts the table,
+    which is also sorted without it.
     """
     faulty = [*faults, *(entry for entry in entries if entry.final is None and entry not in faults)]
     scored = [entry for entry in entries if entry.final is not None]

@@ -1,4 +1,4 @@
-"""Who handed in what, in the downloads of Canvas and Moodle and in nbgrader's folders."""
+"""Who submitted what, in the downloads of Canvas and Moodle and in nbgrader's folders."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from datetime import datetime, timezone
 from grader.classroom import Skipped, Student
 from grader.classroom.handed_in import File, Sorted, student_id
 
-# The first number is the student's, the second the upload's; `-2` tells a second hand-in from the first. Canvas leaves
-# out what was replaced. Source: Canvas Instructor Guide, "How do I download all student submissions for an
+# The first number is the student's, the second the upload's; `-2` marks a second submission. Canvas leaves out what
+# was replaced. Source: Canvas Instructor Guide, "How do I download all student submissions for an
 # assignment?".
 
 
@@ -18,7 +18,7 @@ CANVAS_NAME = re.compile(r"(?P<name>[^_/]+)(?P<late>_LATE)?_(?P<user>\d+)_(?P<up
 
 
 def by_user(files: list[File]) -> Sorted | None:
-    """Files by Canvas's users, or None where the files' names are not mostly such as Canvas gives."""
+    """Return the files by Canvas's users, or None unless most of the files have names as Canvas gives them."""
     graded = [file for file in files if file.can_be_graded]
     if 2 * sum(bool(CANVAS_NAME.fullmatch(file.parts[-1])) for file in graded) <= len(graded):
         return None
@@ -41,7 +41,7 @@ MOODLE_NAME = re.compile(r"(?P<name>.+?)_(?P<number>\d+)_assignsubmission_(?P<ki
 
 
 def by_participant(files: list[File]) -> Sorted | None:
-    """Files by Moodle's participants, or None where no file has a name that Moodle gives."""
+    """Return the files by Moodle's participants, or None if no file has a name that Moodle gives."""
     found: list[tuple[Student, File]] = []
     skipped = []
     for file in files:
@@ -51,7 +51,7 @@ def by_participant(files: list[File]) -> Sorted | None:
         elif match["kind"] != "file":
             skipped.append(Skipped(file.name, "a text written in Moodle, not a file"))
         else:
-            # As Moodle's grading worksheet calls them.
+            # The names in Moodle's grading worksheet.
             lms = {"Identifier": f"Participant {match['number']}", "Full name": match["name"]}
             found.append((Student(student_id(f"{match['name']}_{match['number']}"), match["name"], "", lms), file))
     return Sorted("a download from Moodle", tuple(found), tuple(skipped)) if found else None
@@ -65,9 +65,9 @@ WRITTEN = re.compile(r"(\d{4}-\d\d-\d\d[ T]\d\d:\d\d:\d\d)(?:\.\d+)?\s*(.*)")
 
 
 def by_assignment(files: list[File], root: str, exercise: str) -> Sorted | None:
-    """The files of one assignment, or None where these are not nbgrader's folders.
+    """Return the files of one assignment, or None if these are not nbgrader's folders.
 
-    `root` is the name of the folder that was given: it may be `submitted` itself, or the one that it lies in.
+    `root` is the name of the given folder: it may be `submitted` itself, or its parent.
     """
     if any(file.parts[0] == "submitted" for file in files):
         inside = [(file, file.parts[1:]) for file in files if file.parts[0] == "submitted"]
@@ -79,7 +79,7 @@ def by_assignment(files: list[File], root: str, exercise: str) -> Sorted | None:
     assignments = {parts[1] for _, parts in inside if len(parts) > 2}
     if not assignments:
         return None
-    # A course may call the assignment what it likes, as long as there is only one.
+    # A course may use any name for the assignment, as long as there is only one.
     wanted = next(iter(assignments)) if len(assignments) == 1 else exercise
     dates = {parts[0]: _date(file) for file, parts in inside if parts[1:] == (wanted, TIMESTAMP)}
     found, skipped = [], [Skipped(f"*/{name}", "another assignment") for name in sorted(assignments - {wanted})]
@@ -95,7 +95,7 @@ def by_assignment(files: list[File], root: str, exercise: str) -> Sorted | None:
 
 
 def _date(file: File) -> datetime | None:
-    """The time in a timestamp.txt, which ends with a time zone's name; None where that is none we can tell."""
+    """Return the time in a timestamp.txt, which ends with a time zone's name; None if the zone is unknown."""
     try:
         match = WRITTEN.match(file.path.read_text(encoding="utf-8", errors="replace")[:200])
         if not match:

@@ -1,4 +1,4 @@
-"""One zip per student, to hand out: the feedback page, and nothing of other students or of hidden checks."""
+"""One zip per student, to hand out: the feedback page, without anything about other students or hidden checks."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from grader.report.as_json import folder_of
 
 FOLDER = "to-students"
 
-#: The same content gives the same bytes: every entry has the earliest date that a zip can name.
+#: The same content gives the same bytes: every entry has the earliest date that a zip can contain.
 DATE = (1980, 1, 1, 0, 0, 0)
 
 

@@ -1,4 +1,4 @@
-"""Judges stored recordings with changed checks: no program is run again, and nothing is replaced unasked."""
+"""Judges stored recordings with changed checks: no program is run again, and nothing is replaced unless confirmed."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ def rejudge(
     console: Console,
     may_replace: Callable[[int], bool],
 ) -> None:
-    """Judge every student's stored recordings, print what is different, and replace grades if `may_replace` says so.
+    """Judge every student's stored recordings, print the differences, and replace grades if `may_replace` says so.
 
     `may_replace` gets the number of grades that are different. Without recordings, or with recordings of another
-    submission, scenario or version, a student's grade stays as it is, and that is said.
+    submission, scenario or version, a student's grade stays as it is, and a message says so.
     """
     found, missing = [], []
     for one in collected.handed_in:
@@ -74,7 +74,7 @@ def _tell(console: Console, found: list[Rejudged], missing: list[str]) -> None:
 
 
 def difference(before: Grade, after: Grade) -> str:
-    """In words, beginning with the two scores: which checks went up, and which down. Empty where nothing changed."""
+    """Return the difference in words: the two scores, then the checks that went up or down. Empty if there is none."""
     old = {verdict.name: verdict for verdict in before.verdicts}
     new = {verdict.name: verdict for verdict in after.verdicts}
     up, down = [], []

@@ -1,4 +1,4 @@
-"""What an instructor asks for, and what comes back for each submission."""
+"""What an instructor requests, and the result for each submission."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from grader.submission.reading import Submission
 
 @dataclass(frozen=True)
 class ClassRequest:
-    """A class to grade: where the submissions are, where the results go, and how.
+    """A class to grade: where the submissions are, where to write the results, and how.
 
     `jobs` is how many submissions are graded at once, None for as many as suit
     this machine. `regrade` names students whose submissions are graded again
-    though nothing has changed, `*` all of them. `overrides` is a CSV file, `scheduler` a Dask scheduler's address.
-    `rejudge` asks for new verdicts on stored recordings, and `replace` for keeping them unasked. `publish` asks for one
-    zip per student.
+    even if nothing has changed, `*` all of them. `overrides` is a CSV file, `scheduler` a Dask scheduler's address.
+    `rejudge` requests new verdicts on stored recordings, and `replace` keeping them without asking. `publish` requests
+    one zip per student.
     """
 
     source: Path
@@ -38,7 +38,7 @@ class ClassRequest:
 
 @dataclass(frozen=True)
 class Graded:
-    """One submission's grade, and the picture of it; `who` is the key under which it was given to be graded."""
+    """One submission's grade, and its plot; `who` is the key under which it was submitted for grading."""
 
     who: str
     grade: Grade
@@ -46,26 +46,26 @@ class Graded:
 
 
 class NoCluster(Exception):
-    """Raised when the cluster can't be used; tells the instructor why."""
+    """Raised when the cluster can't be used; the text tells the instructor why."""
 
 
 class Backend(Protocol):
-    """Grades submissions side by side."""
+    """Grades submissions in parallel."""
 
     @property
     def key(self) -> str:
-        """The same as long as everything is that a grade depends on, beside the submission."""
+        """A key of everything that a grade depends on, except the submission."""
 
     def mark(self, submissions: Mapping[str, Submission]) -> Iterator[Graded]:
-        """The grade of each submission, in the order in which they are done.
+        """Yield the grade of each submission, in the order in which they are done.
 
-        A fault of ours or a machine's is a grade with the outcome `host-error`; nothing is raised for one submission.
-        When the iterator is closed, what is under way is given up.
+        A fault of ours or the machine's is a grade with the outcome `host-error`; nothing is raised for a single
+        submission. When the iterator is closed, the gradings in progress are abandoned.
         """
 
 
 def host_error(runner: ScenarioRunner, submission: Submission, text: str) -> Grade:
-    """The grade without a score; `text` is for the instructor."""
+    """Return the grade without a score; `text` is for the instructor."""
     return Grade(
         exercise=runner.exercise.name,
         submission=submission.name,

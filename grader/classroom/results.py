@@ -1,4 +1,4 @@
-"""The results of a class: what has to be graded again, what has not, and the folder that keeps them."""
+"""The results of a class: what has to be graded again, what does not, and the folder that stores them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from grader.report.as_json import STUDENTS, folder_of, from_json, to_json
 from grader.report.feedback import feedback_page
 from grader.submission.reading import Submission
 
-#: In a student's folder: what was recorded, as JSON below a line with the key of what it depends on.
+#: In a student's folder: the recordings, as JSON below a line with the key of what they depend on.
 RECORDINGS = "recordings.json.gz"
 
 
@@ -38,28 +38,28 @@ class Busy(Exception):
 
 
 class Results:
-    """One folder of results. Use it as a context manager: nobody else writes into it meanwhile."""
+    """One folder of results. Use it as a context manager: meanwhile no other process writes into it."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self._lock = -1
 
     def entry(self, student: str) -> tuple[Entry, str] | None:
-        """What is kept of a student, and the key of the grade; None where nothing is, or nothing that can be read."""
+        """Return the stored entry of a student, and the key of the grade; None if missing or unreadable."""
         try:
             return from_json((folder_of(self.folder, student) / "grade.json").read_text(encoding="utf-8"))
         except (OSError, ValueError, KeyError, TypeError, AttributeError):
             return None
 
     def plot(self, student: str) -> str | None:
-        """The picture that is kept of a student's run."""
+        """Return the stored plot of a student's run."""
         try:
             return (folder_of(self.folder, student) / "plot.svg").read_text(encoding="utf-8")
         except (OSError, ValueError):
             return None
 
     def recordings(self, student: str, key: str) -> dict[str, Recording] | None:
-        """What is kept of a student's run, by scenario; None where nothing is kept under this key."""
+        """Return the stored recordings of a student's run, by scenario; None if there are none under this key."""
         try:
             content = (folder_of(self.folder, student) / RECORDINGS).read_bytes()
             first, _, text = gzip.decompress(content).decode().partition("\n")
@@ -73,12 +73,12 @@ class Results:
         write_if_changed(folder_of(self.folder, student) / RECORDINGS, content, durable=True)
 
     def write(self, entry: Entry, key: str, page: str, plot: str | None) -> None:
-        """Keep a student's entry. Whenever this is broken off, what is there is whole, or is made again."""
+        """Store a student's entry. Whenever this is interrupted, the files are complete, or are made again."""
         folder = folder_of(self.folder, entry.student.id)
         text = to_json(entry, key)
         try:
             if (folder / "grade.json").read_text(encoding="utf-8") != text:
-                # What it vouches for is about to change.
+                # What it confirms is about to change.
                 (folder / "grade.json").unlink()
         except (OSError, ValueError):
             pass
@@ -90,12 +90,12 @@ class Results:
         write_if_changed(folder / "grade.json", text, durable=True)
 
     def forget(self, student: str) -> None:
-        """Take away what vouches for a student's results, so that the next run grades the submission again."""
+        """Remove the key that confirms a student's results, so the next run grades the submission again."""
         with contextlib.suppress(OSError):
             (folder_of(self.folder, student) / "grade.json").unlink(missing_ok=True)
 
     def others(self, students: set[str]) -> tuple[str, ...]:
-        """Whose results are here beside those of `students`."""
+        """Return the ids of students with results here who are not in `students`."""
         return tuple(
             sorted(
                 file.parent.name
@@ -121,10 +121,10 @@ class Results:
 
 
 def grade_key(grading: Grading) -> str:
-    """The same for two gradings if they give every submission the same grade, as far as can be known beforehand.
+    """Return a key that two gradings share if they give every submission the same grade, as far as is known beforehand.
 
-    Of the exercise's text that is what grades and pages tell of it; of the machine, the versions of Python and ROS and
-    the level of isolation.
+    It depends on the part of the exercise's text that grades and pages show; and on the machine's versions of Python
+    and ROS and the level of isolation.
     """
     runner = grading.runner
     exercise = runner.exercise
@@ -141,12 +141,12 @@ def grade_key(grading: Grading) -> str:
 
 
 def recordings_key(grading: Grading, submission: Submission) -> str:
-    """The same as long as a submission's recordings would be, whatever the checks are."""
+    """Return a key that stays the same as long as a submission's recordings would, whatever the checks are."""
     return submission_key(_digest(_of_a_run(grading)), submission.digest)
 
 
 def _of_a_run(grading: Grading) -> dict[str, Any]:
-    """What a recording depends on, besides the submission."""
+    """Return what a recording depends on, besides the submission."""
     runner = grading.runner
     return {
         "scenarios": [scenario.digest for scenario in runner.scenarios],
@@ -163,11 +163,11 @@ def _digest(depends: dict[str, Any]) -> str:
 
 
 def submission_key(key: str, digest: str) -> str:
-    """The key of one submission's grade."""
+    """Return the key of one submission's grade."""
     return hashlib.sha256(f"{key} {digest}".encode()).hexdigest()
 
 
-#: What late work and the instructor's own wishes make of a score.
+#: How late work and the instructor's overrides change a score.
 Adjust = Callable[[Entry], tuple[Adjustment, ...]]
 
 
@@ -189,13 +189,13 @@ class ClassGrading:
     results: Results
     adjust: Adjust
     grading: Grading | None = None
-    """Set where recordings are to be kept."""
+    """Set if recordings are to be stored."""
     entries: dict[str, Entry] = field(default_factory=dict)
 
     def plan(
         self, collected: Submissions, submissions: Mapping[str, Submission], regrade: Callable[[str], bool]
     ) -> Plan:
-        """What has to be graded: what has no grade yet, what has changed, and what `regrade` asks for.
+        """Return what has to be graded: what has no grade yet, what has changed, and what `regrade` names.
 
         `submissions` are those of `collected`, read, by student.
         """
@@ -212,17 +212,17 @@ class ClassGrading:
         return Plan(tuple(to_grade), tuple(unchanged), former)
 
     def take_in(self, collected: Submissions) -> None:
-        """Take the entries that are kept of these students, where no other is known, as they are."""
+        """Take over the stored entries of these students as they are, if there is no newer one."""
         for one in collected.handed_in:
             kept = self.results.entry(one.student.id)
             if kept and one.student.id not in self.entries:
                 self.entries[one.student.id] = kept[0]
 
     def run(self, plan: Plan, submissions: Mapping[str, Submission]) -> Iterator[Entry]:
-        """Grade what has to be, and give each entry once it is kept.
+        """Grade what has to be graded, and yield each entry once it is stored.
 
-        Where a machine or we were at fault, it is tried once more after all others; if that is in vain, the
-        entry tells of it, has no score, and is graded again by the next run.
+        If we or the machine were at fault, the submission is tried once more after all others; if that fails as well,
+        the entry says so, has no score, and is graded again by the next run.
         """
         handed_in = {one.student.id: one for one in plan.to_grade}
         again: list[str] = []
@@ -235,7 +235,7 @@ class ClassGrading:
             yield self._kept(handed_in[graded.who], graded, submissions[graded.who])
 
     def _kept(self, handed_in: HandedIn, graded: Graded, submission: Submission) -> Entry:
-        """Keep a grade; one whose page or files can't be written is a `host-error`, and stops nobody else's."""
+        """Store a grade; one whose page or files can't be written becomes a `host-error`; others go on."""
         try:
             return self.keep(handed_in, graded, submission)
         except Exception as error:
@@ -253,7 +253,7 @@ class ClassGrading:
 
     def keep(self, handed_in: HandedIn, graded: Graded, submission: Submission) -> Entry:
         """Write a grade with its page into the student's folder."""
-        # Who grades may see the file under another name.
+        # The grading process may see the file under another name.
         grade = replace(graded.grade, submission=handed_in.file.name)
         entry = self._entry(handed_in, Entry(handed_in.student, handed_in.file.name, grade))
         key = "" if grade.outcome == "host-error" else self._key(submission)
@@ -261,7 +261,7 @@ class ClassGrading:
             recorded = recordings_key(self.grading, submission)
             self.results.keep_recordings(entry.student.id, recorded, grade.recordings)
         self.results.write(entry, key, feedback_page(entry, self.exercise, graded.plot), graded.plot)
-        # What was recorded is in the page now; kept for a whole class, it would fill the memory.
+        # The recordings are in the page now; kept for a whole class, they would fill the memory.
         self.entries[entry.student.id] = entry = replace(entry, grade=replace(grade, recordings={}, references={}))
         return entry
 
@@ -272,7 +272,7 @@ class ClassGrading:
             return self.give_up(Entry(handed_in.student, handed_in.file.name, kept.grade), not_written(error))
 
     def _unchanged(self, handed_in: HandedIn, kept: Entry, key: str) -> Entry:
-        """The entry of a submission that needs no grading: who handed it in and when may have changed all the same."""
+        """Return the entry of a submission that needs no grading: its student and date may still have changed."""
         entry = self._entry(handed_in, kept)
         plot = self.results.plot(entry.student.id)
         self.results.write(entry, key, feedback_page(entry, self.exercise, plot), plot)
@@ -298,5 +298,5 @@ class ClassGrading:
 
 
 def not_written(error: Exception) -> str:
-    """Say that a student's results could not be written."""
+    """Return the sentence that a student's results could not be written."""
     return f"the results could not be written: {type(error).__name__}: {error}"

@@ -13,8 +13,8 @@ from grader.grading.grade import Grade
 class Student:
     """Whose submission it is.
 
-    `id` is unique in the class and names the student's folder. `lms` keeps what a learning platform's export calls the
-    student, by the platform's own column names, so that grades find their way back.
+    `id` is unique in the class and names the student's folder. `lms` keeps the values of a learning platform's export
+    for the student, by the platform's own column names, so that grades can be imported there.
     """
 
     id: str
@@ -34,11 +34,11 @@ class Adjustment:
 
 @dataclass(frozen=True)
 class Entry:
-    """One student's submission, its grade, and what became of the score.
+    """One student's submission, its grade, and what happened to the score.
 
-    `file` is what was graded, relative to the class's folder. `submitted` is when it was handed in, with a time zone,
-    where that is known, and `submitted_from` is what told it: "timestamp.txt", "the CSV file", "the zip file" or "the
-    file's date". A grade that was read back from results holds no recordings.
+    `file` is what was graded, relative to the class's folder. `submitted` is when it was submitted, with a time zone,
+    if known, and `submitted_from` is where that comes from: "timestamp.txt", "the CSV file", "the zip file" or "the
+    file's date". A grade that was read back from results has no recordings.
     """
 
     student: Student
@@ -50,7 +50,7 @@ class Entry:
 
     @property
     def final(self) -> float | None:
-        """The points that count, at least 0; above the exercise's with extra credit. None for a fault of ours."""
+        """The points that count, at least 0; more than the exercise's with extra credit. None for a fault of ours."""
         if self.grade.outcome == "host-error" and not any(a.kind == "override" for a in self.adjustments):
             return None
         return max(0.0, self.grade.score + sum(adjustment.points for adjustment in self.adjustments))

@@ -1,4 +1,4 @@
-"""How to grade one submission, and the grade that comes of it."""
+"""How to grade one submission, and the resulting grade."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from grader.recording.recording import Ending, Recording
 from grader.sandbox.isolation import Isolation
 from grader.sandbox.program import Limits, Middleware
 
-#: What happened, of which only `host-error` is not the student's: it is no score and has to be graded again.
+#: What happened. Only `host-error` is not the student's: it gives no score and has to be graded again.
 Outcome = Literal["graded", "did-not-start", "crashed", "timed-out", "over-limit", "host-error"]
 
 
@@ -22,11 +22,11 @@ class Grade:
     """One grading. Two gradings of one submission are equal: what may differ (timings, logs) does not count.
 
     `message` tells the student, or for a host error the instructor, what happened; `line` is the line of the student's
-    file that is to blame, where known. `hold` is how the runner knew that the node had handled a message. `recordings`
+    file that is to blame, if known. `hold` is how the runner knew that the node had handled a message. `recordings`
     and `references` are what the node and the solution published, by scenario.
 
-    A `self_check` judges by the public checks only, and is no grade of record; `hidden_checks` and `hidden_points` are
-    how many more checks there are, and what they give together.
+    A `self_check` judges by the public checks only, and is not the official grade; `hidden_checks` and `hidden_points`
+    are how many more checks there are, and how many points they give together.
     """
 
     exercise: str
@@ -52,19 +52,19 @@ class Grade:
 
     @property
     def full_marks(self) -> bool:
-        """Whether nothing is missing."""
+        """Whether no points are missing."""
         return self.outcome == "graded" and self.score == self.points
 
 
 @dataclass(frozen=True)
 class Options:
-    """How to grade. `isolation` None means the strongest that works here, `middleware` None lockstep if it can be had.
+    """How to grade. `isolation` None means the strongest that works here, `middleware` None lockstep if available.
 
-    `seed` chooses the numbers of scenarios that have chance in them. `pace` is 1.0 for the pace of real time, None for
-    as fast as it goes.
+    `seed` chooses the numbers of scenarios with random parts. `pace` is 1.0 for real time, None for as fast as
+    possible.
 
-    `parallel` is how many spins run at once: more than there are cores, for much of a spin is waiting.
-    `core` is the CPU to keep the program on; None lets its spins take turns on all of them.
+    `parallel` is how many scenarios run at once: more than there are cores, since much of a run is waiting.
+    `core` is the CPU to keep the program on; None lets its runs take turns on all of them.
     """
 
     isolation: Isolation | None = None
@@ -76,7 +76,7 @@ class Options:
     middleware: Middleware | None = None
 
 
-#: What the sandbox has beside Python itself, as a student would import it.
+#: What the sandbox has besides Python itself, as a student would import it.
 AVAILABLE = "rclpy, the standard ROS 2 messages (std_msgs, geometry_msgs, sensor_msgs and so on) and numpy"
 
 MISSING = re.compile(r"ModuleNotFoundError: No module named '([^']+)'")
@@ -103,7 +103,7 @@ ADVICE = (
 def message_of(ending: Ending, exercise: Exercise) -> str:
     """Return how a run ended, with advice if there is any; empty when all went well.
 
-    The exercise's own advice goes before the advice that fits every program.
+    The exercise's own advice has priority over the advice that fits every program.
     """
     story = ending.story
     for exception, advice in exercise.advice.items():

@@ -23,15 +23,15 @@ from grader.workers.pool import HostFault, WorkerPool
 
 @dataclass(frozen=True)
 class Grading:
-    """Everything that grading one exercise's submissions needs, proved: make it once and grade as many as you like."""
+    """Everything needed to grade one exercise's submissions, verified: create it once and grade any number of them."""
 
     runner: ScenarioRunner
     references: dict[str, Recording]
     public: PublicPart | None = None
-    """Set where only the public checks judge."""
+    """Set if only the public checks judge."""
 
     def grade(self, submission: Submission) -> Grade:
-        """The grade of one submission; a fault of the machine's or ours becomes a `host-error`, never a score."""
+        """Return the grade of one submission; a fault of the machine or ours becomes a `host-error`, never a score."""
         began = time.monotonic()
         try:
             recordings = self._recordings(submission)
@@ -41,7 +41,7 @@ class Grading:
         return self._judged(submission, recordings, began)
 
     def judge(self, submission: Submission, recordings: dict[str, Recording]) -> Grade:
-        """The grade of a submission of which these are the recordings, by scenario; nothing is run."""
+        """Return the grade of a submission from its recordings, by scenario; nothing is run."""
         return self._judged(submission, recordings, time.monotonic())
 
     def _judged(self, submission: Submission, recordings: dict[str, Recording], began: float) -> Grade:
@@ -105,13 +105,13 @@ class Grading:
 
 
 def grading_of(exercise: Exercise, options: Options, workers: WorkerPool) -> Grading:
-    """Make ready to grade submissions of `exercise`.
+    """Prepare to grade submissions of `exercise`.
 
     Raises `ExerciseError` when its author has something to fix, `SandboxUnavailable` when students' code can't be
-    kept apart here, and `HostFault` when the solution can't be spun by a fault of the machine's or ours.
+    isolated here, and `HostFault` when the solution can't be run through a fault of the machine or ours.
 
     In a student's copy, or with `exercise.public()`, only the public checks judge: a self-check. The code that runs is
-    one's own then, so that it may run where nothing can be kept apart, too; the grade's `isolation` says so.
+    then the user's own, so it may also run without isolation; the grade's `isolation` says so.
     """
     used = [*(topic.type for topic in exercise.topics), *(one.type for one in exercise.endpoints)]
     workers.prepare_types(type_name.rpartition("/")[0].replace("/", ".") for type_name in used)
@@ -136,7 +136,7 @@ def _isolation_of_ones_own(options: Options) -> Isolation:
 
 
 def grade_submission(exercise: Exercise, submission: Submission, options: Options | None = None) -> Grade:
-    """The grade of one submission. Raises what `grading_of` raises."""
+    """Return the grade of one submission. Raises what `grading_of` raises."""
     options = options or Options()
     with WorkerPool(options.middleware) as workers:
         return grading_of(exercise, options, workers).grade(submission)

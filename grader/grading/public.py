@@ -1,4 +1,4 @@
-"""What of an exercise a student may have: public scenarios, and what the solution published in them.
+"""The part of an exercise that a student may have: public scenarios, and what the solution published in them.
 
 A student's copy of an exercise has neither solution nor scenarios.py nor hidden checks. Its public checks compare with
 the recordings in `public.json`, which is made from the author's folders by `public_part` and `to_json`.
@@ -28,9 +28,9 @@ from grader.workers.jobs import ListJob
 from grader.workers.pool import WorkerPool
 
 if TYPE_CHECKING:
-    from grader.checking.judging import Listed  # it imports pytest, which the process that judges has
+    from grader.checking.judging import Listed  # it imports pytest, which the judging process has anyway
 
-#: Changes when older versions can't read the file any more. Format 1 had messages only.
+#: Changes when older versions can no longer read the file. Format 1 had messages only.
 FORMAT = 2
 
 
@@ -45,9 +45,9 @@ class PublicPart:
 
 
 def public_part(exercise: Exercise, options: Options, isolation: Isolation, workers: WorkerPool) -> PublicPart:
-    """The public part of an exercise: read in a student's copy, made from the solution where there is one.
+    """Return the public part of an exercise: read in a student's copy, made from the solution if there is one.
 
-    Raises `ExerciseError` where the author, or in a student's copy whoever changed it, has something to fix.
+    Raises `ExerciseError` if there is something to fix for the author, or in a student's copy for whoever changed it.
     """
     if exercise.solution_folder is None:
         return _read(exercise)
@@ -63,7 +63,7 @@ def public_part(exercise: Exercise, options: Options, isolation: Isolation, work
 
 
 def to_json(exercise: Exercise, public: PublicPart) -> str:
-    """The text of public.json: the same for the same scenarios and solution, whenever it is made."""
+    """Return the text of public.json: the same for the same scenarios and solution, whenever it is made."""
     expected = {name: _timeless(recording) for name, recording in public.references.items()}
     entries = {
         "format": 1 if all(_only_publishes(scenario) for scenario in public.scenarios) else FORMAT,
@@ -76,13 +76,13 @@ def to_json(exercise: Exercise, public: PublicPart) -> str:
 
 
 def modules_of(public: PublicPart) -> Iterator[Path]:
-    """The author's files that the public scenarios need code of: each once. `to_json` refuses what must stay hidden."""
+    """Yield the author's files that the public scenarios need code of, once each. `to_json` refuses hidden ones."""
     files = {code.file for scenario in public.scenarios for code in code_in(scenario)}
     yield from sorted(Path(file) for file in files if Path(file).name not in HIDDEN_FILES)
 
 
 def _timeless(recording: Recording) -> Recording:
-    """Without what the solution logged, and how long it took."""
+    """Return a recording without the solution's log and duration."""
     return replace(recording, log="", seconds=0.0, lockstep_seconds=0.0)
 
 
@@ -115,7 +115,7 @@ def _only_publishes(scenario: Scenario) -> bool:
 
 
 def _of_messages(scenario: Scenario) -> Any:
-    """As format 1 has it, which older versions can read, and web pages."""
+    """Return the recording in format 1, which older versions and web pages can read."""
     names = ("at", "topic", "type", "fields", "publisher")
     messages = [{name: getattr(message, name) for name in names} for message in scenario.messages]
     found = {"name": scenario.name, "title": scenario.title, "messages": messages, "interrupt": scenario.interrupt}

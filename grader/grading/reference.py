@@ -1,4 +1,4 @@
-"""The solution's recordings, made once and kept, and everything that a grade depends on besides the submission."""
+"""The solution's recordings, made once and stored, and everything that a grade depends on besides the submission."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ GRADER = Path(__file__).parents[1]
 
 @cache
 def versions(middleware: Middleware) -> dict[str, str]:
-    """The middleware, versions of Python, ROS and the middleware, and a digest of the grader's own source."""
+    """Return the middleware, versions of Python, ROS and the middleware, and a digest of the grader's own source."""
     return {
         "python": platform.python_version(),
         "rclpy": _version("ros-jazzy-rclpy", "rclpy"),
@@ -40,7 +40,7 @@ def versions(middleware: Middleware) -> dict[str, str]:
 
 
 def digest_of(files: list[Path]) -> str:
-    """SHA-256 of these files' contents, in this order."""
+    """Return the SHA-256 of these files' contents, in this order."""
     total = hashlib.sha256()
     for file in files:
         content = file.read_bytes()
@@ -50,7 +50,7 @@ def digest_of(files: list[Path]) -> str:
 
 
 def _lockstep() -> str:
-    """A digest of the middleware, its end in C++ and its hub in Python."""
+    """Return a digest of the middleware, its C++ end and its hub in Python."""
     folder = GRADER.with_name("rmw_lockstep")
     return digest_of([*sources(), *sorted(folder.rglob("*.py"))])[:12]
 
@@ -69,10 +69,10 @@ def _version(*names: str) -> str:
 
 
 def reference(runner: ScenarioRunner) -> dict[str, Recording]:
-    """The solution's recordings, by scenario.
+    """Return the solution's recordings, by scenario.
 
-    They are made when anything that they depend on has changed; then the exercise itself is put to the test: the
-    solution must pass every check and the points must add up. Raises `ExerciseError` where they do not.
+    They are made again when anything that they depend on has changed; then the exercise itself is tested: the
+    solution must pass every check and the points must add up. Raises `ExerciseError` otherwise.
     """
     kept = _kept_in(runner)
     try:
@@ -81,18 +81,18 @@ def reference(runner: ScenarioRunner) -> dict[str, Recording]:
         pass
     recordings = _made(runner)
     _prove(runner, recordings)
-    with contextlib.suppress(OSError):  # where nothing can be kept, it is made anew each time
+    with contextlib.suppress(OSError):  # if nothing can be stored, they are made again each time
         write_if_changed(kept, to_json(recordings))
     return recordings
 
 
 def cache_folder() -> Path:
-    """Where the solution's recordings are kept."""
+    """Return the folder of the solution's recordings."""
     return cached("reference")
 
 
 def solution_file(exercise: Exercise) -> Path:
-    """The author's solution. Raises `ExerciseError` when there is none."""
+    """Return the author's solution. Raises `ExerciseError` when there is none."""
     file = exercise.solution_file
     if not file or not file.exists():
         expected = exercise.folder.parent.parent / "solutions" / exercise.name / "solution.py"
@@ -101,7 +101,7 @@ def solution_file(exercise: Exercise) -> Path:
 
 
 def reference_key(runner: ScenarioRunner) -> str:
-    """A digest of everything that gradings by `spinner` depend on, but for the submissions."""
+    """Return a digest of everything that gradings by `spinner` depend on, except the submissions."""
     exercise = runner.exercise
     key = {
         "solution": digest_of([solution_file(exercise)]),

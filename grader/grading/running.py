@@ -1,4 +1,4 @@
-"""Runs one program through all scenarios: several at once, and with help from workers that have nothing else to do."""
+"""Runs one program through all scenarios: several at once, with help from idle workers."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ from grader.workers.pool import FAST_DDS_ENVIRONMENT, PROFILE, STUDENT_ENVIRONME
 
 
 class TaskQueue:
-    """Some spins that may be done in any order and at the same time. Any thread may call anything here."""
+    """Some runs that may be done in any order and at the same time. Any thread may call any method."""
 
     def __init__(self, jobs: Sequence[RunJob], workers: WorkerPool) -> None:
-        """The first of `jobs` is the first to be begun."""
+        """The first of `jobs` is the first to be started."""
         self._workers = workers
         self._waiting = deque(jobs)
         self._recordings: dict[str, Future[Recording]] = {job.scenario.name: Future() for job in jobs}
@@ -35,14 +35,14 @@ class TaskQueue:
 
     @property
     def left(self) -> int:
-        """How many nobody has begun yet."""
+        """How many have not been started yet."""
         return len(self._waiting)
 
     def work(self, core: int | None = None) -> None:
-        """Do one spin after another, in one process, until nobody has to begin any more.
+        """Do one run after another, in one process, until none is left to start.
 
-        `core` is the CPU to keep the program on, None for the one that each job names. What goes wrong with a spin is
-        raised where its recording is asked for.
+        `core` is the CPU to keep the program on, None for the one that each job names. An error in a run is raised when
+        its recording is requested.
         """
         with self._workers.hand() as hand:
             while job := self._next():
@@ -59,17 +59,17 @@ class TaskQueue:
             return None
 
     def recording(self, scenario: str) -> Recording:
-        """The recording of a scenario, which is waited for. Raises `HostFault` when it can't be had."""
+        """Wait for the recording of a scenario, and return it. Raises `HostFault` when there is none."""
         return self._recordings[scenario].result()
 
     def give_up(self) -> None:
-        """Begin no more, and end those under way."""
+        """Start no further runs, and end those in progress."""
         self._waiting.clear()
         self._given_up.set()
 
 
 class WorkStealing:
-    """Where help is offered and found. Any thread may call anything here."""
+    """Where help is offered and found. Any thread may call any method."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()
@@ -78,7 +78,7 @@ class WorkStealing:
 
     @contextlib.contextmanager
     def wanted(self, spins: TaskQueue) -> Iterator[None]:
-        """For as long as this lasts, others may help with these spins."""
+        """Let others help with these runs inside the `with` block."""
         with self._changed:
             self._under_way.append(spins)
             self._changed.notify_all()
@@ -89,7 +89,7 @@ class WorkStealing:
                 self._under_way.remove(spins)
 
     def help(self, core: int | None) -> None:
-        """Help where the most spins wait, with the program on CPU `core`; returns once this is closed."""
+        """Help where the most runs are waiting, with the program on CPU `core`; return once this is closed."""
         while self._help_with_one(core):
             pass
 
@@ -105,14 +105,14 @@ class WorkStealing:
             return None if self._closed else max(self._under_way, key=lambda spins: spins.left)
 
     def close(self) -> None:
-        """Nobody has to help any more."""
+        """Release all helpers."""
         with self._changed:
             self._closed = True
             self._changed.notify_all()
 
 
-#: What a submission may publish in all scenarios together (bytes), of which each gets an equal part, but not less than
-#: this. As Python's objects, in the memory of the grader, it takes about ten times as much.
+#: What a submission may publish in all scenarios together (bytes). Each scenario gets an equal share, but not less than
+#: this. As Python objects, in the grader's memory, it takes about ten times as much.
 MOST_BYTES, LEAST_BYTES = 24_000_000, 1_000_000
 
 
@@ -126,11 +126,11 @@ class ScenarioRunner:
     options: Options
     workers: WorkerPool
     work_stealing: WorkStealing = field(default_factory=WorkStealing, compare=False)
-    """Through which others may help, beside the `options.parallel` hands that there are for each submission."""
+    """Lets others help, besides the `options.parallel` workers of each submission."""
 
     @property
     def middleware(self) -> Middleware:
-        """Over which programs talk. Raises `MiddlewareUnavailable` where the one that is asked for can't be had."""
+        """The middleware of the programs. Raises `MiddlewareUnavailable` when the requested one is not available."""
         middleware = choose_middleware(self.options.middleware).middleware
         beyond = next((one for one in self.scenarios if not one.is_filter), None)
         if middleware is Middleware.FASTDDS and beyond:
@@ -141,9 +141,9 @@ class ScenarioRunner:
         return middleware
 
     def spin(self, submission: Submission) -> dict[str, Recording]:
-        """The recording of each scenario. Raises `HostFault` when one can't be had.
+        """Return the recording of each scenario. Raises `HostFault` when there is none.
 
-        The first scenario decides whether the program works at all; if it does not, nothing else is run, and every
+        The first scenario decides whether the program works at all; if it does not, no other is run, and every
         recording ends as that one does.
         """
         jobs = [self.job(submission, scenario, i) for i, scenario in enumerate(self.scenarios)]
@@ -162,11 +162,11 @@ class ScenarioRunner:
                 spins.give_up()
 
     def only(self, scenario: str) -> ScenarioRunner:
-        """The same, with one scenario alone."""
+        """Return the same runner with a single scenario."""
         return replace(self, scenarios=tuple(s for s in self.scenarios if s.name == scenario))
 
     def job(self, submission: Submission, scenario: Scenario, number: int) -> RunJob:
-        """The spin of a program through one scenario; `number` chooses the core that it is kept on, turn by turn."""
+        """Return the run of a program through one scenario; `number` chooses its core, in turn."""
         assert submission.program
         fast_dds = self.middleware is Middleware.FASTDDS
         program = replace(

@@ -26,7 +26,7 @@ STATUS_QOS = Qos(depth=1, durability=TRANSIENT_LOCAL)
 
 @dataclass
 class Running:
-    """One goal that came."""
+    """One goal that arrived."""
 
     number: int
     id: bytes
@@ -46,12 +46,12 @@ class Running:
 
     @property
     def state(self) -> str:
-        """Its state now."""
+        """The goal's current state."""
         return self.states[-1].state if self.states else "unknown"
 
 
 class ScriptedActionServer:
-    """One action server of the grader's, which does with each goal what the scenario says."""
+    """One of the grader's action servers, which handles each goal as the scenario says."""
 
     def __init__(self, ends: Ends, schedule: Schedule, declared: Declared) -> None:
         self.name = declared.action
@@ -62,7 +62,7 @@ class ScriptedActionServer:
         self._publishers: tuple[Publisher, Publisher] | None = None
 
     def open(self) -> None:
-        """It is there from now on."""
+        """Start the server."""
         if self._servers is not None:
             return
         node, base, kind = self._ends.node, f"{self.name}/_action", self._declared.type
@@ -75,13 +75,13 @@ class ScriptedActionServer:
         self._publishers = feedback, node.publisher(f"{base}/status", STATUS, STATUS_QOS)
 
     def close(self) -> None:
-        """It is gone; its goals go no further."""
+        """Stop the server; its goals are left as they are."""
         for end in (*(self._servers or ()), *(self._publishers or ())):
             end.close()
         self._servers = self._publishers = None
 
     def react(self, now: int) -> bool:
-        """Take the requests that came, and plan what follows. Whether there was any."""
+        """Take the requests that arrived, and plan what follows. Return whether there were any."""
         if self._servers is None:
             return False
         found = False
@@ -156,7 +156,7 @@ class ScriptedActionServer:
     # --- what happens to a goal
 
     def _plan(self, goal: Running, at: int, act: Any) -> None:
-        """Do so unless the goal has ended by then, or the server is gone."""
+        """Plan `act`; it is dropped if the goal has ended or the server is gone by then."""
 
         def when_due(now: int) -> None:
             if self._servers is not None and goal.finished is None:
@@ -210,7 +210,7 @@ class ScriptedActionServer:
         self._servers[2].respond(asked, serialize_message(response))
 
     def goals(self) -> tuple[Goal, ...]:
-        """Every goal that came, and what became of it."""
+        """Return every goal that arrived, with its outcome."""
         return tuple(self._recorded(one) for one in self._goals)
 
     def _recorded(self, goal: Running) -> Goal:

@@ -1,4 +1,4 @@
-"""How long a program is waited for: in its own CPU time, and in time that it spends blocked, never in wall time."""
+"""Limits how long a program may take: by its own CPU time and the time it is blocked, never by wall time."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from pathlib import Path
 from grader.runner.stopped import Stopped
 from grader.runner.student import Student
 
-#: The longest piece of time between two looks that counts: a grader that did not run itself saw nothing.
+#: The longest time between two looks that counts (s): a grader that did not run itself saw nothing.
 LONGEST_LOOK_S = 0.025
 
-#: What one step of a run may take, which no right program comes near.
+#: The limit for one step of a run, far above what any correct program needs.
 CPU_S, BLOCKED_S = 3.0, 3.0
 
 
@@ -24,12 +24,12 @@ class Gone(Exception):
 
 
 class HostStalled(Exception):
-    """Raised when the machine, and not the program, was what did not go on."""
+    """Raised when the machine, and not the program, made no progress."""
 
 
 @dataclass(frozen=True)
 class Allowance:
-    """What one step may take, in seconds of CPU time and of time blocked, and what is said when it takes more."""
+    """What one step may take, in seconds of CPU time and of time blocked, and the messages for taking more."""
 
     busy: str
     blocked: str
@@ -38,17 +38,17 @@ class Allowance:
 
 
 class Budget:
-    """Looks at the student's program from time to time while it is waited for: see `look`."""
+    """Checks the student's program from time to time while the runner waits for it: see `look`."""
 
     def __init__(self, student: Student, pids: Callable[[], Collection[int]], allowance: Allowance) -> None:
-        """`pids` tells the numbers of the program's processes."""
+        """`pids` returns the ids of the program's processes."""
         self._student, self._pids = student, pids
         self._began = self._looked = time.monotonic()
         self._seen = 0.0
         self.begin(allowance)
 
     def begin(self, allowance: Allowance) -> None:
-        """A new step begins."""
+        """Begin a new step."""
         self._allowance = allowance
         self._cpu_start: float | None = None
         self._ran: int | None = None
@@ -56,7 +56,7 @@ class Budget:
 
     @property
     def used(self) -> float:
-        """Seconds of this step that the program has computed or was blocked for, as far as anybody has looked."""
+        """Seconds of this step that the program has computed or was blocked for, up to the last look."""
         return self.blocked + self._cpu
 
     @property
@@ -64,9 +64,10 @@ class Budget:
         return 0.0 if self._cpu_start is None else self._student.cpu_seconds() - self._cpu_start
 
     def look(self) -> None:
-        """To be called every 20 ms. Raises `Gone`, or `Stopped` when the step takes more than it may.
+        """Count the time since the last look; to be called every 20 ms.
 
-        Most steps are over before this is called twice within one: only then is anything read.
+        Raises `Gone`, or `Stopped` when the step takes more than it may. Most steps end before the second call, and
+        nothing is read before that.
         """
         now = time.monotonic()
         passed = min(now - self._looked, LONGEST_LOOK_S)
@@ -86,23 +87,23 @@ class Budget:
         allowance = self._allowance
         if self.blocked >= allowance.blocked_s:
             raise Stopped("timed-out", allowance.blocked)
-        # One that has run into a limit of its sandbox is about to end, and its end tells which limit it was.
+        # A program that has hit a limit of its sandbox is about to end, and its exit names the limit.
         if self._cpu >= allowance.cpu_s and not self._student.at_limit():
             raise Stopped("timed-out", allowance.busy)
 
     def check_the_host(self) -> None:
-        """Raise `HostStalled` when this machine ran too little for a limit in wall time to say anything."""
+        """Raise `HostStalled` when this machine ran too little for a limit in wall time to mean anything."""
         real = time.monotonic() - self._began
         if self._seen < real / 2:
             raise HostStalled(f"this machine was frozen or overloaded: it ran for {self._seen:.0f} s of {real:.0f} s")
 
 
-#: What liblockstep calls its own thread, which looks at the others again and again while the process is not idle.
+#: The name of liblockstep's own thread, which checks the other threads repeatedly while the process is not idle.
 SUPERVISOR = b"(lockstep"
 
 
 def ran(pids: Collection[int]) -> int | None:
-    """For how long the threads of these processes have run (ns); None while one runs, could, or waits for the disk."""
+    """Return how long the threads of these processes have run (ns); None if one runs, could, or waits for the disk."""
     total = 0
     for thread in (thread for pid in pids for thread in _threads(pid)):
         with contextlib.suppress(OSError):  # it has just ended

@@ -1,4 +1,4 @@
-"""Calls of the student's services, and of the services by which parameters are set and read."""
+"""Calls of the student's services, and of the services that set and read parameters."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Made:
 
 
 class Calls:
-    """Makes calls, and knows what came of them. All clients are there from the beginning."""
+    """Makes calls, and records their outcomes. All clients exist from the beginning."""
 
     def __init__(self, ends: Ends, scenario: Scenario) -> None:
         self._ends = ends
@@ -61,7 +61,7 @@ class Calls:
         return max(made.step.at, self._ends.at(made.client.moments[made.number]))
 
     def calls(self) -> tuple[Call, ...]:
-        """All calls of the student's services, in the order in which they were made."""
+        """Return all calls of the student's services, in the order in which they were made."""
         return tuple(self._call(made, made.step) for made in self._made if isinstance(made.step, Request))
 
     def _call(self, made: Made, step: Request) -> Call:
@@ -71,7 +71,7 @@ class Calls:
         return Call(step.at, step.service, step.type, step.fields, "grader", self._answered(made), response, "", served)
 
     def changes(self) -> tuple[ParameterChange, ...]:
-        """What was set, and what the node said to it."""
+        """Return the parameters that were set, and the node's answers."""
         return tuple(self._change(made, made.step) for made in self._made if isinstance(made.step, SetParameter))
 
     def _change(self, made: Made, step: SetParameter) -> ParameterChange:
@@ -80,7 +80,7 @@ class Calls:
         return ParameterChange(step.at, step.node, step.name, step.value, taken, reason, self._answered(made))
 
     def readings(self) -> tuple[ParameterReading, ...]:
-        """What was asked for, and what the node said."""
+        """Return the parameters that were read, and the node's answers."""
         return tuple(self._reading(made, made.step) for made in self._made if isinstance(made.step, GetParameter))
 
     def _reading(self, made: Made, step: GetParameter) -> ParameterReading:
@@ -124,7 +124,7 @@ _OF_PYTHON = {bool: "bool", int: "integer", float: "double", str: "string"}
 
 
 def to_parameter_value(value: Any) -> ParameterValue:
-    """A Python value as a parameter's. An empty list becomes an array of strings."""
+    """Return a Python value as a parameter value. An empty list becomes an array of strings."""
     if isinstance(value, (list, tuple)):
         name = f"{_OF_PYTHON[type(value[0])]}_array" if value else "string_array"
     else:
@@ -134,7 +134,7 @@ def to_parameter_value(value: Any) -> ParameterValue:
 
 
 def from_parameter_value(value: ParameterValue) -> Any:
-    """A parameter's value as Python's; None when it is not set."""
+    """Return a parameter value as a Python value; None if it is not set."""
     for name, field in _FIELDS.items():
         if value.type == getattr(ParameterType, f"PARAMETER_{name.upper()}"):
             found = getattr(value, field)

@@ -1,4 +1,4 @@
-"""Between serialized messages and plain fields."""
+"""Converts between serialized messages and plain fields."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from grader.runner.stopped import Stopped
 
 
 def serialized(kind: Any, fields: Fields) -> bytes:
-    """A message, request or response of the class `kind` with these fields, as bytes."""
+    """Return a message, request or response of the class `kind` with these fields, as bytes."""
     content: bytes = serialize_message(filled(kind(), fields))
     return content
 
 
 def deserialized(cdr: bytes, kind: Any) -> Any:
-    """What a program sent, as a message of the class `kind`. Raises `Stopped` for bytes that are none."""
+    """Return what a program sent as a message of the class `kind`. Raises `Stopped` if the bytes are not one."""
     try:
         return deserialize_message(cdr, kind)
-    except Exception as error:  # whatever made-up bytes lead to
+    except Exception as error:  # made-up bytes can raise anything
         raise Stopped("over-limit", f"Your node published bytes that are not a message: {error}") from None
 
 
 def fields_of(cdr: bytes, kind: Any) -> Fields:
-    """What a program sent, as plain fields. Raises `Stopped` for bytes that are no message of the class `kind`."""
+    """Return what a program sent as plain fields. Raises `Stopped` for bytes that are not a message of class `kind`."""
     try:
         return to_fields(deserialize_message(cdr, kind))
-    except Exception as error:  # whatever made-up bytes lead to
+    except Exception as error:  # made-up bytes can raise anything
         raise Stopped("over-limit", f"Your node published bytes that are not a message: {error}") from None

@@ -1,8 +1,8 @@
 """The two clocks of a run: simulated time, which ROS 2 shows, and the computer's time, which Python shows.
 
-The grader is a simulator that runs at 80 % of real time, as simulators do. So a program that measures with the
-computer's clock is off by the factor 1.25, visibly and each time the same; and a program that keeps up in real life
-keeps up here.
+The grader is a simulator that runs at 80 % of real time, as simulators do. So a program that measures time with the
+computer's clock is off by the factor 1.25, visibly and in every run; and a program that is fast enough in real life
+is fast enough here.
 """
 
 from __future__ import annotations
@@ -12,22 +12,22 @@ from bisect import bisect_right
 
 from grader.scenario.scenario import SECOND, ComputerTime
 
-#: How much of the computer's time goes by for so much simulated time, by a scenario's `computer_time`.
+#: How much of the computer's time passes per unit of simulated time, by a scenario's `computer_time`.
 PACES: dict[ComputerTime, tuple[int, int]] = {"apart": (5, 4), "simulated": (1, 1)}
 
-#: How much of the computer's time goes by from one message to the next at least (ns), however near they are in
-#: simulated time: a simulator gets slower when much happens, and so does not run away from a node that looks for one
-#: message every few milliseconds. And no clock shows the same twice.
+#: The least time on the computer's clock between two messages (ns), however close they are in simulated time: a
+#: simulator slows down when much happens, and so does not run ahead of a node that looks for one message every few
+#: milliseconds. Besides, no two messages then have the same time.
 BETWEEN_MESSAGES = 10_000_000
 
 _CLOCK = struct.Struct("<4siI")
 
 
 class Clocks:
-    """What the computer's clock shows at each moment of simulated time, and the other way round (ns).
+    """Maps each moment of simulated time to the computer's time, and back (ns).
 
-    It is told by `set` when simulated time has been set, or a message was published: at the simulated time `at`, with
-    the computer's clock at `now`, as number `stage` of what the hub has published.
+    `set` records that simulated time was set, or a message published: at the simulated time `at`, with the computer's
+    clock at `now`, as number `stage` of everything the hub has published.
     """
 
     def __init__(self, computer_time: ComputerTime) -> None:
@@ -37,29 +37,29 @@ class Clocks:
         self._earliest = 0
 
     def set(self, at: int, now: int, stage: int, *, message: bool = False) -> None:
-        """From number `stage` on, which may be a message, both clocks go on from here."""
+        """Continue both clocks from here, from number `stage` on, which may be a message."""
         self._stages.append(stage)
         self._moments.append((at, now))
         self._earliest = now + BETWEEN_MESSAGES if message else max(now, self._earliest)
 
     @property
     def at(self) -> int:
-        """The simulated time that was set last."""
+        """The simulated time that was set most recently."""
         return self._moments[-1][0]
 
     def computer(self, at: int) -> int:
-        """The computer's time at the simulated time `at`; rounded up, so that `simulated` gives exactly `at` again.
+        """Return the computer's time at the simulated time `at`; rounded up, so `simulated` returns exactly `at` again.
 
-        Later than when a message was published last, also if `at` is not.
+        It is later than the last message was published, even if `at` is not.
         """
         begun_at, began = self._moments[0]
         now = began - (begun_at - at) * self._computer // self._simulated
         return max(now, self._earliest)
 
     def simulated(self, now: int, stage: int) -> int:
-        """The simulated time when the computer's clock shows `now` and number `stage` is the last to have come.
+        """Return the simulated time when the computer's clock shows `now` and number `stage` has arrived last.
 
-        Before it was set for the first time it is 0, as ROS 2 has it.
+        Before it was set for the first time it is 0, as in ROS 2.
         """
         found = bisect_right(self._stages, stage)
         if not found:
@@ -70,5 +70,5 @@ class Clocks:
 
 
 def clock_message(at: int) -> bytes:
-    """The time `at` as a serialized rosgraph_msgs/msg/Clock: a header that says little-endian, seconds, nanoseconds."""
+    """Return `at` as a serialized rosgraph_msgs/msg/Clock: a header for little-endian, seconds, nanoseconds."""
     return _CLOCK.pack(b"\0\1\0\0", *divmod(at, SECOND))

@@ -6,12 +6,12 @@ from grader.recording.recording import Ending
 from grader.runner.story import of_exit
 from grader.runner.student import Student
 
-#: How long a node may take to end after Ctrl-C, in CPU time and in time that it spends blocked, together.
+#: How long a node may take to end after Ctrl-C: CPU time and blocked time together.
 MAY_TAKE_S = 2.0
 
 
 def cut_short(student: Student, file_name: str, source: str, met: bool, when: str) -> Ending:
-    """The ending of a program that ended by itself, `when`; `met` is whether it had got so far as to be ready."""
+    """Return the ending of a program that ended by itself, `when`; `met` is whether it had become ready."""
     exit_ = student.poll() or student.kill()
     log = student.output().text
     why, line = of_exit(exit_, log, file_name, source)

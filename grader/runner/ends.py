@@ -1,4 +1,4 @@
-"""What the grader's side of a scripted scenario needs of a run, and the schedule of what is still to come."""
+"""What the grader's side of a scripted scenario needs from a run, and the schedule of what is still to do."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ class Ends:
     clocks: Clocks
 
     def at(self, moment: Moment) -> int:
-        """The simulated time of a moment; what happens before simulated time begins happens at its beginning (ns)."""
+        """Return the simulated time of a moment (ns); anything before simulated time begins counts as its beginning."""
         return max(START, self.clocks.simulated(moment.now, moment.stage))
 
 
 @dataclass
 class Schedule:
-    """What is to be done at which simulated time; at one moment in the order in which it was planned."""
+    """What to do at which simulated time; at the same moment, in the order in which it was planned."""
 
     _entries: list[tuple[int, int, Callable[[int], None]]] = field(default_factory=list)
     _numbers: count[int] = field(default_factory=count)
@@ -43,11 +43,11 @@ class Schedule:
         return self._entries[0][0] if self._entries else None
 
     def plan(self, at: int, act: Callable[[int], None]) -> None:
-        """Do this at that time; `act` gets the time."""
+        """Call `act` at that time; `act` gets the time."""
         heapq.heappush(self._entries, (at, next(self._numbers), act))
 
     def act(self, now: int) -> bool:
-        """Do what is due by `now` (ns). Whether there was anything."""
+        """Do what is due by `now` (ns). Return whether there was anything."""
         found = False
         while self._entries and self._entries[0][0] <= now:
             _, _, act = heapq.heappop(self._entries)
@@ -57,12 +57,12 @@ class Schedule:
 
 
 def nanoseconds(seconds: float) -> int:
-    """Seconds as nanoseconds."""
+    """Return seconds as nanoseconds."""
     return round(seconds * SECOND)
 
 
 def hub_qos(qos: Qos) -> HubQos:
-    """The same policies, as the hub has them."""
+    """Return the same policies in the hub's form."""
     return HubQos(
         depth=qos.depth,
         reliability=BEST_EFFORT if qos.reliability == "best_effort" else RELIABLE,

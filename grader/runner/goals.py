@@ -1,4 +1,4 @@
-"""Goals for the student's action server. What is recorded is the raw status and feedback, and every response."""
+"""Goals for the student's action server. Recorded are the raw status and feedback, and every response."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ CANCEL, STATUS = "action_msgs/srv/CancelGoal", "action_msgs/msg/GoalStatusArray"
 
 @dataclass
 class Sent:
-    """A goal that was sent, and the numbers of the requests about it."""
+    """A goal that was sent, and the numbers of the requests for it."""
 
     step: SendGoal
     number: int
@@ -39,7 +39,7 @@ class Sent:
 
 
 class ActionClient:
-    """The grader's end of one action of the student's."""
+    """The grader's end of one of the student's actions."""
 
     def __init__(self, ends: Ends, action: str, type_name: str) -> None:
         self._ends, self.action, self.type = ends, action, type_name
@@ -60,7 +60,7 @@ class ActionClient:
         self._goals.append(Sent(step, number, self._send.call(serialize_message(request))))
 
     def cancel(self, at: int, number: int) -> None:
-        """Ask to cancel goal `number`, or every goal for 0."""
+        """Request to cancel goal `number`, or every goal for 0."""
         request = CancelService.Request()
         request.goal_info.goal_id.uuid = list(number.to_bytes(16, "big"))
         made = self._cancel.call(serialize_message(request))
@@ -69,7 +69,7 @@ class ActionClient:
                 goal.cancels.append((at, made))
 
     def react(self, now: int) -> bool:
-        """Ask for the result of each goal that was accepted meanwhile. Whether there was any."""
+        """Request the result of each goal that has been accepted since. Return whether there was one."""
         asked = False
         for goal in self._goals:
             if goal.accepted is None and goal.request is not None and goal.request in self._send.answers:
@@ -82,10 +82,10 @@ class ActionClient:
                     asked = True
         return asked
 
-    # --- what came of them
+    # --- outcomes
 
     def goals(self) -> list[Goal]:
-        """Everything about each goal."""
+        """Return everything about each goal."""
         states, feedback = self._states(), self._feedbacks()
         return [self._goal(goal, states.get(goal.id, ()), feedback.get(goal.id, ())) for goal in self._goals]
 
@@ -151,7 +151,7 @@ class ActionClient:
 
 
 def state_name(number: int) -> str:
-    """The name of a state of action_msgs/msg/GoalStatus."""
+    """Return the name of a state of action_msgs/msg/GoalStatus."""
     return STATES[number] if 0 <= number < len(STATES) else "unknown"
 
 
@@ -179,10 +179,10 @@ class Goals:
             self._clients[self._actions[step.number]].cancel(step.at, step.number)
 
     def react(self, now: int) -> bool:
-        """Go on with each goal. Whether there was anything to do."""
+        """Continue with each goal. Return whether there was anything to do."""
         went_on = [client.react(now) for client in self._clients.values()]
         return any(went_on)
 
     def goals(self) -> tuple[Goal, ...]:
-        """Everything about each goal, in the order in which they were sent."""
+        """Return everything about each goal, in the order in which they were sent."""
         return tuple(sorted((one for c in self._clients.values() for one in c.goals()), key=lambda one: one.number))

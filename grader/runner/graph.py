@@ -1,4 +1,4 @@
-"""What of the ROS graph is the student's, as a recording has it."""
+"""The student's part of the ROS graph, as a recording has it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rmw_lockstep.hub import EndPoint as OnHub
 from rmw_lockstep.hub.graph import Graph
 from rmw_lockstep.hub.qos import INFINITE, KEEP_ALL
 
-#: Topics that every node has by itself.
+#: Topics that every node has.
 OWN_TO_ROS = ("/rosout", "/parameter_events")
 
 #: Services that every node of rclpy has by itself, under its own name.
@@ -40,12 +40,12 @@ def _nobody(process: int) -> bool:
 
 
 def nodes(graph: Graph, ours: Callable[[int], bool] = _nobody) -> tuple[str, ...]:
-    """Full names of the student's nodes, such as `/joint_velocity`, sorted; not those of processes that are `ours`."""
+    """Return the full names of the student's nodes, such as `/joint_velocity`, sorted; without processes in `ours`."""
     return tuple(node.full_name for node in graph.program_nodes() if not ours(node.id >> 32))
 
 
 def end_points(graph: Graph, ours: Callable[[int], bool] = _nobody) -> tuple[EndPoint, ...]:
-    """The student's end points, sorted; those that every node has are left out, those of an action are one."""
+    """Return the student's end points, sorted, without those that every node has; those of an action count as one."""
     found = [
         recorded
         for end_point in graph.program_end_points()
@@ -84,6 +84,6 @@ def _limit(nanoseconds: int) -> int | None:
 
 
 def deaf_to_the_clock(hub: Hub) -> list[str]:
-    """Nodes that do not take their time from /clock. A node of rclpy subscribes to it when `use_sim_time` is true."""
+    """Return the nodes that don't take their time from /clock. rclpy subscribes to it when `use_sim_time` is true."""
     listening = {one.node for one in hub.graph.of_program("/clock", SUBSCRIPTION)}
     return [node.full_name for node in hub.graph.program_nodes() if node.id not in listening]

@@ -1,4 +1,4 @@
-"""Asks a program to end, as Ctrl-C does, and sees how it takes it."""
+"""Asks a program to end, as Ctrl-C does, and sees how it ends."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _ALLOWANCE = Allowance("", "", MAY_TAKE_S, MAY_TAKE_S)
 
 
 def interrupted(hub: Hub, budget: Budget, student: Student, file_name: str, source: str) -> Ending:
-    """How the program ends. It has 2 s, in CPU time and blocked time together.
+    """Return how the program ends. It has 2 s, of CPU time and blocked time together.
 
-    Nobody can tell when the signal has reached the program. So from here on the computer's clock goes as fast as a real
-    one, and what waits for a time waits as long as it would in real life.
+    There is no way to know when the signal has reached the program. So from here on the computer's clock runs as fast
+    as a real one, and a program that waits for a time waits as long as it would in real life.
     """
     before = student.output().text.count(TRACEBACK)
     student.interrupt()

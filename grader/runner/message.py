@@ -1,4 +1,4 @@
-"""Between ROS messages and plain fields."""
+"""Converts between ROS messages and plain fields."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ _LIST = re.compile(r"sequence<(?P<sequence>[^,>]+)(, \d+)?>|(?P<array>.+)\[\d+\]
 
 
 def to_fields(message: Any) -> Fields:
-    """The fields of a ROS message as plain data."""
+    """Return the fields of a ROS message as plain data."""
     return {name: _plain(getattr(message, name)) for name in message.get_fields_and_field_types()}
 
 
 def to_message(type_name: str, fields: Fields) -> Any:
-    """A ROS message of that type with these fields; fields not given keep their defaults."""
+    """Return a ROS message of that type with these fields; fields not given keep their defaults."""
     return filled(message_class(type_name)(), fields)
 
 
 def filled(message: Any, fields: Fields) -> Any:
-    """The message itself, with these fields set."""
+    """Set these fields of the message, and return the message itself."""
     for name, value in fields.items():
         if isinstance(value, dict):
             filled(getattr(message, name), value)
@@ -55,5 +55,5 @@ def _plain(value: Any) -> Any:
     return value
 
 
-#: Most of what messages hold, and plain as it is.
+#: Most values in messages, which are plain data already.
 _PLAIN = (float, str, int, bool)

@@ -11,13 +11,13 @@ from rmw_lockstep.hub import SERVER, Hub, HubNode
 
 
 class Parameters:
-    """Calls made through a node of the hub's."""
+    """Calls made through one of the hub's nodes."""
 
     def __init__(self, hub: Hub, node: HubNode) -> None:
         self._hub, self._node = hub, node
 
     def call(self, service: str, type_name: str, request: bytes, until: int) -> bool:
-        """Call a service, and let time go on as far as `until` for the answer (ns). Whether one came."""
+        """Call a service, and let time pass up to `until` for the answer (ns). Return whether one arrived."""
         client = self._node.client(service, type_name)
         try:
             if client.call(request) is None:
@@ -34,7 +34,7 @@ class Parameters:
             client.close()
 
     def use_sim_time(self, until: int) -> bool:
-        """Tell every node that does not do so to take its time from /clock. Whether all do, then."""
+        """Make every node take its time from /clock that doesn't yet. Return whether all do then."""
         value = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=True)
         request = SetParameters.Request(parameters=[Parameter(name="use_sim_time", value=value)])
         for node in deaf_to_the_clock(self._hub):
@@ -43,7 +43,7 @@ class Parameters:
         return not deaf_to_the_clock(self._hub)
 
     def answers(self, node: str, until: int) -> bool:
-        """Whether a node answers a call; one without parameter services is believed to."""
+        """Return whether a node answers a call; one without parameter services is assumed to."""
         if not self._hub.graph.of_program(f"{node}/get_parameters", SERVER):
             return True
         request = serialize_message(GetParameters.Request(names=["use_sim_time"]))

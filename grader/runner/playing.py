@@ -1,4 +1,4 @@
-"""A world in a run: it hears the student's commands, and is stepped in simulated time."""
+"""A world in a run: it receives the student's commands, and is stepped in simulated time."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class RunningWorld:
         self._heard.append((number, heard))
 
     def _step(self, now: int) -> None:
-        """Hear what came since the last step, go on, and publish the state."""
+        """Handle what arrived since the last step, step the world, and publish its state."""
         heard, self._heard = in_canonical_order(self._heard), []
         for number, one in heard:
             topic, type_name = self._topics[number]

@@ -10,14 +10,14 @@ from grader.scenario.scenario import Message, Scenario
 from rmw_lockstep.hub import HubNode, Publisher, Qos
 from rmw_lockstep.hub.qos import TRANSIENT_LOCAL
 
-#: Compatible with whatever a student's subscription asks for.
+#: Compatible with whatever a student's subscription requests.
 OFFER = Qos(depth=1_000, durability=TRANSIENT_LOCAL)
 
 
 class ReferencePublishers:
-    """Publishes a scenario's messages, in order, when it is told to.
+    """Publishes a scenario's messages, in order, when asked to.
 
-    All publishers are there from the beginning, so that the student's node knows each of them before it speaks; one
+    All publishers exist from the beginning, so that the student's node knows each of them before it publishes; one
     that is replaced by another is removed when the other begins.
     """
 
@@ -31,7 +31,7 @@ class ReferencePublishers:
         self._serialized = {id(m): serialized(message_class(m.type), m.fields) for m in scenario.messages}
         self.sent: list[Sent] = []
         self.stages: list[int] = []
-        """The number of each message among all that the hub has published."""
+        """The number of each message among everything the hub has published."""
 
     def _add(self, message: Message) -> None:
         key = (message.topic, message.publisher)
@@ -42,16 +42,16 @@ class ReferencePublishers:
         self._speaking.setdefault(message.topic, message.publisher)
 
     def announce(self, topic: str, type_name: str) -> None:
-        """There is a publisher on this topic, also if the scenario has no message for it."""
+        """Create a publisher on this topic, even if the scenario has no message for it."""
         self._add(Message(0, topic, type_name, {}))
 
     def is_heard(self, message: Message) -> bool:
-        """Whether the student's program subscribes to the message's topic."""
+        """Return whether the student's program subscribes to the message's topic."""
         publisher = self._ready.get((message.topic, message.publisher))
         return publisher is not None and bool(publisher.matched)
 
     def publish(self, message: Message) -> int:
-        """Queue a message. Returns its number among all that the hub has published."""
+        """Queue a message. Return its number among everything the hub has published."""
         self._add(message)
         former = self._speaking[message.topic]
         if former != message.publisher:
@@ -65,7 +65,7 @@ class ReferencePublishers:
         return self.stages[-1]
 
     def leave(self, topic: str) -> None:
-        """The publisher on this topic is gone; the next message brings another one."""
+        """Remove the publisher on this topic; the next message creates another one."""
         for key in [key for key in self._ready if key[0] == topic]:
             self._ready.pop(key).close()
         self._speaking.pop(topic, None)

@@ -1,4 +1,4 @@
-"""Keeps what the student's program publishes, and makes the recording's messages of it when the run is over."""
+"""Keeps what the student's program publishes, and turns it into the recording's messages when the run is over."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ ACCEPT_ANY = Qos(depth=10_000, reliability=BEST_EFFORT)
 
 
 def recorded_topics(task: Task) -> tuple[tuple[str, str], ...]:
-    """Names and types of what the exercise's program publishes; a remapping or a namespace adds others."""
+    """Return names and types of what the exercise's program publishes; a remapping or a namespace adds others."""
     namespace, found = task.scenario.namespace.rstrip("/"), {}
 
     def full(name: str) -> str:
@@ -41,7 +41,7 @@ def recorded_topics(task: Task) -> tuple[tuple[str, str], ...]:
 
 @dataclass(frozen=True)
 class Listening:
-    """What one subscription of the grader's hears; `subscriber` is its name, for one of the scenario's own."""
+    """What one of the grader's subscriptions receives; `subscriber` is its name if it is one of the scenario's own."""
 
     topic: str
     type: str
@@ -58,9 +58,9 @@ class Recorder:
         earliest: int = 0,
         ours: Callable[[int], bool] = lambda process: False,
     ) -> None:
-        """`topics` are names and types. What comes before `earliest` (ns) is recorded as if it came then.
+        """`topics` are names and types. What arrives before `earliest` (ns) is recorded as if it had arrived then.
 
-        What comes from a process that is `ours` is not recorded.
+        What arrives from a process that is `ours` is not recorded.
         """
         self._node, self._earliest, self._ours = node, earliest, ours
         self._listening: list[Listening] = []
@@ -71,12 +71,12 @@ class Recorder:
             self._subscribe(Listening(name, type_name), ACCEPT_ANY)
 
     def join(self, name: str, topic: str, type_name: str, qos: Qos) -> None:
-        """A subscriber of the scenario's own is there from now on."""
+        """Add a subscriber of the scenario's own."""
         self.leave(name)
         self._own[name] = self._subscribe(Listening(topic, type_name, name), qos)
 
     def leave(self, name: str) -> None:
-        """It is gone."""
+        """Remove it."""
         if name in self._own:
             self._own.pop(name).close()
 
@@ -96,7 +96,7 @@ class Recorder:
 
     @contextlib.contextmanager
     def paused(self) -> Iterator[None]:
-        """Keep nothing meanwhile."""
+        """Record nothing inside the `with` block."""
         self._paused = True
         try:
             yield
@@ -104,13 +104,13 @@ class Recorder:
             self._paused = False
 
     def has_heard_since(self, stage: int) -> bool:
-        """Whether anything has come since number `stage` of what the hub has published."""
+        """Return whether anything has arrived since number `stage` of what the hub has published."""
         return any(heard.stage >= stage for _, heard in self._heard)
 
     def received(self, clocks: Clocks, stages: Sequence[int]) -> tuple[Received, ...]:
-        """What has come, in order. Raises `Stopped` for bytes that are no message.
+        """Return what has arrived, in order. Raises `Stopped` for bytes that are not a message.
 
-        `stages` has the number of each message sent, among all that the hub has published; see `Heard.stage`.
+        `stages` has the number of each message sent, among everything the hub has published; see `Heard.stage`.
         """
         found = []
         for number, heard in in_canonical_order(self._heard):
@@ -123,9 +123,9 @@ class Recorder:
 
 
 def in_canonical_order(heard: Sequence[tuple[int, Heard]]) -> list[tuple[int, Heard]]:
-    """Messages by their moment; at one moment by topic and node, and within these as they were sent.
+    """Sort messages by their moment; at the same moment by topic and node, and within these as they were sent.
 
-    What several threads publish on one topic at one moment has no order, so it is put in the order of its bytes.
+    What several threads publish on one topic at the same moment has no order, so it is sorted by its bytes.
     """
     threads: dict[tuple[int, str], set[tuple[int, int]]] = {}
     for number, one in heard:

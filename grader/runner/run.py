@@ -1,7 +1,7 @@
 """Runs one student's program through one scenario, over the grader's own middleware.
 
-The hub says what time it is, hands the program each message, and knows when the program has nothing left to do. So what
-is recorded depends on the program alone.
+The hub sets the time, hands the program each message, and knows when the program has nothing left to do. So the
+recording depends on the program alone.
 """
 
 from __future__ import annotations
@@ -36,10 +36,10 @@ from grader.runner.violations import story_of
 from grader.scenario.scenario import SECOND, START, Content, Message
 from rmw_lockstep.hub import Hub, Limits, Violation
 
-#: How far simulated time goes on after the last message, for what a node does by timer (ns).
+#: How long simulated time continues after the last message, for what a node does by timer (ns).
 AFTERWARDS = SECOND // 2
 
-#: A program that waits for less long is taken to be about to go on (ns of the computer's time).
+#: A program that waits for less than this is considered about to go on (ns of the computer's time).
 SOON = 3 * SECOND
 
 ENDLESS = "Your node used {0:g} s of computing time on one message without an end. Is there an endless loop?"
@@ -60,17 +60,17 @@ def run(
     programs: Mapping[str, Start] | None = None,
     companions: Sequence[Start] = (),
 ) -> Recording:
-    """Start the student's program and run it through the scenario; every fault of the student's is in the recording.
+    """Start the student's program and run it through the scenario; every fault of the program is in the recording.
 
-    `start` gets the socket of the hub, which each of the program's processes has to be connected to before it does
-    anything of the student's. A submission of several programs has `programs` in its place, by their files;
-    `companions` are the author's own.
+    `start` gets the socket of the hub, to which each of the program's processes has to connect before it runs any of
+    the student's code. A submission of several programs has `programs` instead, by their files; `companions` are the
+    author's own.
 
-    Raises `ExerciseError` where the author has something to fix; anything else raised is a fault of the machine's or
-    of ours.
+    Raises `ExerciseError` if the author has something to fix; any other exception is a fault of the machine or of
+    ours.
     """
     began = time.monotonic()
-    # The path of a socket has to be short, so the folder is not one of the caller's.
+    # The path of a socket has to be short, so the caller's folder is not used.
     folder = Path(tempfile.mkdtemp(prefix="spinbook-hub-"))
     try:
         with Hub(folder, limits) as hub:
@@ -123,20 +123,20 @@ class Run:
         return {link.pid for link in self._hub.links}.union(self._student.pids())
 
     def _is_ours(self, process: int) -> bool:
-        """Whether a process is one of the author's companions."""
+        """Return whether a process is one of the author's companions."""
         return self._team is not None and self._team.is_companions(process)
 
     def _remember_end_points(self) -> None:
-        """What a program had before it crashed; not what was left when it had taken most of it down itself."""
+        """Keep what a program had before it crashed, not what was left when it had taken most of it down itself."""
         found = end_points(self._hub.graph, self._is_ours)
         if len(found) >= len(self._end_points):
             self._end_points = found
 
     def run(self, began: float) -> Recording:
-        """The whole run, from the first sign of the program to its end."""
+        """Do the whole run, from the first sign of the program to its end."""
         ending = self._ending()
         self._end_points = self._end_points or end_points(self._hub.graph, self._is_ours)
-        self._student.kill()  # before the last look at what has come: it may never stop publishing
+        self._student.kill()  # before the last look at what has arrived: it may never stop publishing
         ending, received = self._take_everything(ending)
         return Recording(
             scenario=self._task.scenario.name,
@@ -189,19 +189,19 @@ class Run:
             return cut_short(self._student, *program, self._is_up, self._when() if self._is_up else "before the start")
 
     def _when(self) -> str:
-        """The present moment, in words."""
+        """Return the current moment, in words."""
         if self._script is None or not self._is_up:
             return f"at message {len(self._publishers.sent)}"
         return f"{(self._clocks.at - START) / SECOND:.2f} s after the start"
 
     def _see_that_it_was_the_program(self) -> None:
-        """Raise what says otherwise."""
+        """Raise if the machine ended the program."""
         exit_ = self._student.poll()
         if exit_ and exit_.limit == "wall":
             self._budget.check_the_host()
 
     def _take_everything(self, ending: Ending) -> tuple[Ending, tuple[Received, ...]]:
-        """Everything that the program published before its end. That may be too much, after all."""
+        """Return everything that the program published before its end, which may be too much after all."""
         try:
             self._hub.drain()
         except Violation as violation:
@@ -242,11 +242,11 @@ class Run:
 
     def _publish(self, message: Message) -> None:
         if not self._publishers.is_heard(message):
-            self._hub.wait_until_idle()  # whether anybody hears it is known only then
+            self._hub.wait_until_idle()  # only then is it known whether the program subscribes
         self._clocks.set(message.at, self._hub.now, self._publishers.publish(message), message=True)
 
     def _carry_out(self, script: Script) -> None:
-        """Let time go on to the end, at the scenario's rate, and do each thing at its time."""
+        """Let time pass to the end, at the scenario's rate, and do each thing at its time."""
         scenario, began = self._task.scenario, time.monotonic()
         content = deque(one for one in scenario.content if one.at >= START)
         end = (
@@ -273,7 +273,7 @@ class Run:
             self._see_that_it_still_answers()
 
     def _all_end_points(self) -> tuple[EndPoint, ...]:
-        """Those that there are, and of several programs also those of one that was killed."""
+        """Return the current end points; with several programs, also those of one that was killed."""
         found = end_points(self._hub.graph, self._is_ours)
         if not self._team:
             return found
@@ -288,18 +288,18 @@ class Run:
             script.do(one)
 
     def _settle(self, script: Script) -> None:
-        """Until the program has nothing left to do, and nothing of ours follows from what it did."""
+        """Wait until the program has nothing left to do, and nothing of ours follows from what it did."""
         self._hub.wait_until_idle()
         while script.act(self._clocks.at):
             self._hub.wait_until_idle()
 
     def _allowance(self, at: int) -> Allowance:
-        """What the program may take until simulated time `at`: it may compute as long as time goes by meanwhile."""
+        """Return what the program may take until simulated time `at`: it may compute for as long as time passes."""
         passes = (self._clocks.computer(at) - self._hub.now) / SECOND
         return STEP if passes < 1.0 else replace(STEP, cpu_s=STEP.cpu_s + passes)
 
     def _go_to(self, at: int) -> None:
-        """Let both clocks go on to the simulated time `at`; what was due before happens before."""
+        """Advance both clocks to the simulated time `at`; what was due before that happens first."""
         self._hub.advance(self._clocks.computer(at))
         if at > self._clocks.at:
             self._set_clock(at)
@@ -317,11 +317,11 @@ class Run:
         if wakes is not None and wakes - hub.now <= SOON:
             return
         self._ask(until=hub.now)
-        self._asks_in_vain = True  # an executor that waits in a way of its own, such as rclpy's EventsExecutor
+        self._asks_in_vain = True  # an executor with its own way of waiting, such as rclpy's EventsExecutor
 
     def _see_that_it_still_answers(self) -> None:
         """Raise `Stopped` when the program has answered no message at the end, does not wait in ROS 2, and answers no
-        call in the next seconds either: such as one that is busy with looking at the clock."""
+        call in the next seconds either: for example because it keeps reading the clock."""
         heard = [
             stage for stage, sent in zip(self._publishers.stages, self._publishers.sent, strict=True) if sent.heard
         ]
@@ -340,5 +340,5 @@ class Run:
 
 
 def _first(ending: Ending, other: Ending) -> Ending:
-    """What came first counts, and what completed has come to its end only with the other."""
+    """Return the first of both endings; a completed run ends with the `other`."""
     return other if ending.outcome == "completed" else ending

@@ -1,4 +1,4 @@
-"""Carries out what a scenario says besides messages: the grader's side of services, actions, parameters and worlds."""
+"""Does what a scenario says besides messages: the grader's side of services, actions, parameters and worlds."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ Peer = ServiceServer | ScriptedActionServer
 
 
 class Script:
-    """The grader's side of one scenario; `publish` publishes a message of a world's."""
+    """The grader's side of one scenario; `publish` publishes a world's message."""
 
     def __init__(
         self,
@@ -89,7 +89,7 @@ class Script:
 
     @property
     def due(self) -> int | None:
-        """When something is to be done next that no step says (ns of simulated time)."""
+        """When the next thing is to be done that is not a step (ns of simulated time)."""
         return self._schedule.due
 
     def do(self, step: Step) -> None:
@@ -118,7 +118,7 @@ class Script:
         self._recorder.leave(name)
 
     def act(self, now: int) -> bool:
-        """Do what is due, and what follows from what the program did. Whether there was anything."""
+        """Do what is due, and what follows from what the program did. Return whether there was anything."""
         try:
             took = [peer.react(now) for peer in self._servers.values()]
             return any([*took, self._goals.react(now), self._schedule.act(now)])
@@ -128,26 +128,26 @@ class Script:
             fix = "Fix it; it runs inside the grader."
             raise ExerciseError(self._task.exercise.scenarios_file, found, fix, scenario.line or None) from None
 
-    # --- what came of it
+    # --- outcomes
 
     def calls(self) -> tuple[Call, ...]:
-        """All calls, by whoever made them, in the order in which they were made."""
+        """Return all calls, by any caller, in the order in which they were made."""
         found = [*self._calls.calls(), *unserved(self._ends, self._task.exercise)]
         for peer in self._servers.values():
             found += peer.calls() if isinstance(peer, ServiceServer) else ()
         return tuple(sorted(found, key=lambda call: call.at))
 
     def goals(self) -> tuple[Goal, ...]:
-        """All goals, by whoever sent them."""
+        """Return all goals, by any sender, in the order in which they were sent."""
         found = list(self._goals.goals())
         for peer in self._servers.values():
             found += peer.goals() if isinstance(peer, ScriptedActionServer) else ()
         return tuple(found)
 
     def changes(self) -> tuple[ParameterChange, ...]:
-        """Parameters that were set."""
+        """Return the parameters that were set."""
         return self._calls.changes()
 
     def readings(self) -> tuple[ParameterReading, ...]:
-        """Parameters that were asked for."""
+        """Return the parameters that were read."""
         return self._calls.readings()

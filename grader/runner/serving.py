@@ -18,12 +18,12 @@ from rmw_lockstep.hub import Asked, Server
 
 
 class AuthorFault(Exception):
-    """Raised when the author's code, which runs inside the grader, breaks; the text names it."""
+    """Raised when the author's code, which runs inside the grader, fails; the text names it."""
 
 
 @dataclass
 class Exchange:
-    """A request that came, and the answer as soon as there is one."""
+    """A request that arrived, and the answer as soon as there is one."""
 
     asked: Asked
     at: int
@@ -44,18 +44,18 @@ class ServiceServer:
         self._exchanges: list[Exchange] = []
 
     def open(self) -> None:
-        """It is there from now on."""
+        """Start the server."""
         if self._server is None:
             self._server = self._ends.node.server(self.name, self._declared.type)
 
     def close(self) -> None:
-        """It is gone, and with it every answer that it still owed."""
+        """Stop the server, and drop every answer that it had not sent yet."""
         if self._server is not None:
             self._server.close()
             self._server = None
 
     def react(self, now: int) -> bool:
-        """Take the requests that came, and plan the answers. Whether there was any."""
+        """Take the requests that arrived, and plan the answers. Return whether there were any."""
         asked = self._server.asked if self._server else []
         requests, asked[:] = tuple(asked), []
         for one in requests:
@@ -101,7 +101,7 @@ class ServiceServer:
         return reply
 
     def calls(self) -> tuple[Call, ...]:
-        """Every request that came, and what was answered."""
+        """Return every request that arrived, and its answer."""
         return tuple(
             Call(
                 one.at, self.name, self._declared.type, one.request, "node", one.answered, one.response, one.asked.node
@@ -111,7 +111,7 @@ class ServiceServer:
 
 
 def unserved(ends: Ends, exercise: Exercise) -> tuple[Call, ...]:
-    """Requests of the student's for which there was no server, of the services that the exercise declares."""
+    """Return the student's requests for which there was no server, of the services that the exercise declares."""
     types = {one.name: one.type for one in exercise.clients}
     found = [asked for asked in ends.hub.unserved if types.get(asked.client.name) == asked.client.type]
     return tuple(

@@ -1,4 +1,4 @@
-"""Waits until a program is there: it has made its nodes and begins to spin them."""
+"""Waits until a program is ready: it has created its nodes and begins to spin them."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from grader.scenario.scenario import SECOND
 from rmw_lockstep.hub import Hub
 
 #: Importing large libraries takes CPU time; nothing that a node needs takes this much. A student with an endless loop
-#: waits so long for the check to say so.
+#: waits this long for the check to say so.
 START_CPU_S = 6.0
 
 #: How long a program may sleep before it makes a node, or spins it, by the computer's clock (ns).
 LONGEST = 10 * SECOND
 
-#: How long the subscriptions of a node that spins are waited for (ns).
+#: How long to wait for the subscriptions of a node that spins (ns).
 LONGEST_FOR_SUBSCRIPTIONS = 3 * SECOND // 2
 
 NO_NODE_BUSY = f"Your program computed for {START_CPU_S:g} s and created no node. Is there an endless loop before it?"
@@ -33,10 +33,10 @@ START = Allowance(NO_NODE_BUSY, NO_NODE_BLOCKED, START_CPU_S, BLOCKED_S)
 
 
 def wait_until_up(hub: Hub, connected: Callable[[], bool], has_nodes: Callable[[], bool]) -> None:
-    """Let the computer's time go on until the program has a node that is ready.
+    """Let the computer's time pass until the program has a node that is ready.
 
-    A node is ready when it has its subscriptions (`connected`), or spins and has had time to make them. `has_nodes` is
-    whether the program has made any.
+    A node is ready when it has its subscriptions (`connected`), or spins and has had time to create them. `has_nodes`
+    returns whether the program has created any.
 
     Raises:
         Stopped: when there will be no node.

@@ -1,4 +1,4 @@
-"""What a program's last words say, for the student who wrote it."""
+"""What the end of a program's output says, for the student who wrote it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LIMITS = {
 }
 
 
-#: What ROS 2's C code says before it aborts a program that gave it an object of another class (rosidl_generator_py).
+#: What ROS 2's C code prints before it aborts a program that gave it an object of another class (rosidl_generator_py).
 OTHER_CLASS = re.compile(r'__convert_from_py: Assertion .strncmp\("(?:\w+\.)+(?P<expected>\w+)"')
 
 _RESULT = "An action's execute callback has to return a Result, such as `return Fibonacci.Result()`."
@@ -28,7 +28,7 @@ _RESULT = "An action's execute callback has to return a Result, such as `return 
 @dataclass(frozen=True)
 class LastWords:
     """The error that ended a program: its last line, such as `ZeroDivisionError: float division by zero`, and the line
-    of the student's file it came from, where there is one."""
+    of the student's file that raised it, if there is one."""
 
     error: str
     line: int | None
@@ -36,7 +36,7 @@ class LastWords:
 
 
 def last_words(log: str, file_name: str, source: str = "") -> LastWords | None:
-    """The last error in `log`, or None when it tells of none."""
+    """Return the last error in `log`, or None if there is none."""
     start = log.rfind(TRACEBACK)
     if start < 0:
         start = log.rfind('  File "')
@@ -55,10 +55,10 @@ def last_words(log: str, file_name: str, source: str = "") -> LastWords | None:
 
 
 def is_rclpys_own(log: str, file_name: str, source: str) -> bool:
-    """Whether the last error in `log` is a race in rclpy, and so no fault of a program that did all it could.
+    """Return whether the last error in `log` is a race in rclpy, and so not the fault of a correct program.
 
-    On Ctrl-C a thread of rclpy shuts ROS 2 down. Where it does so between the `ok()` and the `shutdown()` of a program
-    that asks first, as `rclpy.try_shutdown()` does, the program's call fails (rclpy 7.1, `Context.try_shutdown`).
+    On Ctrl-C a thread of rclpy shuts ROS 2 down. If it does so between the `ok()` and the `shutdown()` of a program
+    that checks first, as `rclpy.try_shutdown()` does, the program's call fails (rclpy 7.1, `Context.try_shutdown`).
     """
     words = last_words(log, file_name, source)
     if words is None or "rcl_shutdown already called" not in words.error:
@@ -70,7 +70,7 @@ def is_rclpys_own(log: str, file_name: str, source: str) -> bool:
 
 
 def _advice(error: str, block: str) -> str:
-    """What to do about an error that rclpy raises far from the student's line which caused it (rclpy 7.1)."""
+    """Return advice about an error that rclpy raises far from the student's line which caused it (rclpy 7.1)."""
     if error.startswith("TypeError") and ", in send_response" in block:
         return ". A service's callback has to return the response: end each way through it with `return response`."
     if ", in _execute_goal" in block or ", in _send_result_response" in block:
@@ -86,7 +86,7 @@ def _of_signal(signal: int, log: str) -> str:
 
 
 def of_exit(exit_: Exit, log: str, file_name: str, source: str) -> tuple[str, int | None]:
-    """Why a program ended, as a clause that follows "Your program ended: ", and the line to blame."""
+    """Return why a program ended, as a clause that follows "Your program ended: ", and the line to blame."""
     if exit_.limit:
         return f"{LIMITS.get(exit_.limit, exit_.limit)}.", None
     words = last_words(log, file_name, source)

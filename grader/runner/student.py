@@ -1,4 +1,4 @@
-"""What a runner needs to know about a running student's program, however it is kept."""
+"""What a runner needs to know about a student's running program, whatever starts it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Exit(Protocol):
 
 
 class Output(Protocol):
-    """What a program wrote, up to a cap; `dropped` is how many bytes lie beyond it."""
+    """What a program printed, up to a cap; `dropped` is the number of bytes beyond it."""
 
     @property
     def text(self) -> str: ...
@@ -27,7 +27,7 @@ class Output(Protocol):
 
 
 class Student(Protocol):
-    """A student's program, running."""
+    """A student's running program."""
 
     @property
     def pid(self) -> int: ...

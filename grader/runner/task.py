@@ -12,8 +12,8 @@ from grader.scenario.scenario import Scenario
 class Task:
     """One program, to be run through one scenario.
 
-    `file_name` and `source` are the student's, to name lines in messages. `pace` is 1.0 for the pace of real time, and
-    None for as fast as possible. `domain` is the ROS domain, for Fast DDS only.
+    `file_name` and `source` are the student's, to name lines in messages. `pace` is 1.0 for real time, and None for as
+    fast as possible. `domain` is the ROS domain, for Fast DDS only.
     """
 
     exercise: Exercise

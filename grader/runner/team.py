@@ -1,4 +1,4 @@
-"""Several programs in one run: those of a submission, and the author's own next to them."""
+"""Several programs in one run: those of a submission, and the author's own companions."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from grader.runner.student import Exit, Output, Student
 from grader.scenario.scenario import Scenario
 from rmw_lockstep.hub import Hub
 
-#: Starts a program, which is to connect to the hub at this socket.
+#: Starts a program, which has to connect to the hub at this socket.
 Start = Callable[[Path], Student]
 
 
 @dataclass(frozen=True)
 class Together:
-    """What several programs printed, one after another."""
+    """The outputs of several programs, one after another."""
 
     text: str
     dropped: int
@@ -28,9 +28,9 @@ class Team:
 
     def __init__(self, hub: Hub, folder: Path, scenario: Scenario, programs: Mapping[str, Start],
                  companions: Sequence[Start]) -> None:  # fmt: skip
-        """Start the companions, and those programs that are there from the beginning."""
+        """Start the companions, and those programs that run from the beginning."""
         self._hub, self._programs = hub, programs
-        # The first one comes in by the hub's own door.
+        # The first one connects through the hub's own door.
         self._paths = {name: _door(hub, folder, number) for number, name in enumerate(programs)}
         self._doors = {name: number for number, name in enumerate(programs)}
         self._running: dict[str, Student] = {}
@@ -55,7 +55,7 @@ class Team:
             self._see()
 
     def stop(self, name: str, now: int) -> None:
-        """Kill a program of the submission, at the simulated time `now`, and see that the hub knows."""
+        """Kill a program of the submission, at the simulated time `now`, and wait until the hub has noticed."""
         student = self._running.pop(name, None)
         if student is None:
             return
@@ -67,11 +67,11 @@ class Team:
             self._hub.pause()
 
     def _see(self) -> None:
-        """The hub waits for each of them."""
+        """Make the hub wait for each of them."""
         self._hub.mains = {one.pid for one in (*self._running.values(), *self._companions)}
 
     def is_companions(self, process: int) -> bool:
-        """Whether a process, by its number on the hub, is the author's own."""
+        """Return whether a process, by its number on the hub, is one of the author's own."""
         first = len(self._programs)
         return any(link.number == process and link.door >= first for link in self._hub.links)
 
@@ -79,20 +79,20 @@ class Team:
 
     @property
     def pid(self) -> int:
-        """The first one's number, or 0 when none runs."""
+        """The first program's process id, or 0 if none runs."""
         return next((one.pid for one in self._running.values()), 0)
 
     def pids(self) -> Collection[int]:
-        """The numbers of all processes of the student's."""
+        """Return the ids of all the student's processes."""
         return [pid for one in self._running.values() for pid in one.pids()]
 
     def output(self) -> Output:
-        """What all printed."""
+        """Return what all programs printed."""
         outputs = [one.output() for one in (*self._stopped, *self._running.values())]
         return Together("".join(one.text for one in outputs), sum(one.dropped for one in outputs))
 
     def poll(self) -> Exit | None:
-        """How a program of the student's ended by itself; once they were asked to end, how the last one did."""
+        """Return how a student's program ended by itself; once they were asked to end, how the last one did."""
         found: Exit | None = None
         for name, student in self._running.items():
             exit_ = student.poll()
@@ -103,26 +103,26 @@ class Team:
         return found
 
     def wait(self, timeout_s: float) -> Exit | None:
-        """Wait for the end of the first one."""
+        """Wait for the end of the first program."""
         first = next(iter(self._running.values()), None)
         return first.wait(timeout_s) if first else None
 
     def interrupt(self) -> None:
-        """Ask all to end."""
+        """Ask all programs to end."""
         self._interrupted = True
         for one in self._running.values():
             one.interrupt()
 
     def cpu_seconds(self) -> float:
-        """What all of the student's have used."""
+        """Return the CPU seconds used by all the student's programs."""
         return sum(one.cpu_seconds() for one in (*self._stopped, *self._running.values()))
 
     def at_limit(self) -> bool:
-        """Whether one is being ended for a limit."""
+        """Return whether one of them is being ended because of a limit."""
         return any(one.at_limit() for one in self._running.values())
 
     def kill(self) -> Exit:
-        """Kill all; the exit of the one that had ended by itself, or of the first."""
+        """Kill all; return the exit of the program that had ended by itself, or of the first."""
         exits = {name: one.kill() for name, one in self._running.items()}
         for one in self._companions:
             one.kill()

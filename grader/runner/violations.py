@@ -1,4 +1,4 @@
-"""What a student is told when the hub does not go on with a program."""
+"""What a student reads when the hub stops a program."""
 
 from __future__ import annotations
 
@@ -19,6 +19,6 @@ _STORIES = {
 
 
 def story_of(violation: Violation) -> str:
-    """One sentence for the student."""
+    """Return one sentence for the student."""
     story = _STORIES[violation.reason]
     return story.format(found=violation.found, limit=violation.limit, text=violation.text)

@@ -1,7 +1,7 @@
-"""Makes a student's namespaces with bubblewrap, which is told to hold them open until the student has been put in.
+"""Makes a student's namespaces with bubblewrap, which holds them open until the student's process has entered them.
 
-The program that bubblewrap itself runs is `cat`: it answers when all is mounted, and ends (and all with it) when this
-end of its pipe is closed, however that comes about.
+The program that bubblewrap itself runs is `cat`: it answers when everything is mounted, and ends (and everything with
+it) when this end of its pipe is closed, for whatever reason.
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ _HOLDER_BYTES = 64 * 1024 * 1024
 
 
 def find() -> str | None:
-    """The path of bubblewrap, if it is installed."""
+    """Return the path of bubblewrap, if it is installed."""
     return shutil.which("bwrap")
 
 
 def build(plan: Sequence[Mount], user_namespace: int, *, network: bool) -> Namespaces:
-    """Makes the namespaces and their root, and moves this process into them (all but the pid namespace's children).
+    """Make the namespaces and their root, and move this process into them (except the pid namespace's children).
 
-    With `network` the network stays the one that this process is in; otherwise there is none, not even loopback.
+    With `network` the process keeps its current network; otherwise there is none, not even loopback.
 
     Raises:
-        OSError: if bubblewrap could not be run or ended early; the text has what it said.
+        OSError: if bubblewrap could not be run or ended early; the text has its output.
     """
     program = find()
     if program is None:
         raise OSError("bubblewrap (bwrap) is not installed")
     texts = {step.path: _memory_file(step.content.encode()) for step in plan if step.action == "text"}
     filters = [_memory_file(seccomp.program(network=network))] if seccomp.supported() else []
-    # Not on the command line, which the student can read and which would tell it what is hidden from it.
+    # Not on the command line, which the student can read and which would show what is hidden.
     arguments = _memory_file(b"".join(os.fsencode(option) + b"\0" for option in _options(plan, texts)))
     information, information_end = os.pipe()
     process = subprocess.Popen(
@@ -100,14 +100,14 @@ def _options(plan: Sequence[Mount], texts: dict[str, int]) -> Iterator[str]:
 
 
 def _starve(holder: int) -> None:
-    """Leaves a process nothing to use: without root it belongs to the student's user, who might take it over."""
+    """Leave a process nothing to use: without root it belongs to the student's user, who might take it over."""
     for which in (resource.RLIMIT_NPROC, resource.RLIMIT_FSIZE, resource.RLIMIT_NOFILE):
         resource.prlimit(holder, which, (0, 0))
     resource.prlimit(holder, resource.RLIMIT_AS, (_HOLDER_BYTES, _HOLDER_BYTES))
 
 
 def _join(init: int, user_namespace: int) -> None:
-    """Moves this process into the namespaces of bubblewrap's first process."""
+    """Move this process into the namespaces of bubblewrap's first process."""
     opened = {name: os.open(f"/proc/{init}/ns/{name}", os.O_RDONLY) for name in ("ipc", "uts", "pid", "mnt")}
     syscalls.setns(user_namespace, syscalls.CLONE_NEWUSER)
     for namespace in opened.values():
@@ -117,7 +117,7 @@ def _join(init: int, user_namespace: int) -> None:
 
 
 def _memory_file(content: bytes) -> int:
-    """The descriptor of a file without a name, ready to be read from its beginning."""
+    """Return the descriptor of a file without a name, ready to be read from its beginning."""
     number = os.memfd_create("sandbox")
     os.write(number, content)
     os.lseek(number, 0, os.SEEK_SET)

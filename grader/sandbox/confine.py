@@ -1,4 +1,4 @@
-"""The last steps of a student's process before it runs the student's code: it gives up all that it does not need."""
+"""The last steps of a student's process before it runs the student's code: it gives up everything it does not need."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ _DESCRIPTORS = 1024
 
 @dataclass(frozen=True)
 class Start:
-    """What a runner asks for.
+    """What a runner requests.
 
     Attributes:
         program: what to run.
         isolation: how far to confine it.
-        limits: what it may use.
+        limits: the resources it may use.
         core: the CPU to stay on; None for any.
         plan: the steps that build its root, at the levels that have one.
     """
@@ -42,17 +42,17 @@ def confine(
     *,
     keep_open: int,
 ) -> None:
-    """Confines the calling process for good.
+    """Confine the calling process for good.
 
     Args:
-        start: what is started, how far it is confined, and what it may use.
+        start: the program, how far to confine it, and the resources it may use.
         place: its folders.
         processes_beside: see `limits.apply`.
         output: becomes its standard output and error; every other descriptor but `keep_open` is closed.
         keep_open: a descriptor that the caller still needs.
 
     Raises:
-        OSError: if the kernel refuses one of the steps; nothing of the student's may run then.
+        OSError: if the kernel refuses one of the steps; none of the student's code may run then.
     """
     os.setsid()
     _take_output(output, keep_open)
@@ -91,7 +91,7 @@ def _take_output(output: int, keep_open: int) -> None:
 
 
 def _reset_signals() -> None:
-    """As in a Python that has just been started from a shell."""
+    """Reset the signals to what a Python has that has just been started from a shell."""
     for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGCHLD, signal.SIGQUIT):
         signal.signal(number, signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -18,12 +18,12 @@ from interface_compiler import activation
 HOME = "/home/student"
 USER_ID = 1000
 
-# Users whom systemd reserves for services without a user of their own; nobody's files belong to them.
+# Users that systemd reserves for services without a user of their own; no files belong to them.
 _FIRST, _COUNT = 61184, 4336
 
 
 def dedicated_user() -> int:
-    """A user number for a student whom root starts, different from one supervisor process to the next."""
+    """Return a user number for a student whom root starts; it differs from one supervisor process to the next."""
     return _FIRST + os.getpid() % _COUNT
 
 
@@ -45,7 +45,7 @@ class Mount:
     """One step of building the root.
 
     - folder: an empty folder
-    - scratch: a tmpfs of `size` bytes that anybody may write to
+    - scratch: a tmpfs of `size` bytes that every user may write to
     - bind: the file or folder at `path` outside, or at `content` if that is given, read-only
     - mask: the file or folder at `path`, which a bind has shown, becomes empty
     - device: the device at `path` outside
@@ -63,12 +63,12 @@ class Mount:
 
 @lru_cache(maxsize=8)
 def mounts(readonly: tuple[Path, ...], hidden: tuple[Path, ...], scratch_bytes: int) -> tuple[Mount, ...]:
-    """The steps that build a root, in order.
+    """Return the steps that build a root, in order.
 
     Args:
-        readonly: what is shown beside Python and ROS 2.
-        hidden: what is not, although it lies in something that is.
-        scratch_bytes: the size of each of the places to write to.
+        readonly: what is shown besides Python and ROS 2.
+        hidden: what is not shown, although it is inside something that is.
+        scratch_bytes: the size of each writable place.
     """
     shown = list(_without_nested([*interpreter(), *readonly]))
     plan = _MountPlan()
@@ -95,7 +95,7 @@ def mounts(readonly: tuple[Path, ...], hidden: tuple[Path, ...], scratch_bytes: 
     for mask in masks:
         plan.add("mask", str(mask))
     for path in readonly:
-        if _is_inside(path, masks):  # asked for by name, in a folder that is hidden otherwise
+        if _is_inside(path, masks):  # requested by name, in a folder that is otherwise hidden
             plan.add("bind", str(path))
     for mask in masks:
         if mask.is_dir():
@@ -105,7 +105,7 @@ def mounts(readonly: tuple[Path, ...], hidden: tuple[Path, ...], scratch_bytes: 
 
 
 def with_hub(plan: tuple[Mount, ...], hub: Path) -> tuple[Mount, ...]:
-    """The steps that also show the hub's socket: always in the same place, wherever it is outside."""
+    """Return the steps that also show the hub's socket: always in the same place, wherever it is outside."""
     made = {"/", *(step.path for step in plan)}
     folders = (Mount("folder", str(folder)) for folder in reversed(Path(HUB).parents) if str(folder) not in made)
     *others, seal = plan
@@ -113,7 +113,7 @@ def with_hub(plan: tuple[Mount, ...], hub: Path) -> tuple[Mount, ...]:
 
 
 class _MountPlan:
-    """Collects steps, each after those that make the folders which it lies in."""
+    """Collects steps, each after those that make its parent folders."""
 
     def __init__(self) -> None:
         self.steps: list[Mount] = []
@@ -134,7 +134,7 @@ class _MountPlan:
 
 
 def environment(program: Program, place: Paths) -> dict[str, str]:
-    """The whole environment of a program: what Python and ROS 2 need, its private folders, and what it was given."""
+    """Return a program's whole environment: what Python and ROS 2 need, its private folders, and what it was given."""
     needed = {name: os.environ[name] for name in (*RUNTIME_VARIABLES, "LD_PRELOAD") if name in os.environ}
     hub = {"RMW_LOCKSTEP_SOCKET": place.hub} if place.hub else {}
     return {
@@ -151,7 +151,7 @@ def environment(program: Program, place: Paths) -> dict[str, str]:
     }
 
 
-# What Python and ROS 2 themselves need of the environment. Nothing else of it reaches a sandbox.
+# What Python and ROS 2 themselves need from the environment. Nothing else from it reaches a sandbox.
 RUNTIME_VARIABLES = (
     "PATH",
     "LANG",
@@ -172,7 +172,7 @@ RUNTIME_VARIABLES = (
 
 
 def ros_prefixes() -> tuple[Path, ...]:
-    """Where a ROS 2 that was sourced is installed (/opt/ros/…): none when it came from PyPI into this environment.
+    """Return where a sourced ROS 2 is installed (/opt/ros/…): nothing if ROS 2 came from PyPI into this environment.
 
     An instructor's own workspace, sourced on top of it, is not part of it.
     """
@@ -182,7 +182,7 @@ def ros_prefixes() -> tuple[Path, ...]:
 
 @cache
 def system() -> tuple[Path, ...]:
-    """The system's libraries and programs, and its symlinks such as /lib -> usr/lib."""
+    """Return the system's libraries and programs, and its symlinks such as /lib -> usr/lib."""
     top = [Path("/", name) for name in ("bin", "sbin", "lib", "lib32", "lib64", "libx32")]
     user = [Path(folder, name) for folder in ("/usr", "/usr/local") for name in _PARTS]
     etc = [Path("/etc", name) for name in _ETC]
@@ -191,7 +191,7 @@ def system() -> tuple[Path, ...]:
 
 @cache
 def interpreter() -> tuple[Path, ...]:
-    """The folders of this Python, of the one its environment was made from, of ROS 2, and of a course's interfaces."""
+    """Return the folders of this Python, of its environment's base Python, of ROS 2, and of a course's interfaces."""
     prefixes: dict[Path, None] = {}
     for prefix in (sys.prefix, sys.exec_prefix, sys.base_prefix, sys.base_exec_prefix):
         prefixes[Path(prefix)] = None
@@ -203,13 +203,13 @@ def interpreter() -> tuple[Path, ...]:
 
 
 def own_packages() -> tuple[Path, ...]:
-    """This package and Spinbook's others: installed, they lie among the libraries that a sandbox shows."""
+    """Return this package and Spinbook's others: if installed, they are among the libraries that a sandbox shows."""
     grader = Path(__file__).resolve().parents[1]
     return (grader, *(grader.with_name(name) for name in ("spinbook", "rmw_lockstep")))
 
 
 def _masks(hidden: Iterable[Path], shown: Iterable[Path]) -> Iterator[Path]:
-    """Where hidden files and folders would be seen: under each name by which a shown folder has them."""
+    """Yield where hidden files and folders would be visible: under each name by which a shown folder has them."""
     to_hide = [path.resolve() for path in hidden if path.exists()]
     for source in shown:
         real = _real(source)
@@ -225,12 +225,12 @@ def _is_inside(path: Path, folders: Iterable[Path]) -> bool:
 
 @cache
 def _real(folder: Path) -> Path:
-    """Where a folder of an installation really lies: none moves while a grader runs."""
+    """Return where a folder of an installation really is: none moves while a grader runs."""
     return folder.resolve()
 
 
 def _without_nested(paths: Iterable[Path]) -> Iterator[Path]:
-    """Without what lies inside another one and is therefore shown anyway."""
+    """Yield the folders without those inside another one, which are therefore shown anyway."""
     ordered = sorted(set(paths), key=lambda path: len(path.parts))
     for at, path in enumerate(ordered):
         if not any(path.is_relative_to(earlier) and not path.is_symlink() for earlier in ordered[:at]):

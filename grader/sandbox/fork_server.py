@@ -1,4 +1,4 @@
-"""Starts students' programs in 25 ms, where a new Python takes 150: the client of the fork server."""
+"""Starts students' programs in 25 ms, while a new Python takes 150 ms: the client of the fork server."""
 
 from __future__ import annotations
 
@@ -36,16 +36,16 @@ PRELOAD = (
 
 
 class ForkServer:
-    """Starts students. One serves a whole worker: make it before the runners are forked, and each of them may use it.
+    """Starts students. One serves a whole worker: create it before the runners are forked; each of them may use it.
 
-    It has a process for each middleware, which is started when it is first needed.
+    It has one process per middleware, which is started when it is first needed.
     """
 
     def __init__(self, middlewares: Sequence[Middleware] = (), preload: Sequence[str] = PRELOAD) -> None:
-        """Starts the processes for some middlewares; they import while the caller goes on.
+        """Start the processes for some middlewares; they import while the caller goes on.
 
         Args:
-            middlewares: those that runners will need. A runner that needs another one waits for a process of its own.
+            middlewares: those that runners will need. A runner that needs another one waits for its own process.
             preload: the modules to import beforehand; those that are not installed are left out.
         """
         self._preload = preload
@@ -54,7 +54,7 @@ class ForkServer:
             self.prepare(middleware)
 
     def prepare(self, middleware: Middleware) -> None:
-        """Starts the process for a middleware, unless it has been started.
+        """Start the process for a middleware, unless it has been started.
 
         Raises:
             MiddlewareUnavailable: if the middleware has not been compiled here.
@@ -65,7 +65,7 @@ class ForkServer:
     def start(
         self, program: Program, isolation: Isolation, limits: Limits | None = None, core: int | None = None
     ) -> Student:
-        """Starts a student's program in a new sandbox: without a network, or without a hub in that of the caller.
+        """Start a student's program in a new sandbox: without a network, or without a hub in that of the caller.
 
         Args:
             program: what to start.
@@ -106,18 +106,18 @@ class ForkServer:
             raise
 
     def close(self) -> None:
-        """Ends the processes. Students that they have started end with their runners."""
+        """End the processes. The students they have started end with their runners."""
         for server in self._servers.values():
             server.close()
 
     def __enter__(self) -> ForkServer:
-        """Nothing: it has been started already."""
+        """Do nothing: it has been started already."""
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Closes it."""
+        """Close it."""
         self.close()
 
 
@@ -128,9 +128,9 @@ class _Process:
         self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         environment = {name: os.environ[name] for name in filesystem.RUNTIME_VARIABLES if name in os.environ}
         environment |= variables(middleware, environment)
-        # One thread: forked from several, the child could hang. And the same order of sets in each run of a submission.
+        # One thread: a child forked from several could hang. And sets have the same order in each run of a submission.
         environment |= {"OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": "0", "PYTHONDONTWRITEBYTECODE": "1"}
-        # Address space is limited, and by default each thread may reserve 64 MiB of it, the more the more cores.
+        # Address space is limited, and by default each thread may reserve 64 MiB of it, more so on more cores.
         environment |= {"MALLOC_ARENA_MAX": "4"}
         self._owner = os.getpid()
         command = [sys.executable, "-m", "grader.sandbox.zygote", str(theirs.fileno()), middleware.value, *preload]
@@ -144,11 +144,11 @@ class _Process:
         theirs.close()
 
     def request(self, passed: Sequence[int]) -> None:
-        """Asks for a student. Raises OSError where the process has ended."""
+        """Request a student. Raises OSError if the process has ended."""
         socket.send_fds(self._socket, [b"start"], passed)
 
     def close(self) -> None:
-        """Ends the process, if it is this process's own."""
+        """End the process, if it belongs to this process."""
         self._socket.close()
         if os.getpid() == self._owner:
             with contextlib.suppress(ProcessLookupError):
@@ -157,7 +157,7 @@ class _Process:
 
 
 def _namespaces(program: Program) -> list[int]:
-    """Namespaces that a student joins, as descriptors: its user namespace, and without a hub its runner's network."""
+    """Return the namespaces a student joins, as descriptors: the user namespace, and without a hub the network."""
     if program.hub:
         return [os.dup(namespaces.user_namespace_of_this_process())]
     rig = [os.open(f"/proc/self/ns/{name}", os.O_RDONLY) for name in ("user", "net")]

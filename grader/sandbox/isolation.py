@@ -15,7 +15,7 @@ _TRIAL_S = 30.0
 
 
 class Isolation(str, Enum):
-    """The levels, strongest first. docs/sandbox.md tells what each of them keeps apart."""
+    """The levels, strongest first. docs/sandbox.md says what each of them keeps apart."""
 
     BUBBLEWRAP = "bubblewrap"
     """Namespaces of its own, made by bubblewrap."""
@@ -27,20 +27,20 @@ class Isolation(str, Enum):
     """A plain process of the same user, with limits. For code that you trust."""
 
     def __str__(self) -> str:
-        """The word that is used on the command line and in a grade."""
+        """Return the word that is used on the command line and in a grade."""
         return self.value
 
 
 def available() -> dict[Isolation, str | None]:
-    """For each level None if it works here, else the reason in words. Found by starting a program in it."""
+    """Return None for each level that works here, otherwise the reason in words. Tries them by starting programs."""
     return {level: _tried(level) for level in Isolation}
 
 
 def choose(wanted: Isolation | None = None) -> Isolation:
-    """The level to use: the wanted one, or else the strongest that works here. Never NONE unless it is wanted.
+    """Return the level to use: the wanted one, or the strongest that works here. Never NONE unless it is wanted.
 
     Raises:
-        SandboxUnavailable: if the wanted level, or with no wish any, does not work here.
+        SandboxUnavailable: if the wanted level, or without a wish every level, does not work here.
     """
     if wanted is not None:
         reason = _reason_against(wanted)

@@ -1,8 +1,8 @@
-"""Where a machine allows no user namespaces: Landlock keeps a student's program off the files of this machine.
+"""On a machine without user namespaces: Landlock keeps a student's program away from the files of this machine.
 
-Weaker than the namespaces: it sees the numbers and command lines of other processes, and can connect to Unix sockets
-that its user may write to; over Fast DDS also the machine's loopback network. It can neither read the memory of others
-nor, from Linux 6.12 on, signal them (before that, a seccomp filter refuses it every signal).
+Weaker than the namespaces: the program sees the ids and command lines of other processes, and can connect to Unix
+sockets that its user may write to; over Fast DDS also to the machine's loopback network. It can neither read the memory
+of others nor, from Linux 6.12 on, signal them (before that, a seccomp filter refuses it every signal).
 
 Source: landlock(7) and Documentation/userspace-api/landlock.rst of the Linux kernel.
 """
@@ -36,7 +36,7 @@ _FILE_ONLY = _EXECUTE | _WRITE_FILE | _READ_FILE | _TRUNCATE | _DEVICE_CONTROL
 
 @cache
 def version() -> int:
-    """The version of Landlock that the kernel speaks; 0 if it has none or it is switched off."""
+    """Return the version of Landlock that the kernel supports; 0 if it has none or Landlock is switched off."""
     try:
         return syscalls.system_call(
             _CREATE_RULESET, None, ctypes.c_size_t(0), ctypes.c_uint32(_ASK_VERSION), what="landlock"
@@ -46,12 +46,12 @@ def version() -> int:
 
 
 def keeps_signals_inside() -> bool:
-    """Whether Landlock itself refuses signals to processes outside: version 6, Linux 6.12."""
+    """Return whether Landlock itself refuses signals to processes outside: version 6, Linux 6.12."""
     return version() >= 6
 
 
 def student_user() -> int:
-    """Whom a student's program runs as: as root a user of no other process, since root's are not limited in number.
+    """Return the user to run a student's program: as root a user of no other process, as root's number is not limited.
 
     Raises:
         OSError: as root, if that user cannot reach Python.
@@ -65,16 +65,16 @@ def student_user() -> int:
 
 
 def restrict(place: Paths, readonly: Sequence[Path], hidden: Sequence[Path], *, processes: bool) -> None:
-    """Confines this process, and all that it starts, to reading Python and ROS 2 and writing its own folders.
+    """Confine this process, and everything it starts, to reading Python and ROS 2 and writing its own folders.
 
     Needs no_new_privs.
 
     Args:
         place: its own folders.
         readonly: what else it may read.
-        hidden: what it may not read, although it lies in something that it may; it sees the names in there.
-        processes: whether it may read /proc, in which its processes look whether they are idle. It then sees others'
-            command lines; Landlock itself keeps their memory, environment and files closed.
+        hidden: what it may not read, although it is inside something that it may; it sees the names in there.
+        processes: whether it may read /proc, in which its processes check whether they are idle. It then sees others'
+        command lines; Landlock itself keeps their memory, environment and files closed.
 
     Raises:
         OSError: if the kernel has no Landlock.
@@ -110,7 +110,7 @@ def _allow_reading(ruleset: int, path: Path, hidden: Sequence[Path]) -> None:
     if not any(secret.is_relative_to(real) for secret in hidden):
         _allow(ruleset, path, _READ)
         return
-    # Rights reach all that lies below, so what lies beside the hidden is allowed piece by piece.
+    # Rights apply to everything below, so everything next to a hidden entry is allowed individually.
     _allow(ruleset, path, _READ_FOLDER)
     for piece in path.iterdir():
         _allow_reading(ruleset, piece, hidden)

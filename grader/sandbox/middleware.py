@@ -1,4 +1,4 @@
-"""Which middleware programs under test use, which ones this machine has, and the type support they need."""
+"""Which middleware the programs under test use, which ones this machine has, and the type support they need."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rmw_lockstep.ros import installed_ros
 
 
 class MiddlewareUnavailable(SandboxUnavailable):
-    """The middleware that was asked for can't be had on this machine."""
+    """Raised when the middleware that was requested is not available on this machine."""
 
 
 @dataclass(frozen=True)
@@ -31,10 +31,10 @@ class Choice:
 
 @cache
 def choose_middleware(wanted: Middleware | None = None) -> Choice:
-    """The middleware to use: the wanted one, or else lockstep where it can be had. Compiles it at the first call.
+    """Return the middleware to use: the wanted one, or otherwise lockstep if available. Compiles it at the first call.
 
     Raises:
-        MiddlewareUnavailable: if lockstep is wanted and can't be had.
+        MiddlewareUnavailable: if lockstep is wanted and not available.
     """
     if wanted is Middleware.FASTDDS:
         return Choice(wanted)
@@ -51,12 +51,12 @@ def choose_middleware(wanted: Middleware | None = None) -> Choice:
 
 
 def to_be_compiled() -> bool:
-    """Whether `choose_middleware` will compile lockstep, which takes seconds."""
+    """Return whether `choose_middleware` will compile lockstep, which takes seconds."""
     return isinstance(library(), Unavailable) and installed_ros() is not None and compiler() is not None
 
 
 def _reason_against_lockstep() -> str | None:
-    from rmw_lockstep.build import BuildError, build  # compiling is not for the processes that become students
+    from rmw_lockstep.build import BuildError, build  # the processes that become students must not compile
 
     try:
         found = build()
@@ -66,7 +66,7 @@ def _reason_against_lockstep() -> str | None:
 
 
 def variables(middleware: Middleware, of: Mapping[str, str]) -> dict[str, str]:
-    """What a process needs in its environment to load a middleware, given the environment that it would have otherwise.
+    """Return what a process needs in its environment to load a middleware, given its environment without that.
 
     Raises:
         MiddlewareUnavailable: if it has not been compiled.
@@ -77,16 +77,16 @@ def variables(middleware: Middleware, of: Mapping[str, str]) -> dict[str, str]:
 
 
 def choosable() -> bool:
-    """Whether `RMW_IMPLEMENTATION` chooses the middleware. PyPI's wheels are bound to theirs by the name of its file.
+    """Return whether `RMW_IMPLEMENTATION` chooses the middleware. PyPI's wheels are bound to theirs by its file name.
 
-    There rcl ends the process, with a line that nobody reads, if the variable names another one than was loaded.
+    With those, rcl ends the process if the variable names another one than was loaded.
     """
     ros = installed_ros()
     return ros is not None and ros.chooses_at_run_time
 
 
 def library_folder() -> Path | None:
-    """Where the compiled lockstep lies, which sandboxes show; None if there is none."""
+    """Return the folder of the compiled lockstep, which sandboxes show; None if there is none."""
     found = library()
     return found.folder if isinstance(found, Library) else None
 
@@ -99,7 +99,7 @@ def _library() -> Library:
 
 
 def connect(hub: str) -> None:
-    """Connect this process, into which liblockstep was preloaded, to the hub; from now on it lives in the hub's time.
+    """Connect this process, into which liblockstep was preloaded, to the hub; from now on the hub sets its time.
 
     Raises:
         OSError: if there is no hub, or it does not answer.
@@ -110,9 +110,9 @@ def connect(hub: str) -> None:
 
 
 def load_type_support(name: str) -> None:
-    """Imports a module of message or service types, loads their compiled support, and the middleware's for messages.
+    """Import a module of message or service types, and load their compiled support, and the middleware's for messages.
 
-    What can't be loaded is left out: it fails in the same way where it is used.
+    What can't be loaded is left out: it fails in the same way when it is used.
     """
     try:
         module = importlib.import_module(name)

@@ -21,7 +21,7 @@ TAIL_BYTES = 64 * 1024
 
 @dataclass(frozen=True)
 class Output:
-    """What a program printed on standard output and error, in the order in which it came.
+    """What a program printed on standard output and error, in order.
 
     Attributes:
         data: the bytes kept: all, or the first and the last 64 KiB.
@@ -33,7 +33,7 @@ class Output:
 
     @property
     def text(self) -> str:
-        """The output as text, with a line that tells how much is missing where it is missing."""
+        """The output as text, with a line that says how much is missing, if anything is."""
         if not self.dropped:
             return self.data.decode(errors="replace")
         head, tail = self.data[:HEAD_BYTES], self.data[HEAD_BYTES:]
@@ -42,16 +42,16 @@ class Output:
 
 
 class OutputBuffer:
-    """Takes pieces of output as they come and holds at most 128 KiB of them."""
+    """Takes pieces of output as they arrive and keeps at most 128 KiB of them."""
 
     def __init__(self) -> None:
         self._head = bytearray()
         self._tail = bytearray()
         self.total = 0
-        """All bytes that came."""
+        """The number of all bytes that arrived."""
 
     def add(self, piece: bytes) -> None:
-        """Appends a piece."""
+        """Append a piece."""
         self.total += len(piece)
         room = HEAD_BYTES - len(self._head)
         self._head += piece[:room]
@@ -59,7 +59,7 @@ class OutputBuffer:
         del self._tail[:-TAIL_BYTES]
 
     def output(self) -> Output:
-        """What has been kept until now."""
+        """Return what has been kept so far."""
         data = bytes(self._head + self._tail)
         return Output(data, self.total - len(data))
 
@@ -75,7 +75,7 @@ class Exit:
     Attributes:
         code: the exit code; None if a signal ended it.
         signal: the signal's number; None if it exited by itself.
-        limit: the limit that it ran into: cpu, memory, processes, file-size, output, wall; else None.
+        limit: the limit that it hit: cpu, memory, processes, file-size, output, wall; otherwise None.
     """
 
     code: int | None
@@ -83,8 +83,8 @@ class Exit:
     limit: str | None
 
 
-# What Python's last line says when the kernel has refused more. A program that prints it without need only tells on
-# itself: it gets no points by it.
+# What Python's last line says when the kernel has refused more. A program that prints it without need only harms
+# itself: it gets no points for it.
 _LAST_WORDS = {
     "MemoryError": "memory",
     "std::bad_alloc": "memory",
@@ -102,11 +102,11 @@ class Monitor:
     def __init__(
         self, control: socket.socket, output: int, limits: Limits, pid: int, init: int, holders: frozenset[int]
     ) -> None:
-        """Begins to watch.
+        """Begin to watch.
 
         Args:
-            control: the socket to the supervisor, which is listened to from now on.
-            output: the end to read of the pipe that the program prints to.
+            control: the socket to the supervisor, which this reads from now on.
+            output: the read end of the pipe that the program prints to.
             limits: what kills the program.
             pid: the program's first process.
             init: the process that adopts its orphans.
@@ -118,7 +118,7 @@ class Monitor:
         """Set when all processes are dead."""
         self.exit: Exit | None = None
         self.others: frozenset[int] = frozenset()
-        """The further processes, as last seen."""
+        """The other processes, as last seen."""
         self._control, self._pipe, self._limits = control, output, limits
         self._pid, self._init, self._holders = pid, init, holders
         self._buffer = OutputBuffer()
@@ -130,30 +130,30 @@ class Monitor:
         self._thread.start()
 
     def output(self) -> Output:
-        """What has been printed until now."""
+        """Return what has been printed so far."""
         with self._lock:
             return self._buffer.output()
 
     def members(self) -> set[int]:
-        """The program's processes."""
+        """Return the program's processes."""
         if self.dead.is_set():
             return set()
         found = processes.descendants(self._init) | processes.descendants(self._pid)
         return (found | ({self._pid} if self.exit is None else set())) - self._holders
 
     def cpu_seconds(self) -> float:
-        """CPU seconds of all processes, those buried included."""
+        """Return the CPU seconds of all processes, including those that have ended."""
         alive = (self._pid, *self.others) if self.exit is None else self.others
         orphans = processes.buried_cpu_seconds(self._init) if self._init != self._pid else 0.0
         return self._buried_cpu_s + orphans + sum(processes.usage(pid).cpu_s for pid in alive)
 
     def at_limit(self) -> bool:
-        """Whether the program is killed, or has been, for a limit; counts what it uses now."""
+        """Return whether the program is being killed, or has been, for a limit; counts what it uses now."""
         self._look()
         return self._limit is not None
 
     def join(self) -> None:
-        """Waits for the end of the watch."""
+        """Wait for the end of the watch."""
         self._thread.join()
 
     def _watch(self) -> None:
@@ -175,7 +175,7 @@ class Monitor:
         self._control.close()
 
     def _drain(self) -> bool:
-        """Reads a piece of the output; False at its end."""
+        """Read a piece of the output; return False at its end."""
         piece = os.read(self._pipe, _PIECE)
         with self._lock:
             self._buffer.add(piece)
@@ -184,7 +184,7 @@ class Monitor:
         return bool(piece)
 
     def _drain_what_is_there(self) -> None:
-        """Reads what the pipe holds now, and no more: somebody may still be writing."""
+        """Read what the pipe holds now, and no more: a process may still be writing."""
         for _ in range(8):
             if not select.select([self._pipe], [], [], 0)[0] or not self._drain():
                 return
@@ -200,7 +200,7 @@ class Monitor:
                 elif said["event"] == "dead":
                     self._finish()
                 return
-        # The supervisor is gone. With namespaces the kernel has killed all; without, we kill what we last saw.
+        # The supervisor is gone. With namespaces the kernel has killed everything; without, we kill what we last saw.
         for pid in (self._pid, *self.others):
             with contextlib.suppress(OSError):
                 os.kill(pid, signal.SIGKILL)
@@ -221,7 +221,7 @@ class Monitor:
         self.dead.set()
 
     def _limit_of(self, code: int | None, number: int | None) -> str | None:
-        """The limit that the kernel itself has kept, told by the signal or by the program's last line."""
+        """Return the limit that the kernel itself has enforced, by the signal or by the program's last line."""
         if number == signal.SIGXCPU:
             return "cpu"
         if number == signal.SIGXFSZ:
@@ -234,7 +234,7 @@ class Monitor:
         return None
 
     def _look(self) -> None:
-        """Counts what the program uses, and kills it if it is too much."""
+        """Count what the program uses, and kill it if it is too much."""
         members = self.members()
         self.others = frozenset(members - {self._pid})
         used = [processes.usage(pid) for pid in members]
@@ -248,7 +248,7 @@ class Monitor:
             self._kill("cpu")
 
     def _memory_is_too_much(self, members: set[int]) -> bool:
-        """Counts again, what forks share only once: slow, so not before the first count is too high."""
+        """Count again, with what forks share only once: slow, so not before the first count is too high."""
         exact = [processes.proportional_bytes(pid) for pid in members]
         return sum(exact) > self._limits.memory_bytes or not any(exact)
 

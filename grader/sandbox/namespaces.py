@@ -31,14 +31,14 @@ class Namespaces:
     builder: subprocess.Popen[bytes] | None = None
 
     def kill(self) -> None:
-        """Kills everything inside. It is dead when `reap` returns."""
+        """Kill everything inside. It is dead when `reap` returns."""
         with contextlib.suppress(ProcessLookupError):
             os.kill(self.init, signal.SIGKILL)
 
     def reap(self) -> None:
-        """Returns when all is dead. Children of the caller inside have to be waited for before.
+        """Wait until everything is dead. The caller has to wait for its own children inside first.
 
-        The death of a namespace's first process is told to its parent only after every other process in it is gone:
+        The parent is notified of the death of a namespace's first process only after every other process in it is gone:
         pid_namespaces(7).
         """
         if self.builder is not None:
@@ -48,7 +48,7 @@ class Namespaces:
             os.waitpid(self.init, 0)
 
     def forget(self) -> None:
-        """Closes, in a fork of the process that made the room, what keeps it open."""
+        """Close, in a fork of the process that made the namespaces, what keeps them open."""
         if self.builder is not None:
             for stream in (self.builder.stdin, self.builder.stdout, self.builder.stderr):
                 if stream is not None:
@@ -57,7 +57,7 @@ class Namespaces:
 
 
 def write_files(files: Mapping[str, bytes]) -> None:
-    """Writes the submission's files into a read-only tmpfs at /submission. Called inside the room's mounts."""
+    """Write the submission's files into a read-only tmpfs at /submission. Called in the sandbox's mount namespace."""
     size = sum(len(content) // 4096 + 1 for content in files.values()) * 4096 + 65536
     syscalls.mount("tmpfs", SUBMISSION, "tmpfs", syscalls.MS_NOSUID | syscalls.MS_NODEV, f"mode=0755,size={size}")
     for name, content in files.items():
@@ -67,15 +67,15 @@ def write_files(files: Mapping[str, bytes]) -> None:
     syscalls.make_read_only(SUBMISSION)
 
 
-# Where the former root lies while the new one is built.
+# Where the former root is while the new one is built.
 _OLD = "/.old"
 _MOUNT = syscalls.MS_NOSUID | syscalls.MS_NODEV
 
 
 def build(plan: Sequence[Mount], user_namespace: int, *, network: bool) -> Namespaces:
-    """Makes the namespaces and their root, and moves this process into them (all but the pid namespace's children).
+    """Make the namespaces and their root, and move this process into them (except the pid namespace's children).
 
-    With `network` the network stays the one that this process is in; otherwise there is none, not even loopback.
+    With `network` the process keeps its current network; otherwise there is none, not even loopback.
 
     Raises:
         OSError: if a namespace or a mount is refused.
@@ -99,7 +99,7 @@ def build(plan: Sequence[Mount], user_namespace: int, *, network: bool) -> Names
 
 
 def _be_init(plan: Sequence[Mount], told_to: int, network: bool) -> NoReturn:
-    """The first process of the pid namespace: builds the root, then only buries orphans until it is killed."""
+    """Run the first process of the pid namespace: build the root, then only reap orphans until killed."""
     try:
         syscalls.prctl(syscalls.PR_SET_PDEATHSIG, signal.SIGKILL)
         syscalls.prctl(syscalls.PR_SET_NAME, b"init")
@@ -126,7 +126,7 @@ def _be_init(plan: Sequence[Mount], told_to: int, network: bool) -> NoReturn:
 
 
 def build_root(plan: Sequence[Mount]) -> None:
-    """Replaces the root of this mount namespace by the one that the steps describe.
+    """Replace the root of this mount namespace by the one that the steps describe.
 
     Raises:
         OSError: if a mount is refused.
@@ -179,7 +179,7 @@ def _bind(source: str, target: Path) -> None:
 
 
 def _mount_processes(target: str) -> None:
-    """Mounts /proc, in which a program's processes look whether they are idle."""
+    """Mount /proc, in which a program's processes check whether they are idle."""
     try:
         syscalls.mount("proc", target, "proc", _MOUNT | syscalls.MS_NOEXEC)
     except PermissionError as fault:
@@ -196,7 +196,7 @@ _of_process: dict[int, int] = {}
 
 
 def user_namespace_of_this_process() -> int:
-    """The user namespace of all students that this process starts, one after the other; made when first asked for.
+    """Return the user namespace of all students that this process starts in turn; made at the first call.
 
     Raises:
         OSError: if this machine allows no user namespaces.
@@ -207,11 +207,11 @@ def user_namespace_of_this_process() -> int:
 
 
 def create_user_namespace() -> int:
-    """Makes a user namespace and returns a descriptor of it.
+    """Make a user namespace and return a descriptor of it.
 
     As root, a user of no other process becomes the student (the kernel does not limit the number of root's
-    processes), and root stays root inside, so that what we leave running there is out of the student's reach.
-    Otherwise the only user is the present one, under the student's number.
+    processes), and root stays root inside, so the student can't reach what we leave running there.
+    Otherwise the only user is the current one, under the student's number.
 
     Raises:
         OSError: if this machine allows no user namespaces.

@@ -11,16 +11,16 @@ from grader.sandbox.program import SandboxError
 
 
 def enter(isolation: Isolation) -> None:
-    """Moves this process into namespaces of its own: a network with nothing but loopback, /dev/shm, and System V IPC.
+    """Move this process into namespaces of its own: a network with nothing but loopback, /dev/shm, and System V IPC.
 
-    Only for students without a hub, who talk to their runner over Fast DDS. Those with a hub have no network to share.
+    Only for students without a hub, which talk to their runner over Fast DDS. Those with a hub have no network.
 
     Call it in a freshly forked process with a single thread, before rclpy is initialised. Its students join the same
-    network, so that runner and student hear each other and nobody else. At the levels without namespaces only orphans
-    are caught (see PR_SET_CHILD_SUBREAPER in prctl(2)); there a ROS domain of its own has to separate the runner.
+    network, so that runner and student can reach each other and nothing else. At the levels without namespaces only
+    orphans are caught (see PR_SET_CHILD_SUBREAPER in prctl(2)); there a ROS domain of its own separates the runner.
 
     Called again by the same thread, before its next student, it moves into another new network: in the old one the
-    kernel may still keep a port for a connection of the last student's.
+    kernel may still reserve a port for a connection of the previous student.
 
     Raises:
         OSError: if this machine allows no such namespaces.
@@ -55,7 +55,7 @@ _made: list[int] = []
 
 
 def students_users() -> int:
-    """The user namespace that this runner's students run in, one after the other: a descriptor.
+    """Return the user namespace that this runner's students run in, in turn: a descriptor.
 
     Raises:
         SandboxError: if this process has not entered namespaces of its own.

@@ -1,6 +1,6 @@
-"""A student's processes where there are no namespaces, and what /proc says about them.
+"""A student's processes without namespaces, and what /proc says about them.
 
-Source: proc(5). Processes end while they are looked at; those count nothing.
+Source: proc(5). Processes that end during the look count nothing.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import psutil
 
 from grader.sandbox.program import Paths
 
-# Source: proc(5). Processes end while they are looked at; what has ended counts nothing.
+# Source: proc(5). Processes that end during the look count nothing.
 
 
 _TICKS = os.sysconf("SC_CLK_TCK")
@@ -29,7 +29,7 @@ _PAGE = os.sysconf("SC_PAGE_SIZE")
 
 @dataclass(frozen=True)
 class Usage:
-    """What one process has used: CPU seconds with its buried children, resident bytes, and its number of threads."""
+    """What one process has used: CPU seconds (with its reaped children), resident bytes, and its number of threads."""
 
     cpu_s: float = 0.0
     resident_bytes: int = 0
@@ -37,7 +37,7 @@ class Usage:
 
 
 def descendants(pid: int) -> set[int]:
-    """The children of a process, and theirs."""
+    """Return the children of a process, and their descendants."""
     found: set[int] = set()
     new = {pid}
     while new:
@@ -47,7 +47,7 @@ def descendants(pid: int) -> set[int]:
 
 
 def usage(pid: int) -> Usage:
-    """What a process has used until now."""
+    """Return what a process has used so far."""
     fields = _fields(f"/proc/{pid}/stat")
     if not fields:
         return Usage()
@@ -56,7 +56,7 @@ def usage(pid: int) -> Usage:
 
 
 def proportional_bytes(pid: int) -> int:
-    """The resident memory of a process, with what it shares divided by how many share it; 0 if that is not told."""
+    """Return the resident memory of a process, with what it shares divided by the number of sharers; 0 if unknown."""
     for line in _read(f"/proc/{pid}/smaps_rollup").splitlines():
         if line.startswith(b"Pss:"):
             return int(line.split()[1]) * 1024
@@ -81,7 +81,7 @@ def _kernel_lists_children() -> bool:
 
 
 def _fields(path: str) -> list[str]:
-    """The fields of a stat file from the third (the state) on; the second may contain anything."""
+    """Return the fields of a stat file from the third (the state) on; the second may contain anything."""
     return _read(path).rpartition(b")")[2].decode().split()
 
 
@@ -106,29 +106,29 @@ def _names(folder: str) -> list[str]:
 
 
 def buried_cpu_seconds(pid: int) -> float:
-    """The CPU seconds of the children that a process has buried."""
+    """Return the CPU seconds of the children that a process has reaped."""
     fields = _fields(f"/proc/{pid}/stat")
     return (int(fields[13]) + int(fields[14])) / _TICKS if fields else 0.0
 
 
 @dataclass(frozen=True)
 class ProcessTree:
-    """What `Namespaces` is with namespaces. The supervisor adopts the student's orphans (PR_SET_CHILD_SUBREAPER)."""
+    """`Namespaces` without namespaces: the supervisor adopts the student's orphans (PR_SET_CHILD_SUBREAPER)."""
 
     folder: Path
     init: int = field(default_factory=os.getpid)
     holders: frozenset[int] = frozenset()
 
     def kill(self) -> None:
-        """Kills what the student has started. What it starts meanwhile is found by `reap`."""
+        """Kill what the student has started. What it starts meanwhile is found by `reap`."""
         alive = descendants(self.init)
-        for order in (signal.SIGSTOP, signal.SIGKILL):  # first nobody forks any more
+        for order in (signal.SIGSTOP, signal.SIGKILL):  # first none can fork any more
             for process in alive:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(process, order)
 
     def reap(self) -> None:
-        """Returns when all is dead, and removes the folder."""
+        """Wait until everything is dead, and remove the folder."""
         while descendants(self.init):
             self.kill()
             with contextlib.suppress(ChildProcessError):
@@ -139,12 +139,12 @@ class ProcessTree:
 
 
 def make_paths(files: Mapping[str, bytes], owner: int | None, hub: Path | None) -> Paths:
-    """Makes a folder in the machine's temporary folder, with the submission's files and a home.
+    """Make a folder in the machine's temporary folder, with the submission's files and a home.
 
     Args:
         files: name to content.
         owner: the user that the home is given to; None for the present one.
-        hub: the hub's socket, which the program sees where it is.
+        hub: the hub's socket, which the program sees at its real path.
     """
     top = Path(tempfile.mkdtemp(prefix="spinbook-student-"))
     top.chmod(0o755)

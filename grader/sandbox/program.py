@@ -17,11 +17,11 @@ HUB = "/run/lockstep/hub"
 
 
 class SandboxUnavailable(Exception):
-    """This machine does not allow the sandbox or the middleware that was wanted, or none at all."""
+    """Raised when this machine does not allow the wanted sandbox or middleware, or any at all."""
 
 
 class SandboxError(Exception):
-    """A sandbox could not be made or ended: a fault of ours or the machine's, never of the student."""
+    """Raised when a sandbox could not be made or ended: a fault of ours or the machine's, never of the student."""
 
 
 class Middleware(str, Enum):
@@ -33,11 +33,11 @@ class Middleware(str, Enum):
     """Fast DDS over a network that the runner shares with its student."""
 
     def __str__(self) -> str:
-        """The word that is used on the command line and in a grade."""
+        """Return the word that is used on the command line and in a grade."""
         return self.value
 
     def is_named(self, identifier: str) -> bool:
-        """Whether rclpy calls the middleware so that it has loaded."""
+        """Return whether `identifier` is the name by which rclpy knows this middleware once it has loaded it."""
         return identifier == IDENTIFIER if self is Middleware.LOCKSTEP else identifier.startswith("rmw_fastrtps")
 
 
@@ -52,8 +52,8 @@ class Program:
             symlink nor a change made meanwhile can show the program another file of this machine.
         arguments: what follows the file's name in sys.argv.
         environment: variables beyond those that Python and ROS 2 need; nothing of the caller's own is passed on.
-        readonly: files and folders of this machine that are to be seen, read-only, at the same path.
-        hidden: files and folders of this machine that are never seen, also inside one that is.
+        readonly: files and folders of this machine that the program sees, read-only, at the same path.
+        hidden: files and folders of this machine that it never sees, even inside one that it does.
         hub: the socket of the hub that each of its processes connects to, over rmw_lockstep; alone in a folder that
             belongs to the caller. The program then has no network at all. None: it uses Fast DDS, in the network of the
             calling process.
@@ -71,10 +71,10 @@ class Program:
     hub: Path | None = None
 
     def __post_init__(self) -> None:
-        """Refuses what could leave the submission's folder or does not exist in it.
+        """Refuse what could leave the submission's folder or does not exist in it.
 
         Raises:
-            ValueError: for a file name with a folder or a NUL in it, or a main file that is nowhere.
+            ValueError: for a file name with a folder or a NUL in it, or a main file that does not exist.
         """
         for name in self.files:
             if name in ("", ".", "..") or "/" in name or "\0" in name:
@@ -87,7 +87,7 @@ class Program:
 
     @property
     def middleware(self) -> Middleware:
-        """Over which it talks."""
+        """The middleware that it uses."""
         return Middleware.LOCKSTEP if self.hub else Middleware.FASTDDS
 
 
@@ -108,7 +108,7 @@ _MIB = 1024 * 1024
 class Limits:
     """What one start of a student's program may use before it is killed.
 
-    CPU time and blocked time decide verdicts (the runner counts them); these are the outer walls, wide enough for
+    CPU time and blocked time decide verdicts (the runner counts them); these are the outer limits, wide enough for
     every honest program on a busy machine.
     """
 
@@ -126,7 +126,7 @@ class Limits:
     """Seconds from its start to its end, only to catch what every other limit misses."""
 
     def __post_init__(self) -> None:
-        """Refuses what rclpy is known not to start with.
+        """Refuse limits that rclpy is known not to start with.
 
         Raises:
             ValueError: if the memory is below 512 MiB or there are fewer than 20 processes.
@@ -138,19 +138,19 @@ class Limits:
 
 
 def apply_limits(limits: Limits, *, processes_beside: int = 0) -> None:
-    """Sets the kernel's limits for this process and its children: setrlimit(2).
+    """Set the kernel's limits for this process and its children: setrlimit(2).
 
     Args:
         limits: what is allowed.
         processes_beside: processes and threads of the same user that the kernel counts too: 0 in a user namespace of
-            its own, on a kernel that counts for each namespace.
+        its own, on a kernel that counts for each namespace.
     """
     cpu_s = int(limits.cpu_s) + 1
     wanted = {
         resource.RLIMIT_AS: limits.memory_bytes,
         resource.RLIMIT_NPROC: limits.processes + processes_beside,
         resource.RLIMIT_FSIZE: limits.file_bytes,
-        resource.RLIMIT_NOFILE: 1024,  # liblockstep looks at each thread of the program through three files
+        resource.RLIMIT_NOFILE: 1024,  # liblockstep reads three files per thread of the program
         resource.RLIMIT_CORE: 0,
         resource.RLIMIT_MEMLOCK: 8 * _MIB,
         resource.RLIMIT_MSGQUEUE: 0,
@@ -163,7 +163,7 @@ def apply_limits(limits: Limits, *, processes_beside: int = 0) -> None:
 
 
 def tasks_of_user(uid: int) -> int:
-    """The processes and threads that a user has on this machine now, which RLIMIT_NPROC counts."""
+    """Return how many processes and threads a user has on this machine now, as RLIMIT_NPROC counts them."""
     count = 0
     for entry in os.scandir("/proc"):
         if entry.name.isdigit():
@@ -174,6 +174,6 @@ def tasks_of_user(uid: int) -> int:
 
 
 def counts_for_each_user_namespace() -> bool:
-    """Whether the kernel counts a user's processes in each user namespace by itself: since Linux 5.14."""
+    """Return whether the kernel counts a user's processes separately in each user namespace: since Linux 5.14."""
     major, minor = os.uname().release.split(".")[:2]
     return (int(major), int("".join(filter(str.isdigit, minor)) or 0)) >= (5, 14)

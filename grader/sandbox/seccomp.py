@@ -1,8 +1,8 @@
 """The system calls that no student's node needs and that would weaken the sandbox: refused by a seccomp filter.
 
-Denied are: looking into other processes, changing mounts or namespaces, keys, kernel interfaces with a history of
-holes, and memory that no limit counts (System V shared memory, memfd). A list of what is refused, and not of what is
-allowed, so that no right node ever fails by it; the namespaces and the absence of every capability are what confines.
+Denied are: inspecting other processes, changing mounts or namespaces, keys, kernel interfaces with a history of
+holes, and memory that no limit counts (System V shared memory, memfd). It lists what is refused, and not what is
+allowed, so that it never breaks a correct node; what confines are the namespaces and the absence of every capability.
 
 Source: seccomp(2), bpf(4), and the kernel's tables of system calls for x86-64 and arm64.
 """
@@ -39,7 +39,7 @@ _NEW_NAMESPACES = 0x7E020000  # every CLONE_NEW… flag of clone(2)
 _LOCAL = (socket.AF_UNIX,)
 _NETWORK = (socket.AF_UNIX, socket.AF_INET, socket.AF_INET6, socket.AF_NETLINK)
 
-# name: (number on x86-64, number on arm64); None where it does not exist
+# name: (number on x86-64, number on arm64); None if it does not exist
 _FORBIDDEN: dict[str, tuple[int | None, int | None]] = {
     "ptrace": (101, 117),
     "process_vm_readv": (310, 270),
@@ -101,11 +101,11 @@ _FORBIDDEN: dict[str, tuple[int | None, int | None]] = {
     "mq_open": (240, 180),
     "memfd_secret": (447, 447),
 }
-# Told to be absent, because callers then fall back to a call that is allowed.
+# Reported as absent, because callers then fall back to a call that is allowed.
 _ABSENT: dict[str, tuple[int, int]] = {"memfd_create": (319, 279), "clone3": (435, 435)}
-# Told to have worked: the runner has pinned the program to one core and it stays there.
+# Reported as successful: the runner has pinned the program to one core and it stays there.
 _IGNORED: dict[str, tuple[int, int]] = {"sched_setaffinity": (203, 122)}
-# Refused only where nothing else keeps signals inside (see `program_for`).
+# Refused only if nothing else keeps signals inside (see `program_for`).
 _SIGNALS: dict[str, tuple[int, int]] = {
     "kill": (62, 129),
     "tkill": (200, 130),
@@ -119,17 +119,17 @@ Instruction = tuple[int, int, int, int]
 
 
 def supported() -> bool:
-    """Whether the numbers of this machine's system calls are known here."""
+    """Return whether the numbers of this machine's system calls are known here."""
     return platform.machine() in ("x86_64", "aarch64")
 
 
 @cache
 def program(*, network: bool = True, no_signals: bool = False) -> bytes:
-    """The filter as the kernel wants it (an array of struct sock_filter).
+    """Return the filter in the kernel's format (an array of struct sock_filter).
 
     Args:
-        network: allow sockets for IP and netlink, which Fast DDS needs. Without, there are Unix sockets only.
-        no_signals: also refuse every signal to another process, for where neither a pid namespace nor Landlock does.
+        network: allow sockets for IP and netlink, which Fast DDS needs. Without it, there are Unix sockets only.
+        no_signals: also refuse every signal to another process, if neither a pid namespace nor Landlock does.
 
     Raises:
         OSError: for an architecture whose system calls are not known here.
@@ -168,7 +168,7 @@ def program(*, network: bool = True, no_signals: bool = False) -> bytes:
 
 
 def install(filter_program: bytes) -> None:
-    """Puts the filter on this process and all that it will start, for good. Needs no_new_privs: prctl(2)."""
+    """Install the filter in this process and all that it will start, for good. Needs no_new_privs: prctl(2)."""
 
     class _Program(ctypes.Structure):
         _fields_ = (("length", ctypes.c_ushort), ("filter", ctypes.c_char_p))
@@ -182,7 +182,7 @@ def _refuse(error: int) -> Instruction:
 
 
 def _when(numbers: Sequence[int], error: int) -> list[Instruction]:
-    """If the call is one of these, it fails with this error. Jumps reach 255 lines at most."""
+    """Return the lines that fail the call with this error if it is one of these. Jumps reach 255 lines at most."""
     tests = [(_EQUAL, len(numbers) - at, 0, number) for at, number in enumerate(numbers)]
     # After the last test: skip the refusal. A jump of `k` lines without a condition is BPF_JMP | BPF_JA.
     return [*tests, (0x05, 0, 0, 1), _refuse(error)]

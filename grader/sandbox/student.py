@@ -1,4 +1,4 @@
-"""A student's running program, as the runner holds it."""
+"""A student's running program, as the runner sees it."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ class Student:
     """A student's program in its sandbox. Leaving the `with` block kills all of it."""
 
     def __init__(self, control: socket.socket, output: int, limits: Limits) -> None:
-        """Waits until the program has been started by the supervisor at the other end of the socket.
+        """Wait until the supervisor at the other end of the socket has started the program.
 
         Args:
             control: the socket to the supervisor.
-            output: the end to read of the pipe that the program prints to.
+            output: the read end of the pipe that the program prints to.
             limits: what it may use.
 
         Raises:
@@ -42,9 +42,9 @@ class Student:
             raise SandboxError(f"the sandbox could not be made: {answer.get('reason', 'the supervisor died')}")
         control.settimeout(None)
         self.pid: int = answer["pid"]
-        """The number of the node's process, as seen from outside the sandbox."""
+        """The id of the node's process, as seen from outside the sandbox."""
         self.folder: str = answer["folder"]
-        """Where the submission's files lie, as the program sees them."""
+        """Where the submission's files are, as the program sees them."""
         self._monitor = Monitor(control, output, limits, self.pid, answer["init"], frozenset(answer["holders"]))
 
     @property
@@ -53,44 +53,44 @@ class Student:
         return self._monitor.exit
 
     def poll(self) -> Exit | None:
-        """The same as `exit`."""
+        """Return the same as `exit`."""
         return self._monitor.exit
 
     def wait(self, timeout_s: float) -> Exit | None:
-        """Waits for the end of the node's process, at most so many seconds; None if it still runs."""
+        """Wait for the end of the node's process, at most so many seconds; return None if it still runs."""
         self._monitor.ended.wait(timeout_s)
         return self._monitor.exit
 
     def output(self) -> Output:
-        """What it has printed until now."""
+        """Return what it has printed so far."""
         return self._monitor.output()
 
     def interrupt(self) -> None:
-        """Sends SIGINT to the node's process, as Ctrl-C would. Nothing if it has ended."""
+        """Send SIGINT to the node's process, as Ctrl-C would; do nothing if it has ended."""
         with contextlib.suppress(OSError):
             self._control.send(b"interrupt")
 
     def cpu_seconds(self) -> float:
-        """What all its processes have used of the CPU, those that have ended included (s)."""
+        """Return how much CPU time all its processes have used, including those that have ended (s)."""
         return self._monitor.cpu_seconds()
 
     def pids(self) -> tuple[int, ...]:
-        """The numbers of its processes, as seen from outside the sandbox: its first, and others found within 50 ms."""
+        """Return its processes' ids, as seen from outside the sandbox: the first, and others found within 50 ms."""
         return (self.pid, *self._monitor.others)
 
     def at_limit(self) -> bool:
-        """Whether it is being ended for a limit that it has run into; looks at once, where the watch may be late."""
+        """Return whether it is being ended for a limit; looks at once, as the monitor may be late."""
         return self._monitor.at_limit()
 
     def processes(self) -> int:
-        """How many processes it has now."""
+        """Return how many processes it has now."""
         return len(self._monitor.members())
 
     def kill(self) -> Exit:
-        """Kills every process of it, daemons too, and returns when all are dead. Again: the same answer.
+        """Kill every process of it, daemons too, and return when all are dead. A second call returns the same.
 
         Raises:
-            SandboxError: if something of it does not die.
+            SandboxError: if one of its processes does not die.
         """
         with contextlib.suppress(OSError):
             self._control.send(b"kill")
@@ -100,11 +100,11 @@ class Student:
         return self._monitor.exit or Exit(None, int(signal.SIGKILL), None)
 
     def __enter__(self) -> Student:
-        """Nothing: it runs already."""
+        """Return itself: it runs already."""
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Kills everything."""
+        """Kill everything."""
         self.kill()

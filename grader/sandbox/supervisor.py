@@ -1,4 +1,4 @@
-"""The trusted process next to each student: makes the sandbox, starts the program, reports its end, kills it all."""
+"""The trusted process of each student: makes the sandbox, starts the program, reports its end, kills everything."""
 
 from __future__ import annotations
 
@@ -21,26 +21,26 @@ from grader.sandbox.program import HUB, SUBMISSION, Paths, Program
 
 @dataclass(frozen=True)
 class Request:
-    """What a freshly made student process is to run."""
+    """What a freshly made student process has to run."""
 
     program: Program
     place: Paths
 
 
 def supervise(start: Start, control: int, output: int, rig_namespaces: Sequence[int]) -> Request:
-    """Starts a student and stays with it until it is dead. Returns only in the student itself; the supervisor exits.
+    """Start a student and stay with it until it is dead. Returns only in the student itself; the supervisor exits.
 
     Args:
         start: what to start.
         control: the socket to the runner.
         output: where the student's standard output and error go.
         rig_namespaces: the user namespace that the runner made for its students, and for those without a hub its own
-            user and network namespace; empty for the levels without.
+        user and network namespace; empty for the levels without.
     """
     reported = False
     try:
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-        syscalls.prctl(syscalls.PR_SET_CHILD_SUBREAPER, 1)  # what the student or bubblewrap orphans is buried here
+        syscalls.prctl(syscalls.PR_SET_CHILD_SUBREAPER, 1)  # orphans of the student or bubblewrap are reaped here
         os.chdir("/")
         beside = _tasks_beside(start)
         users, *rig = rig_namespaces or (-1,)
@@ -66,7 +66,7 @@ def supervise(start: Start, control: int, output: int, rig_namespaces: Sequence[
 
 
 def refuse(control: int, reason: str) -> NoReturn:
-    """Answers a runner that no student can be started, and exits."""
+    """Answer a runner that no student can be started, and exit."""
     _tell(control, {"event": "failed", "reason": reason})
     os._exit(0)
 
@@ -84,9 +84,9 @@ def _build(start: Start, users: int) -> tuple[namespaces.Namespaces | processes.
 
 
 def _admit_student_alone(hub: Path, owner: int | None) -> None:
-    """Lets the student use the hub's socket, and no other user of this machine.
+    """Let the student use the hub's socket, and no other user of this machine.
 
-    With namespaces it gets the socket alone, without the folder. Without, and as root, it is another user.
+    With namespaces it gets the socket alone, without the folder. Without them, and as root, it is another user.
     """
     other_user = owner is not None and owner != os.geteuid()
     hub.parent.chmod(0o711 if other_user else 0o700)
@@ -98,7 +98,7 @@ def _admit_student_alone(hub: Path, owner: int | None) -> None:
 def _fork_student(
     start: Start, place: Paths, house: namespaces.Namespaces | processes.ProcessTree, beside: int, output: int
 ) -> int | Request:
-    """Forks the student. Returns its pid here, and there, once it has been confined, what it is to run."""
+    """Fork the student. Returns its pid in the parent, and what to run in the child, once it has been confined."""
     fault_at, fault_to = os.pipe()
     child = os.fork()
     if child == 0:
@@ -123,7 +123,7 @@ def _fork_student(
 
 
 def _watch(control: int, child: int, house: namespaces.Namespaces | processes.ProcessTree) -> None:
-    """Until told to kill: passes on interrupts, and reports the end of the student's first process."""
+    """Pass on interrupts and report the end of the student's first process, until the order to kill."""
     ended = os.pidfd_open(child)
     poll = select.poll()
     poll.register(control, select.POLLIN)
@@ -161,12 +161,12 @@ def _hear(control: int) -> bytes:
 
 
 def _tell(control: int, message: dict[str, object]) -> None:
-    with contextlib.suppress(OSError):  # the runner is gone: its end is noticed when listening
+    with contextlib.suppress(OSError):  # the runner is gone: noticed at the next read
         os.write(control, json.dumps(message).encode())
 
 
 def _join(namespace: int) -> None:
-    """Enters a namespace of the runner's, unless this process is in it already."""
+    """Enter one of the runner's namespaces, unless this process is in it already."""
     for name in ("user", "net"):
         mine = Path(f"/proc/self/ns/{name}").stat()
         if (mine.st_dev, mine.st_ino) == (os.fstat(namespace).st_dev, os.fstat(namespace).st_ino):
@@ -175,15 +175,15 @@ def _join(namespace: int) -> None:
 
 
 def _tasks_beside(start: Start) -> int:
-    """The processes of the same user that RLIMIT_NPROC will count beside the student's."""
+    """Return how many processes of the same user RLIMIT_NPROC will count besides the student's."""
     apart = start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES)
     if apart and (os.geteuid() == 0 or limits.counts_for_each_user_namespace()):
         return 4  # this process and those that hold the namespace open
-    # Other processes of the user come and go. The runner counts the student's own; this is the wall behind it.
+    # Other processes of the user come and go. The runner counts the student's own; this is the limit behind that.
     user = landlock.student_user() if start.isolation is Isolation.LANDLOCK else os.getuid()
     return limits.tasks_of_user(user) + 3 * start.limits.processes
 
 
 def _owner(isolation: Isolation) -> int | None:
-    """Whom the folders of a program belong to that runs without namespaces."""
+    """Return the user that owns the folders of a program without namespaces."""
     return landlock.student_user() if isolation is Isolation.LANDLOCK else None

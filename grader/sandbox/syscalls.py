@@ -51,7 +51,7 @@ _libc = ctypes.CDLL(None, use_errno=True)
 
 
 def libc_call(name: str, *arguments: object, what: str = "") -> int:
-    """Calls a C library function and returns its result; a result of -1 raises OSError, told with `what`."""
+    """Call a C library function and return its result; a result of -1 raises OSError with `what` in its text."""
     result: int = getattr(_libc, name)(*arguments)
     if result == -1:
         error = ctypes.get_errno()
@@ -60,22 +60,22 @@ def libc_call(name: str, *arguments: object, what: str = "") -> int:
 
 
 def system_call(number: int, *arguments: object, what: str) -> int:
-    """Calls the kernel by number, for what the C library has no function for: see syscall(2)."""
+    """Call the kernel by number, for what the C library has no function for: see syscall(2)."""
     return libc_call("syscall", ctypes.c_long(number), *arguments, what=what)
 
 
 def unshare(flags: int) -> None:
-    """Gives this process new namespaces: unshare(2)."""
+    """Give this process new namespaces: unshare(2)."""
     libc_call("unshare", ctypes.c_int(flags), what=f"unshare({flags:#x})")
 
 
 def setns(namespace: int, kind: int = 0) -> None:
-    """Moves this process into the namespace that the descriptor names: setns(2)."""
+    """Move this process into the namespace of the descriptor: setns(2)."""
     libc_call("setns", ctypes.c_int(namespace), ctypes.c_int(kind), what="setns")
 
 
 def mount(source: str, target: str, kind: str = "", flags: int = 0, options: str = "") -> None:
-    """Mounts, binds or changes a mount: mount(2)."""
+    """Mount, bind or change a mount: mount(2)."""
     libc_call(
         "mount",
         os.fsencode(source),
@@ -88,7 +88,7 @@ def mount(source: str, target: str, kind: str = "", flags: int = 0, options: str
 
 
 def make_read_only(target: str, *, devices: bool = False) -> None:
-    """Makes a mount and all mounts below it read-only and free of set-uid programs: mount_setattr(2), Linux 5.12."""
+    """Make a mount and all mounts below it read-only and free of set-uid programs: mount_setattr(2), Linux 5.12."""
     attributes = MOUNT_ATTR_RDONLY | MOUNT_ATTR_NOSUID | (0 if devices else MOUNT_ATTR_NODEV)
     change = (ctypes.c_uint64 * 4)(attributes, 0, 0, 0)
     system_call(
@@ -103,12 +103,12 @@ def make_read_only(target: str, *, devices: bool = False) -> None:
 
 
 def unmount(target: str) -> None:
-    """Takes a mount away, at once for new users, later for those who still hold it: umount2(2)."""
+    """Remove a mount, at once for new users, later for those who still hold it: umount2(2)."""
     libc_call("umount2", os.fsencode(target), ctypes.c_int(MNT_DETACH), what=f"umount {target}")
 
 
 def pivot_root(new: str, old: str) -> None:
-    """Makes `new` the root of this mount namespace and puts the former one at `old`: pivot_root(2)."""
+    """Make `new` the root of this mount namespace and put the former one at `old`: pivot_root(2)."""
     number = _PIVOT_ROOT.get(platform.machine())
     if number is None:
         raise OSError(f"pivot_root: not known for {platform.machine()}")
@@ -116,19 +116,19 @@ def pivot_root(new: str, old: str) -> None:
 
 
 def prctl(option: int, argument: int | bytes = 0, pointer: object = None) -> None:
-    """Changes an attribute of this process: prctl(2)."""
+    """Change an attribute of this process: prctl(2)."""
     first = argument if isinstance(argument, bytes) else ctypes.c_ulong(argument)
     nothing = ctypes.c_ulong(0)
     libc_call("prctl", ctypes.c_int(option), first, pointer or nothing, nothing, nothing, what=f"prctl({option})")
 
 
 def sethostname(name: str) -> None:
-    """Names the host of this UTS namespace: sethostname(2)."""
+    """Name the host of this UTS namespace: sethostname(2)."""
     libc_call("sethostname", name.encode(), ctypes.c_size_t(len(name)), what="sethostname")
 
 
 def drop_bounding_capabilities() -> None:
-    """No program that is executed from now on gains a capability: capabilities(7). Needs CAP_SETPCAP."""
+    """Let no program gain a capability that is executed from now on: capabilities(7). Needs CAP_SETPCAP."""
     for capability in range(64):
         try:
             prctl(PR_CAPBSET_DROP, capability)
@@ -137,13 +137,13 @@ def drop_bounding_capabilities() -> None:
 
 
 def drop_capabilities() -> None:
-    """Gives up every capability of this process: capset(2)."""
+    """Give up every capability of this process: capset(2)."""
     header = (ctypes.c_uint32 * 2)(_CAPABILITY_VERSION_3, 0)
     data = (ctypes.c_uint32 * 6)()
     libc_call("capset", ctypes.byref(header), ctypes.byref(data), what="capset")
 
 
 def bring_loopback_up() -> None:
-    """Makes 127.0.0.1 of this network namespace work: netdevice(7)."""
+    """Make 127.0.0.1 of this network namespace work: netdevice(7)."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:
         fcntl.ioctl(any_socket, _SIOCSIFFLAGS, struct.pack("16sh14x", b"lo", _IFF_UP))

@@ -1,4 +1,4 @@
-"""Tries whether a level of isolation works here, by starting a program in it: ends with 0, or says why not and with 1.
+"""Tries whether a level of isolation works here, by starting a program in it: exits with 0, or prints why not, with 1.
 
 python -m grader.sandbox.trial LEVEL
 """
@@ -18,12 +18,12 @@ _PROGRAM = f"import rclpy.exceptions, sys\nprint({_WORD!r})\n"
 
 
 def main(level: Isolation) -> str | None:
-    """Why a level does not work here; None if it does."""
+    """Return why a level does not work here; None if it does."""
     if level is Isolation.LANDLOCK and not landlock.version():
         return "the kernel has no Landlock (Linux 5.13 and newer have it, unless it is switched off)"
     try:
         enter(level)
-        # Not warm: so it shows too that Python itself can be started in there.
+        # Not warm: this also shows that Python itself can be started in there.
         program = Program("trial.py", {"trial.py": _PROGRAM.encode()}, warm=False)
         with ForkServer(preload=()) as fork_server, fork_server.start(program, level) as student:
             end = student.wait(20.0)

@@ -28,9 +28,9 @@ from grader.sandbox.supervisor import Request, refuse, supervise
 
 
 def fork() -> int:
-    """The same as `os.fork`, without what Python warns of from 3.12 on where a process has several threads.
+    """Fork as `os.fork` does, without the warning that Python 3.12 and later print if a process has several threads.
 
-    Those beside Python's own are LTTng's: ROS 2's tracing starts two when rclpy is imported. They wait for a tracing
+    Those besides Python's own are LTTng's: ROS 2's tracing starts two when rclpy is imported. They wait for a tracing
     daemon (lttng-ust(3), "LTTNG_UST_REGISTER_TIMEOUT"), and a child has no use for them.
     """
     with warnings.catch_warnings():
@@ -38,16 +38,16 @@ def fork() -> int:
         return os.fork()
 
 
-#: How many cores a program is told of. It runs on one, but rclpy's MultiThreadedExecutor takes this for its number of
-#: threads, and with one thread a program would be stuck here that works on every other machine.
+#: The number of cores that a program sees. It runs on one, but rclpy's MultiThreadedExecutor uses this as its number of
+#: threads, and with a single thread a program would hang here that works on every other machine.
 CORES_SHOWN = 4
 
 
 def run_program(program: Program, place: Paths) -> None:
-    """Runs a program as `__main__` in this process; returns or raises SystemExit as the program does.
+    """Run a program as `__main__` in this process; return or raise SystemExit as the program does.
 
-    Its first act is to connect to the hub, if it has one. So a program that ended without a connection has done nothing
-    of the student's: that is a fault of the machine's or ours.
+    It first connects to the hub, if there is one. So a program that ended without a connection has run none of the
+    student's code: that is a fault of the machine or of ours.
 
     An uncaught exception prints its traceback, beginning with the student's own lines, and exits with 1; an uncaught
     KeyboardInterrupt ends the process by SIGINT. Threads, atexit and the rest of the end are the interpreter's own.
@@ -71,7 +71,7 @@ def run_program(program: Program, place: Paths) -> None:
 
 
 def _prepare_main(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
-    """Makes this interpreter look as if it had been started with the file."""
+    """Make this interpreter look as if it had been started with the file."""
     sys.argv = [path, *arguments]
     sys.orig_argv = [sys.executable, *sys.argv]
     sys.path[0] = str(Path(path).parent)
@@ -82,7 +82,7 @@ def _prepare_main(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
         errors = "surrogateescape" if mode == "r" else "backslashreplace"
         binary = io.FileIO(number, mode, closefd=False)
         buffered = io.BufferedReader(binary) if mode == "r" else io.BufferedWriter(binary)
-        # By the line, as on a terminal, so that what was printed is there when the program is killed.
+        # By the line, as on a terminal, so that printed text is there when the program is killed.
         stream = io.TextIOWrapper(buffered, "utf-8", errors, line_buffering=True)
         setattr(sys, name, stream)
         setattr(sys, f"__{name}__", stream)
@@ -106,7 +106,7 @@ _interrupted: list[bool] = []
 
 
 def _die_of(fault: BaseException) -> NoReturn:
-    """Prints an exception as an interpreter does that ends with it, without the lines of this file."""
+    """Print an exception as an interpreter does that ends with it, without the lines of this file."""
     trace = fault.__traceback__.tb_next if fault.__traceback__ is not None else None
     _interrupted.extend([True] if isinstance(fault, KeyboardInterrupt) else [])
     sys.excepthook(type(fault), fault.with_traceback(trace), trace)
@@ -137,7 +137,7 @@ _USED_BY_MOST_NODES = (
 
 
 def main(arguments: list[str]) -> None:
-    """Serves until the last user of the socket is gone. Returns only as a student whose program has come to its end."""
+    """Serve until the last user of the socket is gone. Return only as a student whose program has ended."""
     requests, middleware, modules = int(arguments[0]), Middleware(arguments[1]), arguments[2:]
     os.chdir("/")
     fault = _load(modules, middleware)
@@ -145,27 +145,27 @@ def main(arguments: list[str]) -> None:
     gc.collect()
     gc.freeze()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # supervisors need no burial
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # supervisors need no reaping
     job = serve(requests, fault)
     if job is not None:
         run_program(job.program, job.place)
 
 
 def _prepare_for_forks() -> None:
-    """Finds out once what every fork would have to find out for itself."""
+    """Do once what every fork would otherwise have to do."""
     filesystem.system()
     filesystem.interpreter()
     if seccomp.supported():
         seccomp.program(network=False, no_signals=False)
         seccomp.program(network=False)
-    with contextlib.suppress(Exception):  # an rclpy whose logger works in another way
-        # The logger looks at the file of every module when it is first asked for a caller: half a step's time each.
+    with contextlib.suppress(Exception):  # rclpy's logger may work differently
+        # The logger reads the file of every module when it is first asked for a caller: half a step's time each.
         importlib.import_module("rclpy.impl.rcutils_logger").CallerId()
     linecache.cache.pop(__file__, None)
 
 
 def serve(requests: int, fault: str | None) -> Request | None:
-    """Forks a supervisor for each request. Returns what to run in each student, and None at the end of all requests.
+    """Fork a supervisor for each request. Return what to run in each student, and None at the end of all requests.
 
     With a `fault` nothing is started: it is the answer to each request.
     """
@@ -188,7 +188,7 @@ def serve(requests: int, fault: str | None) -> Request | None:
 
 
 def _load(modules: list[str], middleware: Middleware) -> str | None:
-    """Imports modules, and says what is wrong if rclpy has loaded another middleware than it was started for."""
+    """Import modules, and return what is wrong if rclpy has loaded another middleware than it was started for."""
     wanted = os.environ.pop("RMW_IMPLEMENTATION", None)
     if wanted and choosable():
         os.environ["RMW_IMPLEMENTATION"] = wanted
@@ -205,7 +205,7 @@ def _load(modules: list[str], middleware: Middleware) -> str | None:
 
 
 def _import(name: str) -> None:
-    """Imports a module and, if most nodes use its message types, loads their compiled support."""
+    """Import a module and, if most nodes use its message types, load their compiled support."""
     if name.split(".")[0] in _USED_BY_MOST_NODES:
         type_support.load_type_support(name)
     else:

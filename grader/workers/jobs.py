@@ -1,4 +1,4 @@
-"""What a worker can be asked to do, and the ROS domain that it uses for it."""
+"""What a worker can do, and the ROS domain that it uses for it."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ from grader.scenario.scenario import Scenario
 #: Inside network namespaces of its own a rig is alone in every domain.
 ALONE = 42
 
-#: Domains whose UDP ports lie above those that Linux gives to programs which ask for none in particular
-#: (7400 + 250 x domain > 60999), and which no ROS user takes by hand.
+#: Domains whose UDP ports are above those that Linux gives to programs which request no particular one
+#: (7400 + 250 x domain > 60999), and which no ROS user chooses by hand.
 SHARED = range(215, 233)
 
 
 @cache
 def domain_for(isolation: Isolation) -> int:
-    """The domain for this process; it stays this process's own until it ends. Raises OSError when none is left."""
+    """Return the domain of this process; it is reserved until the process ends. Raises OSError when none is left."""
     if isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
         return ALONE
     folder = Path(tempfile.gettempdir()) / f"spinbook-domains-{os.getuid()}"
     folder.mkdir(mode=0o700, exist_ok=True)
-    # Never closed: the lock goes with the process.
+    # Never closed: the lock ends with the process.
     claimed = claim_number(folder, SHARED)
     if claimed is None:
         raise OSError("all ROS domains for grading are in use by other gradings on this machine")
@@ -44,7 +44,7 @@ def domain_for(isolation: Isolation) -> int:
 
 
 class Job(Protocol):
-    """Something to do in a process of the worker pool's. `ready` is to be called once threads are allowed."""
+    """Something to do in a process of the worker pool. `ready` is to be called once threads are allowed."""
 
     def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Any:
         """Do it."""
@@ -52,7 +52,7 @@ class Job(Protocol):
 
 @dataclass(frozen=True)
 class RunJob:
-    """Spin a program through one scenario. `core` is the CPU to keep the student's program on."""
+    """Run a program through one scenario. `core` is the CPU to keep the student's program on."""
 
     exercise: Exercise
     scenario: Scenario
@@ -67,12 +67,12 @@ class RunJob:
     data_bytes: int = 8_000_000
     """What the program may publish in all messages together, over lockstep."""
     programs: tuple[Program, ...] = ()
-    """The programs of a submission of several, in place of `program`."""
+    """The programs of a submission with several, instead of `program`."""
     companions: tuple[Program, ...] = ()
-    """The author's own."""
+    """The author's own programs."""
 
     def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Recording:
-        """The recording of the spin."""
+        """Return the recording of the run."""
         by = {Middleware.LOCKSTEP: self._over_lockstep, Middleware.FASTDDS: self._over_fast_dds}
         return by[self.middleware](fork_server, ready)
 
@@ -99,7 +99,7 @@ class RunJob:
     def _over_fast_dds(self, fork_server: ForkServer, ready: Callable[[], None]) -> Recording:
         from grader.runner.fastdds.run import run
 
-        fork_server.prepare(self.middleware)  # before, so that it stays outside of what is entered now
+        fork_server.prepare(self.middleware)  # before, so that it stays outside the namespaces entered now
         enter(self.isolation)
         ready()
         domain = domain_for(self.isolation)
@@ -120,7 +120,7 @@ class JudgeJob:
     titles: dict[str, str]
 
     def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Any:
-        """The verdicts."""
+        """Return the verdicts."""
         from grader.checking.judging import judge
 
         ready()
@@ -134,7 +134,7 @@ class ListJob:
     exercise: Exercise
 
     def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Any:
-        """The checks, as `Listed`."""
+        """Return the checks, as `Listed`."""
         from grader.checking.judging import listed
 
         ready()

@@ -1,4 +1,4 @@
-"""The worker pool: a worker process that forks one process per job, and hands it one job after another."""
+"""The worker pool: a worker process that forks one process per job, and gives it one job after another."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ if TYPE_CHECKING:
     Connection: TypeAlias = multiprocessing.connection.Connection[Any, Any]
 
 
-#: No job takes this long: the student's limits end far below it.
+#: No job takes this long: the student's limits are far below it.
 LONGEST_S = 600.0
 
-#: How often a job is tried when the machine or we are at fault.
+#: How often a job is tried when we or the machine are at fault.
 TRIES = 3
 
 
 class HostFault(Exception):
-    """Raised when a job came to nothing by a fault of the machine's or ours, several times over."""
+    """Raised when a job failed several times through a fault of the machine or ours."""
 
 
 class Worker:
-    """One process of a worker pool's, made when it is first needed; use it as a context manager, and from one thread.
+    """One process of a worker pool, created when it is first needed; use it as a context manager, from one thread.
 
-    What the process has made ready for one job it has ready for the next: a rig its namespaces, and all that is
-    copied from the worker when it is first touched. So a hand is for jobs that may share a process: the spins of one
+    What the process has prepared for one job is ready for the next: a rig its namespaces, and all memory that is
+    copied from the worker when it is first touched. So it is for jobs that may share a process: the runs of one
     submission, not those of two.
     """
 
@@ -48,7 +48,7 @@ class Worker:
         self._process: Connection | None = None
 
     def do(self, job: Job, cancelled: threading.Event | None = None) -> Any:
-        """What `job` returns. An `ExerciseError` of the job's is raised here as it is, anything else as `HostFault`.
+        """Return what `job` returns. An `ExerciseError` in the job is raised as it is, anything else as `HostFault`.
 
         Returns None when `cancelled` was set meanwhile; the job's process then ends.
         """
@@ -57,7 +57,7 @@ class Worker:
             kind, result = self._once(job, cancelled or threading.Event())
             if kind == "result":
                 return result
-            self.close()  # nobody knows what the fault has left behind
+            self.close()  # the fault may have left it in any state
             if kind == "author":
                 raise result
             faults.append(str(result))
@@ -84,7 +84,7 @@ class Worker:
             return "host", "the process that did the work died"
 
     def close(self) -> None:
-        """End the process, and with it the job that it may be doing."""
+        """End the process, and any job in progress."""
         if self._process is not None:
             with contextlib.suppress(OSError):
                 self._process.close()
@@ -101,13 +101,13 @@ class Worker:
 
 PROFILE = Path(__file__).parents[1] / "loopback.xml"
 
-#: For every process that takes part in a spin over Fast DDS. The ROS domain comes on top.
+#: For every process that takes part in a run over Fast DDS. The ROS domain is added to it.
 FAST_DDS_ENVIRONMENT = {
     "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILE),
     "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
 }
 
-#: For the worker and its rigs. A second RMW or a ROS_STATIC_PEERS of the user's would part rig and student.
+#: For the worker and its rigs. A second RMW or the user's ROS_STATIC_PEERS would separate rig and student.
 WORKER_ENVIRONMENT = {
     **FAST_DDS_ENVIRONMENT,
     "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp",
@@ -127,16 +127,16 @@ PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS = b"p", b"t", b"j"
 
 
 class WorkerPool:
-    """A worker process that forks the processes which do jobs, and is started again should it die.
+    """A worker process that forks the processes which do jobs, and is restarted if it dies.
 
     Any thread may call `do` and `hand`; use it as a context manager.
     """
 
     def __init__(self, *middlewares: Middleware | None) -> None:
-        """Starts the worker, ready for programs of these middlewares; None is the one that is used without a wish.
+        """Start the worker, ready for programs of these middlewares; None is the default one.
 
         Raises:
-            MiddlewareUnavailable: if one of them can't be had on this machine.
+            MiddlewareUnavailable: if one of them is not available on this machine.
         """
         chosen = {choose_middleware(one).middleware for one in middlewares or (None,)}
         self._middlewares = sorted(one.value for one in chosen)
@@ -156,7 +156,7 @@ class WorkerPool:
         theirs.close()
 
     def do(self, job: Job, cancelled: threading.Event | None = None) -> Any:
-        """What `job` returns, done in a process of its own; see `Hand.do`."""
+        """Return what `job` returns, done in a process of its own; see `Hand.do`."""
         with self.hand() as hand:
             return hand.do(job, cancelled)
 
@@ -165,20 +165,20 @@ class WorkerPool:
         return Worker(self._process)
 
     def prepare_types(self, modules: Iterable[str]) -> None:
-        """Let the worker load modules of message types, such as `sensor_msgs.msg`, for all the jobs to come."""
+        """Let the worker load modules of message types, such as `sensor_msgs.msg`, for all later jobs."""
         for module in sorted(set(modules)):
             self._command(PREPARE_TYPES + module.encode())
 
     def prepare_to_judge(self) -> None:
-        """Let the worker import what judging needs, while spins are still running."""
+        """Let the worker import what judging needs, while scenarios are still running."""
         self._command(PREPARE_TO_JUDGE)
 
     def _command(self, command: bytes) -> None:
-        with self._lock, contextlib.suppress(OSError):  # a worker that died is started again with the next job
+        with self._lock, contextlib.suppress(OSError):  # a worker that died is restarted with the next job
             self._control.send(command)
 
     def _process(self) -> Connection:
-        """A connection to a new process that does jobs. Raises OSError where there is none to be had."""
+        """Return a connection to a new process that does jobs. Raises OSError if none can be had."""
         ours, theirs = socket.socketpair()
         try:
             self._hand_over(theirs.fileno())
@@ -190,7 +190,7 @@ class WorkerPool:
         return multiprocessing.connection.Connection(ours.detach())
 
     def _hand_over(self, descriptor: int) -> None:
-        """Ask the worker for a process more; where it has died, as by the kernel for want of memory, start another."""
+        """Request one more process from the worker; if it has died, for example for lack of memory, start another."""
         with self._lock:
             try:
                 socket.send_fds(self._control, [PROCESS], [descriptor])

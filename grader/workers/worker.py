@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 def preload() -> None:
-    """Import what runs a program, look at the file system, and leave the memory as it is shared best with forks."""
+    """Import what runs a program, look at the file system, and leave the memory in a good state for forks to share."""
     importlib.import_module("grader.runner.run")
     filesystem.mounts((PROFILE,), (), 0)
     _share()
@@ -38,7 +38,7 @@ def preload() -> None:
 
 @functools.cache
 def preload_types(module: str) -> None:
-    """The same for a module of message types, such as `sensor_msgs.msg`, and its compiled support."""
+    """Do the same for a module of message types, such as `sensor_msgs.msg`, and its compiled support."""
     middleware.load_type_support(module)
     _share()
 
@@ -49,7 +49,7 @@ LONGEST_COMMAND = 1024
 
 @functools.cache
 def preload_judging() -> None:
-    """The same for what judging needs besides."""
+    """Do the same for what judging needs."""
     from grader.checking.judging import load_pytest
 
     load_pytest()
@@ -101,10 +101,10 @@ def _reap(working: set[int]) -> None:
 
 
 def _work(descriptor: int, fork_server: ForkServer) -> NoReturn:
-    """One job after another in this process, which ends with the first that fails, or once nobody wants any more."""
+    """Do one job after another in this process, which ends with the first that fails, or when no more are requested."""
     connection = multiprocessing.connection.Connection(descriptor)
     jobs: queue.SimpleQueue[Job] = queue.SimpleQueue()
-    # Whoever wanted the result may lose interest in it: then the other end is closed, and the job ends at once.
+    # The client may lose interest in the result: then the other end is closed, and the job ends at once.
     listener = threading.Thread(target=_listen, args=(connection, jobs), daemon=True)
 
     def ready() -> None:

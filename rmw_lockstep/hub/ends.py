@@ -11,7 +11,7 @@ from rmw_lockstep.hub.qos import KEEP_ALL, TRANSIENT_LOCAL, Qos
 
 
 class Heard(NamedTuple):
-    """A message that came from a process.
+    """A message that arrived from a process.
 
     `now` is the time of the process (ns). `stage` is the number of the hub's last publication that the process had
     handled. `handled` counts the hub's frames that it had handled, and `thread` numbers its threads, from 1.
@@ -36,7 +36,7 @@ class Moment(NamedTuple):
 
 
 class Asked(NamedTuple):
-    """A request that came from a process; `node` is the full name of the client's node."""
+    """A request that arrived from a process; `node` is the full name of the client's node."""
 
     client: EndPoint
     node: str
@@ -46,7 +46,7 @@ class Asked(NamedTuple):
 
 
 class Post(Protocol):
-    """What the ends need of the hub."""
+    """What the ends need from the hub."""
 
     def publish(self, publisher: Publisher, cdr: bytes) -> int: ...
     def request(self, client: Client, number: int, cdr: bytes) -> bool: ...
@@ -58,7 +58,7 @@ class Post(Protocol):
 
 
 class End:
-    """One end point of the hub's."""
+    """One of the hub's end points."""
 
     def __init__(self, post: Post, end_point: EndPoint) -> None:
         self.end_point = end_point
@@ -76,7 +76,7 @@ class End:
 
 
 class Publisher(End):
-    """Publishes serialized messages. It keeps those that a later subscription is to get, as its QoS says."""
+    """Publishes serialized messages. It keeps those that a later subscription will get, as its QoS says."""
 
     def __init__(self, post: Post, end_point: EndPoint) -> None:
         keeps = end_point.qos.durability == TRANSIENT_LOCAL
@@ -85,12 +85,12 @@ class Publisher(End):
         super().__init__(post, end_point)
 
     def publish(self, cdr: bytes) -> int:
-        """Queue a message, and return its number among all that the hub has published: see `Heard.stage`."""
+        """Queue a message, and return its number among everything the hub has published: see `Heard.stage`."""
         return self._post.publish(self, cdr)
 
 
 class Subscription(End):
-    """Keeps what comes, in the order in which it came, or hands it to `take`."""
+    """Keeps messages in the order in which they arrived, or passes them to `take`."""
 
     def __init__(self, post: Post, end_point: EndPoint, take: Callable[[Heard], None] | None = None) -> None:
         self.heard: list[Heard] = []
@@ -99,7 +99,7 @@ class Subscription(End):
 
 
 class Client(End):
-    """Calls a service. The answers stand in `answers`, by the number that `call` returned, and in `moments` when."""
+    """Calls a service. Responses are in `answers`, by the number that `call` returned, and their times in `moments`."""
 
     def __init__(self, post: Post, end_point: EndPoint) -> None:
         self.answers: dict[int, bytes] = {}
@@ -119,10 +119,10 @@ class Client(End):
 
 
 class Server(End):
-    """Answers requests, by `answer`, which gets the serialized request and returns the serialized response.
+    """Answers requests by calling `answer` with the serialized request, which returns the serialized response.
 
-    Without `answer` requests are kept in `asked`, in the order in which they came, for `respond`. Both happen only when
-    the whole program is idle: what it does meanwhile does not depend on how fast the hub is.
+    Without `answer` requests are kept in `asked`, in the order in which they arrived, for `respond`. Both happen only
+    when the whole program is idle: what it does meanwhile does not depend on how fast the hub is.
     """
 
     def __init__(self, post: Post, end_point: EndPoint, answer: Callable[[bytes], bytes] | None = None) -> None:
@@ -143,26 +143,26 @@ class Server(End):
 
 
 class HubNode:
-    """A node of the hub's."""
+    """One of the hub's nodes."""
 
     def __init__(self, post: Post, node: Node) -> None:
         self.node = node
         self._post = post
 
     def publisher(self, topic: str, type_name: str, qos: Qos) -> Publisher:
-        """A new publisher of messages such as `std_msgs/msg/String`."""
+        """Return a new publisher of messages such as `std_msgs/msg/String`."""
         return Publisher(self._post, self._post.new_end_point(0, self.node, topic, type_name, qos))
 
     def subscription(
         self, topic: str, type_name: str, qos: Qos, take: Callable[[Heard], None] | None = None
     ) -> Subscription:
-        """A new subscription."""
+        """Return a new subscription."""
         return Subscription(self._post, self._post.new_end_point(1, self.node, topic, type_name, qos), take)
 
     def server(self, service: str, type_name: str, answer: Callable[[bytes], bytes] | None = None) -> Server:
-        """A new server of a service such as `std_srvs/srv/Trigger`."""
+        """Return a new server of a service such as `std_srvs/srv/Trigger`."""
         return Server(self._post, self._post.new_end_point(2, self.node, service, type_name, Qos()), answer)
 
     def client(self, service: str, type_name: str) -> Client:
-        """A new client of a service."""
+        """Return a new client of a service."""
         return Client(self._post, self._post.new_end_point(3, self.node, service, type_name, Qos()))

@@ -1,6 +1,6 @@
-"""The frames of PROTOCOL.md: what comes from a process is decoded and checked here, what goes to one is encoded.
+"""The frames of PROTOCOL.md: those from a process are decoded and checked here, those to a process are encoded.
 
-What comes once per message is a NamedTuple, which Python makes in a fifth of the time of a frozen dataclass.
+A frame sent once per message is a NamedTuple, which Python makes in a fifth of the time of a frozen dataclass.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ POLLS, KERNEL_SLEEP = 1, 2
 
 @dataclass(frozen=True)
 class Hello:
-    """A process introduces itself; `pid` and `parent` are its own and its parent's number, as it sees them."""
+    """A process introduces itself; `pid` and `parent` are its own and its parent's id, as it sees them."""
 
     version: int
     pid: int
@@ -68,7 +68,7 @@ class Node:
 
     @property
     def full_name(self) -> str:
-        """Such as `/arm/controller`."""
+        """For example `/arm/controller`."""
         return f"{self.namespace.rstrip('/')}/{self.name}"
 
 
@@ -115,9 +115,9 @@ class Call(NamedTuple):
 
 
 class Idle(NamedTuple):
-    """A process has nothing to do. `next` is when it will wake by itself (ns), or -1 for never.
+    """A process is idle. `next` is when it will wake by itself (ns), or -1 for never.
 
-    `runs`, in the answer to ASK, differs from an answer before if any of its threads has run in between; otherwise 0.
+    `runs`, in the answer to ASK, differs from an earlier answer if any of its threads has run in between; otherwise 0.
     """
 
     handled: int
@@ -135,7 +135,7 @@ class Idle(NamedTuple):
 
 
 def hello(payload: bytes) -> Hello:
-    """Raises `Violation` for what is no HELLO of a version that the hub speaks; so do all functions of this kind."""
+    """Decode a HELLO. Raises `Violation` if it is invalid or of an unknown version; so do the functions below."""
     version, pid, parent, timed = _exactly(_HELLO, payload)
     if version != VERSION:
         raise Violation("protocol", f"a process speaks version {version} of the protocol, the hub version {VERSION}")
@@ -143,7 +143,7 @@ def hello(payload: bytes) -> Hello:
 
 
 def node(payload: bytes) -> Node:
-    """A NODE."""
+    """Decode a NODE."""
     (number,) = _first(_ID, payload)
     name, at = _string(payload, _ID.size)
     namespace, at = _string(payload, at)
@@ -154,7 +154,7 @@ def node(payload: bytes) -> Node:
 
 
 def end_point(payload: bytes) -> EndPoint:
-    """An END_POINT."""
+    """Decode an END_POINT."""
     number, kind, owner = _first(_END_POINT, payload)
     if kind > CLIENT:
         raise Violation("protocol", f"there is no end point of kind {kind}")
@@ -169,23 +169,23 @@ def end_point(payload: bytes) -> EndPoint:
 
 
 def identity(payload: bytes) -> int:
-    """The only content of NODE_GONE, END_POINT_GONE and ALIVE."""
+    """Decode the only content of NODE_GONE, END_POINT_GONE and ALIVE."""
     (number,) = _exactly(_ID, payload)
     return int(number)
 
 
 def data(payload: bytes) -> Data:
-    """A DATA."""
+    """Decode a DATA."""
     return Data._make((*_first(_DATA, payload), payload[_DATA.size :]))
 
 
 def call(payload: bytes) -> Call:
-    """A REQUEST or a RESPONSE."""
+    """Decode a REQUEST or a RESPONSE."""
     return Call._make((*_first(_CALL, payload), payload[_CALL.size :]))
 
 
 def idle(payload: bytes) -> Idle:
-    """An IDLE."""
+    """Decode an IDLE."""
     handled, now, next_, in_ros, in_time, others, flags, runs, count = _first(_IDLE, payload)
     if len(payload) != _IDLE.size + 4 * count:
         raise Violation("protocol", "an IDLE of a wrong length")
@@ -232,7 +232,7 @@ def _check(pattern: re.Pattern[str], text: str, what: str) -> None:
 
 
 def frame(kind: bytes, payload: bytes = b"") -> bytes:
-    """A whole frame."""
+    """Return a whole frame."""
     return _HEADER.pack(len(payload) + 1, kind[0]) + payload
 
 
@@ -242,17 +242,17 @@ GRAPH_COMPLETE = frame(b"g")
 
 
 def to_welcome(process: int, now: int, epoch: int) -> bytes:
-    """WELCOME."""
+    """Encode a WELCOME."""
     return frame(b"W", _WELCOME.pack(VERSION, process, now, epoch))
 
 
 def to_node(what: Node) -> bytes:
-    """NODE."""
+    """Encode a NODE."""
     return frame(b"N", _ID.pack(what.id) + _text(what.name) + _text(what.namespace))
 
 
 def to_end_point(what: EndPoint) -> bytes:
-    """END_POINT."""
+    """Encode an END_POINT."""
     qos = what.qos
     policies = _QOS.pack(
         qos.history, qos.depth, qos.reliability, qos.durability, qos.liveliness, qos.deadline, qos.lifespan, qos.lease
@@ -262,27 +262,27 @@ def to_end_point(what: EndPoint) -> bytes:
 
 
 def to_gone(kind: bytes, number: int) -> bytes:
-    """NODE_GONE, END_POINT_GONE or ALIVE, by its `kind`."""
+    """Encode NODE_GONE, END_POINT_GONE or ALIVE, by its `kind`."""
     return frame(kind, _ID.pack(number))
 
 
 def to_data(publisher: int, only: int, source_time: int, cdr: bytes) -> bytes:
-    """DATA."""
+    """Encode a DATA."""
     return _HEADER.pack(_OUT_DATA.size + len(cdr) + 1, 68) + _OUT_DATA.pack(publisher, only, source_time) + cdr
 
 
 def to_request(server: int, client: int, number: int, source_time: int, cdr: bytes) -> bytes:
-    """REQUEST."""
+    """Encode a REQUEST."""
     return frame(b"Q", _OUT_REQUEST.pack(server, client, number, source_time) + cdr)
 
 
 def to_response(client: int, number: int, source_time: int, cdr: bytes) -> bytes:
-    """RESPONSE."""
+    """Encode a RESPONSE."""
     return frame(b"R", _OUT_RESPONSE.pack(client, number, source_time) + cdr)
 
 
 def to_time(until: int, stop: bool = False) -> bytes:
-    """TIME."""
+    """Encode a TIME."""
     return frame(b"T", _TIME.pack(until, stop))
 
 

@@ -1,4 +1,4 @@
-"""The ROS graph: every node and end point of the hub and of all processes, and which of them fit together."""
+"""The ROS graph: every node and end point of the hub and of all processes, and which of them match."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ class Graph:
         self._readers: dict[int, tuple[EndPoint, ...]] = {}
 
     def add_node(self, node: Node) -> None:
-        """A node is there now."""
+        """Add a node."""
         self.nodes[node.id] = node
 
     def remove_node(self, number: int) -> Node:
-        """It is gone; the end points that it still had are the caller's to remove."""
+        """Remove a node; the caller has to remove the end points that it still had."""
         return self.nodes.pop(number)
 
     def add(self, end_point: EndPoint) -> None:
-        """An end point is there now."""
+        """Add an end point."""
         self.end_points[end_point.id] = end_point
         self._by_name.setdefault(end_point.name, []).append(end_point)
         self._readers.clear()
 
     def remove(self, number: int) -> EndPoint:
-        """It is gone."""
+        """Remove an end point."""
         end_point = self.end_points.pop(number)
         same_name = self._by_name[end_point.name]
         same_name.remove(end_point)
@@ -45,7 +45,7 @@ class Graph:
         return end_point
 
     def readers(self, publisher: EndPoint) -> tuple[EndPoint, ...]:
-        """The subscriptions that get what `publisher` sends. Kept until anything changes: asked for each message."""
+        """Return the subscriptions that get what `publisher` sends. Cached until a change: each message needs it."""
         found = self._readers.get(publisher.id)
         if found is None:
             found = tuple(e for e in self._named(publisher, SUBSCRIPTION) if compatible(publisher.qos, e.qos))
@@ -53,29 +53,29 @@ class Graph:
         return found
 
     def writers(self, subscription: EndPoint) -> tuple[EndPoint, ...]:
-        """The publishers that `subscription` gets messages from."""
+        """Return the publishers that `subscription` gets messages from."""
         return tuple(e for e in self._named(subscription, PUBLISHER) if compatible(e.qos, subscription.qos))
 
     def servers(self, client: EndPoint) -> tuple[EndPoint, ...]:
-        """The servers that get the requests of `client`."""
+        """Return the servers that get the requests of `client`."""
         return tuple(self._named(client, SERVER))
 
     def end_points_of(self, node: int) -> tuple[EndPoint, ...]:
-        """What a node owns."""
+        """Return the end points of a node."""
         return tuple(e for e in self.end_points.values() if e.node == node)
 
     def program_nodes(self) -> tuple[Node, ...]:
-        """The nodes that are not the hub's own, by name."""
+        """Return the nodes that are not the hub's own, by name."""
         return tuple(sorted((n for n in self.nodes.values() if n.id >> 32 != HUB), key=lambda n: n.full_name))
 
     def program_end_points(self, kinds: Iterable[int] = (PUBLISHER, SUBSCRIPTION, SERVER, CLIENT)) -> list[EndPoint]:
-        """The end points that are not the hub's own."""
+        """Return the end points that are not the hub's own."""
         return [e for e in self.end_points.values() if e.process != HUB and e.kind in kinds]
 
     def of_program(self, name: str, kind: int) -> list[EndPoint]:
-        """The program's own end points of this kind and name."""
+        """Return the program's own end points of this kind and name."""
         return [e for e in self._by_name.get(name, ()) if e.kind == kind and e.process != HUB]
 
     def _named(self, other: EndPoint, kind: int) -> list[EndPoint]:
-        """End points of this kind with the same name and type."""
+        """Return the end points of this kind with the same name and type."""
         return [e for e in self._by_name.get(other.name, ()) if e.kind == kind and e.type == other.type]

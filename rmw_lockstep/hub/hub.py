@@ -1,7 +1,7 @@
-"""The hub: every process of a program is connected to it, and it alone says what happens, and when.
+"""The hub: every process of a program is connected to it, and it alone decides what happens, and when.
 
-It listens on a socket in a folder, lets time go on, and knows exactly when the whole program has nothing left to do.
-It never waits for a process without end: `patience` is called every 20 ms while it waits, and may raise.
+It listens on a socket in a folder, advances time, and knows exactly when the whole program has nothing left to do.
+It never waits for a process without a limit: `patience` is called every 20 ms while it waits, and may raise.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from rmw_lockstep.hub.router import Router
 
 SECOND = 1_000_000_000
 
-#: What a process's clock shows when the first one connects, and what the calendar shows at a clock of 0 (ns).
+#: The time on a process's clock when the first one connects, and the calendar time at a clock of 0 (ns).
 BEGIN, EPOCH = 1_000 * SECOND, 1_767_225_600 * SECOND
 
 #: The name of the socket in its folder.
@@ -35,23 +35,23 @@ LONGEST_PATH = 107
 #: How often `patience` is called while the hub waits (s).
 TICK_S = 0.02
 
-#: After how many of these a new process begins also while others are not idle.
+#: After how many of these a new process begins even if others are not idle.
 PATIENCE_TICKS = 10
 
-#: How often a process may be granted time without its time going on.
+#: How often a process may be granted time without its time advancing.
 MOST_STANDSTILLS = 100
 
 
 def _do_nothing() -> None:
-    """Wait for ever, and take notice of no end."""
+    """Wait without a limit, and ignore every end."""
 
 
 class Hub:
     """Use it as a context manager, from one thread.
 
-    `main` is the number of the program's first process, as this process sees it, once it is known: the program is not
-    idle while that one is not connected. `mains` has those of further programs. `before_end` is called before what a
-    process had is taken out of the graph.
+    `main` is the id of the program's first process, as this process sees it, once it is known: the program is not
+    idle while that one is not connected. `mains` has those of further programs. `before_end` is called before the end
+    points of a process are removed from the graph.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class Hub:
 
         Raises:
             ValueError: if the path is too long for a socket.
-            OSError: if there can be no socket.
+            OSError: if no socket can be made.
         """
         self.path = folder / SOCKET
         if len(str(self.path).encode()) > LONGEST_PATH:
@@ -97,15 +97,15 @@ class Hub:
         self._poll.register(listener, select.POLLIN)
         return listener
 
-    # --- what the owner of the hub does
+    # --- for the owner of the hub
 
     def add_door(self, folder: Path) -> Path:
-        """Listen in another folder, too, for another program; `Link.door` counts them from 1. Where it listens."""
+        """Listen in another folder, too, for another program; `Link.door` counts these from 1. Return the socket."""
         self._doors.append(self._listen(folder))
         return folder / SOCKET
 
     def node(self, name: str, namespace: str = "/") -> HubNode:
-        """A new node of the hub's own."""
+        """Return a new node of the hub's own."""
         return HubNode(self._router, self._router.new_node(name, namespace))
 
     @property
@@ -120,12 +120,12 @@ class Hub:
 
     @property
     def now(self) -> int:
-        """The time that was granted last (ns)."""
+        """The time that was granted most recently (ns)."""
         return self._until
 
     @property
     def unserved(self) -> list[Asked]:
-        """Requests of the program that no server was there for, in the order in which they came."""
+        """Requests of the program for which there was no server, in the order in which they arrived."""
         return self._router.unserved
 
     @property
@@ -135,19 +135,19 @@ class Hub:
 
     @property
     def next(self) -> int | None:
-        """When the program will wake by itself (ns); None for never. Only when it is idle."""
+        """When the program will wake by itself (ns); None for never. Valid only when it is idle."""
         return min((link.next for link in self.links if link.next is not None), default=None)
 
     @property
     def in_ros(self) -> int:
-        """How many of the program's threads wait in ROS 2. Only when it is idle."""
+        """How many of the program's threads wait in ROS 2. Valid only when it is idle."""
         return sum(link.idle.in_ros for link in self.links if link.idle)
 
     def advance(self, until: int) -> None:
-        """Let time go on to `until` (ns).
+        """Advance time to `until` (ns).
 
-        For one process alone that is only queued, before all that is published after it, until `wait_until_idle`.
-        For several, time goes on from one wake-up of any of them to the next, and this returns when it is there.
+        With a single process this is only queued, before everything published after it, until `wait_until_idle`.
+        With several, time advances from one wake-up of any of them to the next, and this returns when it is there.
         """
         self._until = max(until, self._until)
         if self._is_alone():
@@ -156,7 +156,7 @@ class Hub:
             self.wait_until_idle()
 
     def barrier(self) -> None:
-        """What is published next is handled only when all that was published before is over."""
+        """Let what is published next be handled only when everything published before is finished."""
         if self._is_alone(idle=False):
             self.links[0].queue(frames.BARRIER)
         else:
@@ -167,18 +167,18 @@ class Hub:
         while True:
             self._flush()
             if not self._is_idle():
-                self._flush()  # what `_is_idle` asks processes, or they would be waited for in vain
+                self._flush()  # including its questions to processes, or it would wait for the answers in vain
                 self._take()
             elif not self._go_on():
                 return
 
     def interrupted(self) -> None:
-        """What the program said of itself is no longer true: it was sent a signal. Ask it again."""
+        """Ask the program again: what it reported is no longer true, as it was sent a signal."""
         for link in self.links:
             link.queue(frames.ASK)
 
     def pause(self) -> None:
-        """Send what is queued and take what comes, for 20 ms at most, whether or not the program is idle."""
+        """Send what is queued and take what arrives, for 20 ms at most, whether or not the program is idle."""
         self._flush()
         self._take()
         if self._is_idle():
@@ -186,7 +186,7 @@ class Hub:
         self._flush()
 
     def is_idle(self) -> bool:
-        """Whether the program has nothing left to do, by all that has come so far."""
+        """Return whether the program has nothing left to do, according to everything that has arrived so far."""
         return self._is_idle()
 
     def drain(self, at_most_s: float = 1.0) -> None:
@@ -198,7 +198,7 @@ class Hub:
             self._take()
 
     def close(self) -> None:
-        """Disconnect every process, and listen no more."""
+        """Disconnect every process, and stop listening."""
         for link in self.links:
             link.close()
         self.links.clear()
@@ -219,7 +219,7 @@ class Hub:
     # --- time
 
     def _is_alone(self, idle: bool = True) -> bool:
-        """Whether there is, and always was, one process only, whose time may go on in one piece."""
+        """Return whether there is, and always was, a single process, whose time may advance in one piece."""
         links = self.links
         if len(links) != 1 or self._use.connections != 1 or self._router.serves:
             return False
@@ -231,7 +231,7 @@ class Hub:
         link.queue(frames.to_time(until))
 
     def _go_on(self) -> bool:
-        """Let the idle program's time go on to the next wake-up of any process. False when it is where it is to be.
+        """Advance the idle program's time to the next wake-up of any process. Return False if it has reached its goal.
 
         No process gets ahead of the others: what one sends at its wake-up, another may get before it wakes itself.
         """
@@ -246,10 +246,10 @@ class Hub:
         return self._reach_instant()
 
     def _reach_instant(self) -> bool:
-        """Let the time of those go on that are behind the present instant: first of all who do not wake then, and after
-        them the others, one after another. False when all are there.
+        """Advance the time of processes that are behind the current instant: first of all that do not wake then, after
+        them that of the others, one after another. Return False when all are there.
 
-        A process that is woken may end, and so wake its parent, whose clock must show the time by then.
+        A process that is woken may end, and so wake its parent, whose clock must show the same time by then.
         """
         behind = [link for link in self.links if link.now < self._instant]
         if not behind:
@@ -261,7 +261,7 @@ class Hub:
         return True
 
     def _see_progress(self, link: Link) -> None:
-        """Raise `Violation` when a process's time stays where it is."""
+        """Raise `Violation` when a process's time does not advance."""
         self._standstills = self._standstills + 1 if link.granted == self._instant else 0
         if self._standstills > MOST_STANDSTILLS:
             raise Violation("protocol", "a process is granted time again and again, and its time does not go on")
@@ -269,7 +269,7 @@ class Hub:
     # --- connections
 
     def _is_idle(self) -> bool:
-        """Whether every process is, the children that they name included."""
+        """Return whether every process is idle, including the children that they name."""
         links = self.links
         self._awaited = False
         if not links or not all(link.is_idle for link in links if link.began):
@@ -286,9 +286,9 @@ class Hub:
         return not self._awaited and self._is_confirmed()
 
     def _is_confirmed(self) -> bool:
-        """Whether each of several processes has said so twice, and none of their threads has run in between.
+        """Return whether each of several processes has reported twice to be idle, with no thread running in between.
 
-        One may wake another in a way that is not seen here, such as a pipe, after the other has said that it is idle.
+        One may wake another in a way that is not seen here, such as a pipe, after the other has reported to be idle.
         """
         if len(self.links) == 1:
             return True
@@ -301,7 +301,7 @@ class Hub:
         return False
 
     def _missing_children(self) -> list[Link]:
-        """The processes that name a child which is not connected: not yet, no more, or never."""
+        """Return the processes that name a child which is not connected: not yet, no longer, or never."""
         naming = [link for link in self.links if link.idle and link.idle.children]
         if not naming:
             return []
@@ -313,7 +313,7 @@ class Hub:
         ]
 
     def _accept(self) -> bool:
-        """Let in who waits at any door. Whether there was anybody."""
+        """Accept connections at all doors. Return whether there were any."""
         let_in = [self._let_in(door, listener) for door, listener in enumerate(self._doors)]
         return any(let_in)
 
@@ -340,7 +340,7 @@ class Hub:
             link.flush()
 
     def _welcome(self) -> bool:
-        """Let those begin who have said HELLO, at the time of the others. Whether there was anybody.
+        """Start those that have sent HELLO, at the time of the others. Return whether there were any.
 
         A new process waits until the others are idle: then its parent's time is known.
         """
@@ -351,7 +351,7 @@ class Hub:
         return bool(waiting)
 
     def _take(self) -> None:
-        """Wait for whatever comes, for 20 ms at most, and take it. Raises `Violation`, and what `patience` raises."""
+        """Wait at most 20 ms for something to arrive, and take it. Raises `Violation`, and what `patience` raises."""
         links = self.links
         if len(links) == 1 and not self._awaited and not links[0].unsent:
             self._read(links[0], 0)
@@ -363,7 +363,7 @@ class Hub:
             self._ticks += 1
             self._accept()
             if not self._ticks % PATIENCE_TICKS:
-                self._welcome()  # somebody may compute until the new process has done something
+                self._welcome()  # another process may compute until the new one has done something
             for link in self._missing_children():
                 link.queue(frames.ASK)
             self.patience()

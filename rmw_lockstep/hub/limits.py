@@ -1,11 +1,11 @@
-"""What a program may ask of the hub, and the one exception that says it asked for more."""
+"""What a program may request from the hub, and the one exception for requesting more."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Literal
 
-#: Why the hub does not go on with a program. `protocol`: it broke a rule of PROTOCOL.md.
+#: Why the hub stopped a program. `protocol`: it broke a rule of PROTOCOL.md.
 Reason = Literal[
     "protocol", "message", "bytes", "messages", "frames", "nodes", "end points", "connections", "unread", "wake-ups"
 ]
@@ -15,7 +15,7 @@ Reason = Literal[
 class Limits:
     """How much all processes of a program may send, own and leave unread, from the first connection to the last.
 
-    Sizes are in bytes. No right program comes near any of them.
+    Sizes are in bytes. No correct program comes near any of them.
     """
 
     message_bytes: int = 1_000_000
@@ -23,25 +23,25 @@ class Limits:
     data_bytes: int = 8_000_000
     """All of them together."""
     messages: int = 20_000
-    """How many of them there may be."""
+    """The number of these."""
     frames: int = 1_000_000
     """Frames of any kind."""
     nodes: int = 200
-    """Nodes at one time."""
+    """Nodes at the same time."""
     end_points: int = 4_000
-    """Publishers, subscriptions, clients and servers at one time. A node of rclpy has about ten of its own."""
+    """Publishers, subscriptions, clients and servers at the same time. A node of rclpy has about ten of its own."""
     connections: int = 64
-    """Processes at one time."""
+    """Processes at the same time."""
     all_connections: int = 5_000
-    """Processes one after another."""
+    """Processes in total."""
     unread_bytes: int = 16_000_000
     """What is kept for a process that does not read."""
     wake_ups: int = 1_000_000
-    """How often several processes may have time granted to them. One process alone is granted it in one piece."""
+    """How often several processes may be granted time. A single process is granted it in one piece."""
 
 
 class Violation(Exception):
-    """Raised when a program sends what no right program sends. `limit` is the number that `found` exceeds, or 0."""
+    """Raised when a program sends what no correct program sends. `limit` is the number that `found` exceeds, or 0."""
 
     def __init__(self, reason: Reason, text: str, *, found: int = 0, limit: int = 0) -> None:
         super().__init__(text)
@@ -52,7 +52,7 @@ class Violation(Exception):
 
 
 class Use:
-    """What a program has used so far. Each method raises `Violation` when that is more than `limits` allow."""
+    """What a program has used so far. Each method raises `Violation` when that exceeds `limits`."""
 
     def __init__(self, limits: Limits) -> None:
         self.limits = limits
@@ -81,7 +81,7 @@ class Use:
             raise _exceeded("messages", "messages", self.messages, limits.messages)
 
     def connection(self, alive: int) -> None:
-        """Count a connection, beside `alive` others."""
+        """Count a connection, besides `alive` others."""
         self.connections += 1
         if alive >= self.limits.connections:
             raise _exceeded("connections", "processes", alive + 1, self.limits.connections)
@@ -95,19 +95,19 @@ class Use:
             raise _exceeded("wake-ups", "wake-ups", self.wake_ups, self.limits.wake_ups)
 
     def nodes(self, count: int) -> None:
-        """See that there may be `count` nodes."""
+        """Check that there may be `count` nodes."""
         if count > self.limits.nodes:
             raise _exceeded("nodes", "nodes", count, self.limits.nodes)
 
     def end_points(self, count: int) -> None:
-        """See that there may be `count` end points."""
+        """Check that there may be `count` end points."""
         if count > self.limits.end_points:
             raise _exceeded(
                 "end points", "publishers, subscriptions, clients and servers", count, self.limits.end_points
             )
 
     def unread(self, size: int) -> None:
-        """See that `size` bytes may be kept for a process that does not read."""
+        """Check that `size` bytes may be kept for a process that does not read."""
         if size > self.limits.unread_bytes:
             raise _exceeded("unread", "unread bytes", size, self.limits.unread_bytes)
 

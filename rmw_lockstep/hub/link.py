@@ -1,4 +1,4 @@
-"""The hub's end of the connection to one process: frames in, frames out, and what the process has said of itself."""
+"""The hub's end of the connection to one process: frames in, frames out, and what the process has reported."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from collections.abc import Callable
 from rmw_lockstep.hub.frames import KERNEL_SLEEP, Hello, Idle
 from rmw_lockstep.hub.limits import Use, Violation
 
-#: How much is read at once: small enough that a process which sends without end cannot keep the hub.
+#: How much is read at once: little enough that a process which never stops sending can't block the hub.
 PIECE = 65_536
 
-#: A frame holds more than the message in it.
+#: A frame contains more than the message in it.
 _FRAME_BESIDE_MESSAGE = 1_024
 
 _CREDENTIALS = struct.Struct("iII")
@@ -22,9 +22,9 @@ _WAIT = struct.Struct("ll")
 
 
 class Link:
-    """One process. `number` is what its identities begin with; `pid` is its number as the hub sees it.
+    """One process. `number` begins its identities; `pid` is its process id as the hub sees it.
 
-    `door` is the number of the door that it came in by: that of its program.
+    `door` is the number of the door through which it connected: that of its program.
     """
 
     def __init__(self, sock: socket.socket, number: int, use: Use, door: int = 0) -> None:
@@ -50,7 +50,7 @@ class Link:
         self._first_mark = 0
 
     def begin(self, now: int, published: int) -> None:
-        """The process begins at the time `now` (ns), when the hub has published so many messages."""
+        """Begin at the time `now` (ns), when the hub has published so many messages."""
         self.began = True
         self.now = self.granted = now
         self._first_mark = published
@@ -62,16 +62,16 @@ class Link:
 
     @property
     def pid_inside(self) -> int:
-        """The number of the process as it sees it itself: in the order in which the program's processes were made."""
+        """The process's id as it sees it itself: in the order in which the program's processes were started."""
         return self.hello.pid if self.hello else 0
 
     @property
     def order(self) -> tuple[int, int]:
-        """Where it stands among all processes, the same in each run: by program, then as they were made."""
+        """Its position among all processes, the same in each run: by program, then in the order of their start."""
         return self.door, self.pid_inside
 
     def wait_at_most(self, seconds: float) -> None:
-        """How long `read` waits. A blocking read with a time-out is one system call, where `settimeout` takes two."""
+        """Limit how long `read` waits. A blocking read with a time-out is one system call, `settimeout` needs two."""
         whole = int(seconds)
         waiting = _WAIT.pack(whole, int((seconds - whole) * 1e6))
         self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, waiting)
@@ -90,33 +90,33 @@ class Link:
         return len(self._unsent)
 
     def flush(self) -> None:
-        """Send what is queued, as far as that goes without waiting. Raises `Violation` when too much is left over."""
+        """Send what is queued, as far as possible without waiting. Raises `Violation` when too much is left over."""
         if self._queued:
             self._unsent += b"".join(self._queued)
             self._queued.clear()
         if not self._unsent:
             return
-        with contextlib.suppress(BlockingIOError, BrokenPipeError, ConnectionResetError):  # `read` finds its end
+        with contextlib.suppress(BlockingIOError, BrokenPipeError, ConnectionResetError):  # `read` notices its end
             done = self.socket.send(self._unsent, socket.MSG_DONTWAIT | socket.MSG_NOSIGNAL)
             self._unsent = self._unsent[done:]
         self._use.unread(len(self._unsent))
 
     def mark(self, ordinal: int) -> None:
-        """What the hub has published as number `ordinal` is handled with what is queued now."""
+        """Note that what the hub has published as number `ordinal` is handled once the current queue is."""
         self._marks_at.append(self.sent)
         self._marks.append(ordinal)
 
     def stage(self, handled: int) -> int:
-        """The number of the last publication of the hub's that came before, when `handled` frames had been handled."""
+        """Return the number of the hub's last publication before `handled` frames had been handled."""
         found = bisect_right(self._marks_at, handled)
         return self._marks[found - 1] if found else self._first_mark
 
     # --- in
 
     def read(self, handle: Callable[[Link, int, bytes], None], flags: int = 0) -> bool:
-        """Read once and handle the whole frames in it. False at the end of the connection.
+        """Read once and handle the whole frames in it. Return False at the end of the connection.
 
-        Raises BlockingIOError when nothing comes, and `Violation`.
+        Raises BlockingIOError when there is nothing to read, and `Violation`.
         """
         try:
             data = self.socket.recv(PIECE, flags)
@@ -150,29 +150,29 @@ class Link:
         return Violation("protocol", f"a frame of {length:,} bytes")
 
     def moment(self, handled: int, now: int) -> tuple[int, int]:
-        """What a process says of a moment, as far as it can be true: neither goes back, nor beyond what was allowed."""
+        """Return a reported moment, corrected to be possible: neither number decreases, or exceeds what was allowed."""
         self.handled = min(max(handled, self.handled), self.sent)
         self.now = min(max(now, self.now), self.granted)
         return self.handled, self.now
 
     def believe(self, idle: Idle) -> None:
-        """The process says that it is idle."""
+        """Note that the process reports to be idle."""
         _, now = self.moment(idle.handled, idle.now)
         self.idle = self.last_idle = idle._replace(now=now)
 
     @property
     def is_idle(self) -> bool:
-        """Whether it is, apart from its children."""
+        """Whether it is idle, apart from its children."""
         idle = self.idle
         return idle is not None and idle.handled == self.sent and not idle.flags & KERNEL_SLEEP
 
     @property
     def next(self) -> int | None:
-        """When it will wake by itself (ns); None for never. Only for one that is idle."""
+        """When it will wake by itself (ns); None for never. Valid only when it is idle."""
         if self.idle is None or self.idle.next < 0:
             return None
         return max(self.idle.next, self.now + 1)
 
     def close(self) -> None:
-        """Speak with it no more."""
+        """Close the connection."""
         self.socket.close()

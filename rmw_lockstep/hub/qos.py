@@ -1,4 +1,4 @@
-"""Quality of service: what publishers offer, what subscriptions ask for, and when the two fit."""
+"""Quality of service: what publishers offer, what subscriptions request, and when the two match."""
 
 from __future__ import annotations
 
@@ -32,17 +32,17 @@ class Qos:
 
     @property
     def reliability_name(self) -> str:
-        """As rclpy names it, in lower case."""
+        """The name in rclpy, in lower case."""
         return _RELIABILITY.get(self.reliability, "system_default")
 
     @property
     def durability_name(self) -> str:
-        """As rclpy names it, in lower case."""
+        """The name in rclpy, in lower case."""
         return _DURABILITY.get(self.durability, "system_default")
 
 
 def compatible(offered: Qos, requested: Qos) -> bool:
-    """Whether a subscription that requests one gets what a publisher sends that offers the other.
+    """Return whether a subscription that requests one gets what a publisher sends that offers the other.
 
     The rules are DDS's "requested versus offered" (DDS 1.4, section 2.2.3).
     """
@@ -56,5 +56,5 @@ def compatible(offered: Qos, requested: Qos) -> bool:
 
 
 def _duration(nanoseconds: int) -> int:
-    """Zero stands for "not specified" in rmw, which is no limit."""
+    """Return a duration; zero means "not specified" in rmw, which is no limit."""
     return nanoseconds or INFINITE

@@ -1,4 +1,4 @@
-"""What the hub does with each frame: the graph is kept, and messages go to whom they are for."""
+"""What the hub does with each frame: it updates the graph, and forwards messages to their recipients."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MOST_REQUESTS = 10_000
 
 @dataclass(frozen=True)
 class Route:
-    """Where the messages of one publisher go: to subscriptions of the hub's, and to processes."""
+    """Where the messages of one publisher go: to the hub's subscriptions, and to processes."""
 
     node: str
     subscriptions: list[Subscription]
@@ -29,10 +29,10 @@ class Route:
 
 
 class Router:
-    """Knows every link and the hub's own ends, and passes frames on between them."""
+    """Knows every link and the hub's own ends, and forwards frames between them."""
 
     def __init__(self, use: Use, calendar: Callable[[], int], epoch: int) -> None:
-        """`calendar` is the calendar's time now, with which the hub's messages are stamped (ns)."""
+        """`calendar` is the current calendar time, which stamps the hub's messages (ns)."""
         self.graph = Graph()
         self.links: list[Link] = []
         self.published = 0
@@ -57,7 +57,7 @@ class Router:
         }
 
     def handle(self, link: Link, kind: int, payload: bytes) -> None:
-        """Take one frame of a process. Raises `Violation`."""
+        """Handle one frame from a process. Raises `Violation`."""
         if not link.began:
             self._hello(link, kind, payload)
             return
@@ -72,7 +72,7 @@ class Router:
         link.hello = frames.hello(payload)
 
     def welcome(self, link: Link, now: int) -> None:
-        """Let a process that has said HELLO begin, at the time `now`."""
+        """Let a process that has sent HELLO begin, at the time `now`."""
         link.begin(now, self.published)
         link.queue(frames.to_welcome(link.number, now, self._epoch))
 
@@ -126,7 +126,7 @@ class Router:
             self._replay(link, end_point)
 
     def _replay(self, link: Link, subscription: EndPoint) -> None:
-        """A subscription that asks for it gets what was published before. Processes replay what is theirs."""
+        """Send a subscription what was published before, if it requests that. Processes replay their own messages."""
         for writer in self.graph.writers(subscription):
             publisher = self._ends.get(writer.id)
             if isinstance(publisher, Publisher):
@@ -162,16 +162,16 @@ class Router:
                 self._pass_on(origin, link, frame)
 
     def _pass_on(self, origin: Link | None, to: Link, frame: bytes) -> None:
-        """What one process sends to another is held until all are idle: see `deliver`."""
+        """Hold what one process sends to another until all are idle: see `deliver`."""
         if origin is None:
             to.queue(frame)
         else:
             self._held.append((origin.order, to, frame))
 
     def deliver(self) -> bool:
-        """Pass on what processes sent to one another, one sender after the other. Whether there was anything.
+        """Forward what processes sent to one another, one sender after the other. Return whether there was anything.
 
-        Processes run at the same time, so without this it would be chance whose message another one gets first.
+        Processes run in parallel, so without this it would be random whose message another one gets first.
         """
         held, self._held = sorted(self._held, key=lambda one: one[0]), []
         for _, to, frame in held:
@@ -183,7 +183,7 @@ class Router:
         return bool(held or asked)
 
     def forget(self, link: Link) -> None:
-        """A process has ended, and with it all that it had."""
+        """Remove a process that has ended, and everything it had."""
         self.links.remove(link)
         for number in tuple(link.end_points):
             self._remove_end_point(link, number)
@@ -280,35 +280,35 @@ class Router:
     # --- the hub's own ends: see `rmw_lockstep.hub.ends.Post`
 
     def new_node(self, name: str, namespace: str = "/") -> Node:
-        """A node of the hub's."""
+        """Return a new node of the hub's."""
         node = Node(next(self._numbers), name, namespace)
         self.graph.add_node(node)
         self._broadcast(frames.to_node(node))
         return node
 
     def new_end_point(self, kind: int, node: Node, name: str, type: str, qos: Qos) -> EndPoint:
-        """An identity for an end point of the hub's."""
+        """Return an identity for one of the hub's end points."""
         return EndPoint(next(self._numbers), kind, node.id, name, type, type_hash(type), qos)
 
     def add_end(self, end: End) -> None:
-        """It is in the graph from now on."""
+        """Add it to the graph."""
         self._ends[end.end_point.id] = end
         self._add(end.end_point)
         self._broadcast(frames.to_end_point(end.end_point))
 
     def remove_end(self, end: End) -> None:
-        """It is in the graph no more."""
+        """Remove it from the graph."""
         del self._ends[end.end_point.id]
         self._remove(end.end_point.id)
         self._broadcast(frames.to_gone(b"e", end.end_point.id))
 
     @property
     def serves(self) -> bool:
-        """Whether the hub answers anything by itself."""
+        """Whether the hub itself answers anything."""
         return any(isinstance(end, Server) for end in self._ends.values())
 
     def matched(self, end_point: EndPoint) -> tuple[EndPoint, ...]:
-        """The processes' end points that an end point of the hub's exchanges messages with."""
+        """Return the processes' end points that exchange messages with one of the hub's end points."""
         graph = self.graph
         if end_point.kind == SERVER:
             clients = graph.of_program(end_point.name, CLIENT)
@@ -317,7 +317,7 @@ class Router:
         return tuple(other for other in others(end_point) if other.process != HUB)
 
     def publish(self, publisher: Publisher, cdr: bytes) -> int:
-        """Queue a message for every process that it is for, or may be for by the time it gets there."""
+        """Queue a message for every process that it is for, or may be for by the time it arrives."""
         self.published += 1
         source_time = self._calendar()
         publisher.history.append((source_time, cdr))
@@ -330,14 +330,14 @@ class Router:
         return self.published
 
     def request(self, client: Client, number: int, cdr: bytes) -> bool:
-        """Queue a request; False when nobody serves it."""
+        """Queue a request; return False if it has no server."""
         servers = self.matched(client.end_point)
         for server in servers:
             self._ask(None, server, client.end_point.id, number, self._calendar(), cdr)
         return bool(servers)
 
     def respond(self, client: int, number: int, cdr: bytes) -> None:
-        """Queue a response of the hub's to a process."""
+        """Queue one of the hub's responses to a process."""
         link = self._link(client >> 32)
         if link is not None:
             link.queue(frames.to_response(client, number, self._calendar(), cdr))

@@ -34,7 +34,7 @@ private:
   size_t start_;
 };
 
-// Reads what follows the kind of a frame. Where a frame is too short, `ok` becomes false and all else is 0.
+// Reads what follows the kind of a frame. If a frame is too short, `ok` becomes false and everything else is 0.
 class Reader {
 public:
   Reader(const uint8_t * data, size_t size) : at_(data), end_(data + size) {}

@@ -7,8 +7,8 @@
 namespace lockstep {
 namespace {
 
-// A thread that reads the clock this often without ever waiting waits for a time to come; then each further so many
-// readings take so long (ns). Python reads it once for each lock that it takes, so many readings are free.
+// A thread that reads the clock this often without ever waiting waits for a time to come; from then on every so many
+// readings take this long (ns). Python reads it once per lock that it takes, so many readings are free.
 constexpr unsigned FREE_READINGS = 100'000, READINGS = 1'000;
 constexpr int64_t TIME_PER_READINGS = 1'000'000;
 

@@ -10,8 +10,8 @@
 namespace lockstep {
 namespace {
 
-// A thread of Python asks for the global lock, every 5 ms of real time, until its holder lets go. Here it does so after
-// as much CPU time of the process, so that a busy machine does not change which thread runs next (ns).
+// A thread of Python asks for the global lock, every 5 ms of real time, until its holder releases it. Here it does so
+// after as much CPU time of the process, so that a busy machine does not change which thread runs next (ns).
 constexpr int64_t LOOK = 5'000'000, SWITCH = 20'000'000;
 
 struct Range {

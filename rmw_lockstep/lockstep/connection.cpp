@@ -19,7 +19,7 @@ namespace {
 
 constexpr uint32_t VERSION = 1;
 
-// While the process is not idle and nobody tells when it is, the keeper looks this often: first, and at most (ns).
+// While the process is not idle and no thread reports when it is, the keeper checks this often: at first, at most (ns).
 constexpr int64_t FIRST_LOOK = 200'000, LONGEST_LOOK = 2'000'000;
 
 int open_socket(const std::string & path) {
@@ -132,7 +132,7 @@ void Core::receive() {
   if (got <= 0) lost();
 }
 
-// The hub is gone: nothing will come any more, nobody waits for what this process does, and time is the computer's own.
+// The hub is gone: nothing will arrive any more, nothing waits for this process, and time is the computer's own.
 void Core::lost() {
   connected_ = false;
   virtual_ = false;

@@ -61,7 +61,7 @@ void Core::call_later(void (*function)(const void *, size_t), const void * data,
   later_.push_back({function, data, count});
 }
 
-// The thread that tells may fall asleep where this library does not see it, so the keeper has to look.
+// The thread that reports may fall asleep unseen by this library, so the keeper has to check.
 void Core::tell(const uint8_t * frame, size_t size) {
   send(frame, size);
   changed_ = true;
@@ -99,7 +99,7 @@ void Core::wake(Sleeper & sleeper, bool due) {
   nudge(sleeper);
 }
 
-// Wakes a thread that has been told to wake up, in the way in which it sleeps. False: it may have come too early.
+// Wakes a thread that has been told to wake up, in the way in which it sleeps. False: it may have been too early.
 bool Core::nudge(const Sleeper & sleeper) {
   if (sleeper.semaphore) {
     const int operation = FUTEX_WAKE | (sleeper.semaphore_shared ? 0 : FUTEX_PRIVATE_FLAG);
@@ -178,7 +178,7 @@ void Core::begin_time(const uint8_t * frame, uint32_t size) {
   sent_output_ = false;
 }
 
-// Called when the process is idle. Wakes who is to wake next; true: look again whether the process is idle.
+// Called when the process is idle. Wakes the next thread in turn; true: check again whether the process is idle.
 bool Core::go_on() {
   if (!(stop_at_output_ && sent_output_)) {
     Sleeper * next = nullptr;

@@ -17,25 +17,25 @@ namespace lockstep {
 
 constexpr int64_t NEVER = LOCKSTEP_NEVER;
 
-// A thread that waits in this library, on that thread's own stack. It stands in `Core::sleepers` from before it falls
-// asleep until after it has woken, so that a thread on its way into or out of its sleep is never taken for asleep.
+// A thread that waits in this library, on that thread's own stack. It is in `Core::sleepers` from before it falls
+// asleep until after it has woken, so that a thread on its way into or out of its sleep is never considered asleep.
 struct Sleeper {
   int64_t deadline = NEVER;          // on the steady clock (ns)
   pid_t thread = 0;
   std::atomic<uint32_t> awake{0};    // what the thread sleeps on; not 0 once it has been told to wake up
-  bool due = false;                  // told to because its deadline has come
-  // How it sleeps, where it can be woken by more than this library:
+  bool due = false;                  // woken because its deadline has passed
+  // How it sleeps, if it can be woken by more than this library:
   std::atomic<uint32_t> * semaphore = nullptr;  // the value of a POSIX semaphore
   bool semaphore_shared = false;
   pthread_cond_t * condition = nullptr;
-  int event = -1;                    // an eventfd that it polls, beside
+  int event = -1;                    // an eventfd that it polls, together with
   const pollfd * files = nullptr;    // these files
   nfds_t file_count = 0;
-  bool holds_interpreter = false;    // it reads the clock again and again, and threads that wait for it wait for Python
+  bool holds_interpreter = false;    // it reads the clock repeatedly, and threads that wait for it wait for Python
 
   // Whether what it waits for, besides its time, is there.
   bool satisfied() const;
-  // Whether being in the list proves that it sleeps: of a condition variable nobody can tell who was woken.
+  // Whether being in the list proves that it sleeps: with a condition variable there is no telling who was woken.
   bool certain() const { return !condition; }
 };
 
@@ -54,13 +54,13 @@ public:
 
   // All below: with the lock held.
   void participate(const lockstep_participant * participant) { participant_ = participant; }
-  // What the hub is told of the graph, or a message: it takes the process for busy from then on.
+  // What the hub is sent about the graph, or a message: it considers the process busy from then on.
   void tell(const uint8_t * frame, size_t size);
   void sent_output() { sent_output_ = true; }
   lockstep_moment here();
   void call_later(void (*function)(const void *, size_t), const void * data, size_t count);
 
-  // Put a sleeper into the list, and see whether the process is idle now; take it out again.
+  // Put a sleeper into the list, and check whether the process is idle now; remove it again.
   void fall_asleep(Sleeper & sleeper);
   void wake_up(Sleeper & sleeper);
   void wake(Sleeper & sleeper, bool due);
@@ -70,7 +70,7 @@ public:
   // Threads of Python that wait for its global lock are about to run.
   std::atomic<int> contending{0};
 
-  // How many threads wait for a frame that is on its way, and may be behind a time or a barrier. With the lock held.
+  // How many threads wait for a frame in transit, which may be behind a time or a barrier. With the lock held.
   int awaited = 0;
 
   // In the parent, and in the child, of a fork. A child that is about to become another program does not connect.
@@ -117,8 +117,8 @@ private:
   std::vector<uint8_t> in_;
   size_t in_at_ = 0;
   uint64_t handled_ = 0;
-  bool changed_ = false;           // since the process said that it was idle
-  bool asked_ = false;             // whether it still is
+  bool changed_ = false;           // since the process reported to be idle
+  bool asked_ = false;             // by the hub, whether it still is idle
   bool time_runs_ = false, stop_at_output_ = false, sent_output_ = false;
   int64_t until_ = 0;
 };

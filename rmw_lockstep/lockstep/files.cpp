@@ -1,6 +1,6 @@
 // poll(2), select(2) and epoll_wait(2) with a time-out.
 //
-// Each thread polls an eventfd beside the program's files, by which it is woken when its time has come.
+// Each thread polls an eventfd besides the program's files, which wakes it when its time has come.
 #include <errno.h>
 #include <sys/eventfd.h>
 

@@ -1,8 +1,8 @@
 // liblockstep: the end of the hub's socket in every process of a program under test. See PROTOCOL.md.
 //
-// The library is preloaded. It connects to the hub, keeps the computer's time as the hub says, lets sleeping threads
-// sleep in that time, and tells the hub when the process is idle. Whoever speaks ROS 2 over the connection (the RMW
-// beside this folder) registers here.
+// The library is preloaded. It connects to the hub, sets the computer's time as the hub says, lets sleeping threads
+// sleep in that time, and reports to the hub when the process is idle. A client that speaks ROS 2 over the connection
+// (the RMW next to this folder) registers here.
 #ifndef LOCKSTEP_H_
 #define LOCKSTEP_H_
 
@@ -16,7 +16,7 @@ extern "C" {
 #define LOCKSTEP_API __attribute__((visibility("default")))
 #define LOCKSTEP_NEVER INT64_MAX
 
-/// Connect this process to the hub that listens at `path`, and live in its time from now on.
+/// Connect this process to the hub that listens at `path`; from now on the hub sets its time.
 /// Returns 0, or an errno; EALREADY if the process is connected.
 LOCKSTEP_API int lockstep_connect(const char * path);
 
@@ -33,13 +33,13 @@ LOCKSTEP_API int64_t lockstep_calendar(void);
 /// The number by which the hub knows this process; 0 without a hub.
 LOCKSTEP_API uint32_t lockstep_process(void);
 
-/// The one lock of this process. Everything below is called with the lock held, unless said otherwise. Not recursive.
+/// The only lock of this process. Everything below is called with the lock held, unless said otherwise. Not recursive.
 LOCKSTEP_API void lockstep_lock(void);
 LOCKSTEP_API void lockstep_unlock(void);
 
-/// What the hub's frames other than time and barriers are handed to, with the lock held. `next` says when the
+/// What the hub's frames other than time and barriers are passed to, with the lock held. `next` returns when the
 /// participant wants `due` to be called (ns, LOCKSTEP_NEVER: not at all). `waiting` counts threads in rmw_wait.
-/// `reset` is called in the child of a fork, where the connection and what belongs to it is gone.
+/// `reset` is called in the child of a fork, where the connection and what belongs to it are gone.
 typedef struct lockstep_participant {
   void (*frame)(const uint8_t * frame, size_t size);
   int64_t (*next)(void);
@@ -49,26 +49,26 @@ typedef struct lockstep_participant {
 } lockstep_participant;
 LOCKSTEP_API void lockstep_participate(const lockstep_participant * participant);
 
-/// Send a whole frame, its length first. Nothing happens without a hub.
+/// Send a whole frame, its length first. Does nothing without a hub.
 LOCKSTEP_API void lockstep_send(const uint8_t * frame, size_t size);
 
-/// Where the process is: frames handled, its time, and the calling thread's number. `lockstep_sent_output` says that
+/// Where the process is: frames handled, its time, and the calling thread's number. `lockstep_sent_output` reports that
 /// a DATA, REQUEST or RESPONSE was sent.
 typedef struct lockstep_moment { uint64_t handled; int64_t now; uint32_t thread; } lockstep_moment;
 LOCKSTEP_API lockstep_moment lockstep_here(void);
 LOCKSTEP_API void lockstep_sent_output(void);
 
-/// Let the calling thread wait until it is woken or until `deadline` on the steady clock has come. The lock is released
-/// meanwhile. Returns 1 if it was woken. `waiter` must stay until then.
+/// Let the calling thread wait until it is woken or until `deadline` on the steady clock. The lock is released
+/// meanwhile. Returns 1 if it was woken. `waiter` must exist until then.
 typedef struct lockstep_waiter { void * sleeper; int woken; } lockstep_waiter;
 LOCKSTEP_API int lockstep_wait(lockstep_waiter * waiter, int64_t deadline);
 LOCKSTEP_API void lockstep_wake(lockstep_waiter * waiter);
 
-/// Block, in real time, until `*done` is not 0 or the hub is gone. The thread counts as busy. Times and barriers that the
-/// hub has sent are over, meanwhile: what is waited for may be behind them.
+/// Block, in real time, until `*done` is not 0 or the hub is gone. The thread counts as busy. Times and barriers that
+/// the hub has sent end meanwhile: what the thread waits for may be behind them.
 LOCKSTEP_API void lockstep_block_until(const volatile int * done);
 
-/// How often the calling thread has waited for anything so far: two equal answers mean that it never rested.
+/// How often the calling thread has waited for anything so far: two equal answers mean that it never waited in between.
 LOCKSTEP_API uint64_t lockstep_rests(void);
 
 /// Call `function(data, count)` once the lock is released.

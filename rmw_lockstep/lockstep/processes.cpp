@@ -40,8 +40,8 @@ extern "C" {
 
 LOCKSTEP_API pid_t fork() { return fork_and_tell(true); }
 
-// The child of a vfork is about to become another program, which connects by itself. That it is a copy of its parent's
-// memory, and not its parent's memory, is allowed (vfork, POSIX.1-2001).
+// The child of a vfork is about to become another program, which connects by itself. It is a copy of its parent's
+// memory, and not its parent's memory, which is allowed (vfork, POSIX.1-2001).
 LOCKSTEP_API pid_t vfork() { return fork_and_tell(false); }
 
 LOCKSTEP_API int posix_spawn(

@@ -17,8 +17,8 @@
 
 namespace lockstep::real {
 
-// `version` is asked for first: without it, dlsym may find a condition variable of 2002 (GLIBC_2.2.5 on x86_64).
-// Where this library is not preloaded, it comes after the C library, which is then the first to have the name.
+// `version` is looked up first: without it, dlsym may find a condition variable of 2002 (GLIBC_2.2.5 on x86_64).
+// If this library is not preloaded, it comes after the C library, which is then the first to have the name.
 inline void * find(const char * name, const char * version = nullptr) {
   for (void * where : {RTLD_NEXT, RTLD_DEFAULT}) {
     if (void * found = version ? dlvsym(where, name, version) : nullptr) return found;

@@ -48,7 +48,7 @@ int wait_for(sem_t * semaphore, int64_t deadline) {
       } else if (inside.value == 0) {
         if (futex_wait(inside.value, 0, sleeper.semaphore_shared) == EINTR) result = EINTR;
       } else {
-        asleep.rise();  // before the semaphore is taken, so that nobody finds it taken and this thread asleep
+        asleep.rise();  // before the semaphore is taken: it must not look taken with this thread asleep
         if (real::sem_trywait()(semaphore) == 0) result = 0;
         else asleep.fall();
       }

@@ -12,12 +12,12 @@ namespace lockstep {
 // Whether the calling thread sleeps in the hub's time.
 inline bool virtual_time() { return core().virtual_time(); }
 
-// A moment on any of the computer's clocks, as the steady one (ns).
+// A moment on any of the computer's clocks, as one on the steady clock (ns).
 inline int64_t steady(clockid_t clock, int64_t moment) {
   return clock == CLOCK_REALTIME ? moment - core().epoch() : moment;
 }
 
-// Stands in the core's list of sleepers for as long as it lives.
+// Is in the core's list of sleepers for as long as it lives.
 class Asleep {
 public:
   explicit Asleep(Sleeper & sleeper) : sleeper_(sleeper) { fall(); }
@@ -32,10 +32,10 @@ private:
   bool in_ = false;
 };
 
-// Sleep until the steady clock shows `deadline`. Returns 0, or EINTR when a signal came first.
+// Sleep until the steady clock shows `deadline`. Returns 0, or EINTR if a signal arrived first.
 int sleep_until(int64_t deadline, bool holds_interpreter = false);
 
-// The last reading of the clock was not the program's own, and depends on chance.
+// Discount the last reading of the clock: it was not the program's own, and is random.
 void discount_reading();
 
 // Wait on a word of memory, at most for a real time; returns what the futex call set errno to, 0 if it woke.

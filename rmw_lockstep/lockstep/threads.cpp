@@ -56,7 +56,7 @@ Sleeps read_call(int file, Call & call) {
 
 bool negative(unsigned long timeout) { return static_cast<int>(timeout) < 0; }
 
-// Whether a thread that sleeps in this call sleeps until somebody else ends it, and not until a time.
+// Whether a thread that sleeps in this call sleeps until another one wakes it, and not until a time.
 bool without_timeout(const Call & call, bool children) {
   switch (call.number) {
     case SYS_futex: return call.argument[3] == 0;
@@ -70,7 +70,7 @@ bool without_timeout(const Call & call, bool children) {
     case SYS_epoll_pwait2: return call.argument[3] == 0;
 #endif
     case SYS_rt_sigtimedwait: return call.argument[2] == 0;
-    // Of a child that this library does not know, nobody can tell what it waits for.
+    // There is no telling what a child waits for that this library does not know.
     case SYS_wait4: case SYS_waitid: return children;
     case SYS_read: case SYS_readv: case SYS_recvfrom: case SYS_recvmsg: case SYS_accept: case SYS_accept4:
     case SYS_rt_sigsuspend: case SYS_flock: case SYS_fcntl: return true;
@@ -90,7 +90,7 @@ unsigned Threads::count() {
   if (folder_ < 0) folder_ = open(FOLDER, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   struct stat folder;
   if (folder_ < 0 || fstat(folder_, &folder) != 0) return 0;
-  // Linux counts two links, and one for each thread. Where that does not hold, the folder is read each time.
+  // Linux counts two links, and one for each thread. If that does not hold, the folder is read each time.
   if (folder.st_nlink > 2) {
     if (folder.st_nlink != links_) { links_ = folder.st_nlink; read(); }
     return links_ - 2;
@@ -126,9 +126,9 @@ bool Threads::open_thread(pid_t number) {
   return true;
 }
 
-// Twice what each got of the CPU, and between the two the state of each: if nobody ran, all slept at one moment.
+// Read twice how much CPU each got, and in between the state of each: if none ran, all slept at the same moment.
 Threads::Look Threads::look(const std::vector<pid_t> & known, bool children) {
-  // One that has ended meanwhile is not there any more when they are read again. The program may also have no files left.
+  // A thread that has ended meanwhile is missing when they are read again. The program may also have no files left.
   if (!complete_) return Look::busy;
   auto skipped = [&](pid_t number) { return std::find(known.begin(), known.end(), number) != known.end(); };
   for (auto & [number, thread] : threads_)
@@ -136,7 +136,7 @@ Threads::Look Threads::look(const std::vector<pid_t> & known, bool children) {
   for (auto & [number, thread] : threads_)
     if (!skipped(number)) {
       const char state = state_of(thread.stat);
-      if (!state) links_ = 0;  // it has ended; another may have begun, which the number of links does not tell
+      if (!state) links_ = 0;  // it has ended; another may have begun, which the number of links does not show
       if (state != 'S') return Look::busy;
     }
   bool timed = false;
@@ -144,7 +144,7 @@ Threads::Look Threads::look(const std::vector<pid_t> & known, bool children) {
     if (skipped(number)) continue;
     Call call;
     const Sleeps sleeps = thread.call >= 0 ? read_call(thread.call, call) : Sleeps::elsewhere;
-    // One whose time has come waits for a CPU, and has not got any yet.
+    // A thread whose time has come waits for a CPU, and has not got any yet.
     if (sleeps == Sleeps::no_more) return Look::busy;
     if (sleeps == Sleeps::in_call) timed |= !without_timeout(call, children);
     if (text_of(thread.schedule) != thread.before) return Look::busy;

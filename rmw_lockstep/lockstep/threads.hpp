@@ -13,16 +13,16 @@ namespace lockstep {
 class Threads {
 public:
   enum class Look {
-    asleep,   // every one sleeps, in a call that only somebody else can end
+    asleep,   // every one sleeps, in a call that only another thread can end
     timed,    // the same, but one of them waits for a time by the kernel's own clock
-    busy,     // one runs, or could
+    busy,     // one runs, or is runnable
   };
 
   // How many there are, the calling one included.
   unsigned count();
-  // Looks at every thread but those in `known`, whose sleep is certain otherwise. `children`: whether there are any.
+  // Checks every thread except those in `known`, which are known to sleep. `children`: whether there are any.
   Look look(const std::vector<pid_t> & known, bool children);
-  // A number that is another one if any thread but `keeper` has run since it was asked for the last time.
+  // A number that differs from the last one if any thread except `keeper` has run since.
   uint64_t runs(pid_t keeper);
   void forget();
 

@@ -33,7 +33,7 @@ bool by_hand(const EndPoint & publisher) {
 
 }  // namespace
 
-// A publisher says that it is alive, by publishing or by `assert_liveliness`.
+// A publisher asserts that it is alive, by publishing or by `assert_liveliness`.
 void Graph::assert_liveliness(EndPoint & publisher) {
   if (!by_hand(publisher)) return;
   publisher.asserted = true;
@@ -42,7 +42,7 @@ void Graph::assert_liveliness(EndPoint & publisher) {
   if (publisher.announced) frames::send_alive(publisher.id);
 }
 
-// The same, heard by this process's subscriptions.
+// The same, received by this process's subscriptions.
 void Graph::publisher_is_alive(uint64_t id) {
   EndPoint * publisher = find(id);
   if (!publisher) return;
@@ -52,7 +52,7 @@ void Graph::publisher_is_alive(uint64_t id) {
   notify();
 }
 
-// A subscription hears of a publisher: it is alive, and its message is in time.
+// A subscription gets news of a publisher: it is alive, and its message is in time.
 void Graph::subscription_got(EndPoint & subscription, uint64_t id) {
   const EndPoint * publisher = find(id);
   auto known = subscription.publishers.find(id);

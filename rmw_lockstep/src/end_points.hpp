@@ -21,13 +21,13 @@ enum class Kind : uint8_t { publisher, subscription, server, client };
 struct Message {
   Bytes bytes;
   uint64_t from = 0;      // publisher or client
-  int64_t number = 0;     // of a request, or of the request that is answered
+  int64_t number = 0;     // of a request, or of the request that it answers
   int64_t sent = 0;       // calendar time (ns)
   int64_t received = 0;   // calendar time (ns)
   int64_t expires = INT64_MAX;  // steady time (ns)
 };
 
-// Who wants to hear, of data or of an event, and how much there was before anybody did.
+// Who is notified of data or of an event, and how much there was before.
 struct Listener {
   rmw_event_callback_t function = nullptr;
   const void * data = nullptr;
@@ -36,7 +36,7 @@ struct Listener {
   void set(rmw_event_callback_t function, const void * data);
 };
 
-// What has happened to an end point of this process, in the structures in which rmw hands it on.
+// What has happened to an end point of this process, in the structures in which rmw returns it.
 struct Events {
   std::array<bool, RMW_EVENT_INVALID> pending{};
   std::array<Listener, RMW_EVENT_INVALID> listeners{};
@@ -67,9 +67,9 @@ struct EndPoint {
   bool announced = false;        // the hub knows it
   bool ignores_local = false;
   Callbacks callbacks = nullptr, answer_callbacks = nullptr;
-  int64_t last_number = 0;       // of what it has sent
-  std::deque<Message> queue;     // what has come and was not taken
-  std::deque<Message> history;   // what a transient-local publisher keeps for those who join late
+  int64_t last_number = 0;       // of the last one that it sent
+  std::deque<Message> queue;     // what has arrived and was not taken
+  std::deque<Message> history;   // what a transient-local publisher keeps for late joiners
   Listener listener;             // of data
   Events events;
   std::map<uint64_t, Alive> publishers;  // that match this subscription
@@ -84,7 +84,7 @@ inline bool same_topic(const EndPoint & one, const EndPoint & other) {
   return one.is_topic() && other.is_topic() && one.kind != other.kind && one.name == other.name;
 }
 
-// The 16 bytes by which ROS 2 tells end points apart.
+// The 16 bytes by which ROS 2 distinguishes end points.
 void write_gid(uint64_t id, uint8_t * gid);
 uint64_t id_of(const uint8_t * gid);
 

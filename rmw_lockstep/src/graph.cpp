@@ -91,7 +91,7 @@ void Graph::changed() {
   notify();
 }
 
-// ---- who hears whom
+// ---- who receives from whom
 
 namespace {
 
@@ -172,7 +172,7 @@ void Graph::incompatible(EndPoint & end_point, rmw_qos_policy_kind_t policy) {
                                                            : RMW_EVENT_REQUESTED_QOS_INCOMPATIBLE);
 }
 
-// What a transient-local publisher has kept goes to a transient-local subscription that joins late.
+// What a transient-local publisher has kept is sent to a transient-local subscription that joins late.
 void Graph::replay(EndPoint & publisher, const EndPoint & subscription) {
   if (subscription.qos.durability != RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL) return;
   for (const Message & message : publisher.history) {

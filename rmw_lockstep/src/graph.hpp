@@ -79,7 +79,7 @@ public:
 
   // ---- waiting
   std::vector<Waiter *> waiters;
-  uint64_t activity = 0;      // grows with everything that is sent, taken or heard
+  uint64_t activity = 0;      // grows with everything that is sent, taken or received
   void notify();
 
   // ---- the hub

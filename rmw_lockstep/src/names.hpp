@@ -7,7 +7,7 @@
 
 namespace rmw_lockstep {
 
-// `what` is "topic" or "service". False, with rmw's error set, where the name is not valid.
+// `what` is "topic" or "service". False, with rmw's error set, if the name is not valid.
 inline bool valid_name(const char * what, const char * name, const rmw_qos_profile_t & qos) {
   int result = 0;
   if (!*name) {

@@ -87,8 +87,8 @@ bool undecided(rmw_qos_durability_policy_t policy) {
   return policy == RMW_QOS_POLICY_DURABILITY_SYSTEM_DEFAULT || policy == RMW_QOS_POLICY_DURABILITY_UNKNOWN;
 }
 
-// The policies that may mismatch, for what one end leaves to its default cannot be known before it is there. Where that
-// is so, both profiles are changed to the default that matches.
+// The policies that may mismatch, since an end's defaults cannot be known before it exists. In that case, both
+// profiles are changed to the default that matches.
 std::vector<rmw_qos_policy_kind_t> settle_undecided(rmw_qos_profile_t & offered, rmw_qos_profile_t & requested) {
   std::vector<rmw_qos_policy_kind_t> found;
   const bool reliability = (undecided(offered.reliability) && reliable(requested)) ||

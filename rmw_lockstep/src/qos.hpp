@@ -13,15 +13,15 @@ constexpr int64_t FOREVER = INT64_MAX;
 // Nanoseconds; FOREVER for "infinite" and for "unspecified".
 int64_t nanoseconds(const rmw_time_t & time);
 
-// The policies by which a subscription asks for more than a publisher offers, the first one first; empty: they match.
+// The policies in which a subscription requests more than a publisher offers, the first one first; empty: they match.
 std::vector<rmw_qos_policy_kind_t> mismatches(const rmw_qos_profile_t & offered, const rmw_qos_profile_t & requested);
 
 inline bool compatible(const rmw_qos_profile_t & offered, const rmw_qos_profile_t & requested) {
   return mismatches(offered, requested).empty();
 }
 
-// Replaces "system default", "best available" and "unspecified" by what they come to; `peers` are the profiles of the
-// end points at the other end that are there now.
+// Replaces "system default", "best available" and "unspecified" by actual values; `peers` are the profiles of the
+// current end points at the other end.
 void settle(rmw_qos_profile_t & profile, bool of_subscription, const std::vector<rmw_qos_profile_t> & peers);
 
 }  // namespace rmw_lockstep

@@ -80,7 +80,7 @@ RMW_LOCKSTEP_API rmw_ret_t rmw_take_event(const rmw_event_t * event, void * info
   Lock lock;
   Events & events = of(event).events;
   events.pending[event->event_type] = false;
-  hand_over(events, event->event_type, info);  // also where nothing has happened, as Fast DDS does
+  hand_over(events, event->event_type, info);  // even if nothing has happened, as Fast DDS does
   *taken = true;
   return RMW_RET_OK;
 }

@@ -12,7 +12,7 @@ namespace {
 EndPoint & of(const rmw_client_t * handle) { return *static_cast<EndPoint *>(handle->data); }
 EndPoint & of(const rmw_service_t * handle) { return *static_cast<EndPoint *>(handle->data); }
 
-// Null, with rmw's error set, where something is missing or wrong.
+// Null, with rmw's error set, if something is missing or wrong.
 std::unique_ptr<EndPoint> end_point_of(
     Kind kind, const rmw_node_t * node, const rosidl_service_type_support_t * support, const char * name,
     const rmw_qos_profile_t * qos) {

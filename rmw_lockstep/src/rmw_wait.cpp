@@ -10,7 +10,7 @@ using namespace rmw_lockstep;
 
 namespace {
 
-// What a thread that asks again and again without waiting is taken to wait for (ns).
+// How long a thread is considered to wait that polls repeatedly without waiting (ns).
 constexpr int64_t POLL = 10'000'000;
 constexpr int QUIET_POLLS = 2;
 
@@ -35,7 +35,7 @@ int64_t deadline_of(const rmw_time_t * timeout) {
 
 // True if the thread is one that polls, and has waited.
 bool wait_as_poll(Waiter & waiter) {
-  // rclpy's spin_once(timeout_sec=0) triggers a guard condition of its own each time, which is no reason to go on.
+  // rclpy's spin_once(timeout_sec=0) triggers a guard condition of its own each time, which does not count as activity.
   if (!lockstep_virtual() || waiter.ready(false)) return false;
   polls.count();
   if (polls.quiet < QUIET_POLLS) return false;
@@ -48,7 +48,7 @@ void wait_until(Waiter & waiter, int64_t deadline) {
   while (!waiter.ready() && lockstep_now() < deadline) {
     if (lockstep_virtual()) {
       lockstep_wait(&waiter.thread, deadline);
-    } else {  // nobody else tells when a deadline of the end points has come
+    } else {  // nothing else reports when a deadline of the end points has passed
       lockstep_wait(&waiter.thread, std::min(deadline, graph().next_due()));
       graph().due(lockstep_now());
     }
@@ -60,7 +60,7 @@ void keep_ready(size_t count, void ** items) {
     if (auto end_point = static_cast<EndPoint *>(items[i]); end_point && end_point->queue.empty()) items[i] = nullptr;
 }
 
-// What is ready stays, all else becomes null.
+// Keeps what is ready, and sets everything else to null.
 void keep_what_is_ready(Waiter & waiter) {
   if (auto guards = waiter.guards)
     for (size_t i = 0; i < guards->guard_condition_count; ++i)

@@ -13,7 +13,7 @@ namespace {
 using eprosima::fastcdr::Cdr;
 using eprosima::fastcdr::FastBuffer;
 
-// C's generated code first, which Python uses; else C++'s.
+// C's generated code first, which Python uses; otherwise C++'s.
 template<typename Support, typename Find>
 const Support * find_handle(const Support * support, Find find) {
   if (auto found = find(support, rosidl_typesupport_fastrtps_c__identifier)) return found;

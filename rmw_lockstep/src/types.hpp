@@ -31,11 +31,11 @@ struct ServiceType {
   rosidl_type_hash_t hash{};
 };
 
-// False, with rmw's error set, where the generated code for rosidl_typesupport_fastrtps is missing.
+// False, with rmw's error set, if the generated code for rosidl_typesupport_fastrtps is missing.
 bool find_type(const rosidl_message_type_support_t * support, MessageType & type);
 bool find_type(const rosidl_service_type_support_t * support, ServiceType & type);
 
-// The bytes of a message with their encapsulation header; null, with rmw's error set, where it can't be serialized.
+// The bytes of a message with their encapsulation header; null, with rmw's error set, if it can't be serialized.
 Bytes serialize(Callbacks callbacks, const void * message);
 bool deserialize(Callbacks callbacks, const uint8_t * data, size_t size, void * message);
 

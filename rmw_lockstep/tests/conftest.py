@@ -15,7 +15,7 @@ from rmw_lockstep.hub import Hub, Limits
 
 @pytest.fixture
 def folder() -> Iterator[Path]:
-    """A folder with a short path: a socket's may not be long."""
+    """A folder with a short path: the path of a socket has to be short."""
     with tempfile.TemporaryDirectory(prefix="hub-") as path:
         yield Path(path)
 
@@ -34,7 +34,7 @@ def hub(folder: Path, limits: Limits) -> Iterator[Hub]:
 
 @pytest.fixture
 def process(hub: Hub) -> Iterator[Callable[..., Process]]:
-    """Makes processes; each has to be started."""
+    """Make processes; each has to be started."""
     made: list[Process] = []
 
     def make(pid: int = 1, joins: bool = True) -> Process:

@@ -1,4 +1,4 @@
-"""Real programs with rclpy over the compiled middleware, and a hub that only watches and lets time go on."""
+"""Real programs with rclpy over the compiled middleware, and a hub that only watches and advances time."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from rmw_lockstep.library import Library, library
 SECOND = 1_000_000_000
 MS = 1_000_000
 
-#: So long a program may take for what it is asked, on a busy machine, before a test gives up (s).
+#: How long a program may take for a request, on a busy machine, before a test gives up (s).
 LONGEST_S = 60.0
 
 #: What every program begins with: `say(text)` publishes on /said.
@@ -42,13 +42,13 @@ def say(text): publisher.publish(String(data=str(text)))
 
 
 def text(cdr: bytes) -> str:
-    """The text of a serialized std_msgs/msg/String."""
+    """Return the text of a serialized std_msgs/msg/String."""
     message: Any = deserialize_message(cdr, String)
     return str(message.data)
 
 
 class Program:
-    """One program, started by the text of its source, and what it says on /said."""
+    """One program, started from the text of its source, and what it says on /said."""
 
     def __init__(self, hub: Hub, folder: Path, source: str, *arguments: str) -> None:
         found = library()
@@ -68,13 +68,13 @@ class Program:
         )
 
     def end(self) -> None:
-        """End it, and all that it has started."""
+        """End it, and everything it has started."""
         with contextlib.suppress(ProcessLookupError):
             os.killpg(self.process.pid, signal.SIGKILL)
         self.process.wait()
 
     def output(self) -> str:
-        """All that it printed; it is ended for that."""
+        """Return everything it printed; this ends it."""
         self.end()
         return str(self.process.communicate()[0])
 
@@ -112,7 +112,7 @@ class Watch:
         return program
 
     def go_on(self, seconds: float) -> None:
-        """Wait until all is idle, and let time go on so far. A program may end meanwhile."""
+        """Wait until everything is idle, and advance time this far. A program may end meanwhile."""
         try:
             self.hub.wait_until_idle()
             self.hub.advance(self.hub.now + round(seconds * SECOND))
@@ -121,12 +121,12 @@ class Watch:
             self.hub.drain()
 
     def go_until(self, done: Callable[[], object], step: float = 0.05) -> None:
-        """Let time go on, step by step, until something is so: a program that has just been started takes its time."""
+        """Advance time, step by step, until a condition is true: a program that has just been started needs time."""
         while not done():
             self.go_on(step)
 
     def said(self) -> list[tuple[float, str]]:
-        """What was said, and when: milliseconds since the beginning."""
+        """Return what was said, and when: milliseconds since the beginning."""
         return [((heard.now - BEGIN) / MS, text(heard.cdr)) for heard in self._said.heard]
 
     def __enter__(self) -> Watch:

@@ -82,7 +82,7 @@ class Raw:
         self.socket.sendall(b"".join(frames))
 
     def read(self) -> tuple[bytes, bytes]:
-        """One frame of the hub's, as kind and payload. Raises EOFError at the end of the connection."""
+        """Return one of the hub's frames, as kind and payload. Raises EOFError at the end of the connection."""
         length, kind = struct.unpack("<IB", self._exactly(5))
         return bytes([kind]), self._exactly(length - 1)
 
@@ -100,7 +100,7 @@ class Raw:
 
 
 def welcomed(raw: Raw, hub: Hub) -> Raw:
-    """The same connection, after its HELLO has been answered."""
+    """Return the same connection, after its HELLO has been answered."""
     raw.send(hello())
     while not hub.links or not hub.links[0].sent:
         hub.pause()
@@ -109,7 +109,7 @@ def welcomed(raw: Raw, hub: Hub) -> Raw:
 
 
 def busy(hub: Hub) -> None:
-    """Something has been sent to the program, so what it said of itself is no longer true."""
+    """Report that something has been sent to the program, so what it reported is no longer true."""
     for link in hub.links:
         link.idle = None
 
@@ -189,7 +189,7 @@ class Process:
             self.now = until
 
     def kinds(self) -> str:
-        """The kinds of the frames that came, in order."""
+        """Return the kinds of the frames that arrived, in order."""
         return "".join(kind.decode() for _, kind, _ in self.seen)
 
     def end(self) -> None:

@@ -1,4 +1,4 @@
-"""The middleware is compiled once for a ROS 2, found again at once, and its absence is said with what to do."""
+"""The middleware is compiled once for a ROS 2, found again at once, and its absence is reported with what to do."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ROOT = Path(__file__).parents[2]
 
 needs_compiler = pytest.mark.skipif(shutil.which("g++") is None, reason="g++ is not installed")
 
-#: Does nothing, but is loaded and linked as the real one: what is tested is what is compiled when, and where it goes.
+#: Does nothing, but is loaded and linked like the real one: tested is what is compiled when, and where it goes.
 LOCKSTEP = 'extern "C" __attribute__((visibility("default"))) int lockstep_connect(const char *) { return 0; }\n'
 RMW = (
     '#include <rmw/rmw.h>\nextern "C" int lockstep_connect(const char *);\nint use() { return lockstep_connect(0); }\n'
@@ -43,7 +43,7 @@ class Copy:
         self.environment = {**os.environ, "PYTHONPATH": str(folder), "XDG_CACHE_HOME": str(self.cache)}
 
     def run(self, module: str, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
-        """Run a module of the copy. Nothing is written into the real environment: its place is taken as read-only."""
+        """Run a module of the copy. Nothing is written into the real environment: it is considered read-only."""
         code = (
             "import runpy, sys; from pathlib import Path; from rmw_lockstep import library\n"
             "library.places = lambda: iter([Path(__import__('os').environ['XDG_CACHE_HOME']) / 'rmw_lockstep'])\n"
@@ -59,7 +59,7 @@ class Copy:
         )
 
     def built(self) -> list[Path]:
-        """The sets of libraries that have been compiled."""
+        """Return the sets of libraries that have been compiled."""
         return [file.parent for file in sorted(self.cache.glob("rmw_lockstep/*/built.json"))]
 
 

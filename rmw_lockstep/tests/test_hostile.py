@@ -1,4 +1,4 @@
-"""Whatever a program sends, the hub goes on or says why not: it never hangs, and never believes what can't be."""
+"""Whatever a program sends, the hub continues or says why not: it never hangs, and never accepts impossible reports."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ def limits() -> Limits:
 
 
 def reason(hub: Hub) -> tuple[str, str]:
-    """Why the hub does not go on."""
+    """Return why the hub stopped."""
     with pytest.raises(Violation) as caught:
         hub.wait_until_idle()
     return caught.value.reason, caught.value.text
 
 
 def begin(raw: Raw, hub: Hub) -> Raw:
-    """A process that has a node with a publisher and a subscription, and is idle."""
+    """Start a process that has a node with a publisher and a subscription, and is idle."""
     welcomed(raw, hub).send(
         node(NODE), end_point(PUB, PUBLISHER, NODE), end_point(SUB, SUBSCRIPTION, NODE), idle(1, BEGIN)
     )
@@ -105,7 +105,7 @@ def test_a_message_that_is_too_long_is_told_by_its_length_before_it_is_read(hub:
 
 
 def flood(frames: list[bytes], process: Make, hub: Hub) -> tuple[str, str]:
-    """What comes of a process that makes a node and a publisher, and then sends this."""
+    """Return what happens to a process that creates a node and a publisher, and then sends this."""
     one = process()
     one.on[b"W"] = lambda process, _: process.raw.send(node(NODE), end_point(PUB, PUBLISHER, NODE), *frames)
     one.start()

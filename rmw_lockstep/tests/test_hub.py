@@ -1,4 +1,4 @@
-"""The hub knows when a program is idle, lets its time go on, and passes on what its processes send."""
+"""The hub knows when a program is idle, advances its time, and forwards what its processes send."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Make = Callable[..., Process]
 
 
 def talker(process: Process, period: int, topic: str = "/said") -> Process:
-    """It makes a publisher when it has joined, and publishes at each period of its time (ns) how often it has."""
+    """Let a process create a publisher after joining, and publish a count at each period of its time (ns)."""
     made: list[int] = []
 
     def say(process: Process) -> None:
@@ -36,7 +36,7 @@ def talker(process: Process, period: int, topic: str = "/said") -> Process:
 
 
 def listener(process: Process, topic: str = "/said", **qos: int) -> Process:
-    """It makes a subscription when it has joined."""
+    """Let a process create a subscription after joining."""
     process.on[b"g"] = lambda process, _: process.make("listener", (SUBSCRIPTION, topic, qos)) and None
     return process
 
@@ -134,7 +134,7 @@ def test_two_processes_talk_and_neither_gets_ahead_of_the_other(hub: Hub, proces
 
 
 def test_the_hub_does_not_wait_before_it_has_asked(hub: Hub, process: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It would wait in vain, for 20 ms each time, as no process knows yet what it is asked."""
+    """Otherwise it would wait 20 ms each time for nothing, as no process has got the question yet."""
     queued: list[Link] = []
 
     def take(hub: Hub, take: Callable[[Hub], None] = Hub._take) -> None:

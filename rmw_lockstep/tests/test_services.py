@@ -1,4 +1,4 @@
-"""Requests and responses find their way: from the hub to a process and back, and the other way round."""
+"""Requests and responses are delivered: from the hub to a process and back, and the other way round."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def request(client: int, number: int, cdr: bytes) -> bytes:
 
 
 def echo(process: Process, payload: bytes) -> None:
-    """Answer a request with what it holds."""
+    """Answer a request with its own content."""
     _, client, number, _ = struct.unpack("<QQqq", payload[:32])
     process.raw.send(response(client, number, payload[32:]))
 

@@ -1,7 +1,7 @@
 """The archives that a page loads: rclpy and the message classes with rcl_python, the checks, the interface files.
 
-rclpy's files and the message classes are those of the installed wheels, unchanged. Archives are the same, byte for
-byte, whenever they are made of the same files.
+rclpy's files and the message classes are those of the installed wheels, unchanged. Archives have the same bytes
+whenever they are made from the same files.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from interface_compiler import prefixes
 #: Modules of the environment that rclpy and `ros2` need, besides the interface packages.
 _ROS = ("rclpy", "rpyutils", "rosidl_parser", "rosidl_generator_py", "ament_index_python", "yaml", "click")
 _CHECKS = ("pytest", "_pytest", "py", "pluggy", "iniconfig", "packaging", "pygments")
-#: Of its hundreds, pytest needs the lexers of Python.
+#: Of its hundreds of lexers, pytest needs those for Python.
 _LEXERS = ("__init__.py", "_mapping.py", "python.py", "diff.py")
 _SPINBOOK = (
     "__init__.py",
@@ -41,7 +41,7 @@ _SPINBOOK = (
     "chapter/__init__.py",
     "chapter/terminal.py",
 )
-#: What of the grader runs scenarios and judges recordings; the rest starts and confines programs.
+#: The parts of the grader that run scenarios and judge recordings; the rest starts and confines programs.
 _GRADER = ("__init__.py", "checking", "exercise", "recording", "runner", "scenario", "report")
 _INDEXED = ("rosidl_interfaces", "packages")
 _TEXTS = (".msg", ".srv", ".action")
@@ -51,7 +51,7 @@ def ros_archive() -> bytes:
     """rclpy, every interface package, rcl_python, and the parts of Spinbook that run in the page."""
     packages = [*_ROS, *interface_packages()]
     files = {name: data for package in packages for name, data in _module(package)}
-    # The original imports what finds compiled libraries.
+    # The original imports code that finds compiled libraries.
     files["rosidl_generator_py/__init__.py"] = b"from .import_type_support_impl import import_type_support\n"
     files |= dict(_python_files(Path(rcl_python.__file__).parent, "rcl_python"))
     files |= dict(_python_files(Path(interface_compiler.__file__).parent, "interface_compiler"))  # `ros2` reads with it
@@ -67,18 +67,18 @@ def ros_archive() -> bytes:
 
 
 def interface_packages() -> list[str]:
-    """The packages of messages, services and actions that are installed, or compiled for the course."""
+    """Return the packages of messages, services and actions that are installed, or compiled for the course."""
     return sorted(name for name in _places() if importlib.util.find_spec(name))
 
 
 def _places() -> dict[str, Path]:
-    """Package of interfaces -> the folder `share` in which it is."""
+    """Return package of interfaces -> the folder `share` in which it is."""
     markers = prefixes.resources("rosidl_interfaces", prefixes.installed())
     return {name: marker.parents[3] for name, marker in markers.items()}
 
 
 def share_archive() -> bytes:
-    """The ament index and the interface files that `ros2 interface show` prints."""
+    """Return the ament index and the interface files that `ros2 interface show` prints."""
     files, places = {}, _places()
     for package in interface_packages():
         share = places[package]
@@ -93,7 +93,7 @@ def share_archive() -> bytes:
 
 
 def check_archive(exercises: Mapping[str, bytes]) -> bytes:
-    """pytest, the part of the grader that judges, and the exercises' public parts: path -> content."""
+    """Return pytest, the part of the grader that judges, and the exercises' public parts: path -> content."""
     found = {name: data for package in _CHECKS for name, data in _module(package)}
     files = {name: data for name, data in found.items() if _needed(name)}
     root = Path(spinbook.__file__).parent.parent / "grader"
@@ -105,7 +105,7 @@ def check_archive(exercises: Mapping[str, bytes]) -> bytes:
 
 
 def _used_outside_checks(grader: Path) -> dict[str, bytes]:
-    """Of the grader what plots, `ros2` and checks need: messages as fields, problems in files."""
+    """Return the grader's files that plots, `ros2` and checks need: messages as fields, problems in files."""
     empty = {f"grader/{name}": b"" for name in ("__init__.py", "runner/__init__.py")}
     return empty | {f"grader/{name}": (grader / name).read_bytes() for name in ("problem.py", "runner/message.py")}
 
@@ -116,7 +116,7 @@ def _needed(name: str) -> bool:
 
 
 def _module(name: str) -> Iterator[tuple[str, bytes]]:
-    """The files of an installed module: one, or a package's."""
+    """Yield the files of an installed module: one, or a package's."""
     spec = importlib.util.find_spec(name)
     if spec is None or spec.origin is None:
         raise ModuleNotFoundError(f"{name} is not installed in {sys.prefix}")
@@ -149,7 +149,7 @@ def _type_hashes() -> dict[str, str]:
 
 
 def zipped(files: Mapping[str, bytes]) -> bytes:
-    """An archive of these files: the same bytes for the same files."""
+    """Return an archive of these files: the same bytes for the same files."""
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         for name in sorted(files):
@@ -158,7 +158,7 @@ def zipped(files: Mapping[str, bytes]) -> bytes:
 
 
 def sizes(archive: bytes) -> Iterable[tuple[str, int]]:
-    """What each top-level package takes of an archive, compressed."""
+    """Return how much of an archive each top-level package takes, compressed."""
     found: dict[str, int] = {}
     with zipfile.ZipFile(io.BytesIO(archive)) as opened:
         for item in opened.infolist():

@@ -1,4 +1,4 @@
-"""The files a site needs so that its pages can run nodes: Pyodide, the archives, the public parts of exercises."""
+"""The files a site needs so that its pages can run nodes: Pyodide, the archives, the exercises' public parts."""
 
 from __future__ import annotations
 
@@ -17,39 +17,39 @@ from spinbook.handout.student_copy import exercise_files
 # https://pyodide.org, Mozilla Public License 2.0; from its npm package, whose digest is pinned in fetch-pyodide.sh.
 
 
-#: What a page loads of it. Its own list of packages is left out: no package is ever fetched.
+#: The files of it that a page loads. Its own list of packages is left out: no package is ever fetched.
 FILES = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip")
 _LOCK = "pyodide-lock.json"
 _FOLDER = Path("share", "spinbook", "pyodide")
 
 
 def pyodide_folder() -> Path | None:
-    """The folder of the package, or None where set-up could not fetch it. SPINBOOK_PYODIDE names another one."""
+    """Return the package's folder, or None if set-up could not fetch it. SPINBOOK_PYODIDE names another folder."""
     folder = Path(os.environ.get("SPINBOOK_PYODIDE") or Path(sys.prefix) / _FOLDER)
     return folder if all((folder / name).is_file() for name in (*FILES, _LOCK)) else None
 
 
 def pyodide_files(folder: Path) -> dict[str, bytes]:
-    """The files of the package as a page gets them: name -> content."""
+    """Return the files of the package as a page gets them: name -> content."""
     found = {name: (folder / name).read_bytes() for name in FILES}
     lock = json.loads((folder / _LOCK).read_text(encoding="utf-8"))
     found[_LOCK] = json.dumps({"info": lock["info"], "packages": {}}).encode()
     return found
 
 
-#: Where they lie in the site.
+#: Their folder in the site.
 FOLDER = "run"
 _OFFLINE, _LIST = "offline.js", "files.json"
 _STATIC = Path(__file__).with_name("static")
 
 
 def can_run() -> bool:
-    """Whether pages can run nodes: Pyodide is there."""
+    """Return whether pages can run nodes, that is, whether Pyodide is there."""
     return pyodide_folder() is not None
 
 
 def run_files(exercises: Mapping[str, bytes]) -> dict[str, str | bytes]:
-    """The files: path in the site -> content; none where Pyodide is missing.
+    """Return the files: path in the site -> content; none if Pyodide is missing.
 
     `exercises` are the public parts of the course's exercises: path in the archive of checks -> content.
     """
@@ -58,7 +58,7 @@ def run_files(exercises: Mapping[str, bytes]) -> dict[str, str | bytes]:
         return {}
     files: dict[str, bytes] = pyodide_files(folder)
     files |= {file.name: file.read_bytes() for file in sorted(_STATIC.iterdir())}
-    # A service worker answers for its own folder and what is below.
+    # A service worker only serves its own folder and those below.
     at_the_top = {_OFFLINE: files.pop(_OFFLINE)}
     files |= {"ros.zip": ros_archive(), "share.zip": share_archive(), "check.zip": check_archive(exercises)}
     files[_LIST] = _listed(files)
@@ -66,17 +66,17 @@ def run_files(exercises: Mapping[str, bytes]) -> dict[str, str | bytes]:
 
 
 def _listed(files: Mapping[str, bytes]) -> bytes:
-    """What there is to load, for the page: each file's size in bytes, and a version that changes with any of them."""
+    """Return the list of what to load, for the page: each file's size in bytes, and a version that changes with any."""
     version = digest(*(part for name in sorted(files) for part in (name, files[name])))[:16]
     return json.dumps({"version": version, "files": {name: len(files[name]) for name in sorted(files)}}).encode()
 
 
-#: What of a student's copy the checks need.
+#: The parts of a student's copy that the checks need.
 _NEEDED = ("exercise.toml", "checks.py", "public.json", "task.md")
 
 
 def public_parts(exercises: Iterable[Exercise]) -> dict[str, bytes]:
-    """What a student's copy of each exercise holds, by its path in the archive of checks: nothing that is hidden.
+    """Return what a student's copy of each exercise contains, by its path in the archive of checks: nothing hidden.
 
     Runs the solutions through their public scenarios, unless that was done before. Raises `ExerciseError`.
     """
@@ -90,5 +90,5 @@ def public_parts(exercises: Iterable[Exercise]) -> dict[str, bytes]:
 
 
 def _is_code(name: str, exercise: Exercise) -> bool:
-    """Whether it is a world of the author's, for example, and not the starter."""
+    """Return whether it is, for example, one of the author's worlds, and not the starter."""
     return name.endswith(".py") and name != exercise.file_name

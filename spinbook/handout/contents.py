@@ -1,4 +1,4 @@
-"""Puts a handout together. Its content is listed here; nothing else from the course's folders gets in."""
+"""Puts a handout together. It contains what is listed here, and nothing else from the course's folders."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from spinbook.interfaces.compiling import compile_course
 from spinbook.problem import Problem, SpinbookError
 from spinbook.update.handout import base_files
 
-#: What must be the same for students as for the instructor who made the handout, so that checks come out the same.
+#: What must be the same for students as for the instructor who made the handout, so that checks give the same results.
 _PINNED = ("ros-{distro}-rclpy", "ros-{distro}-rmw-fastrtps-cpp", "ros-{distro}-common-interfaces")
 
 #: Name in the handout -> template.
@@ -39,7 +39,7 @@ _TEMPLATES = {
 
 @dataclass(frozen=True)
 class Listing:
-    """An exercise as the README lists it: how many checks students may run, and how many come later."""
+    """An exercise as the README lists it: how many checks students may run, and how many run only when graded."""
 
     name: str
     title: str
@@ -57,8 +57,8 @@ def guide_files(
     exercises: list[Listing],
     interfaces: list[str],
 ) -> dict[str, bytes]:
-    """README.md and the files that install, by name. `interfaces` are the names of wheels with compiled interfaces."""
-    # Plain text and JSON, no HTML.
+    """Return README.md and the files that install, by name. `interfaces` are names of compiled interfaces' wheels."""
+    # Plain text and JSON, not HTML.
     environment = Environment(
         loader=PackageLoader("spinbook.handout", "template"),
         autoescape=False,
@@ -83,7 +83,7 @@ def guide_files(
 
 
 def _pins(distro: str) -> list[str]:
-    """The versions of ROS 2's wheels that are installed here; none where ROS 2 is a sourced one."""
+    """Return the versions of ROS 2's wheels that are installed here; none if ROS 2 was sourced."""
     found = []
     for name in (pattern.format(distro=distro) for pattern in _PINNED):
         try:
@@ -103,11 +103,11 @@ class Handout:
 
 
 def handout(course: Course) -> Handout:
-    """The course's handout: notebooks, exercises without what is hidden, and the means to install.
+    """Return the course's handout: notebooks, exercises without what is hidden, and the files that install.
 
-    Raises SpinbookError where a chapter or an exercise has an error, or where a secret would be handed out.
+    Raises SpinbookError if a chapter or an exercise has an error, or if a secret would be handed out.
     """
-    # First: exercises may be on the course's own messages.
+    # First: exercises may use the course's own messages.
     compile_course(course)
     notebooks = _notebooks(course)
     files = dict(notebooks)
@@ -148,7 +148,7 @@ def _notebooks(course: Course) -> dict[str, bytes]:
 
 
 def _nodes(notebooks: dict[str, bytes]) -> Iterator[str]:
-    """The code of the chapters' own nodes."""
+    """Yield the code of the chapters' own nodes."""
     for content in notebooks.values():
         for cell in json.loads(content)["cells"]:
             if cell["metadata"].get("spinbook", {}).get("kind") == "node":
@@ -156,7 +156,7 @@ def _nodes(notebooks: dict[str, bytes]) -> Iterator[str]:
 
 
 def _used(course: Course, notebooks: dict[str, bytes]) -> set[str]:
-    """The exercises that the chapters have in them: one that is not set yet is not handed out."""
+    """Return the exercises that are in the chapters: one that is not set yet is not handed out."""
     text = b"".join(notebooks.values()).decode()
     return {name for name in course.exercises if f'"exercise": "{name}"' in text}
 
@@ -175,7 +175,7 @@ def _listing(exercise: Exercise, workers: WorkerPool) -> Listing:
 
 
 def _prove(files: dict[str, bytes], known: list[Secret]) -> None:
-    """See to it that no secret is in any file."""
+    """Raise if there is a secret in any file."""
     fix = (
         "Students must not see it. Take it out of the chapter, the task or the public checks. A line of the solution "
         "that they may see belongs before # BEGIN SOLUTION. "

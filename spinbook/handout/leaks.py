@@ -1,4 +1,4 @@
-"""Looks through a handout for what students must not see, and lists what that is for each exercise."""
+"""Searches a handout for what students must not see, and lists what that is for each exercise."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from typing import Any
 from grader.exercise.exercise import Exercise
 from grader.exercise.starter import BEGIN, END, starter
 
-#: One line with so many characters besides spaces is no coincidence, nor are so many lines with so many together.
+#: A line with so many characters besides spaces is not a coincidence, nor are so many lines with so many together.
 _ONE_LINE = 40
 _LINES, _CHARACTERS = 3, 40
 #: So many characters of a secret are looked up before the whole of it is compared.
@@ -36,11 +36,11 @@ Line = tuple[int, str]
 
 
 def secrets(exercise: Exercise, taught: str, others: str = "") -> list[Secret]:
-    """What of this exercise is secret: solutions, hidden checks, and the scenarios that nodes run in, with their files.
+    """Return what is secret of this exercise: solutions, hidden checks, and the scenarios of nodes, with their files.
 
-    `taught` is code that students have from the chapters; a line of it is no secret, wherever else it stands. Nor is a
-    line of the starter, or of the public checks. `others` is what students get of the course's other exercises, see
-    `public_code`: what stands there, too, says nothing about this one.
+    `taught` is code that students have from the chapters; a line of it is not secret, wherever else it appears. Nor is
+    a line of the starter, or of the public checks. `others` is what students get of the course's other exercises, see
+    `public_code`: what appears there, too, reveals nothing about this one.
     """
     public = exercise.folder / "checks.py"
     message = taught + others + (public.read_text(encoding="utf-8") if public.exists() else "")
@@ -70,7 +70,7 @@ def secrets(exercise: Exercise, taught: str, others: str = "") -> list[Secret]:
 
 
 def hidden_names(exercise: Exercise, others: str = "") -> list[Secret]:
-    """The names of hidden checks, without those that public checks of `others` have, too.
+    """Return the names of hidden checks, without those that public checks of `others` have, too.
 
     Spinbook's own files may have a check of that name in an example.
     """
@@ -79,7 +79,7 @@ def hidden_names(exercise: Exercise, others: str = "") -> list[Secret]:
 
 
 def secrets_of_all(exercises: Sequence[Exercise], taught: str) -> tuple[list[Secret], list[Secret]]:
-    """What is secret of a course's exercises, and the names of their hidden checks."""
+    """Return what is secret of a course's exercises, and the names of their hidden checks."""
     texts, names = [], []
     for exercise in exercises:
         others = "\n".join(public_code(other) for other in exercises if other is not exercise)
@@ -89,14 +89,14 @@ def secrets_of_all(exercises: Sequence[Exercise], taught: str) -> tuple[list[Sec
 
 
 def public_code(exercise: Exercise) -> str:
-    """The code that students get of an exercise: its starter and its public checks."""
+    """Return the code that students get of an exercise: its starter and its public checks."""
     public = exercise.folder / "checks.py"
     checks = public.read_text(encoding="utf-8") if public.exists() else ""
     return checks + (starter(exercise.solution_file.read_text(encoding="utf-8")) if exercise.solution_file else "")
 
 
 def authors_code(files: Mapping[str, bytes]) -> str:
-    """The code of the author's that runs in public scenarios, and so is in the students' copies of exercises.
+    """Return the author's code that runs in public scenarios, and so is in the students' copies of exercises.
 
     `files` are those copies by their paths, such as `exercises/tank/public.json`.
     """
@@ -118,7 +118,7 @@ def _run_by(files: Mapping[str, bytes], name: str) -> Iterator[str]:
 
 
 def bare(text: str) -> str:
-    """A text without spaces and line ends."""
+    """Return a text without spaces and line ends."""
     return re.sub(r"\s+", "", text)
 
 
@@ -134,7 +134,7 @@ def _windows(what: str, place: str, lines: list[Line]) -> list[Secret]:
 
 
 def _solved(source: str) -> Iterator[list[Line]]:
-    """The lines of each block between marks, without spaces."""
+    """Yield the lines of each block between markers, without spaces."""
     block: list[Line] | None = None
     for number, line in enumerate(source.splitlines(), start=1):
         if BEGIN.match(line):
@@ -147,7 +147,7 @@ def _solved(source: str) -> Iterator[list[Line]]:
 
 
 def _lines(file: Path) -> list[Line]:
-    """The lines of a file that say more than what it imports, without spaces."""
+    """Return the lines of a file that contain more than an import, without spaces."""
     lines = enumerate(file.read_text(encoding="utf-8").splitlines(), start=1)
     return [
         (number, bare(line)) for number, line in lines if line.strip() and not line.startswith(("import ", "from "))
@@ -178,7 +178,7 @@ def _hidden_checks(exercise: Exercise) -> Iterator[ast.FunctionDef]:
 class Leak:
     """A secret in a file of a handout. `at` says where in the course's files it is, and `line` in the file itself.
 
-    `line` is None, and `at` empty, where that can't be told.
+    `line` is None, and `at` empty, if that is unknown.
     """
 
     file: str
@@ -188,15 +188,15 @@ class Leak:
 
 
 def leaks(files: Mapping[str, bytes], known: list[Secret]) -> Iterator[tuple[str, str]]:
-    """(file, what it is) for each file and each thing that is secret in it: see `located`."""
+    """Yield (file, what it is) for each file and each secret in it: see `located`."""
     for leak in located(files, known):
         yield leak.file, leak.what
 
 
 def located(files: Mapping[str, bytes], known: list[Secret]) -> Iterator[Leak]:
-    """Find each thing that is secret in each file, once. Looks into notebooks, wheels and zips, too.
+    """Find each secret in each file, once. Searches notebooks, wheels and zips, too.
 
-    Of a notebook everything counts: cells, outputs, attachments, and metadata of the whole and of each cell.
+    All of a notebook is searched: cells, outputs, attachments, and metadata of the whole and of each cell.
     """
     yield from _located(files, _Search(known))
 
@@ -219,7 +219,7 @@ class _Search:
                 self._having.setdefault(text[at : at + _PIECE], []).append((number, at))
 
     def found_in(self, text: str) -> list[Secret]:
-        """The secrets that stand in the text, in their order."""
+        """Return the secrets that are in the text, in their order."""
         found = {number for number in self._short if self._known[number].text in text}
         for start in range(0, len(text), self._step):
             for number, at in self._having.get(text[start : start + _PIECE], ()):
@@ -263,7 +263,7 @@ def _line_in(text: str, secret: Secret) -> int | None:
 
 
 def _chapter_line(content: bytes, secret: Secret) -> str:
-    """Return the chapter and line from which a notebook has the secret, as the notebook's metadata tell it."""
+    """Return the chapter and line from which a notebook has the secret, according to the notebook's metadata."""
     try:
         notebook = json.loads(content)
         chapter = notebook["metadata"]["spinbook"]["chapter"]
@@ -277,7 +277,7 @@ def _chapter_line(content: bytes, secret: Secret) -> str:
 
 
 def _readable(name: str, content: bytes) -> str:
-    """A file's text; a notebook's texts, one after the other, as they are shown."""
+    """Return a file's text; for a notebook its texts, one after the other, as they are shown."""
     text = content.decode("utf-8", errors="replace")
     if name.endswith((".ipynb", ".json")):
         try:

@@ -21,7 +21,7 @@ from spinbook.chapter.links import linked
 
 
 def exercise_files(exercise: Exercise, workers: WorkerPool) -> dict[str, bytes]:
-    """The copy's files by name: task, starter, public checks, and what these judge by.
+    """Return the copy's files by name: task, starter, public checks, and the data that these need.
 
     Runs the author's solution through the public scenarios, unless that was done before. Raises `ExerciseError`.
     """
@@ -43,12 +43,12 @@ def _isolation() -> Isolation:
     try:
         return choose()
     except SandboxUnavailable:
-        # The solution is the author's own.
+        # The solution belongs to the author.
         return Isolation.NONE
 
 
 def _pictures(exercise: Exercise) -> Iterator[Path]:
-    """Yield the pictures beside the task that it shows."""
+    """Yield the pictures next to the task that it shows."""
     shown: set[str] = set()
     linked(exercise.task, lambda target, _: shown.add(unquote(target)))
     for file in sorted(exercise.folder.rglob("*")):
@@ -57,7 +57,7 @@ def _pictures(exercise: Exercise) -> Iterator[Path]:
             yield name
 
 
-#: What of a notebook's, and of a cell's, metadata students get. Whatever an editor has added stays behind.
+#: The metadata of a notebook, and of a cell, that students get. Anything an editor has added is left out.
 _NOTEBOOK_KEYS = ("kernelspec", "language_info", "spinbook", "title")
 _CELL_KEYS = ("spinbook", "tags")
 
@@ -68,7 +68,7 @@ _HELP = """\
 
 
 def for_students(notebook: str, repository: str) -> str:
-    """A built notebook without outputs and authors' comments; links to a task lead to the copy beside it."""
+    """Return a notebook without outputs and authors' comments; links to a task lead to the copy next to it."""
     entries: dict[str, Any] = json.loads(notebook)
     away = f"{repository}/blob/main/" if repository else "../"
     entries["metadata"] = {key: entries["metadata"][key] for key in _NOTEBOOK_KEYS if key in entries["metadata"]}
@@ -84,7 +84,7 @@ def for_students(notebook: str, repository: str) -> str:
 
 
 def _beside(target: str, away: str) -> str | None:
-    """Return where a link to a task leads in the handout; None for any other link."""
+    """Return the target of a link to a task in the handout; None for any other link."""
     name = target.removeprefix(away)
     is_task = name.startswith("exercises/") and name.partition("#")[0].endswith("/task.md")
     return name if name != target and is_task else None

@@ -22,17 +22,17 @@ from spinbook.problem import Problem, SpinbookError
 # A wheel is a zip whose RECORD lists every file with its hash (PEP 427, and "Recording installed projects").
 
 
-#: What `spinbook new` starts from has solutions and hidden checks in it; courses may still use them.
+#: The templates of `spinbook new` contain solutions and hidden checks; courses may still use them.
 FOR_AUTHORS = ("spinbook/new/template/", "spinbook/new/kinds/")
 
 _BUILD = "import sys; from setuptools.build_meta import build_wheel; print(build_wheel(sys.argv[1]))"
-#: All that the commands import, as pyproject.toml lists it.
+#: Everything that the commands import, as pyproject.toml lists it.
 _PACKAGES = ("spinbook", "grader", "interface_compiler", "rcl_python", "rmw_lockstep")
 _SOURCES = ("pyproject.toml", "README.md", "LICENSE", *_PACKAGES)
 
 
 def spinbook_wheel() -> tuple[str, bytes]:
-    """The wheel's file name and content. Raises SpinbookError where it can't be made."""
+    """Return the wheel's file name and content. Raises SpinbookError if it can't be made."""
     source = Path(spinbook.__file__).parents[1]
     files = _built(source) if (source / "pyproject.toml").is_file() else _installed()
     kept = {name: content for name, content in files.items() if not name.startswith(FOR_AUTHORS)}
@@ -45,7 +45,7 @@ def spinbook_wheel() -> tuple[str, bytes]:
 
 
 def _built(source: Path) -> dict[str, bytes]:
-    """What setuptools makes of a checkout, which is left as it is."""
+    """Return what setuptools makes from a checkout, which is left as it is."""
     with tempfile.TemporaryDirectory(prefix="spinbook-") as temporary:
         copy, out = Path(temporary) / "source", Path(temporary) / "out"
         copy.mkdir()
@@ -67,7 +67,7 @@ def _built(source: Path) -> dict[str, bytes]:
 
 
 def _installed() -> dict[str, bytes]:
-    """The files of the Spinbook that is installed: for a package of pure Python, what was in its wheel."""
+    """Return the files of the installed Spinbook: for a package of pure Python, what was in its wheel."""
     distribution = metadata.distribution("spinbook")
     kept = (*(f"{package}/" for package in _PACKAGES), f"spinbook-{spinbook.__version__}.dist-info/")
     files = {}
@@ -85,9 +85,9 @@ OTHERS = Path(FOLDER, "wheels")
 
 
 def interface_wheels(course: Course, texts: Iterable[bytes]) -> dict[str, bytes]:
-    """File name -> content of each wheel: the course's own packages, and those beyond PyPI's that it may use.
+    """Return file name -> content of each wheel: the course's own packages, and those beyond PyPI's that it may use.
 
-    `texts` are what students get to read; an optional package goes with them where it is named there.
+    `texts` are what students get to read; an optional package is included if it is named there.
 
     Raises:
         SpinbookError: if the course's interfaces have faults or can't be compiled.
@@ -98,7 +98,7 @@ def interface_wheels(course: Course, texts: Iterable[bytes]) -> dict[str, bytes]
 
 
 def _packages(course: Course, text: bytes) -> Iterator[tuple[str, Path]]:
-    """The packages, each with the prefix that has it."""
+    """Yield the packages, each with the prefix that has it."""
     environment = Path(sys.prefix)
     for package in (*shipped.standard(), *shipped.optional()):
         wanted = package in shipped.standard() or package.encode() in text

@@ -1,1 +1,1 @@
-"""`spinbook new`: a small course of an author's own, or one more exercise, to go on from."""
+"""`spinbook new`: a small course of an author's own, or one more exercise, to start from."""

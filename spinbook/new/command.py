@@ -1,4 +1,4 @@
-"""`spinbook new`: a course or an exercise to go on from."""
+"""`spinbook new`: a course or an exercise to start from."""
 
 from __future__ import annotations
 
@@ -128,5 +128,5 @@ def _exercise(folder: Path) -> Exercise:
 
 
 def _shown(file: Path) -> Path:
-    """The path as seen from where the author is, if the file is below."""
+    """Return the path relative to the author's current folder, if the file is below it."""
     return file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file

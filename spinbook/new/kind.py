@@ -1,6 +1,6 @@
-"""The kinds of exercises that there is a template of.
+"""The kinds of exercises for which there is a template.
 
-Each template is an exercise that works, in the folders `exercises` and `solutions`, as in a course.
+Each template is a working exercise, in the folders `exercises` and `solutions`, as in a course.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-#: A whole course, whose one exercise is the template of a filter.
+#: A whole course, whose only exercise is the template of a filter.
 COURSE = Path(__file__).parent / "template"
 
 _KINDS = Path(__file__).parent / "kinds"
@@ -16,9 +16,9 @@ _KINDS = Path(__file__).parent / "kinds"
 
 @dataclass(frozen=True)
 class Kind:
-    """One kind of exercise: what its node does, and the template of it.
+    """One kind of exercise: what its node does, and its template.
 
-    `exercise` is the template's own name, and `title` its title. `root` holds its `exercises` and `solutions`.
+    `exercise` is the template's own name, and `title` its title. `root` contains its `exercises` and `solutions`.
     """
 
     name: str

@@ -1,7 +1,7 @@
-"""Writes a program that has the interface of exercise.toml, and nothing of the task yet: the first draft of a solution.
+"""Writes a program with the interface of exercise.toml, but without the task's content: the first draft of a solution.
 
-What makes the interface stands outside of the solution's markers, so that a starter made from it has each topic,
-service, action and parameter with its type and quality of service. What it does with them is a TODO between markers.
+The code for the interface is outside the solution's markers, so that a starter made from it has each topic, service,
+action and parameter with its type and quality of service. What it does with them is a TODO between markers.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from grader.exercise.exercise import (
     Topic,
 )
 
-#: A program's end, and what an __init__ does for it.
+#: A program's end point, and what an __init__ does for it.
 _ENTRY = {
     "service": "self.{name}_service = self.create_service({type}, {topic}, self.on_{name})",
     "client": "self.{name}_client = self.create_client({type}, {topic})",
@@ -45,10 +45,10 @@ _VERBS: dict[Direction | Role, str] = {
     "action_client": "send goals to",
 }
 
-#: What a node without callbacks is still to have.
+#: What a node without callbacks still needs.
 _TIMER = "        # TODO: create a timer, and write what it calls."
 
-#: What stands between a program's imports and its end. Begin and end of a solution are the author's to fill in.
+#: The code between a program's imports and its end. The author fills in what is between a solution's markers.
 _BODY = '''\
 class {class_name}(Node):
     """TODO: what the node does."""
@@ -77,7 +77,7 @@ if __name__ == "__main__":
 
 @dataclass(frozen=True)
 class _Callback:
-    """A method that the program's ends call."""
+    """A method that the program's end points call."""
 
     name: str
     arguments: str
@@ -86,9 +86,9 @@ class _Callback:
 
 
 def skeleton(exercise: Exercise) -> str:
-    """The text of a solution.py with the exercise's interface; of several programs, each with its part.
+    """Return the text of a solution.py with the exercise's interface; with several programs, each with its part.
 
-    exercise.toml does not say which of several programs has which topic: there, comments list them for the author.
+    exercise.toml does not say which of several programs has which topic: comments then list them for the author.
     """
     if not exercise.programs:
         node = ProgramFile(exercise.file_name, exercise.node_name, exercise.class_name)
@@ -153,7 +153,7 @@ def _topic(one: Topic) -> Iterator[str]:
 
 
 def _quality(one: Topic) -> str:
-    """The depth alone where that gives what is declared."""
+    """Return only the depth if that is enough for what is declared."""
     policies = [_ENUMS[policy] for policy in (one.reliability, one.durability) if policy in _ENUMS]
     return f"QoSProfile({', '.join([f'depth={one.depth}', *policies])})" if policies else str(one.depth)
 
@@ -183,7 +183,7 @@ def _method(one: _Callback) -> str:
 
 
 def _marked(todo: Sequence[str], last: str = "") -> list[str]:
-    """A block for the author to fill in, below what students read."""
+    """Return a block for the author to fill in, below what students read."""
     inside = [f"        {last}"] if last else []
     return [*todo, "        # BEGIN SOLUTION", *inside, "        # END SOLUTION"]
 
@@ -207,7 +207,7 @@ _ACTION_ENDS: dict[Role, str] = {"action": "ActionServer", "action_client": "Act
 
 
 def _name(topic: str) -> str:
-    """The name of a topic, a service or an action as a part of a Python name."""
+    """Return the name of a topic, a service or an action as a part of a Python name."""
     return re.sub(r"\W+", "_", topic).strip("_").lower()
 
 

@@ -1,4 +1,4 @@
-"""Makes a course or an exercise from a template, under a name that works everywhere."""
+"""Makes a course or an exercise from a template, with a name that works everywhere."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from spinbook.problem import Problem, SpinbookError
 
 
 def package_name(course: Path) -> str:
-    """The ROS package's name for a course in this folder. Raises `SpinbookError` where the folder's name won't do."""
+    """Return the ROS package's name for a course in this folder. Raises `SpinbookError` if the name is invalid."""
     name = course.name
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", name):
         found = f"`{name or course}` can't be a course's folder."
-        # colcon's scripts fall apart at a space in a path.
+        # colcon's scripts fail if there is a space in a path.
         fix = "Use letters, digits, - and _, a letter first, such as my-robots."
         raise SpinbookError(Problem(course, None, found, fix))
     package = re.sub(r"_+", "_", name.lower().replace("-", "_")).strip("_")
@@ -32,7 +32,7 @@ def package_name(course: Path) -> str:
 
 
 def exercise_name(name: str, course: Path) -> str:
-    """`name`, if an exercise may be called so: it becomes a Python file and a node. Raises `SpinbookError`."""
+    """Return `name`, if it is valid for an exercise, a Python file and a node. Raises `SpinbookError` otherwise."""
     file = course / "exercises" / name
     if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", name):
         found = f"`{name}` can't be an exercise's name."
@@ -43,17 +43,17 @@ def exercise_name(name: str, course: Path) -> str:
 
 
 def class_name(exercise: str) -> str:
-    """The class that goes with an exercise's name: gripper_force -> GripperForce."""
+    """Return the class name for an exercise's name: gripper_force -> GripperForce."""
     return "".join(word.capitalize() for word in exercise.split("_"))
 
 
 def words(name: str) -> str:
-    """A name as words for a title: gripper_force -> Gripper force."""
+    """Return a name as words for a title: gripper_force -> Gripper force."""
     return " ".join(re.split(r"[-_]+", name)).strip().capitalize()
 
 
 def title_of(text: str, file: Path) -> str:
-    """`text`, if it can be a title: one line, and nothing that TOML would read as more. Raises `SpinbookError`."""
+    """Return `text`, if it can be a title: one line with no special meaning in TOML. Or raises `SpinbookError`."""
     if not text.strip() or not text.isprintable() or set(text) & set('"\\'):
         raise SpinbookError(Problem(file, None, f"{text!r} can't be a title.", 'Write one line without " and \\.'))
     return text.strip()
@@ -71,18 +71,18 @@ def _refuse_taken(name: str, file: Path) -> None:
 
 
 def _exists(module: str) -> bool:
-    # The current folder may hold a module of that name by chance.
+    # The current folder may contain a module of that name by chance.
     elsewhere = [path for path in sys.path if path and Path(path).resolve() != Path.cwd()]
     return importlib.machinery.PathFinder.find_spec(module, elsewhere) is not None
 
 
-# Nothing is ever overwritten: what is made is put together in a folder of its own, which then gets its name.
+# Nothing is ever overwritten: everything is put together in a folder of its own, which is then renamed.
 
 
 #: The exercise of a new course.
 EXERCISE = "speed_limit"
 
-#: Files whose names begin with a dot in a course, but not here, where packaging tools would leave them out.
+#: Files whose names begin with a dot in a course, but not here, as packaging tools would leave them out.
 _DOTTED = ("_gitignore", "_github")
 
 
@@ -94,7 +94,7 @@ def write_course(folder: Path, title: str, package: str) -> None:
 
 
 def write_exercise(course: Path, name: str, title: str, kind: Kind) -> None:
-    """Make an exercise of a kind, and its solutions, in a course. Raises `SpinbookError` if a folder of it exists."""
+    """Make an exercise of a kind, and its solutions, in a course. Raises `SpinbookError` if its folder exists."""
     names = {
         kind.exercise: name,
         class_name(kind.exercise): class_name(name),
@@ -130,7 +130,7 @@ def _refuse_existing(folder: Path) -> None:
 
 
 def _filled(template: Path, names: Mapping[str, str]) -> dict[Path, str]:
-    """The template's files by their places in what is made, with other names in them."""
+    """Return the template's files by their paths in the result, with other names in them."""
     files: dict[Path, str] = {}
     for file in sorted(template.rglob("*")):
         place = file.relative_to(template)
@@ -147,7 +147,7 @@ def _filled(template: Path, names: Mapping[str, str]) -> dict[Path, str]:
 
 
 def _put(files: Mapping[Path, str], folder: Path) -> None:
-    """Write the files, all or none."""
+    """Write all the files, or none."""
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=f".{folder.name}-", dir=folder.parent) as temporary:

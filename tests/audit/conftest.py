@@ -1,4 +1,4 @@
-"""What the audit's tests share: a small exercise, a worker pool, and what has been run."""
+"""What the audit's tests share: a small exercise, a worker pool, and the runs so far."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ def workers() -> Iterator[WorkerPool]:
 
 @pytest.fixture(scope="session")
 def cache_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where the cache of this session is."""
+    """Where this session's cache is."""
     return tmp_path_factory.mktemp("cache")
 
 
 @pytest.fixture(scope="module")
 def cache(cache_folder: Path) -> Iterator[Path]:
-    """A cache of this session's own, in which one test finds what another has run."""
+    """A cache for this session, in which one test finds what another has run."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SPINBOOK_CACHE", str(cache_folder))
         yield cache_folder
@@ -45,7 +45,7 @@ def small(tmp_path: Path) -> SmallExercise:
 
 @pytest.fixture(scope="module")
 def audited(workers: WorkerPool, cache: Path) -> Auditing:
-    """Audits a small exercise with what this session has run already."""
+    """Audits a small exercise, reusing this session's runs."""
 
     def run(small: SmallExercise, quick: bool = True, most: int = 0, seeds: int = 2) -> Audit:
         return audit(load(small.folder), Options(), workers, Silence(), quick, most, seeds)

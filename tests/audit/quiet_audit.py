@@ -1,4 +1,4 @@
-"""What tests call an audit with."""
+"""A quiet way for tests to run an audit."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from grader.audit.result import Audit
 
 
 class Silence:
-    """Progress that nobody looks at."""
+    """Ignores progress."""
 
     def begin(self, exercise: str, total: int) -> None:
-        """Say nothing."""
+        """Print nothing."""
 
     def done(self) -> None:
-        """Say nothing."""
+        """Print nothing."""
 
 
 class Auditing(Protocol):
     """Audits a small exercise: quickly and without mutants, unless a test asks for more."""
 
     def __call__(self, small: SmallExercise, quick: bool = True, most: int = 0, seeds: int = 2) -> Audit:
-        """What was found."""
+        """Return what was found."""

@@ -1,4 +1,4 @@
-"""Takes a check out of an exercise."""
+"""Removes a check from an exercise."""
 
 from __future__ import annotations
 

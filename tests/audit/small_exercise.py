@@ -144,7 +144,7 @@ if __name__ == '__main__':
 ''',
 }
 
-#: Mistake -> what of the solution it changes, and which checks it names.
+#: Mistake -> what it changes in the solution, and which checks it names.
 MISTAKES = {
     "says_nothing": ("Publishes nothing.", "self.publisher.publish(", "(", ["test_publishes"]),
     "adds_two": ("Adds two.", "2 * message.data", "2 + message.data", ["test_twice_the_number"]),
@@ -171,7 +171,7 @@ class SmallExercise:
         return self.course / "exercises" / "doubler"
 
     def change(self, file: str, old: str, new: str) -> None:
-        """Put `new` in the place of `old` in a file, given by its path in the course."""
+        """Replace `old` by `new` in a file, given by its path in the course."""
         path = self.course / file
         text = path.read_text(encoding="utf-8")
         assert old in text
@@ -179,7 +179,7 @@ class SmallExercise:
 
 
 def written(course: Path) -> SmallExercise:
-    """The exercise, written into this folder with its solution and its mistakes."""
+    """Return the exercise, written into this folder with its solution and its mistakes."""
     for name, text in FILES.items():
         file = course / name
         file.parent.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""`spinbook audit` tells people and programs, and ends with 0, 1 or 2."""
+"""`spinbook audit` prints its findings for people and programs, and ends with 0, 1 or 2."""
 
 from __future__ import annotations
 

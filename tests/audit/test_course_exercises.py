@@ -1,4 +1,4 @@
-"""The course's own exercises prove themselves."""
+"""The course's own exercises pass their audit."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ROOT = Path(__file__).parents[2]
 COURSES = (ROOT, ROOT / "spinbook" / "new" / "template")
 EXERCISES = [file.parent for course in COURSES for file in sorted(course.glob("exercises/*/exercise.toml"))]
 
-#: What every `make test` audits. The other exercises' solutions are graded by tests/grader/test_course_solutions.py.
+#: Audited by every `make test`. The other exercises' solutions are graded by tests/grader/test_course_solutions.py.
 ALWAYS = {"joint_velocity", "speed_limit"}
 
 
@@ -38,7 +38,7 @@ def workers() -> Iterator[WorkerPool]:
 
 
 def to_fix(result: Audit) -> str:
-    """What there is to fix, as text."""
+    """Return what there is to fix, as text."""
     return "\n".join(f"{problem.found}\n    {problem.place}\n    {problem.fix}" for problem in result.problems)
 
 
@@ -68,7 +68,7 @@ def test_joint_velocity_has_enough_mutants(workers: WorkerPool, cache: Path) -> 
     assert result.different >= 150
 
 
-#: Check of joint_velocity -> its file, and a mistake that nothing else catches.
+#: Check of joint_velocity -> its file, and a mistake that no other check catches.
 REMOVED = {
     "test_names_in_the_order_of_the_message": ("checks.py", "sorted_names.py"),
     "test_frame_is_copied": ("hidden_checks.py", "forgets_the_frame.py"),

@@ -1,4 +1,4 @@
-"""`spinbook lint` reads exercises, too: each fault with its file, its line and what to do, and no node is run."""
+"""`spinbook lint` checks exercises, too: it reports each fault with file, line and what to do, and runs no node."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ name = "small"
 
 
 def linted(small: SmallExercise) -> tuple[int, str]:
-    """The exit code and the output of `spinbook lint` in the exercise's course."""
+    """Return the exit code and the output of `spinbook lint` in the exercise's course."""
     (small.course / "course.toml").write_text(COURSE)
     (small.course / "chapters").mkdir()
     (small.course / "chapters" / "one.md").write_text("# One\n\nNothing to run.\n")

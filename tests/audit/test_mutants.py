@@ -1,4 +1,4 @@
-"""Mutants: the changes there are, each a small diff that keeps the rest of the program as it is."""
+"""Mutants: which changes there are, each a small diff that keeps the rest of the program as it is."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def peers() -> tuple[Mutant, ...]:
 
 
 def added(mutants: tuple[Mutant, ...], operator: str) -> str:
-    """The lines that the mutants of one operator add."""
+    """Return the lines that the mutants of one operator add."""
     rows = [row for m in mutants if m.operator == operator for row in m.diff.splitlines()]
     return "\n".join(row for row in rows if row.startswith("+"))
 
@@ -210,7 +210,7 @@ def test_a_sample_is_always_the_same_and_of_all_kinds(mutants: tuple[Mutant, ...
 
 
 def trial(failed: bool = False, different: bool = False) -> Trial:
-    """The trial of a program that fails a check, or that publishes something else and fails none."""
+    """Return the trial of a program that fails a check, or that publishes something else and fails none."""
     return Trial(
         story="",
         statuses={"test_a": "failed" if failed else "passed"},

@@ -20,13 +20,13 @@ def run(*arguments: str) -> Result:
     return CliRunner().invoke(audit, [*arguments], catch_exceptions=False)
 
 
-#: The mistakes that are left: one that a check misses something of, one that ends badly, one that says too much.
+#: The remaining mistakes: one that a check misses a part of, one that ends badly, one that prints too much.
 MISTAKES = {"says_nothing", "no_end", "twice"}
 
 
 @pytest.fixture(autouse=True)
 def in_the_course(small: SmallExercise, cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Start in the small exercise's course, with a few of its mistakes: real time goes by over Fast DDS."""
+    """Start in the small exercise's course, with a few of its mistakes: runs over Fast DDS take real time."""
     for file in (small.course / "solutions" / "doubler" / "mistakes").glob("*.py"):
         if file.stem not in MISTAKES:
             file.unlink()

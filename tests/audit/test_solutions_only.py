@@ -1,4 +1,4 @@
-"""`spinbook audit --solutions`: is every file of solutions/ graded as it has to be?"""
+"""`spinbook audit --solutions` checks whether every file of solutions/ gets the grade that it should."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An audit tells an author what is weak in an exercise, check by check."""
+"""An audit shows an author what is weak in an exercise, check by check."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ HIDDEN = "exercises/doubler/hidden_checks.py"
 
 
 def told(result: Audit, about: str) -> list[str]:
-    """What the audit found about a check, a mistake or a mutant."""
+    """Return what the audit found about a check, a mistake or a mutant."""
     return [problem.found for problem in result.problems if problem.about == about]
 
 
@@ -103,7 +103,7 @@ def test_what_an_exercise_has_to_tell_and_what_it_may_not(small: SmallExercise, 
 
 
 def test_a_check_that_breaks_on_what_a_node_publishes(small: SmallExercise, audited: Auditing) -> None:
-    # With the mistake any_number there are five answers to five numbers, and only then.
+    # Only with the mistake any_number are there five answers to five numbers.
     small.change(HIDDEN, "    negative.must_be_silent()\n", "    [2, 0, 6][len(negative.received) - 1]\n")
     problems = [problem for problem in audited(small).problems if "breaks on what" in problem.found]
     assert [problem.about for problem in problems] == ["test_nothing_below_zero"]

@@ -1,4 +1,4 @@
-"""What a check is worth is known only where it was judged; mutants are spun on where that leaves a doubt."""
+"""What a check is worth is known only if it was judged; mutants run further scenarios if a doubt is left."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from grader.checking.verdict import Finding, Status
 
 
 def check(name: str, depends: tuple[str, ...] = ()) -> Check:
-    """A check of a scenario of its own."""
+    """Return a check of its own scenario."""
     return Check(name, name, 1.0, "", depends, "", False, (name,), Path("checks.py"), 1, 0.0)
 
 
 def trial(**statuses: Status) -> Trial:
-    """The trial of a program of which these checks were judged."""
+    """Return the trial of a program for which these checks were judged."""
     findings = {name: Finding("1 was expected") for name, status in statuses.items() if status == "failed"}
     return Trial("", dict(statuses), findings, tuple(statuses), 3, ())
 

@@ -1,4 +1,4 @@
-"""Checks every program of an exercise's solutions as a page does, and by the real grader, and says what differs.
+"""Checks every program of an exercise's solutions as a page does, and by the real grader, and prints the differences.
 
     python tests/browser/checks_in_both.py EXERCISE [NAME …]
 
@@ -33,7 +33,7 @@ CHECK_FILE = Path(__file__).with_name("check_file.py")
 
 
 def handed_out(name: str, folder: Path) -> Exercise:
-    """A student's copy of the exercise, in `folder`."""
+    """Return a student's copy of the exercise, in `folder`."""
     with WorkerPool() as workers:
         for file, content in exercise_files(load(ROOT / "exercises" / name), workers).items():
             (folder / file).parent.mkdir(parents=True, exist_ok=True)
@@ -51,7 +51,7 @@ def in_the_page(exercise: Exercise, file: Path, out: Path) -> dict[str, Any]:
 
 
 def comparable(recording: Recording) -> Recording:
-    """Without the words about an end, which name folders that differ."""
+    """Return the result without messages about an end, which name folders that differ."""
     return replace(recording, ending=replace(recording.ending, story=""))
 
 

@@ -1,4 +1,4 @@
-"""A check in the page records and says what the real grader's public part does, for every solution and mistake."""
+"""A check in the page records and prints what the real grader's public part does, for every solution and mistake."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 IN_BOTH = Path(__file__).with_name("checks_in_both.py")
-#: What every `make test` goes through; `make soak` goes through all.
+#: Checked by every `make test`; `make soak` checks all.
 ALWAYS = ("solution", "degrees", "several_threads")
 EXERCISES = sorted(folder.name for folder in (ROOT / "exercises").iterdir() if (folder / "exercise.toml").is_file())
 #: A page can't run these, and says so.
@@ -23,7 +23,7 @@ NEEDS_MORE = {
 
 
 def found(exercise: str, *names: str) -> dict[str, str]:
-    """What the comparison says of each program."""
+    """Return the comparison's result for each program."""
     command = [sys.executable, os.fspath(IN_BOTH), exercise, *names]
     done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=False)
     assert done.returncode == 0, done.stderr
@@ -32,7 +32,7 @@ def found(exercise: str, *names: str) -> dict[str, str]:
 
 
 def differing(exercise: str, said: dict[str, str]) -> dict[str, str]:
-    """The programs that differ, without those that a page refuses to run, as it should."""
+    """Return the programs that differ, without those that a page refuses to run, as it should."""
     refused = {name for name, words in said.items() if words.startswith("not checked: ")}
     assert refused == NEEDS_MORE.get(exercise, set()) & set(said)
     return {name: words for name, words in said.items() if words != "same" and name not in refused}

@@ -1,4 +1,4 @@
-"""Notebooks are run with real nodes, side by side, and whatever a cell does, the run ends and leaves nothing behind."""
+"""Notebooks are run with real nodes, in parallel, and whatever a cell does, the run ends and leaves nothing behind."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ except (KeyboardInterrupt, ExternalShutdownException):
     pass
 ```
 """
-#: Ends by itself once it has heard enough, so that no cell depends on how busy the machine is.
+#: Ends by itself once it has received enough, so that no cell depends on how busy the machine is.
 LISTENER = """```python title="listener.py" seconds=200
 import rclpy
 from std_msgs.msg import String

@@ -1,4 +1,4 @@
-"""Chapters may be called as their authors like: with dots, alike in different folders, with spaces."""
+"""Chapters may have any names: with dots, the same in different folders, with spaces."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is wrong in a chapter is told with file, line and what to do; nothing that was built before is lost."""
+"""An error in a chapter is reported with file, line and what to do; earlier builds are not lost."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ GOOD = "# Good\n\n```python\nx = 1\n```\n"
 
 ERROR, NOT_RUN, WARNING = "error", "not run", "warning"
 
-#: name -> (chapter, line that is told, words that are told, how bad it is: only an error stops the chapter)
+#: name -> (chapter, reported line, reported words, severity: only an error stops the chapter)
 FAULTS: dict[str, tuple[bytes, int, list[str], str]] = {
     "syntax error in a fence": (
         b"# T\n\ntext\n\n```python\na = 1\nb = = 2\n```\n",
@@ -105,7 +105,7 @@ FAULTS: dict[str, tuple[bytes, int, list[str], str]] = {
 
 @dataclass(frozen=True)
 class Built:
-    """A course with every fault in a chapter of its own, and a good one among them, built once."""
+    """A course with one chapter per fault, and a good chapter among them, built once."""
 
     course: CourseFolder
     said: str
@@ -132,7 +132,7 @@ def test_a_fault_is_told_with_file_and_line_and_what_to_do(faulty: Built, fault:
     _, line, words, severity = FAULTS[fault]
     name = name_of(fault)
 
-    # What is told of this chapter: from its name to the name of the next.
+    # What is reported for this chapter: from its name to the name of the next.
     told = [part for part in re.split(r"^(?=chapters/)", faulty.said, flags=re.MULTILINE) if f"/{name}.md:" in part]
 
     assert any(part.startswith(f"chapters/{name}.md:{line}: {severity}:") for part in told)

@@ -1,4 +1,4 @@
-"""Every fence is what its content says it is; nothing that can't run becomes a code cell."""
+"""Every fence has the kind that its content shows; nothing that can't run becomes a code cell."""
 
 from __future__ import annotations
 

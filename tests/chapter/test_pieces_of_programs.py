@@ -1,4 +1,4 @@
-"""Programs that a chapter shows in pieces run as a whole; what stays incomplete is shown only."""
+"""Programs that a chapter shows in pieces run as a whole; what stays incomplete is only shown."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ GUARD = "if __name__ == '__main__':\n    main()\n"
 
 
 def reading(tmp_path: Path, *fences: str) -> Reading:
-    """A chapter of these fences; one without an opening is Python."""
+    """Return a chapter with these fences; one without an opening line is Python."""
     parts = [fence if fence.startswith("```") else f"```python\n{fence}```\n" for fence in fences]
     (tmp_path / "c.md").write_text("# T\n\n" + "\n".join(parts))
     return read_chapter(tmp_path, Path("c.md"), Surroundings("robot"))

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 CHAPTERS = Path(__file__).parents[2] / "chapters"
-#: What each chapter says of the whole: minutes, rounded to half an hour as the words are.
+#: What each chapter says about the whole: minutes, rounded to half an hour as the words are.
 WHOLE = {"03-nodes-and-topics": 180, "04-services-and-actions": 210, "05-parameters-and-qos": 180}
 UNTIMED = ("Practice", "What comes next", "Where you are now")
 

@@ -1,4 +1,4 @@
-"""Week 3's nodes, as a student would save and run them: bare Python, real DDS, no part of Spinbook in between."""
+"""Week 3's nodes, as a student would save and run them: plain Python, real DDS, without Spinbook."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Program:
             text=True,
             env={**os.environ, "RCUTILS_COLORIZED_OUTPUT": "0"},
             start_new_session=True,
-            # A shell's background job ignores SIGINT, and hands that on to all it starts.
+            # A shell's background job ignores SIGINT, and passes that on to everything it starts.
             preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
         )
         self.log: list[str] = []
@@ -80,7 +80,7 @@ class Program:
         self._unread.put(None)
 
     def wait_for_log(self, text: str) -> str:
-        """The next line that holds `text`."""
+        """Return the next line that contains `text`."""
         deadline = time.monotonic() + PATIENCE
         with suppress(queue.Empty):
             while line := self._unread.get(timeout=max(0.0, deadline - time.monotonic())):
@@ -90,10 +90,10 @@ class Program:
         raise AssertionError(f"no (more) {text!r} in the log:\n{''.join(self.log)}")
 
     def wait_until_parked(self) -> None:
-        """Until its main thread waits inside ROS and nothing wakes it.
+        """Wait until its main thread waits inside ROS and nothing wakes it.
 
-        rclpy may fail with RCLError when SIGTERM comes in the midst of one of its own calls. That is no matter of
-        the chapter's code, so these tests send the signal to a node that waits, as a node nearly always does.
+        rclpy may fail with RCLError when SIGTERM arrives during one of its own calls. That is not a matter of the
+        chapter's code, so these tests send the signal to a node that waits, as a node nearly always does.
         """
         process = psutil.Process(self.process.pid)
         quiet, before = 0, -1
@@ -107,7 +107,7 @@ class Program:
         raise AssertionError("the node's main thread never came to rest")
 
     def end(self, number: signal.Signals) -> int:
-        """Send a signal, and return the exit code; the log is complete then."""
+        """Send a signal, and return the exit code; the log is then complete."""
         self.process.send_signal(number)
         code = self.process.wait(PATIENCE)
         self._reader.join(PATIENCE)
@@ -148,7 +148,7 @@ class Partner:
 
 @contextmanager
 def started(file: Path, *ros_args: str) -> Iterator[tuple[Program, Partner]]:
-    """A program and the test's own node, both ended in any case."""
+    """Yield a program and the test's own node, both ended in any case."""
     with ExitStack() as stack:
         program = stack.enter_context(Program(file, *ros_args))
         partner = Partner()
@@ -166,7 +166,7 @@ def files(tmp_path: Path, ros_domain: int, monkeypatch: pytest.MonkeyPatch) -> P
 
 
 def first_messages(file: Path, message_type: type, topic: str, count: int) -> list[Any]:
-    """The first `count` messages that a node at 10 Hz publishes, under a clock that the test moves by hand."""
+    """Return the first `count` messages of a node at 10 Hz, under a clock that the test moves by hand."""
     heard: list[Any] = []
     with started(file, "-p", "use_sim_time:=true") as (program, partner):
         node = partner.node
@@ -181,7 +181,7 @@ def first_messages(file: Path, message_type: type, topic: str, count: int) -> li
             tick.clock.sec, tick.clock.nanosec = divmod(step * STEP, 10**9)
 
             def arrived(tick: Clock = tick, step: int = step) -> bool:
-                # Told again until it is heard, for a clock is best effort; the same time twice changes nothing.
+                # Repeated until it is received, as a clock is best effort; the same time twice changes nothing.
                 if len(heard) < step:
                     clock.publish(tick)
                 return len(heard) >= step
@@ -200,7 +200,7 @@ def test_a_node_ends_in_good_order_when_asked_to(files: Path, name: str, number:
         "joint_monitor.py": "joint_state_monitor",
         "turtle_circle.py": "turtle_circle",
     }[name]
-    # Under a clock that stands still no timer is due, so the node has nothing to do but wait.
+    # While the clock stands still no timer is due, so the node has nothing to do but wait.
     with started(files / name, "-p", "use_sim_time:=true") as (program, partner):
         client = partner.node.create_client(GetParameters, f"/{ros_name}/get_parameters")
         partner.spin_until(client.service_is_ready, f"/{ros_name} to offer its parameters")
@@ -235,7 +235,7 @@ def test_the_publisher_sends_about_ten_messages_a_second(files: Path) -> None:
         partner.spin_until(lambda: len(stamps) >= 21, "21 messages")
         program.wait_for_log("messages sent")
         assert program.end(signal.SIGINT) == 0, "".join(program.log)
-    # A busy machine makes it slower now and then, never faster for long.
+    # A busy machine makes it slower now and then, but never faster for long.
     average = (stamps[20] - stamps[0]) / 20
     assert 0.08 < average < 0.5
 
@@ -274,7 +274,7 @@ def test_the_monitor_is_silent_about_joints_within_their_limits(files: Path) -> 
             commands.publish(JointState(name=list(LIMITS), position=positions))
         commands.publish(JointState(name=["a_joint_without_limits"], position=[100.0]))
         commands.publish(JointState())
-        # What is out comes last: once it has been told, all that came before has been judged.
+        # The value outside the range is last: once it is reported, everything before it has been judged.
         commands.publish(JointState(name=["right_elbow"], position=[-0.5]))
         program.wait_for_log("right_elbow")
         assert [line for line in program.log if "SAFETY:" in line] == program.log[-1:]

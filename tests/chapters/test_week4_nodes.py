@@ -1,4 +1,4 @@
-"""Week 4's nodes, as a student would save and run them: what the chapter claims and its notebook does not show."""
+"""Week 4's nodes, as a student would save and run them: what the chapter claims but its notebook does not show."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def partner(ros_domain: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 
 @contextmanager
 def running(folder: Path, *programs: str) -> Iterator[list[subprocess.Popen[str]]]:
-    """Programs, given by their code, that run until the end of the block."""
+    """Run programs, given by their code, until the end of the block."""
     started = []
     try:
         for number, code in enumerate(programs):
@@ -88,20 +88,20 @@ def running(folder: Path, *programs: str) -> Iterator[list[subprocess.Popen[str]
 
 
 def with_test_action(file: str) -> str:
-    """A node's code with an action that is installed everywhere, in the place of the course's own.
+    """Return a node's code with an action that is installed everywhere, instead of the course's own.
 
-    Fibonacci's goal is a whole number, and its result and feedback are lists: enough for what becomes of a goal.
+    Fibonacci's goal is a whole number, and its result and feedback are lists: enough to follow a goal.
     """
     code = CODE[file].replace("from humanoid_control_interfaces.action import MoveJoint\n", "")
     code = code.replace("import rclpy\n", "import rclpy\nfrom test_msgs.action import Fibonacci as MoveJoint\n", 1)
     code = code.replace("request.position", "request.order").replace("goal.position", "goal.order")
     code = re.sub(r"MoveJoint\.(Result|Feedback)\(position=[\w.]+\)", r"MoveJoint.\1()", code)
-    # Steps take a tenth of the time: the tests wait for what happens, not for how long it takes.
+    # Steps take a tenth of the time: the tests wait for events, not for a duration.
     return code.replace("self.position = 0.0", "self.position = 0").replace("seconds=0.2", "seconds=0.02")
 
 
 def end_of(partner: Partner, goal: int) -> tuple[bool, int]:
-    """(whether a goal is accepted, the status with which it ended)."""
+    """Return (whether a goal is accepted, the status with which it ended)."""
     client = ActionClient(partner.node, Fibonacci, "/move_elbow")
     partner.spin_until(client.server_is_ready, "the action server")
     handle = partner.done(client.send_goal_async(Fibonacci.Goal(order=goal)), "the answer to the goal")
@@ -111,7 +111,7 @@ def end_of(partner: Partner, goal: int) -> tuple[bool, int]:
 
 
 def heard_on(partner: Partner, topic: str) -> list[int]:
-    """The numbers that come on a topic, which are added to the list while the partner spins."""
+    """Return the numbers from a topic: a list that grows while the partner spins."""
     heard: list[int] = []
 
     def hear(msg: Any) -> None:

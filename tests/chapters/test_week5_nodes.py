@@ -1,4 +1,4 @@
-"""Week 5's nodes, as a student would save and run them: bare Python, real DDS, no part of Spinbook in between."""
+"""Week 5's nodes, as a student would save and run them: plain Python, real DDS, without Spinbook."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 @pytest.fixture
 def files(tmp_path: Path, ros_domain: int, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder that holds the chapter's nodes, each saved as a plain .py: what is shown last of a file is the file."""
+    """A folder that contains the chapter's nodes, each saved as a plain .py, in the last version shown."""
     monkeypatch.setenv("ROS_LOG_DIR", os.fspath(tmp_path / "log"))
     for name, code in NODE_FENCE.findall(CHAPTER.read_text(encoding="utf-8")):
         (tmp_path / name).write_text(code, encoding="utf-8")

@@ -43,10 +43,10 @@ def kernel(handed_out: Path) -> Iterator[Kernel]:
 
 
 def node_cell(code: str) -> str:
-    """The exercise's cell with this code, which is not waited for."""
+    """Run the exercise's cell with this code, without waiting for it."""
     return f"%%node joint_velocity --seconds 0.1\n{code}"
 
 
 def solution() -> str:
-    """The author's."""
+    """The author's solution."""
     return (SOLUTIONS / "solution.py").read_text(encoding="utf-8")

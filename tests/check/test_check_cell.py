@@ -1,4 +1,4 @@
-"""`%check` in a notebook says what the public checks say of the exercise's cell, and never blocks the kernel."""
+"""`%check` in a notebook shows the public checks' results for the exercise's cell, and never blocks the kernel."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def shown_of(kernel: Kernel, code: str, check: str = CHECK) -> Shown:
 
 
 def texts(shown: Shown) -> tuple[str, str]:
-    """(plain text with single spaces, HTML) of a check."""
+    """Return (plain text with single spaces, HTML) of a check."""
     assert not shown.error, shown.error
     assert len(shown.pictures) == 1
     return " ".join(shown.pictures[0]["text/plain"].split()), shown.pictures[0]["text/html"]
@@ -155,7 +155,7 @@ def test_a_loop_without_end_is_told_and_the_kernel_goes_on(kernel: Kernel) -> No
 
 
 def checks_of(kernel: Kernel) -> list[psutil.Process]:
-    """Check processes that run in this kernel."""
+    """Return the check processes that run in this kernel."""
     found = []
     for process in psutil.Process(kernel.process_id).children(recursive=True):
         try:

@@ -17,7 +17,7 @@ from check.test_check_cell import texts
 from grader.exercise import starter
 from spinbook.kernel.check_cell import JUPYTER, VS_CODE
 
-#: As where neither ipywidgets nor ipympl is installed.
+#: As on a machine without ipywidgets and ipympl.
 NO_WIDGETS = "import sys\nsys.modules['ipywidgets'] = sys.modules['ipympl'] = None"
 
 
@@ -29,7 +29,7 @@ def save(notebook: Path, code: str) -> None:
 
 @pytest.fixture(scope="module")
 def place(handed_out: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder of its own with the exercises in it, and a saved notebook with the starter."""
+    """A folder with the exercises in it, and a saved notebook with the starter."""
     folder = tmp_path_factory.mktemp("front") / "course"
     shutil.copytree(handed_out, folder)
     save(folder / "week3.ipynb", starter(solution()))
@@ -62,7 +62,7 @@ def test_vs_code_the_notebooks_own_folder_counts_and_the_saved_cell_where_none_w
     elsewhere: Kernel, place: Path
 ) -> None:
     notebook = place / "week3.ipynb"
-    # What a restart leaves of a session: nothing but what is on the disk.
+    # What a restart leaves of a session: only what is on the disk.
     elsewhere.run("get_ipython().spinbook_session.ran.clear()")
     elsewhere.run(f"{VS_CODE} = {os.fspath(notebook)!r}")
 

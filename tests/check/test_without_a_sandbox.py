@@ -1,4 +1,4 @@
-"""Where a machine allows no sandbox, one's own code is checked all the same and told so; nobody else's is graded."""
+"""If a machine allows no sandbox, the user's own code is checked with a warning; other people's is not graded."""
 
 from __future__ import annotations
 

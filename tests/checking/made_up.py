@@ -1,4 +1,4 @@
-"""Recordings that are made up, to see what checks say of them."""
+"""Made-up recordings, to test what checks say about them."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ EMPTY = Recording("plain", (), (), ("/worker",), ENDS, "lockstep", True, Ending(
 
 
 def ns(seconds: float) -> int:
-    """Seconds after the start as simulated time."""
+    """Return seconds after the start as simulated time."""
     return START + round(seconds * SECOND)
 
 
 def published(times: Iterable[float], values: Iterable[float], topic: str = "/out", subscriber: str = "") -> Recording:
-    """A recording of a node that published these numbers."""
+    """Return a recording of a node that published these numbers."""
     received = tuple(
         Received(ns(at), 0, topic, FLOAT, {"data": value}, subscriber) for at, value in zip(times, values, strict=True)
     )
@@ -51,22 +51,22 @@ def published(times: Iterable[float], values: Iterable[float], topic: str = "/ou
 
 
 def moved(*way: tuple[float, float, float]) -> Recording:
-    """A recording of a world that published where it was: (time, x, y)."""
+    """Return a recording of a world that published where it was: (time, x, y)."""
     return replace(EMPTY, sent=tuple(Sent(ns(at), "/pose", FLOAT, {"x": x, "y": y}) for at, x, y in way))
 
 
 def run(mine: Recording, reference: Recording | None = None, exercise: Exercise = EXERCISE) -> Run:
-    """What a check gets."""
+    """Return what a check gets."""
     return Run(exercise, mine, reference or mine, "as usual")
 
 
 def finding(check: Callable[[], Any]) -> Finding:
-    """What a check that has to fail says."""
+    """Return what a check says that has to fail."""
     with pytest.raises(Wrong) as caught:
         check()
     return caught.value.finding
 
 
 def says(check: Callable[[], Any]) -> str:
-    """The words of a check that has to fail."""
+    """Return the words of a check that has to fail."""
     return finding(check).text

@@ -1,4 +1,4 @@
-"""What came late is told as late, and what was measured with the wrong clock as that: with made-up recordings."""
+"""A late answer is reported as late, and one measured with the wrong clock as that: with made-up recordings."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ COUNT = 8
 
 
 def recording(*received: Received) -> Recording:
-    """Messages 0.1 s apart, and what came back."""
+    """Return a recording of messages 0.1 s apart, and their answers."""
     sent = tuple(Sent(START + i * SECOND // 10, "/in", FLOAT, {"data": float(i)}) for i in range(COUNT))
     return Recording("plain", sent, received, ("/doubler",), (), "lockstep", True, Ending("completed"))
 
 
 def answer(number: int, value: float, later: float = 0.0) -> Received:
-    """An answer to message `number`, counted from 1, that comes `later` (s)."""
+    """Return an answer to message `number`, counted from 1, that arrives `later` (s)."""
     at = START + (number - 1) * SECOND // 10 + round(later * SECOND)
     after = min(COUNT, 1 + (at - START) * 10 // SECOND)
     return Received(at, after, "/out", FLOAT, {"data": value})
@@ -43,7 +43,7 @@ REFERENCE = recording(*(answer(n, right(n)) for n in range(1, COUNT + 1)))
 
 
 def told(received: list[Received], check: Callable[[Run], None]) -> str:
-    """What a check says of this."""
+    """Return what a check says about this."""
     with pytest.raises(Wrong) as caught:
         check(Run(EXERCISE, recording(*received), REFERENCE))
     return caught.value.finding.text

@@ -18,7 +18,7 @@ SILENT = published([], [])
 
 
 def stamped(*stamps: float) -> Recording:
-    """A message each 0.1 s, with these stamps (s of simulated time)."""
+    """Return a recording with one message every 0.1 s, with these stamps (s of simulated time)."""
     fields = [{"header": {"stamp": {"sec": int(s), "nanosec": round(s % 1 * SECOND)}}} for s in stamps]
     return replace(EMPTY, received=tuple(Received(ns(i / 10), 0, "/out", STAMPED, f) for i, f in enumerate(fields)))
 

@@ -13,7 +13,7 @@ from grader.recording.events import Call
 
 
 def calls(*sums: int | None, late: float = 0.0, by: str = "grader", served: bool = True) -> Recording:
-    """A request each second, n + 1 for number n, and these responses."""
+    """Return one request per second, n + 1 for number n, and these responses."""
     made = tuple(
         Call(
             *(ns(n), "/add", ADD, {"a": n, "b": 1}, by),  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""A name that is almost that of a topic is probably a slip; the exercise's own names are none."""
+"""A name that is almost a topic's is probably a typo; the exercise's own names are not."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ TOPICS, NODE = ("/joint_commands", "/joint_velocities"), "/joint_velocity"
 
 
 def told(text: str) -> str:
-    """What a student reads in the place of this finding."""
+    """Return what a student reads instead of this finding."""
     finding = with_spelling(Verdict("test_a", "a", "failed", 1.0, finding=Finding(text)), TOPICS, NODE).finding
     assert finding
     return finding.text

@@ -1,4 +1,4 @@
-"""Who handed in what is found in folders, downloads and tables; what is not clear is asked, and nothing is guessed."""
+"""Submissions are found in folders, downloads and tables; unclear ones become questions, and nothing is guessed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The real Week 3 chapter, built and run: every cell does what the chapter says of it.
+"""The real Week 3 chapter, built and run: every cell does what the chapter says about it.
 
 The whole chapter takes minutes, and `make course` runs it, too: `make test` runs the sections about the joints, and
 `make soak` all of it.
@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 NAME = "03-nodes-and-topics"
 JOINTS = [f"{side}_{joint}" for side in ("left", "right") for joint in ("shoulder_pitch", "shoulder_roll", "elbow")]
 
-#: The sections that build on one another from the first node to the package, and those that every chapter has.
+#: The sections that depend on one another from the first node to the package, and those that every chapter has.
 THE_JOINTS = (
     *("A publisher: the joint commands", "A subscriber: the joint monitor", "Look into the running system"),
     *("See it move", "As a ROS 2 package", "Practice: joint velocities"),
@@ -29,7 +29,7 @@ WHOLE = pytest.param((), id="whole chapter", marks=[pytest.mark.soak, pytest.mar
 
 
 def only(chapter: Path, titles: tuple[str, ...]) -> None:
-    """Take every section out of a chapter but these."""
+    """Remove every section of a chapter but these."""
     head, *sections = re.split(r"(?m)^(?=## )", chapter.read_text(encoding="utf-8"))
     kept = [section for section in sections if section[3:].partition("\n")[0] in titles]
     assert len(kept) == len(titles), "a section has another title now"

@@ -1,4 +1,4 @@
-"""The real Week 5 chapter, built and run: every cell does what the chapter says of it."""
+"""The real Week 5 chapter, built and run: every cell does what the chapter says about it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def notebook(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 
 def shown(notebook: Any, begins: str) -> list[str]:
-    """What the cells show whose code begins so, in order."""
+    """Return what the cells show whose code begins like this, in order."""
     return [
         "".join(output.get("text", "") or output.get("data", {}).get("text/plain", "") for output in cell.outputs)
         for cell in notebook.cells

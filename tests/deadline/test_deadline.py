@@ -1,4 +1,4 @@
-"""Late work: what exercise.toml may say of it, what it costs, and what the instructor decides otherwise."""
+"""Late work: what exercise.toml may say about it, what it costs, and what the instructor decides otherwise."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from typing import Any
 
 
 def doctor(*arguments: str, folder: Path | None = None, **settings: str | None) -> subprocess.CompletedProcess[str]:
-    """Run the command in `folder`, with these variables set, or removed where None."""
+    """Run the command in `folder`, with these variables set, or removed if None."""
     environment = {name: value for name, value in {**os.environ, **settings}.items() if value is not None}
     return subprocess.run(
         [sys.executable, "-m", "spinbook", "doctor", *arguments],
@@ -25,7 +25,7 @@ def doctor(*arguments: str, folder: Path | None = None, **settings: str | None) 
 
 
 def finding_of(word: str, folder: Path | None = None, **settings: str | None) -> dict[str, Any]:
-    """What one check finds with these variables: its name, state, found and fix."""
+    """Return what one check finds with these variables: its name, state, found and fix."""
     (finding,) = json.loads(doctor("--json", word, folder=folder, **settings).stdout)["findings"]
     assert isinstance(finding, dict)
     return finding

@@ -1,4 +1,4 @@
-"""A check may crash, hang or chatter: the doctor goes on, tells it, and leaves no process behind."""
+"""A check may crash, hang or print too much: the doctor continues, reports it, and leaves no process behind."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def check(folder: Path, word: str, does: str, seconds: float = 60.0, needs: tuple[str, ...] = ()) -> Check:
-    """A check that does this."""
+    """Return a check that does this."""
     (folder / f"{word}_check.py").write_text(_HEAD + _EXAMINE.format(does))
     return Check(word, word.capitalize(), f"{word}_check:examine", seconds, needs)
 

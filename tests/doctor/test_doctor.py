@@ -1,4 +1,4 @@
-"""`spinbook doctor` examines everything that a course needs, and tells it to people and to programs."""
+"""`spinbook doctor` examines everything that a course needs, and reports it to people and to programs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def test_here_everything_that_is_needed_works() -> None:
     answer = json.loads(run.stdout)
     states = {finding["name"]: finding["state"] for finding in answer["findings"]}
     assert list(states) == [check.name for check in CHECKS]
-    # Whether there is a sandbox is up to the machine that runs the tests; all else is up to set-up.
+    # Whether there is a sandbox depends on the machine that runs the tests; everything else depends on set-up.
     assert [name for name, state in states.items() if state == "missing" and name != "Sandbox"] == []
     assert answer["able"] is (states["Sandbox"] != "missing")
     assert run.returncode == (0 if answer["able"] else 1)

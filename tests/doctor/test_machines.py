@@ -1,4 +1,4 @@
-"""What the doctor finds on machines on which something is not as it should be."""
+"""What the doctor finds on machines with a problem."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ with_wheels = pytest.mark.skipif(not wheels_installed(), reason="ROS 2 is a sour
 
 
 def program(folder: Path, name: str, text: str) -> str:
-    """A PATH on which this program comes first."""
+    """Return a PATH on which this program comes first."""
     file = folder / name
     file.write_text(f"#!/bin/sh\n{text}\n")
     file.chmod(0o755)

@@ -1,4 +1,4 @@
-"""The class whose pages are looked at."""
+"""The class for the tests of pages."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from grader.grading import Grade
 
 @pytest.fixture(scope="session")
 def graded(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Grade]:
-    """Real grades, by the name of what was handed in."""
+    """Real grades, by the name of the submission."""
     return graded_class(tmp_path_factory)[1]
 
 

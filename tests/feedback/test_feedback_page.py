@@ -1,4 +1,4 @@
-"""A student's page tells what is right, what is wrong and what to do; and gives no hidden check away."""
+"""A student's page says what is right, what is wrong and what to do; and reveals no hidden check."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from grader.report.feedback_plot import feedback_plot
 
 
 def text(page: str) -> str:
-    """What is read on a page, without its head, in one line."""
+    """Return the text of a page, without its head, in one line."""
     body = page.split("</head>")[1]
     return re.sub(r"\s+", " ", unescape(re.sub(r"<[^>]+>", " ", body)))
 

@@ -1,4 +1,4 @@
-"""Pages in a real browser: nothing that a student writes can do anything there, and everybody can read them."""
+"""Pages in a real browser: nothing that a student writes can do anything there, and everyone can read them."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ EVIL = (
 
 @pytest.fixture
 def site(graded: dict[str, Grade], exercise: Exercise, tmp_path: Path) -> Path:
-    """A folder of results: index.html and a page a student, one of whom is hostile in every field."""
+    """A folder of results: index.html and one page per student, one of whom is hostile in every field."""
     names = {"solution": "Grace Hopper", "fixed_dt": "Jörg Müller", "breaks_pages": EVIL}
     entries = [entry(grade, names.get(name, "Ada Lovelace")) for name, grade in graded.items() if name != "host_error"]
     entries = [
@@ -101,7 +101,7 @@ def test_a_row_opens_the_students_page(browser: Browser, site: Path) -> None:
         cell.scroll_into_view_if_needed()
         box = cell.bounding_box()
         assert box
-        # Over every cell lies the link of its row: the click is one at a place.
+        # The link of its row covers every cell: the click goes to a position.
         shown.page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
         shown.page.wait_for_url("**/s-fixed_dt/feedback.html")
         expect(shown.page.get_by_role("heading", level=1)).to_have_text("Jörg Müller")

@@ -18,7 +18,7 @@ FLOAT = "std_msgs/msg/Float64"
 
 
 def recording(*answers: float) -> Recording:
-    """Numbers that were sent each 0.1 s, and what was answered to them."""
+    """Return a recording of numbers that were sent every 0.1 s, and their answers."""
     times = [START + i * SECOND // 10 for i in range(len(answers))]
     sent = tuple(Sent(at, "/wanted_speed", FLOAT, {"data": 3.0}) for at in times)
     received = tuple(

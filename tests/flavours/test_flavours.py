@@ -1,4 +1,4 @@
-"""Chapters written for eight book tools come out right, in the notebook and on the site; book/ holds one of each."""
+"""Chapters written for eight book tools are correct, in the notebook and on the site; book/ has one of each."""
 
 from __future__ import annotations
 

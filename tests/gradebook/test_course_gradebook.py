@@ -27,7 +27,7 @@ ADA, BEN, CARL = Student("ada", "Ada Lovelace", "ada@example.org"), Student("ben
 
 
 def keep(results: Path, exercise: str, *entries: Entry) -> None:
-    """Lay out what `spinbook grade` leaves of an exercise."""
+    """Write what `spinbook grade` stores for an exercise."""
     for entry in entries:
         folder = folder_of(results / exercise, entry.student.id)
         folder.mkdir(parents=True)

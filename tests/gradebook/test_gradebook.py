@@ -1,4 +1,4 @@
-"""The gradebook's files have the columns that each platform reads, and nothing in them harms whoever opens them."""
+"""The gradebook's files have the columns that each platform reads, and nothing in them harms those who open them."""
 
 from __future__ import annotations
 

@@ -30,5 +30,5 @@ def workers() -> Iterator[WorkerPool]:
 
 @pytest.fixture(scope="session")
 def grading(exercise: Exercise, workers: WorkerPool) -> Grading:
-    """Ready to grade joint_velocity; its solution has been proved in this run of the tests."""
+    """A grading of joint_velocity; its solution has been verified in this run of the tests."""
     return grading_of(exercise, Options(), workers)

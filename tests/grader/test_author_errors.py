@@ -1,4 +1,4 @@
-"""What an author has to fix is told as the author's, with its file, before any student is graded."""
+"""What an author has to fix is reported as the author's, with its file, before any student is graded."""
 
 from __future__ import annotations
 

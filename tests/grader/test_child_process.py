@@ -33,7 +33,7 @@ def test_a_program_that_is_not_there_is_an_oserror() -> None:
 
 def test_a_program_that_takes_too_long_is_killed_with_its_children(tmp_path: Path) -> None:
     file = tmp_path / "children"
-    # The second child has left the program's session, as a browser's helpers do.
+    # The second child has left the program's session, as a browser's child processes do.
     script = f"sleep 600 & a=$!; setsid sleep 600 & echo $a $! > {file}.new; mv {file}.new {file}; wait"
 
     # On a busy machine a shell may need a while to get so far.

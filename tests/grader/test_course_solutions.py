@@ -1,6 +1,6 @@
 """Every exercise of the course: the solution gets full marks, the starter gets nothing.
 
-That each right solution gets full marks and each mistake loses exactly the checks that it names is `make soak`'s, with
+`make soak` tests that each right solution gets full marks and each mistake loses exactly the checks that it names, in
 tests/audit/test_course_exercises.py; `spinbook audit --quick` shows it in one command.
 """
 
@@ -41,7 +41,7 @@ def workers_with_interfaces() -> Iterator[WorkerPool]:
 
 @pytest.fixture(scope="module", params=NAMES)
 def graded(request: pytest.FixtureRequest, workers_with_interfaces: WorkerPool) -> Grading:
-    """Ready to grade one exercise; its solution has been proved in this run of the tests."""
+    """A grading of one exercise; its solution has been verified in this run of the tests."""
     return grading_of(load(ROOT / "exercises" / request.param), Options(), workers_with_interfaces)
 
 

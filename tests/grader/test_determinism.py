@@ -1,4 +1,4 @@
-"""A verdict depends on the submission alone: not on how busy the machine is, nor on how the node is turned."""
+"""A verdict depends on the submission alone: not on how busy the machine is, nor on how the node is built and spun."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from grader.submission.reading import of_source
 
 SOLUTIONS = Path(__file__).parents[2] / "solutions" / "joint_velocity"
 
-#: Neither is wrong about the computer's clock, which is right to differ from one run to the next.
+#: Neither misuses the computer's clock, whose time may differ from one run to the next.
 SUBMISSIONS = ("mistakes/joints_by_index.py", "right/several_threads.py")
 
 
 @contextmanager
 def busy(loops: int) -> Iterator[None]:
-    """That many processes that compute without an end."""
+    """Run that many processes that compute without an end."""
     processes = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(loops)]
     try:
         yield
@@ -36,7 +36,7 @@ def busy(loops: int) -> Iterator[None]:
 
 
 def recorded(grade: Grade) -> str:
-    """All that was sent and received, as text: NaN is not equal to itself."""
+    """Return everything that was sent and received, as text: NaN is not equal to itself."""
     return to_json(
         {name: replace(r, log="", seconds=0.0, lockstep_seconds=0.0) for name, r in grade.recordings.items()}
     )

@@ -24,7 +24,7 @@ else:
 
 ROOT = Path(__file__).parents[2]
 
-#: What an author of an exercise may use, and what only makes sense for one ROS 2 package. Templates are exercises.
+#: What an exercise's author may use, and what only makes sense for one ROS 2 package. Templates are exercises.
 ABOUT_ROS_MESSAGES = (
     "grader/scenario/joint_states.py",
     "grader/scenario/models.py",

@@ -1,4 +1,4 @@
-"""`spinbook grade` of what is more than one node that hears and speaks: several programs, arguments, goals at once.
+"""`spinbook grade` for more than one node with topics: several programs, arguments, goals at once.
 
 The solution has to pass every check before a submission is graded. So each test grades a wrong one.
 """
@@ -78,7 +78,7 @@ SPEAKS = '[[publish]]\ntopic = "/said"\ntype = "std_msgs/msg/String"\n'
 
 
 def graded(folder: Path, names: str, interface: str, scenario: str, check: str, solution: str, wrong: str) -> str:
-    """What `spinbook grade` prints for `wrong`, in an exercise with this solution and one check of one scenario."""
+    """Return what `spinbook grade` prints for `wrong`, in an exercise with this solution, one check, one scenario."""
     exercise, solutions = folder / "exercises" / "small", folder / "solutions" / "small"
     exercise.mkdir(parents=True)
     solutions.mkdir(parents=True)

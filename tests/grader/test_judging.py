@@ -1,4 +1,4 @@
-"""What judging costs besides the checks themselves, and what it reads."""
+"""The overhead of judging, and what it reads."""
 
 from __future__ import annotations
 

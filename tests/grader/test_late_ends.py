@@ -1,4 +1,4 @@
-"""A node may make its ends late: a publisher when it first has something to say, a subscription after a while."""
+"""A node may create its end points late: a publisher when it has something to publish, a subscription after a while."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ CALLBACK = "    def on_joints(self, message):\n"
 
 
 def grade_with(grading: Grading, *changes: tuple[str, str]) -> Grade:
-    """The grade of the solution with pieces of it replaced."""
+    """Return the grade of the solution with pieces of it replaced."""
     solution = grading.runner.exercise.solution_file
     assert solution
     source = solution.read_text(encoding="utf-8")

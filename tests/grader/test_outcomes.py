@@ -1,4 +1,4 @@
-"""Every run is a grade, also one that could not start; its message is one a student can act on."""
+"""Every run gives a grade, even one that could not start; its message says what the student can do."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def test_a_crash_in_one_scenario_costs_only_its_checks(grading: Grading) -> None
     assert "nobody expects an empty message" in failed["test_empty_message"].text
 
 
-#: The race itself comes once in a hundred Ctrl-C. Its error is raised each time where one context is shut down twice.
+#: The race itself happens once in a hundred Ctrl-C. Its error is raised each time if one context is shut down twice.
 TWICE = "rclpy.get_default_context().shutdown() or rclpy.get_default_context().shutdown()"
 
 

@@ -1,4 +1,4 @@
-"""A submission is a file, a notebook's cell or an installed executable; whatever is in it, it is read without harm."""
+"""A submission is a file, a notebook's cell or an installed executable; whatever is in it, reading it does no harm."""
 
 from __future__ import annotations
 

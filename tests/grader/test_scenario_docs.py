@@ -10,7 +10,7 @@ from grader.scenario.declared import declared
 
 DOCS = Path(__file__).parents[2] / "docs" / "scenarios.md"
 
-#: What the examples take for granted.
+#: What the examples assume.
 TOML = """
 title = "All of them"
 points = 1

@@ -1,4 +1,4 @@
-"""What is wrong in scenarios.py is told with its line; nothing of it is blamed on the machine."""
+"""What is wrong in scenarios.py is reported with its line; none of it is blamed on the machine."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ STEP_LINE = 27
 
 
 def exercise_in(folder: Path, step: str = "", more: str = "", toml: str = TOML) -> Path:
-    """An exercise whose only scenario has this step and these arguments."""
+    """Return an exercise whose only scenario has this step and these arguments."""
     exercise = folder / "exercises" / "any_kind"
     exercise.mkdir(parents=True)
     (exercise / "exercise.toml").write_text(toml)

@@ -15,15 +15,15 @@ from grader.submission.reading import of_source
 
 SOLUTIONS = Path(__file__).parents[2] / "solutions" / "joint_velocity"
 
-#: The usual mistakes, which have to be there.
+#: The usual mistakes that must exist.
 USUAL = {
     *("fixed_dt", "wall_clock", "position_for_velocity", "sign_turned_round", "joints_by_index", "no_guard_for_dt_0"),
     *("publishes_on_the_first_message", "forgets_the_stamp", "republishes_the_input", "averaged_over_two"),
     *("wrong_topic", "wrong_type", "integer_division", "forgets_nanosec", "degrees"),
 }
 
-#: What every `make test` goes through. `make soak` goes through all. That each mistake loses exactly the checks that it
-#: names is also asked, of all of them and in less time, by tests/audit/test_course_exercises.py.
+#: Graded by every `make test`; `make soak` grades all. tests/audit/test_course_exercises.py also tests, for all of them
+#: and in less time, that each mistake loses exactly the checks that it names.
 ALWAYS = {
     *("fixed_dt", "traceback_on_ctrl_c"),
     *("numpy_arrays", "without_main", "several_threads", "asyncio_loop"),
@@ -31,7 +31,7 @@ ALWAYS = {
 
 
 def caught_by(file: Path) -> set[str]:
-    """The checks that the mistake's header names."""
+    """Return the checks that the mistake's header names."""
     header = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
     return set(re.findall(r"^- (test_\w+)$", header, re.MULTILINE))
 

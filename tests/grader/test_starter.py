@@ -1,4 +1,4 @@
-"""The starter is made from the solution's marks."""
+"""The starter is made from the solution's markers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether a program rests is told from its threads: those that it has now, and whatever they have done."""
+"""Threads show whether a program is idle: those that it has now, and whatever they have done."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ for order in sys.stdin:
 
 
 class Program:
-    """A program that does as it is told, and rests otherwise."""
+    """A program that does what it is told, and is idle otherwise."""
 
     def __init__(self) -> None:
         self.process = subprocess.Popen(

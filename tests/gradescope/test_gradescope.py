@@ -1,4 +1,4 @@
-"""What Gradescope is told, and the autograder that is uploaded there."""
+"""What Gradescope gets, and the autograder that is uploaded there."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_a_fault_of_ours_has_no_score() -> None:
 
 @pytest.fixture(autouse=True)
 def no_cache_of_ours(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An autograder keeps the solution's recordings in a folder of its own."""
+    """Keeps the solution's recordings in a folder of its own, as an autograder does."""
     monkeypatch.delenv("SPINBOOK_CACHE")
 
 
@@ -76,7 +76,7 @@ def autograder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def graded(root: Path, source: str) -> dict[str, object]:
-    """What run_autograder writes for a submission."""
+    """Return what run_autograder writes for a submission."""
     (root / "submission" / "my node.py").write_text(source, encoding="utf-8")
     (root / "submission_metadata.json").write_text(
         json.dumps({"created_at": "2026-11-20T23:41:07.000000-08:00", "users": [{"id": 7, "name": "Ada"}]})
@@ -134,7 +134,7 @@ def test_an_autograder_that_is_broken_gives_no_score(autograder: Path) -> None:
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder in which Spinbook is installed from a wheel, far from its checkout."""
+    """A folder in which Spinbook is installed from a wheel, outside its checkout."""
     folder = tmp_path_factory.mktemp("installed")
     name, content = as_wheel(folder)
     (folder / name).write_bytes(content)
@@ -157,7 +157,7 @@ def as_wheel(folder: Path) -> tuple[str, bytes]:
     return wheel.name, wheel.read_bytes()
 
 
-#: What a checkout has besides, some of it large.
+#: What else a checkout has, some of it large.
 NOT_IN_A_WHEEL = (".*", "build", "tests", "docs", "chapters", "benchmarks", "__pycache__", "humanoid_ws", "*.egg-info")
 
 
@@ -187,7 +187,7 @@ def test_an_installed_wheel_makes_the_autograder_with_itself_and_its_versions_in
     assert (tmp_path / "again" / "grader" / "gradescope" / "setup.sh").exists()
 
 
-#: The fields that Classroom 50's collector asks for, besides those that its runner adds.
+#: The fields that Classroom 50's collector requires, besides those that its runner adds.
 RESULT_FIELDS = {
     *("schema", "classroom", "assignment", "submission", "commit", "release", "review", "datetime"),
     *("score", "max-score", "tests"),

@@ -1,4 +1,4 @@
-"""While a chapter is built, its node graph is watched; the chapter itself does not notice."""
+"""While a chapter is built, its node graph is recorded; the chapter itself is not affected."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ finally:
     rclpy.try_shutdown()
 ```
 """
-#: Publishes ten times a second; nobody ever listens to /unheard, and it says how many it sees there.
+#: Publishes ten times a second; /unheard never has a subscriber, and it prints how many it sees there.
 _TALKER = """
 chatter, unheard = node.create_publisher(String, "/chatter", 10), node.create_publisher(String, "/unheard", 10)
 said = 0
@@ -41,7 +41,7 @@ def speak():
 node.create_timer(0.1, speak)
 print("talking", flush=True)
 """
-#: Tells the rate of what it hears once there has been enough of it to count.
+#: Prints a line once it has received enough messages to count their rate.
 _LISTENER = """
 heard = []
 def hear(message):
@@ -78,7 +78,7 @@ ros2 topic info /chatter
 
 @dataclass(frozen=True)
 class Seen:
-    """What the chapter's build left."""
+    """What the chapter's build produced."""
 
     folder: CourseFolder
     graph: NodeGraph
@@ -120,7 +120,7 @@ def test_a_topic_has_its_ends_and_those_that_do_not_fit_are_told_apart(seen: See
 def test_a_rate_is_told_where_somebody_listens(seen: Seen) -> None:
     (chatter, unheard) = seen.graph.topics
 
-    # It is 10, where the machine is not so busy that the timer is late.
+    # It is 10, if the machine is not so busy that the timer is late.
     assert chatter.rate_hz is not None
     assert 0 < chatter.rate_hz <= 10
     assert unheard.rate_hz is None

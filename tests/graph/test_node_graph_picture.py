@@ -1,4 +1,4 @@
-"""The picture of a node graph: what it shows and says, and that it fits wherever it stands."""
+"""The picture of a node graph: what it shows and says, and that it fits into every page."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ _MS = 1_000_000
 
 
 def counted(*streams: tuple[int, float, int], lost: float = 0.0, jitter_ms: float = 0.0) -> float | None:
-    """The rate of streams (first number, period in ms, how many), heard as they come, some of them lost."""
+    """Return the rate of streams (first number, period in ms, how many), as received, some of them lost."""
     chance = random.Random(1)
     sent = [
         (int((n * period + chance.uniform(0, jitter_ms)) * _MS) + 17, first + n)

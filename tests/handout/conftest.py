@@ -1,4 +1,4 @@
-"""Courses to hand out: a copy of the real one with notes of its author's, and a small one for browsers."""
+"""Courses to hand out: a copy of the real one with its author's notes, and a small one for browsers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from course_folder import CourseFolder
 
 ROOT = Path(__file__).parents[2]
 
-#: Stands wherever an author may have written what students must not see.
+#: Is wherever an author may have written what students must not see.
 NOTE = "INSTRUCTOR-NOTE-4711"
 
 #: The real course's chapter with the exercise in it.
@@ -70,7 +70,7 @@ if __name__ == '__main__':
 
 @dataclass(frozen=True)
 class HandedOut:
-    """A handout: its folder, its zip, and what the command said."""
+    """A handout: its folder, its zip, and the command's output."""
 
     folder: Path
     archive: Path
@@ -91,7 +91,7 @@ def _within(name: str, content: bytes) -> Iterator[tuple[str, bytes]]:
 
 
 def copy_course(root: Path) -> CourseFolder:
-    """A copy of the real course's Week 3, with notes of its author's in every place for them."""
+    """Make a copy of the real course's Week 3, with its author's notes in every place for them."""
     root.mkdir(parents=True)
     course = (ROOT / "course.toml").read_text(encoding="utf-8")
     (root / "course.toml").write_text(CHAPTERS.sub(f'chapters = ["chapters/{CHAPTER}"]', course), encoding="utf-8")
@@ -134,7 +134,7 @@ def real(tmp_path_factory: pytest.TempPathFactory) -> HandedOut:
 
 @pytest.fixture(scope="session")
 def again(real: HandedOut, tmp_path_factory: pytest.TempPathFactory) -> HandedOut:
-    """The same course's handout, made in another place, of a solution spun anew, over the remains of an older one."""
+    """The same course's handout, made in another folder, with the solution run again, over an older handout."""
     course = copy_course(tmp_path_factory.mktemp("again") / "another" / "place")
     left = course.root / "build" / "handout" / real.folder.name / "old" / "notebook.ipynb"
     left.parent.mkdir(parents=True)
@@ -146,7 +146,7 @@ def again(real: HandedOut, tmp_path_factory: pytest.TempPathFactory) -> HandedOu
 
 @pytest.fixture(scope="session")
 def small_course(tmp_path_factory: pytest.TempPathFactory) -> CourseFolder:
-    """A course of one small chapter, with the real exercise."""
+    """A course with one small chapter and the real exercise."""
     course = CourseFolder(tmp_path_factory.mktemp("small") / "course")
     copy_exercises(course.root, ["joint_velocity"])
     return course.write(**{"01-small": SMALL_CHAPTER})

@@ -25,7 +25,7 @@ HERE = (sys.executable, "-m", "jupyterlab")
 
 @contextmanager
 def jupyter_lab(folder: Path, state: Path, command: Sequence[str] = HERE) -> Iterator[str]:
-    """JupyterLab in `folder`, with all that it keeps in `state`. Gives a notebook's URL, with {} for its name."""
+    """Run JupyterLab in `folder`, with its own files in `state`. Yields a notebook's URL, with {} for its name."""
     token = secrets.token_hex(8)
     settings = state / "settings" / "@jupyterlab" / "apputils-extension" / "notification.jupyterlab-settings"
     settings.parent.mkdir(parents=True)
@@ -46,7 +46,7 @@ def jupyter_lab(folder: Path, state: Path, command: Sequence[str] = HERE) -> Ite
 
 
 def a_new_terminal() -> dict[str, str]:
-    """The environment, without what this Python's own has set in it."""
+    """Return the environment, without what this Python's own has set in it."""
     ours = ("_ROS_WHEELS_BOOTSTRAP_COMPLETE", "LD_LIBRARY_PATH", "VIRTUAL_ENV", "PYTHONPATH")
     return {name: value for name, value in os.environ.items() if name not in ours}
 
@@ -72,11 +72,11 @@ class Notebook:
         self.page.get_by_role("menuitem", name="Run All Cells", exact=True).click()
 
     def cell(self, text: str) -> Locator:
-        """The code cell with this text."""
+        """Return the code cell with this text."""
         return self.page.locator(".jp-CodeCell").filter(has_text=text).first
 
     def type_into(self, text: str, code: str) -> None:
-        """Replace what stands in the cell with this text by `code`."""
+        """Replace the text of the cell with this text by `code`."""
         self.cell(text).locator(".cm-content").click()
         self.page.keyboard.press("Control+A")
         self.page.keyboard.insert_text(code)
@@ -87,7 +87,7 @@ class Notebook:
         self.page.keyboard.press("Control+Enter")
 
     def add_below(self, text: str, code: str) -> None:
-        """A new cell with `code` below the one with this text, and Ctrl+Enter."""
+        """Add a cell with `code` below the one with this text, and run it with Ctrl+Enter."""
         self.cell(text).locator(".cm-content").click()
         self.page.keyboard.press("Escape")
         self.page.keyboard.press("b")
@@ -103,14 +103,14 @@ class Notebook:
 
 @contextmanager
 def opened_notebook(browser: Browser, url: str, name: str) -> Iterator[Notebook]:
-    """The notebook `name` in JupyterLab, its kernel idle. The window is high: what is out of sight is not drawn."""
+    """Open the notebook `name` in JupyterLab, its kernel idle. The window is high: cells out of sight are not drawn."""
     context = browser.new_context(viewport={"width": 1280, "height": 2600})
     try:
         page = context.new_page()
         page.set_default_timeout(LONG)
         page.goto(url.format(name))
         page.locator(".jp-Notebook .jp-CodeCell").first.wait_for()
-        # The notebook's own sign is green before there is a kernel; what ran then would be lost.
+        # The notebook's own status is green before there is a kernel; a cell run then would be lost.
         page.locator(".jp-StatusBar-TextItem, .jp-StatusBar-GroupItem").get_by_text("| Idle").first.wait_for()
         yield Notebook(page)
     finally:

@@ -1,4 +1,4 @@
-"""`spinbook handout` writes all that students need and nothing that they must not see, the same each time."""
+"""`spinbook handout` writes everything students need and nothing that they must not see, the same each time."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ SOLUTIONS = ROOT / "solutions" / "joint_velocity"
 
 
 def text_of(name: str, content: bytes) -> str:
-    """A file's text; of JSON, whatever stands in it as a text or a name."""
+    """Return a file's text; for JSON, every text or name in it."""
     text = content.decode("utf-8", errors="replace")
     return "\n".join(strings(json.loads(text))) if name.endswith((".ipynb", ".json")) else text
 
@@ -45,7 +45,7 @@ def strings(value: Any) -> Iterator[str]:
 
 
 def secret_texts() -> set[str]:
-    """Hidden checks' names and titles, the solution's own lines, and what each other solution says of itself."""
+    """Return hidden checks' names and titles, the solution's own lines, and the docstrings of other solutions."""
     found = {NOTE, "INSTRUCTOR-NOTE"}
     for check in ast.parse((EXERCISE / "hidden_checks.py").read_text(encoding="utf-8")).body:
         if isinstance(check, ast.FunctionDef) and check.name.startswith("test_"):
@@ -157,7 +157,7 @@ def test_the_wheel_holds_every_package_of_ours_that_its_modules_import() -> None
 
 
 def imported_by(node: ast.AST) -> list[str]:
-    """The modules of an `import` statement."""
+    """Return the modules of an `import` statement."""
     return [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
 
 
@@ -211,7 +211,7 @@ def known() -> list[Secret]:
 
 
 def notebook_with(place: str, secret: str) -> bytes:
-    """A notebook that has the secret in one place, and nothing else of note."""
+    """Return a notebook that has the secret in one place, and nothing else of note."""
     cell: dict[str, Any] = {"cell_type": "code", "id": "a", "metadata": {}, "source": "x = 1", "outputs": []}
     notebook: dict[str, Any] = {"cells": [cell], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}
     if place == "a stream":
@@ -304,7 +304,7 @@ def test_a_student_makes_the_same_package_from_the_notebooks_as_the_course_does(
     package = "humanoid_ws/src/humanoid_control"
     assert {name for name in ours if name not in theirs} == set()
     assert [name for name in ours if theirs[name] != ours[name]] == [f"{package}/setup.py"]
-    # What the chapters teach, and the student's own exercises besides.
+    # What the chapters teach, and the student's own exercises.
     assert f"{package}/humanoid_control/joint_velocity.py" in theirs
     assert b"'joint_velocity = humanoid_control.joint_velocity:main'" in theirs[f"{package}/setup.py"]
     (tmp_path / "empty").mkdir()

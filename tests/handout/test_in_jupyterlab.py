@@ -1,4 +1,4 @@
-"""A new student, with the handout's zip: unpacks it, opens the notebook in JupyterLab, fails, fixes, hands in."""
+"""A new student, with the handout's zip: unpacks it, opens the notebook in JupyterLab, fails, fixes, submits."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ def unpacked(handed_out: HandedOut, place: Path) -> Path:
 def works_through(
     browser: Browser, folder: Path, name: str, pictures: Path, command: Sequence[str] = HERE, patience: int = LONG
 ) -> None:
-    """Open the notebook, run all, fail the check with the starter, write the solution, pass, hand in, save.
+    """Open the notebook, run all, fail the check with the starter, write the solution, pass, submit, save.
 
-    Pictures of each step are put into `pictures`; `patience` is for running all cells (ms).
+    Pictures of each step are saved in `pictures`; `patience` is for running all cells (ms).
     """
     with jupyter_lab(folder, pictures / "state", command) as url, opened_notebook(browser, url, name) as notebook:
         notebook.page.screenshot(path=pictures / "1-opened.png")
@@ -78,7 +78,7 @@ def test_from_the_zip_to_full_marks(
     saved = folder / "01-small.ipynb"
     assert "answer.velocity.append" in saved.read_text(encoding="utf-8"), "the notebook was saved"
 
-    # As one file, and in a folder with what a class has handed in.
+    # As one file, and in a folder with a class's submissions.
     single = small_course.spinbook("grade", "joint_velocity", str(shutil.copy(folder / UPLOAD, tmp_path / "ada.zip")))
     assert single.returncode == 0, single.stdout + single.stderr
     assert "100 of 100 points" in single.stdout
@@ -91,7 +91,7 @@ def test_from_the_zip_to_full_marks(
 
 
 def lines_of(readme: str, step: str) -> list[str]:
-    """The commands of a step, as they stand there."""
+    """Return the commands of a step, as written there."""
     section = readme.split(f"## {step}")[1].split("\n## ")[0]
     fences = re.findall(r"```bash\n(.*?)```", section, re.DOTALL)
     return [line.strip() for fence in fences for line in fence.strip().split("\n")]
@@ -103,7 +103,7 @@ def test_the_readme_followed_word_by_word_on_a_fresh_machine(browser: Browser, t
     course = copy_course(tmp_path / "author")
     folder = unpacked(hand_out(course), tmp_path / "student")
     readme = (folder / "README.md").read_text(encoding="utf-8")
-    # A home without anything in it, and the Python that the machine has.
+    # An empty home, and the Python that the machine has.
     base = os.fspath(Path(sys.base_prefix, "bin"))
     fresh = {**a_new_terminal(), "HOME": os.fspath(tmp_path / "home"), "PATH": f"{base}:{os.defpath}"}
     (tmp_path / "home").mkdir()

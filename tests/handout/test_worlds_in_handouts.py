@@ -1,4 +1,4 @@
-"""A world of the author's own goes to students where a public check needs it, and nowhere else."""
+"""An author's own world is given to students if a public check needs it, and only then."""
 
 from __future__ import annotations
 

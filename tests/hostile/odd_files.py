@@ -14,12 +14,12 @@ RIGHT = Path(__file__).parent / "submissions" / "sets_use_sim_time_itself.py"
 
 @dataclass(frozen=True)
 class OddFile:
-    """A submission to make, and what is expected of its grading.
+    """A submission to make, and the expected grading.
 
     Attributes:
         name: its name in test reports.
-        make: makes it in a folder and returns the path to hand in.
-        outcome: see expected.toml; several where more than one is right.
+        make: makes it in a folder and returns the path to submit.
+        outcome: see expected.toml; several if more than one is right.
         score: see expected.toml.
     """
 
@@ -38,7 +38,7 @@ def _notebook(cells: list[dict[str, object]]) -> str:
 
 
 def _million_cells(folder: Path) -> Path:
-    """A valid notebook in which one of a million cells is the node."""
+    """Write a valid notebook in which one of a million cells is the node."""
     path = folder / "million.ipynb"
     cell = '{{"cell_type": "code", "id": "c{}", "metadata": {{}}, "source": "x = {}", "outputs": []}}'
     node = json.dumps({"cell_type": "code", "id": "node", "metadata": {}, "source": RIGHT.read_text(), "outputs": []})
@@ -50,7 +50,7 @@ def _million_cells(folder: Path) -> Path:
 
 
 def _symlink_to_a_secret(folder: Path) -> Path:
-    """A link to a file that the grader may read and the student may not."""
+    """Make a link to a file that the grader may read and the student may not."""
     secret = folder.parent / "secret-of-the-instructor.py"
     secret.write_text("raise SystemExit('the secret is 0.5')\n")
     path = folder / "joint_velocity.py"
@@ -71,7 +71,7 @@ def _device(folder: Path) -> Path:
 
 
 def _pipe(folder: Path) -> Path:
-    """A pipe that nobody writes to: who opens it waits for ever."""
+    """Make a pipe without a writer: opening it blocks for ever."""
     path = folder / "joint_velocity.py"
     os.mkfifo(path)
     return path
@@ -84,7 +84,7 @@ def _folder(folder: Path) -> Path:
 
 
 def _gigabyte(folder: Path) -> Path:
-    """A sparse file: a gigabyte to read, nothing on the disk."""
+    """Make a sparse file: a gigabyte to read, nothing on the disk."""
     path = folder / "joint_velocity.py"
     with path.open("wb") as file:
         file.truncate(10**9)

@@ -1,4 +1,4 @@
-"""The hostile submissions and what is expected of them belong together."""
+"""The hostile submissions and their expected results match each other."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Hostile and broken submissions through the whole grader: each gets the grade that expected.toml says, and no more."""
+"""Hostile and broken submissions through the whole grader: each gets exactly the grade that expected.toml says."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ HERE = Path(__file__).parent
 EXERCISE = HERE.parents[1] / "exercises" / "joint_velocity"
 EXPECTED: dict[str, dict[str, Any]] = tomllib.loads((HERE / "expected.toml").read_text(encoding="utf-8"))
 
-#: One of each kind, for every `make test`, but for those that tests/grader/test_outcomes.py has. `make soak` goes
-#: through all.
+#: One of each kind, for every `make test`, except those in tests/grader/test_outcomes.py. `make soak` grades
+#: all.
 ALWAYS = {
     *("syntax_error", "missing_dependency", "not_utf8", "never_creates_a_node", "crashes_at_message_37"),
     *("ends_with_0_in_the_callback", "fork_bomb", "kills_its_parent"),
@@ -47,7 +47,7 @@ def grading() -> Iterator[Grading]:
 
 
 def told(grade: Grade) -> str:
-    """Everything that the student is told."""
+    """Return everything that the student is told."""
     findings = [verdict.finding.text for verdict in grade.verdicts if verdict.finding]
     titles = [verdict.title for verdict in grade.verdicts if verdict.status == "failed"]
     return "\n".join([grade.message, *findings, *titles])

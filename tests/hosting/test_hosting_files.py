@@ -1,4 +1,4 @@
-"""The files for GitHub, Docker, dev containers and Binder: whole, pinned, and about what is really here."""
+"""The files for GitHub, Docker, dev containers and Binder: complete, pinned, and consistent with this repository."""
 
 from __future__ import annotations
 

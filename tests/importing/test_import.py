@@ -1,4 +1,4 @@
-"""`spinbook import` makes a course of an existing book, in the book's order, and says what runs."""
+"""`spinbook import` makes a course from an existing book, in the book's order, and reports what runs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ CHAPTER = "# {}\n\n```python\nimport no_such_package\n```\n\n```python\nprint(1)
 
 
 def book(root: Path, *chapters: str) -> Path:
-    """A book's folder with these chapters."""
+    """Return a book's folder with these chapters."""
     for name in chapters:
         file = root / name
         file.parent.mkdir(parents=True, exist_ok=True)

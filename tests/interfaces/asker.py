@@ -1,6 +1,6 @@
 """Asks `peer.py` for the same types and prints what is not as expected: `python asker.py FILE`.
 
-FILE holds JSON: each type, and the values of its message's or request's fields to send.
+FILE contains JSON: each type, and the values of its message's or request's fields to send.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def ask_message(node: Node, number: int, kind: Any, values: dict[str, Any]) -> N
     back: Any = rclpy.task.Future()
     node.create_subscription(kind, f"/back_{number}", lambda message: back.done() or back.set_result(message), 10)
     publisher = node.create_publisher(kind, f"/there_{number}", 10)
-    # Until both sides know one another, some are lost.
+    # Until both sides know each other, some are lost.
     timer = node.create_timer(0.1, lambda: publisher.publish(sent))
     received = wait(node, back, kind.__name__)
     timer.cancel()
@@ -80,7 +80,7 @@ def ask_action(node: Node, number: int, kind: Any, values: dict[str, Any]) -> No
         "goal",
     )
     if values["order"] > 10:
-        # rclpy drops feedback that comes before the response to the goal; only feedback that goes on is sure to arrive.
+        # rclpy drops feedback that arrives before the response to the goal; only continued feedback is sure to arrive.
         wait(node, step, "feedback")
         wait(node, goal.cancel_goal_async(), "cancelling")
     ended = wait(node, goal.get_result_async(), "result")

@@ -12,5 +12,5 @@ from interface_compiler.store import Compiled, ensure
 
 @pytest.fixture(scope="session")
 def robot_interfaces(tmp_path_factory: pytest.TempPathFactory) -> Compiled:
-    """A package of a message, a service and an action, which need one another and std_msgs and geometry_msgs."""
+    """A package of a message, a service and an action, which need each other and std_msgs and geometry_msgs."""
     return ensure(robot(), Path(tmp_path_factory.mktemp("store")))

@@ -1,4 +1,4 @@
-"""Definitions for tests, made of plain text."""
+"""Definitions for tests, made from plain text."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from interface_compiler.definition import Definition
 
 
 def definition(path: str, text: str, package: str = "robot_interfaces") -> Definition:
-    """A definition at `interfaces/PACKAGE/PATH`."""
+    """Return a definition at `interfaces/PACKAGE/PATH`."""
     kind, _, name = path.partition("/")
     return Definition(package, kind, name.rpartition(".")[0], text, Path("interfaces", package, path))
 
@@ -41,7 +41,7 @@ float64 position
 
 
 def robot() -> list[Definition]:
-    """A package with a message, a service and an action, and every kind of field."""
+    """Return a package with a message, a service and an action, and every kind of field."""
     return [
         definition("msg/JointLimits.msg", LIMITS),
         definition("srv/GetLimits.srv", GET_LIMITS),

@@ -1,8 +1,8 @@
 """A node that answers, for tests of types between two processes: `python peer.py TYPE …`.
 
-For each message type N it sends back on /back_N what comes on /there_N. A service's response gets the request's fields
-of the same names, or the sum of a and b. An action is Fibonacci, which feeds back each step; where more than ten are
-wanted, it repeats the tenth until it is cancelled.
+For each message type N it sends back on /back_N what arrives on /there_N. A service's response gets the request's
+fields of the same names, or the sum of a and b. An action is Fibonacci, which gives each step as feedback; if more
+than ten are requested, it repeats the tenth until it is cancelled.
 """
 
 from __future__ import annotations

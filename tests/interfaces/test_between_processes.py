@@ -29,7 +29,7 @@ def environment(compiled: Compiled | None) -> dict[str, str]:
 
 
 def talk(tmp_path: Path, asked: Asked, ours: Compiled | None, theirs: Compiled | None) -> str:
-    """Let one process ask the other one; what the asking one prints."""
+    """Let one process ask the other one; return what the asking one prints."""
     file = tmp_path / "asked.json"
     file.write_text(json.dumps(asked))
     names = [name for name, _ in asked]
@@ -95,7 +95,7 @@ def test_a_package_compiled_here_talks_to_the_same_one_made_by_cmake(
 
 @pytest.fixture(scope="session")
 def rebuilt_test_msgs(tmp_path_factory: pytest.TempPathFactory) -> Compiled:
-    """Some of test_msgs, from the definitions in its wheel, which CMake made."""
+    """A part of test_msgs, from the definitions in its wheel, which CMake made."""
     wanted = [
         *("msg/BasicTypes.msg", "msg/Nested.msg", "msg/WStrings.msg", "msg/Defaults.msg", "msg/Constants.msg"),
         *("msg/BoundedPlainSequences.msg", "srv/BasicTypes.srv", "action/Fibonacci.action"),

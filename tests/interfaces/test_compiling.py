@@ -36,7 +36,7 @@ except AssertionError:
 
 
 def run(code: str, compiled: Compiled) -> str:
-    # rclpy's messages look at what they are given only when they are told to.
+    # rclpy's messages check the given values only when asked to.
     environment = {**os.environ, "ROS_PYTHON_CHECK_FIELDS": "1"}
     extend(environment, compiled.prefix)
     done = subprocess.run(
@@ -166,7 +166,7 @@ def test_old_prefixes_do_not_pile_up(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert second.prefix.exists()
 
 
-#: As public sources give them, for ROS 2 Jazzy: the design of rmw_zenoh, and tests of clients in other languages.
+#: As in public sources, for ROS 2 Jazzy: the design of rmw_zenoh, and tests of clients in other languages.
 PUBLISHED = {
     "example_interfaces/srv/AddTwoInts": "RIHS01_e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a",
     "example_interfaces/action/Fibonacci": "RIHS01_9508051da1ea4658de144b09bd0690ff3de52104683d847aed764d2915906f51",

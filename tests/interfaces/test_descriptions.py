@@ -1,4 +1,4 @@
-"""The wheels' own interfaces, described anew from their definitions: the same descriptions and hashes as CMake made."""
+"""The wheels' own interfaces, described again from their definitions: CMake's descriptions and hashes exactly."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ for package in sys.argv[2:]:
 
 
 def compare(packages: list[str], out: Path) -> tuple[int, list[str]]:
-    """How many descriptions are the same, and which differ."""
+    """Return how many descriptions are the same, and which differ."""
     subprocess.run([sys.executable, "-c", DESCRIBE, str(out), *packages], check=True, timeout=250)
     same, different = 0, []
     for package in packages:

@@ -1,4 +1,4 @@
-"""What is wrong in a definition is told with its file, its line and what to do, before anything is generated."""
+"""An error in a definition is reported with its file, its line and what to do, before anything is generated."""
 
 from __future__ import annotations
 

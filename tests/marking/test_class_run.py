@@ -1,4 +1,4 @@
-"""A class is graded with one command: what comes out, what is done once, what is different, what is no score."""
+"""A class is graded with one command: its results, what is done once, what is different, what is not a score."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SCHEMA = json.loads((ROOT / "docs" / "grade.schema.json").read_text(encoding="ut
 
 @pytest.fixture
 def done(graded: tuple[SmallClass, str], tmp_path: Path) -> SmallClass:
-    """A graded class of the test's own."""
+    """A graded class for this test alone."""
     small = object.__new__(SmallClass)
     small.__dict__ |= vars(graded[0])
     small.folder = shutil.copytree(graded[0].folder, tmp_path / "course")
@@ -139,7 +139,7 @@ def test_two_files_of_one_student_are_a_question(done: SmallClass) -> None:
 
 
 def test_late_work_loses_and_a_changed_due_date_needs_no_grading(done: SmallClass) -> None:
-    # All were handed in at 2026-11-18 11:06:40 UTC.
+    # All were submitted at 2026-11-18 11:06:40 UTC.
     settings = done.exercise / "exercise.toml"
     rule = '\n[deadline]\ndue = 2026-11-17T12:00:00Z\npenalty = "10 % a day up to 50 %"\n'
     settings.write_text(settings.read_text(encoding="utf-8") + rule, encoding="utf-8")
@@ -174,8 +174,8 @@ def test_two_gradings_never_write_into_one_folder(done: SmallClass) -> None:
     assert "another grading is writing to this folder" in printed
 
 
-#: File names that are also names of files in the results, that mean something to a spreadsheet, a page, a terminal or a
-#: shell, or that no text can hold.
+#: File names that are also names of files in the results, that have a meaning in a spreadsheet, a page, a terminal or
+#: a shell, or that no text can contain.
 HOSTILE_NAMES = (
     *("index.html", "grades.csv", "nbgrader.csv", "canvas.csv", "moodle.csv", "junit.xml", "students", "plot.svg"),
     *("=HYPERLINK(1)", "<script>alert(1)<_script>", "[bold]red[_bold]", "\x1b[2J", "a\nb", "\udcff", "-rf", "--out"),

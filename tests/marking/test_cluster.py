@@ -1,4 +1,4 @@
-"""A class is graded by other processes, reached by the network, as it is on this machine; one of them may die."""
+"""A class is graded by other processes over the network, as it is on this machine; one of them may die."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ pytest.importorskip("distributed")
 
 @contextmanager
 def started(*arguments: str, cwd: Path, cache: Path) -> Iterator[subprocess.Popen[bytes]]:
-    """A process of the cluster's."""
+    """Start a process of the cluster."""
     environment = {**os.environ, "SPINBOOK_CACHE": str(cache)}
     with (cwd / "cluster.log").open("ab") as log:
         process = subprocess.Popen(
@@ -37,7 +37,7 @@ def started(*arguments: str, cwd: Path, cache: Path) -> Iterator[subprocess.Pope
 
 
 def spinning(worker: subprocess.Popen[bytes]) -> bool:
-    """Whether a student's program runs under this worker of the cluster's."""
+    """Return whether a student's program runs under this worker of the cluster."""
     try:
         every = psutil.Process(worker.pid).children(recursive=True)
         return any("bwrap" in process.name() or len(process.children()) > 1 for process in every)

@@ -1,4 +1,4 @@
-"""The processes that do the work may die; the work is done all the same."""
+"""The worker processes may die; the work is done all the same."""
 
 from __future__ import annotations
 

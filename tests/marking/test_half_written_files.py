@@ -1,4 +1,4 @@
-"""What a run that was killed left half-written is gone after the next one began."""
+"""Files that a killed run left half-written are gone after the next one began."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from grader.workers import Worker, WorkerPool
 
 
 class Counting(WorkerPool):
-    """Knows how many threads have asked for a hand."""
+    """Knows how many threads have requested a worker."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""However a run ends, nothing is left running, and the next one goes on to the same results."""
+"""However a run ends, nothing is left running, and the next one continues to the same results."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from small_class import POINTS, SmallClass, without_timings
 
 @pytest.fixture
 def undisturbed(graded: tuple[SmallClass, str]) -> dict[str, str]:
-    """The results of a run that nobody disturbed."""
+    """The results of an undisturbed run."""
     return without_timings(graded[0].folder / "results")
 
 
@@ -29,8 +29,8 @@ def killed(small: SmallClass, after: int) -> int:
 
 
 def interrupted(small: SmallClass) -> str:
-    """Press Ctrl-C when somebody has a grade and others have none yet; what is printed then."""
-    for _ in range(5):  # a busy machine may let the run come to its end before the signal arrives
+    """Press Ctrl-C when some students have a grade and others have none yet; return what is printed then."""
+    for _ in range(5):  # on a busy machine the run may end before the signal arrives
         process = small.start("--jobs", "2")
         small.wait_for_grades(1, process)
         process.send_signal(signal.SIGINT)

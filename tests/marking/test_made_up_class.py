@@ -1,4 +1,4 @@
-"""The class that `make class` grades: the same each time, like a real one, and with grades that are really compared."""
+"""The class that `make class` grades: the same each time, like a real one, with grades that are really compared."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ import variants
 
 
 def digests(folder: Path) -> dict[str, bytes]:
-    """What each student of a class of 40 hands in that is no huge file."""
+    """Return what each student of a class of 40 submits, except huge files."""
     students.write(students.the_class(40, 5), folder)
     found = [file for file in folder.rglob("*") if file.is_file() and not file.is_symlink()]
     return {str(file.relative_to(folder)): file.read_bytes() for file in found if file.stat().st_size < 10**8}

@@ -1,4 +1,4 @@
-"""However large a class, what was recorded of one student is let go of before the next."""
+"""However large a class, one student's recordings are released before the next student's."""
 
 from __future__ import annotations
 

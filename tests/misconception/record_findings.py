@@ -1,8 +1,8 @@
-"""Grade every mistake of every exercise once, and keep how each of them fails: `recorded/EXERCISE.json`.
+"""Grade every mistake of every exercise once, and store how each of them fails: `recorded/EXERCISE.json`.
 
     .venv/bin/python tests/misconception/record_findings.py [EXERCISE ...]
 
-To be run after the words of checks have changed. Takes about 3 s of CPU time per mistake.
+Run it after changing the words of checks. It takes about 3 s of CPU time per mistake.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def mistakes_of(exercise: Exercise) -> Iterator[tuple[str, str]]:
-    """Name and source: first the mistakes that `solutions/` lists, then the others."""
+    """Yield name and source: first the mistakes that `solutions/` lists, then the others."""
     folder = ROOT / "solutions" / exercise.name
     for file in sorted((folder / "mistakes").glob("*.py")):
         yield file.stem, file.read_text(encoding="utf-8")
@@ -43,7 +43,7 @@ def mistakes_of(exercise: Exercise) -> Iterator[tuple[str, str]]:
 
 
 def recorded(grading: Grading, mistake: tuple[str, str]) -> Recorded:
-    """How one mistake fails."""
+    """Return how one mistake fails."""
     name, source = mistake
     grade = grading.grade(of_source(f"{name}.py", source.encode(), grading.runner.exercise))
     failed = [verdict for verdict in grade.verdicts if verdict.status == "failed" and verdict.finding]
@@ -53,7 +53,7 @@ def recorded(grading: Grading, mistake: tuple[str, str]) -> Recorded:
 
 
 def main(names: list[str]) -> None:
-    """Record exercises by name; all of them, where none is named."""
+    """Record exercises by name; all of them, if none is named."""
     compile_course(find_course(ROOT))
     for name in names or sorted(UNLISTED):
         exercise = load(ROOT / "exercises" / name)

@@ -16,7 +16,7 @@ FOLDER = Path(__file__).parent / "recorded"
 
 @dataclass(frozen=True)
 class Recorded:
-    """One mistake. `findings` are text, expected value and value that came, by check; `blocked` was not judged."""
+    """One mistake. `findings` are text, expected value and actual value, by check; `blocked` was not judged."""
 
     name: str
     outcome: str
@@ -25,7 +25,7 @@ class Recorded:
 
     @property
     def failures(self) -> dict[str, Failure]:
-        """As the grouping sees it: nothing of a program that did not come through."""
+        """The failures as the grouping sees them: nothing for a program that did not complete."""
         if self.outcome != "graded":
             return {}
         return {
@@ -35,12 +35,12 @@ class Recorded:
 
 
 def as_json(every: Sequence[Recorded]) -> dict[str, Any]:
-    """The content of a file, by the mistakes' names."""
+    """Return the content of a file, by the mistakes' names."""
     return {one.name: {"outcome": one.outcome, "findings": one.findings, "blocked": one.blocked} for one in every}
 
 
 def read(exercise: str) -> list[Recorded]:
-    """The mistakes of an exercise, in the order in which they were graded."""
+    """Return the mistakes of an exercise, in the order in which they were graded."""
     content = json.loads((FOLDER / f"{exercise}.json").read_text(encoding="utf-8"))
     return [
         Recorded(name, one["outcome"], {check: tuple(f) for check, f in one["findings"].items()}, tuple(one["blocked"]))

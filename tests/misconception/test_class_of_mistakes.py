@@ -1,4 +1,4 @@
-"""A class in which every mistake of every exercise is made once: who stands under which name.
+"""A class in which every mistake of every exercise is made once: which names each submission gets.
 
 The findings are recorded ones: `record_findings.py` graded each mistake.
 """
@@ -18,7 +18,7 @@ from grader.classroom.misconceptions import Signature, mistakes_in
 ROOT = Path(__file__).parents[2]
 EXERCISES = sorted(UNLISTED)
 
-#: Listed mistakes that other listed ones describe, too: were the first not listed, the others would be true of it.
+#: Listed mistakes that other listed ones describe, too: if the first were not listed, the others would be true of it.
 AKIN = {
     "again_and_again": {"volatile", "waits_for_a_subscriber", "latched_and_again"},
     "drops_without_a_server": {"counts_only_what_was_asked", "asks_without_a_server"},
@@ -28,13 +28,13 @@ AKIN = {
 
 
 def listed(exercise: str) -> list[Recorded]:
-    """The mistakes of `solutions/EXERCISE/mistakes/` that came through and failed checks."""
+    """Return the mistakes of `solutions/EXERCISE/mistakes/` that completed and failed checks."""
     files = {file.stem for file in (ROOT / "solutions" / exercise / "mistakes").glob("*.py")}
     return [one for one in read(exercise) if one.name in files and one.failures]
 
 
 def signatures_of(mistakes: Sequence[Recorded]) -> list[Signature]:
-    """One signature for all that fail in the same words."""
+    """Return one signature for all that fail in the same words."""
     found: list[Signature] = []
     for one in mistakes:
         same = next((signature for signature in found if signature.failures == one.failures), None)
@@ -46,7 +46,7 @@ def signatures_of(mistakes: Sequence[Recorded]) -> list[Signature]:
 
 
 def named(one: Recorded, signatures: Sequence[Signature]) -> list[set[str]]:
-    """The names of each signature under which a submission stands."""
+    """Return the names of each signature that a submission matches."""
     return [set(signatures[i].names) for i in mistakes_in(one.failures, set(one.blocked), signatures)]
 
 

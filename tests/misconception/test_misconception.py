@@ -1,4 +1,4 @@
-"""Students are grouped by the known mistakes that their failures match; the rest is under other."""
+"""Students are grouped by the known mistakes that their failures match; the rest is in the group "other"."""
 
 from __future__ import annotations
 

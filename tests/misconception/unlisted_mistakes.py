@@ -1,4 +1,4 @@
-"""Mistakes that `solutions/` does not list: other numbers, other places, two at once, and some that nobody thought of.
+"""Mistakes that `solutions/` does not list: other numbers, other places, two at once, and some unexpected ones.
 
 Each is the exercise's solution with some of its text replaced. `may_be_called` are the listed mistakes that it makes: it
 may stand under these, or under "other", and under nothing else.
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Unlisted:
-    """One mistake: what replaces what in the solution, and the names that fit it."""
+    """One mistake: what it replaces in the solution, and the names that fit it."""
 
     replaced: tuple[tuple[str, str], ...]
     may_be_called: tuple[str, ...] = ()
@@ -297,12 +297,12 @@ UNLISTED: dict[str, dict[str, Unlisted]] = {
                     "                raise RuntimeError('replaced')",
                 ),
             ),
-            # An exception, as canceled() raises it: nobody outside sees a difference.
+            # An exception, like that of canceled(): no difference is visible from outside.
             ("canceled_when_replaced",),
         ),
     },
     "joint_operator": {
-        # Where the computer's clock goes faster by a quarter, as here, 4 s are what 5 s of it are.
+        # If the computer's clock runs faster by a quarter, as here, 4 s are what 5 s of it are.
         "cancels_after_4": Unlisted((("seconds=5.0", "seconds=4.0"),), ("cancels_too_early", "wall_clock")),
         "cancels_after_30": Unlisted((("seconds=5.0", "seconds=300.0"),), ("never_cancels",)),
         "upper_case": Unlisted((("String(data=outcome)", "String(data=outcome.upper())"),), ()),

@@ -22,7 +22,7 @@ from spinbook.new.kind import BY_NAME, KINDS
 from spinbook.new.writing import write_course
 from spinbook.problem import SpinbookError
 
-#: Of each kind, a usual mistake that the default suite grades. All of them are graded in the soak.
+#: For each kind, a usual mistake that the default suite grades. The soak grades all of them.
 MISTAKES = {
     "filter": "one_message_late",
     "publisher": "computers_clock",
@@ -73,7 +73,7 @@ LONG = ("publisher", "action-client", "closed-loop", "several-nodes")
     params=[pytest.param(kind, marks=pytest.mark.soak if kind in LONG else ()) for kind in MISTAKES],
 )
 def grading(request: pytest.FixtureRequest, course: Path, workers: WorkerPool) -> Grading:
-    """Ready to grade the exercise of a kind: its solution has passed every check."""
+    """A grading for the exercise of a kind: its solution has passed every check."""
     return grading_of(load(course / "exercises" / exercise_of(request.param)), Options(), workers)
 
 
@@ -83,13 +83,13 @@ def folder_of(grading: Grading) -> Path:
 
 
 def caught_and_named(grading: Grading, mistake: Path) -> tuple[set[str], set[str]]:
-    """The checks that a mistake fails, and those that its docstring says it fails."""
+    """Return the checks that a mistake fails, and those that its docstring says it fails."""
     grade = grading.grade(read(str(mistake), grading.runner.exercise))
     return {verdict.name for verdict in grade.verdicts if verdict.status == "failed"}, named_by(mistake)
 
 
 def named_by(mistake: Path) -> set[str]:
-    """The checks that a mistake's docstring says it fails."""
+    """Return the checks that a mistake's docstring says it fails."""
     header = ast.get_docstring(ast.parse(mistake.read_text(encoding="utf-8"))) or ""
     return set(re.findall(r"^- (test_\w+)$", header, re.MULTILINE))
 

@@ -40,7 +40,7 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def course(pristine: Path, tmp_path: Path) -> Path:
-    """A new course of the test's own."""
+    """A new course for this test alone."""
     return shutil.copytree(pristine, tmp_path / "course")
 
 

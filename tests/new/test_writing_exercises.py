@@ -1,4 +1,4 @@
-"""The guide to writing exercises shows what the templates really hold, and every kind has its page."""
+"""The guide to writing exercises shows what the templates really contain, and every kind has its page."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ OF_KIND = [pytest.param(kind, id=kind.name) for kind in KINDS]
 
 
 def flat(text: str) -> str:
-    """The text without indentation, which differs where an example was taken out of a function."""
+    """Return the text without indentation, which differs if an example was taken out of a function."""
     return "\n".join(line.strip() for line in textwrap.dedent(text).strip().splitlines())
 
 
 def files_of(kind: Kind) -> str:
-    """Everything that the template's author files hold."""
+    """Return everything in the template's author files."""
     return "\n".join(flat(file.read_text()) for file in (kind.root / "exercises" / kind.exercise).glob("*.*"))
 
 
@@ -60,7 +60,7 @@ WHOLE = {
 
 
 def whole_exercise(name: str, course: Path) -> Path:
-    """The folder of one of the exercises of the page, as the page has it."""
+    """Return the folder of one of the exercises of the page, as the page has it."""
     page = (DOCS / "writing-exercises" / "whole-exercises.md").read_text()
     for place, text in re.findall(r'^```\w+ title="(\S+)"\n(.*?)^```', page, re.MULTILINE | re.DOTALL):
         (course / place).parent.mkdir(parents=True, exist_ok=True)

@@ -63,7 +63,7 @@ def test_no_line_of_what_is_written_is_too_long_for_ament_flake8(course: CourseF
     assert said.stdout.strip() == description.strip()
 
 
-#: What ament_flake8 looks at with the plugins that ROS 2 Jazzy installs (builtins, comprehensions, docstrings, import
+#: What ament_flake8 checks with the plugins that ROS 2 Jazzy installs (builtins, comprehensions, docstrings, import
 #: order, quotes), and what ament_pep257 does, in the words of ruff: both leave the same rules out.
 AMENT_RULES = (
     *("--isolated", "--line-length", "99", "--select", "E,W,F,A,C4,D,I001,Q"),
@@ -160,7 +160,7 @@ def test_colcon_builds_it_and_ros2_run_runs_it_and_ctrl_c_ends_it(course: Course
     )
     assert node.stdout is not None
     assert node.stdout.readline() == "hello from the package\n"
-    # What --symlink-install promises: the executable runs the file that stands in src.
+    # What --symlink-install promises: the executable runs the file that is in src.
     assert (course.root / "robot_ws/build/robot/robot").resolve() == course.root / "robot_ws/src/robot/robot"
     node.send_signal(signal.SIGINT)
     assert node.wait(30) == 0

@@ -1,4 +1,4 @@
-"""The plot that is drawn again: all curves, at the pace at which they were recorded, and still where that is wanted."""
+"""The plot that is drawn again: all curves, at the recorded speed, and without motion if preferred."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ JOINTS = ["left_elbow", "right_elbow", "<b>&"]
 
 
 def recorded(value: Callable[[float], float] = math.sin, seconds: float = 4.0, joints: list[str] = JOINTS) -> Recording:
-    """A recording of joints at 10 Hz."""
+    """Return a recording of joints at 10 Hz."""
     recording = Recording()
     recording.take(
         json.dumps(["sample", "/joint_commands", "position", "rad", joint, 100 + n / 10, value(n / 10 + offset)])

@@ -1,4 +1,4 @@
-"""The turtle that drives again: where it was when, within what is stated, and still for those who want it still."""
+"""The turtle that drives again: its positions, within the stated tolerance, and without motion if preferred."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ TURN_TICKS, WAIT_TICKS, STRAIGHT_TICKS = 98, 312, 62
 
 
 def driven() -> tuple[World, list[tuple[float, float, float]]]:
-    """A world, and where its turtle was after each tick."""
+    """Return a world, and where its turtle was after each tick."""
     world = World()
     world.start()
     world.tick(0)
@@ -46,7 +46,7 @@ def driven() -> tuple[World, list[tuple[float, float, float]]]:
 
 
 def picture() -> WorldPicture:
-    """What the node tells of that world."""
+    """Return the node's picture of that world."""
     return WorldPicture.from_json(picture_of(driven()[0], BLUE).to_json())
 
 

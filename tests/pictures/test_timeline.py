@@ -1,4 +1,4 @@
-"""Timelines of services, actions and topics: what was recorded becomes lanes, and lanes become a moving picture."""
+"""Timelines of services, actions and topics: recordings become lanes, and lanes become a moving picture."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Told = tuple[float, str, str]
 
 
 def recorded(name: str, kind: str, *told: Told) -> tuple[Lane, ...]:
-    """The lanes of events (time in s, what, goal) on one name."""
+    """Return the lanes of events (time in s, what, goal) with one name."""
     happenings = RecordedEvents()
     happenings.take([json.dumps(["found", name, kind]), "something that a library printed"])
     happenings.take(json.dumps(["event", at, name, what, goal, ""]) for at, what, goal in told)

@@ -1,4 +1,4 @@
-"""A hub between processes that run over rcl_python, as the page is between its workers: over a Unix socket.
+"""A hub between processes that run over rcl_python, like the page between its workers: over a Unix socket.
 
 A process joins it when it starts with `over_hub` on PYTHONPATH and RCL_PYTHON_HUB naming the socket.
 """
@@ -30,7 +30,7 @@ def _write(connection: socket.socket, head: bytes, data: bytes) -> None:
 
 
 def _frames(connection: socket.socket) -> Iterator[tuple[bytes, bytes]]:
-    """What comes, until the other side has gone."""
+    """Yield the frames that arrive, until the other side is gone."""
     with contextlib.suppress(OSError), connection.makefile("rb") as stream:
         while len(lengths := stream.read(_LENGTHS.size)) == _LENGTHS.size:
             head, data = _LENGTHS.unpack(lengths)
@@ -55,7 +55,7 @@ class SocketLink:
                 self.lock.notify_all()
 
     def send(self, frame: Frame, data: bytes = b"") -> None:
-        """Hand a frame to the hub."""
+        """Send a frame to the hub."""
         _write(self._socket, json.dumps(frame).encode(), bytes(data))
 
     def receive(self) -> Iterator[tuple[Frame, bytes]]:
@@ -64,7 +64,7 @@ class SocketLink:
             yield self._arrived.popleft()
 
     def wait(self, nanoseconds: int | None) -> None:
-        """Wait for a frame, for another thread, or for the time."""
+        """Wait for a frame, for another thread, or until the time is up."""
         if not self._arrived:
             self.lock.wait(None if nanoseconds is None else nanoseconds / 1e9)
 
@@ -81,7 +81,7 @@ class SocketLink:
 
 
 class Hub:
-    """Takes processes in, and hands on what they send: to the processes it names, or to all others."""
+    """Accepts processes, and forwards what they send: to the processes it names, or to all others."""
 
     def __init__(self, address: str) -> None:
         self._listener = socket.socket(socket.AF_UNIX)
@@ -118,13 +118,13 @@ class Hub:
                         _write(connection, head, data)
 
     def close(self) -> None:
-        """Let nobody in any more."""
+        """Stop accepting processes."""
         self._listener.close()
 
 
 @contextmanager
 def hub(folder: Path) -> Iterator[dict[str, str]]:
-    """A hub; the environment in which processes join it."""
+    """Run a hub; yield the environment in which processes join it."""
     address = os.fspath(folder / "hub")
     running = Hub(address)
     root = Path(__file__).resolve().parents[2]

@@ -22,7 +22,7 @@ _NUMPY = {"float": "float32", "double": "float64"}
 
 
 def message_classes() -> Iterator[Any]:
-    """Every message class of every installed interface package; of services and actions, each part."""
+    """Yield every message class of every installed interface package; of services and actions, each part."""
     for listing in sorted(_INDEX.iterdir()):
         for line in listing.read_text().split():
             kind, _, file = line.partition("/")
@@ -42,7 +42,7 @@ def _parts(kind: str, whole: Any) -> list[Any]:
 
 
 def messages(kind: Any) -> st.SearchStrategy[Any]:
-    """Messages of one class."""
+    """Return a strategy for messages of one class."""
     names = [name for name in kind.__slots__ if name != "_check_fields"]
     fields = [_values(slot) for slot in kind.SLOT_TYPES]
 

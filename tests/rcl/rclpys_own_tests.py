@@ -2,9 +2,9 @@
 
     python tests/rcl/rclpys_own_tests.py FOLDER [--real] [--only NAME]
 
-FOLDER is `rclpy/test` of https://github.com/ros2/rclpy at the release that is installed. Each file runs in a process
-of its own. With --real they run over the compiled module, for comparison. What fails is listed; expected_failures.toml
-says what is expected to fail, and why. A test that fails or passes unexpectedly makes the exit code 1.
+FOLDER is `rclpy/test` of https://github.com/ros2/rclpy at the release that is installed. Each file runs in its own
+process. With --real they run over the compiled module, for comparison. Failures are listed; expected_failures.toml
+says which are expected, and why. A test that fails or passes unexpectedly makes the exit code 1.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ sys.exit(pytest.main(sys.argv[1:]))
 """
 _INSTALL = "import rcl_python; rcl_python.install()"
 KINDS = ("passed", "failed", "skipped")
-#: A test that hangs is ended after this (s), a file after ten times as much.
+#: A test that hangs is ended after this time (s), a file after ten times as much.
 _LIMIT = 30
 
 
 def outcomes(file: Path, real: bool) -> dict[str, str]:
-    """Run one file: the name of each test -> passed, failed or skipped."""
+    """Run one file; return the name of each test -> passed, failed or skipped."""
     code = _RUN.format(root=str(ROOT), tests=str(file.parent.resolve()), install="pass" if real else _INSTALL)
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder, "report.xml")

@@ -1,4 +1,4 @@
-"""Messages become the bytes that Fast DDS makes of them, for every message type that is installed."""
+"""Messages become the same bytes as in Fast DDS, for every message type that is installed."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from rclpy.serialization import deserialize_message, serialize_message
 from rcl_python import cdr
 
 CLASSES = list(message_classes())
-#: What takes longest is hypothesis itself, so each type gets few values here and many in the soak.
+#: Hypothesis itself takes longest, so each type gets few values here and many in the soak.
 FEW, MANY = 2, 60
 
 
 def written(message: Any, padding: bytes) -> bytes:
-    """The message's bytes, with this byte wherever nothing is said."""
+    """Return the message's bytes, with this byte wherever the format does not specify one."""
     before, cdr.PADDING = cdr.PADDING, padding
     try:
         return cdr.serialize(message)
@@ -28,7 +28,7 @@ def written(message: Any, padding: bytes) -> bytes:
 
 
 def same(ours: bytes, blank: bytes, theirs: bytes) -> bool:
-    """Whether the bytes are equal. Fast DDS leaves garbage where `blank` differs from `ours`, and behind the end."""
+    """Return whether the bytes are equal. Fast DDS leaves garbage where `blank` differs from `ours`, and at the end."""
     equal = all(mine == other for mine, empty, other in zip(ours, blank, theirs, strict=False) if mine == empty)
     return equal and len(ours) <= len(theirs)
 
@@ -43,14 +43,14 @@ def compare(kind: Any, data: st.DataObject) -> None:
 
 
 def examples(count: int) -> settings:
-    """So many messages a type."""
+    """Return a setting for this many messages per type."""
     silent = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example]
     phases = (Phase.generate, Phase.shrink)
     return settings(max_examples=count, deadline=None, suppress_health_check=silent, database=None, phases=phases)
 
 
 def compare_with(kind: Any, count: int) -> None:
-    """Compare so many messages of this class."""
+    """Compare this many messages of this class."""
 
     @examples(count)
     @given(st.data())

@@ -21,7 +21,7 @@ _OVER_PYTHON = (
 
 
 def printed(program: Path, *, over_python: bool) -> list[str]:
-    """What the program prints."""
+    """Return what the program prints."""
     command = [sys.executable, *(["-c", _OVER_PYTHON] if over_python else []), os.fspath(program)]
     environment = {**os.environ, "PYTHONPATH": os.fspath(ROOT)}
     done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=280, check=False)
@@ -30,7 +30,7 @@ def printed(program: Path, *, over_python: bool) -> list[str]:
 
 
 def public(thing: object) -> set[str]:
-    """The names that a class or a module offers."""
+    """Return the names that a class or a module offers."""
     return {name for name in dir(thing) if not name.startswith("_")}
 
 

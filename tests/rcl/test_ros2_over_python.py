@@ -12,7 +12,7 @@ import pytest
 from hub_of_processes import hub
 
 ROOT = Path(__file__).resolve().parents[2]
-#: What can't be the same, and why. It may only shrink.
+#: What can't be the same, and why. The list may only get shorter.
 EXPECTED: dict[str, str] = {}
 
 

@@ -37,7 +37,7 @@ def within(entry: str, folders: set[str]) -> bool:
 
 @pytest.fixture
 def terminal() -> Iterator[Terminal]:
-    """Whatever it started and the test did not stop is killed."""
+    """A terminal; everything it started that the test did not stop is killed."""
     it = Terminal()
     yield it
     for process in it.started:
@@ -47,7 +47,7 @@ def terminal() -> Iterator[Terminal]:
 
 
 def start(*parts: str) -> subprocess.Popen[str]:
-    """A process with parts of ros2_robot.py, ready."""
+    """Start a process with parts of ros2_robot.py; return when it is ready."""
     process = subprocess.Popen(
         [sys.executable, os.fspath(ROBOT), *parts], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
     )
@@ -77,9 +77,9 @@ def robot(ros_domain: int) -> Iterator[Robot]:
 
 @pytest.fixture(scope="module")
 def standing_robots() -> Iterator[tuple[dict[tuple[str, ...], tuple[int, subprocess.Popen[str]]], ExitStack]]:
-    """Robots that go on from test to test, by their parts, each with a domain of its own.
+    """Robots that run from test to test, by their parts, each with a domain of its own.
 
-    They end with the file: robots publish without a pause, at the cost of whatever else the machine has to do.
+    They end with the file: robots publish without a pause, which slows down everything else on the machine.
     """
     robots: dict[tuple[str, ...], tuple[int, subprocess.Popen[str]]] = {}
     with ExitStack() as domains:

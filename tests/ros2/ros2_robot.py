@@ -1,4 +1,4 @@
-"""Nodes that the tests look at. Started with the names of the parts wanted; prints `ready` when they are there."""
+"""Nodes for the tests to look at. Started with the names of the parts wanted; prints `ready` when they are there."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from test_msgs.action import Fibonacci
 
 
 def publisher() -> Node:
-    """`/joint_commands` at 50 Hz, and parameters."""
+    """Run `/joint_commands` at 50 Hz, and parameters."""
     node = Node("joint_publisher")
     limits = ParameterDescriptor(
         description="messages a second", floating_point_range=[FloatingPointRange(from_value=-100.0, to_value=100.0)]
@@ -41,7 +41,7 @@ def publisher() -> Node:
 
 
 def latched() -> Node:
-    """One message on `/robot_name`, published before anybody listens: transient local."""
+    """Publish one message on `/robot_name`, before anything subscribes: transient local."""
     node = Node("namer")
     qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL, reliability=ReliabilityPolicy.RELIABLE)
     node.create_publisher(String, "/robot_name", qos).publish(String(data="Ada"))
@@ -49,7 +49,7 @@ def latched() -> Node:
 
 
 def counter() -> Node:
-    """`/count` best effort, `/_hidden`, and a subscription to `/cmd`."""
+    """Run `/count` best effort, `/_hidden`, and a subscription to `/cmd`."""
     node = Node("counter")
     topic = node.create_publisher(Int32, "/count", QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT))
     hidden = node.create_publisher(Int32, "/_hidden", 10)
@@ -70,7 +70,7 @@ def counter() -> Node:
 
 
 def service() -> Node:
-    """`/stand_up`."""
+    """Run `/stand_up`."""
     node = Node("stander")
 
     def stand_up(request: Any, response: Any) -> Any:
@@ -82,7 +82,7 @@ def service() -> Node:
 
 
 def action() -> Node:
-    """`/fibonacci`, a number a 50 ms."""
+    """Run `/fibonacci`, one number every 50 ms."""
     node = Node("fibonacci_server")
 
     def execute(goal: Any) -> Any:
@@ -109,7 +109,7 @@ def action() -> Node:
 
 
 def hasty_action() -> Node:
-    """`/fibonacci` from an action's bare services and topics: it tells how far it is before it accepts the goal, and
+    """Run `/fibonacci` from an action's bare services and topics: it sends feedback before it accepts the goal, and
     much at once with the result."""
     node = Node("fibonacci_server")
     services, prefix = Fibonacci.Impl, "/fibonacci/_action"
@@ -121,7 +121,7 @@ def hasty_action() -> Node:
 
     def accept(request: Any, response: Any) -> Any:
         tell(request.goal_id, 1)
-        time.sleep(0.3)  # the client handles this before it hears of being accepted
+        time.sleep(0.3)  # the client handles this before it knows that the goal was accepted
         response.accepted = True
         return response
 

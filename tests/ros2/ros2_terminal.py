@@ -1,4 +1,4 @@
-"""A terminal to type `ros2` in, and what a command answers."""
+"""A terminal to type `ros2` in, and a command's answer."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PATIENCE = 60
 
 @dataclass(frozen=True)
 class Answer:
-    """What a finished command left."""
+    """The result of a finished command."""
 
     code: int
     out: str
@@ -25,14 +25,14 @@ class Answer:
 
 
 class Running:
-    """A command that goes on until it is stopped."""
+    """A command that runs until it is stopped."""
 
     def __init__(self, process: subprocess.Popen[str]) -> None:
         self.process = process
         self.seen = ""
 
     def lines(self, count: int) -> list[str]:
-        """The next `count` lines, as they come through the pipe."""
+        """Return the next `count` lines, as they arrive through the pipe."""
         assert self.process.stdout is not None
         got = []
         for _ in range(count):
@@ -42,7 +42,7 @@ class Running:
         return got
 
     def stop(self, number: int = signal.SIGINT) -> Answer:
-        """Send a signal; what came after the lines that were read."""
+        """Send a signal; return what arrived after the lines that were read."""
         self.process.send_signal(number)
         out, err = self.process.communicate(timeout=PATIENCE)
         return Answer(self.process.returncode, out, err)

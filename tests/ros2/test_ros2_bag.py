@@ -1,4 +1,4 @@
-"""`ros2 bag` writes what topics carry, of a course's own types too, says what is in a bag, and plays it again."""
+"""`ros2 bag` records topics, with a course's own types too, says what is in a bag, and plays it again."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def test_what_was_recorded_is_told_and_played_again(
     publisher = robot("publisher")
     recording = terminal.start("bag", "record", "-o", "swing", "/joint_commands")
     assert recording.lines(2) == ["Recording... Press Ctrl-C to stop.", "Subscribed to topic '/joint_commands'"]
-    echo = terminal.ros2("topic", "echo", "--once", "/joint_commands")  # by then the recording has heard some, too
+    echo = terminal.ros2("topic", "echo", "--once", "/joint_commands")  # by then the recording has received some, too
     assert echo.code == 0
     stopped = recording.stop()
     assert "messages in swing" in stopped.out

@@ -1,4 +1,4 @@
-"""The command as a whole: help, handing over, what is refused before rclpy is loaded, and signals."""
+"""The command as a whole: help, delegation, what is refused before rclpy is loaded, and signals."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from spinbook.ros2.command import NOUNS, ros2
 
 
 def helps() -> list[list[str]]:
-    """Every place of the command that has a help."""
+    """Return every place of the command that has help."""
     places: list[list[str]] = [[], *([noun] for noun in NOUNS)]
     for noun in NOUNS:
         group = ros2.get_command(click.Context(ros2), noun)
@@ -124,12 +124,12 @@ def test_it_works_without_a_home(ros_domain: int, terminal: Terminal, monkeypatc
     assert terminal.ros2("node", "list").code == 0
 
 
-# Handing over
+# Delegation
 
 
 @pytest.fixture
 def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A `ros2` on the PATH that says what it was called with."""
+    """A `ros2` on the PATH that prints what it was called with."""
     program = tmp_path / "bin" / "ros2"
     program.parent.mkdir()
     program.write_text('#!/bin/sh\necho real "$@"; echo guard=$_ROS_WHEELS_BOOTSTRAP_COMPLETE\n')
@@ -147,7 +147,7 @@ def test_an_installed_ros2_answers_instead(terminal: Terminal) -> None:
 
 
 def in_a_shell(line: str) -> str:
-    """What a shell prints for a line, in which the environment's own programs come first."""
+    """Return what a shell prints for a line, in which the environment's own programs come first."""
     path = f"{sysconfig.get_path('scripts')}{os.pathsep}{os.environ['PATH']}"
     return subprocess.run(["sh", "-c", line], env={**os.environ, "PATH": path}, stdout=-1, text=True).stdout
 

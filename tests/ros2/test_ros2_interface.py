@@ -59,7 +59,7 @@ def test_proto_is_yaml_in_quotes(terminal: Terminal) -> None:
 
 
 def test_lists(terminal: Terminal, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)  # no course, whose own types would be listed, too
+    monkeypatch.chdir(tmp_path)  # outside a course, whose own types would be listed, too
     assert terminal.ros2("interface", "list", "-a").out == (
         "Actions:\n    example_interfaces/action/Fibonacci\n"
         "    test_msgs/action/Fibonacci\n    test_msgs/action/NestedMessage\n    turtlesim/action/RotateAbsolute\n"

@@ -11,7 +11,7 @@ from ros2_terminal import Terminal
 
 from spinbook.ros2.launch.command import launch
 
-# Prints what it is given, and the parameter files among it; `wait` makes it go on until Ctrl-C.
+# Prints its arguments, and the parameter files among them; `wait` makes it run until Ctrl-C.
 PROGRAM = """\
 #!/bin/sh
 trap 'echo interrupted; exit 0' INT
@@ -47,7 +47,7 @@ def _not_sourced(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def workspace(tmp_path: Path) -> Path:
-    """A built workspace with the package `arm`, whose executable `swing` says what it was given."""
+    """A built workspace with the package `arm`, whose executable `swing` prints its arguments."""
     prefix = tmp_path / "install"
     index = prefix / "share/ament_index/resource_index/packages"
     for folder in (index, prefix / "share/arm/launch", prefix / "share/arm/config", prefix / "lib/arm"):
@@ -61,7 +61,7 @@ def workspace(tmp_path: Path) -> Path:
 
 
 def write(workspace: Path, entities: str, name: str = "arm.launch.py") -> None:
-    """A launch file of the package; a Python one describes these entities."""
+    """Write a launch file of the package; a Python one describes these entities."""
     text = f"{IMPORTS}{entities}    ])\n" if name.endswith(".py") else entities
     (workspace / "install/share/arm/launch" / name).write_text(text)
 
@@ -176,7 +176,7 @@ def test_ctrl_c_reaches_every_node_once_and_is_no_failure(workspace: Path, termi
     node = "        Node(package='arm', executable='swing', arguments=['wait']),\n"
     write(workspace, node * 2)
     running = terminal.start("launch", "arm", "arm.launch.py", cwd=workspace)
-    running.lines(4)  # two are started, two have said what they were given
+    running.lines(4)  # two are started, two have printed their arguments
     answer = running.stop(signal.SIGINT)
     assert answer.code == 0
     assert "[WARNING] [launch]: user interrupted with ctrl-c (SIGINT)\n" in answer.out

@@ -20,7 +20,7 @@ def test_the_rate_is_of_the_window_with_the_population_deviation() -> None:
         time += interval * MS
         rate.arrived(time)
         reports.append(rate.report())
-    # The first interval begins the second that is waited for; 100, 500, 100, 300 ms are the window at its end.
+    # The first interval begins the awaited second; 100, 500, 100, 300 ms are the window at its end.
     told = [report for report in reports if report]
     assert told == ["average rate: 3.333\n\tmin: 0.100s max: 0.500s std dev: 0.14142s window: 4"]
 

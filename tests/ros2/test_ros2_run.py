@@ -31,7 +31,7 @@ if "wait" in sys.argv:
 
 
 def install(workspace: Path, layout: str, *, symlinked: bool = False) -> Path:
-    """A package `hello_pkg` as colcon installs it, with the executable `hello`; the folder of its module."""
+    """Install a package `hello_pkg` as colcon does, with the executable `hello`; return the folder of its module."""
     prefix = workspace / "install" / ("hello_pkg" if layout == "isolated" else "")
     site = Path("lib", f"python{sys.version_info.major}.{sys.version_info.minor}", "site-packages")
     module = (workspace / "build" if symlinked else prefix / site) / "hello_pkg"

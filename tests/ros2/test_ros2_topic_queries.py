@@ -1,4 +1,4 @@
-"""`ros2 topic list`, `info`, `type` and `find`: the text of the real command, for a graph that is known."""
+"""`ros2 topic list`, `info`, `type` and `find`: the text of the real command, for a known graph."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Programs for the runner's tests: what a student may hand in, and what nobody should."""
+"""Programs for the runner's tests: what a student may submit, and what no one should."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ RunProgram: TypeAlias = Callable[..., Recording]
 
 
 def numbers(count: int = 5, period: float = 0.1, topic: str = "/in", **options: object) -> Scenario:
-    """The numbers from 1 on."""
+    """Return the numbers from 1 on."""
     messages = tuple(
         Message(START + round(i * period * SECOND), topic, FLOAT, {"data": float(i + 1)}) for i in range(count)
     )
     return Scenario("numbers", "numbers", messages, **options)  # type: ignore[arg-type]
 
 
-#: Doubles each number. `{before}` stands before the node is made, `{init}` in its constructor, `{body}` in its callback
-#: and `{spin}` in place of rclpy.spin(node).
+#: Doubles each number. `{before}` is before the node is created, `{init}` in its constructor, `{body}` in its callback
+#: and `{spin}` replaces rclpy.spin(node).
 NODE = """
 import os, subprocess, sys, threading, time
 import rclpy
@@ -79,7 +79,7 @@ ANSWER = "self.answer(message.data)"
 
 
 def program(body: str = ANSWER, init: str = "pass", before: str = "pass", spin: str = "rclpy.spin(node)") -> str:
-    """The node, with pieces of it replaced."""
+    """Return the node, with pieces of it replaced."""
     filled = NODE
     for name, text, indent in (("body", body, 8), ("init", init, 8), ("before", before, 4), ("spin", spin, 8)):
         filled = filled.replace(f"{{{name}}}", text.strip().replace("\n", f"\n{' ' * indent}"))
@@ -88,7 +88,7 @@ def program(body: str = ANSWER, init: str = "pass", before: str = "pass", spin: 
 
 THREADS = "executor = MultiThreadedExecutor(4)\nexecutor.add_node(node)\nexecutor.spin()"
 
-#: Answers by timer: every 30 ms of the computer's time, what it has got until then.
+#: Answers by timer: every 30 ms of the computer's time, what it has received until then.
 TIMER_THREAD = program(
     body="pass",
     init="def loop():\n    while rclpy.ok():\n        time.sleep(0.03)\n        self.answer(float(len(self.got)))\n"
@@ -119,7 +119,7 @@ TWO_PROCESSES = "import os, sys, signal\nCHILD = os.fork() == 0\n" + program(
     body="if not CHILD:\n    self.inner.publish(Float64(data=message.data))",
 )
 
-#: One callback in a group of its own sleeps before it answers, while the other goes on.
+#: One callback in a group of its own sleeps before it answers, while the other continues.
 SLOW_GROUP = program(
     init="group = ReentrantCallbackGroup()\n"
     "self.create_subscription(Float64, '/in', self.slow, 10, callback_group=group)",

@@ -1,4 +1,4 @@
-"""Programs of every kind, as students write them, and the exercise that declares what they do."""
+"""Programs of every kind, as students write them, and the exercise that declares their interface."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ EXERCISE = Exercise(
 
 
 def ready(scenario: Scenario, exercise: Exercise = EXERCISE) -> Scenario:
-    """The scenario as `declared` gives it."""
+    """Return the scenario as `declared` gives it."""
     return resolved(exercise, scenario)
 
 
@@ -84,7 +84,7 @@ if __name__ == '__main__':
 
 
 def program(body: str, threads: int = 1) -> str:
-    """A whole program around the body of a class's constructor and its methods, indented by four spaces."""
+    """Return a whole program around the body of a class's constructor and its methods, indented by four spaces."""
     executor = "SingleThreadedExecutor()" if threads == 1 else f"MultiThreadedExecutor({threads})"
     return _HEAD + body + _TAIL.format(executor=executor)
 

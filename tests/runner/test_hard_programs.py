@@ -1,4 +1,4 @@
-"""Programs that sleep, use threads, processes, asyncio or their own loops: recorded the same each time, and truly."""
+"""Programs that sleep, use threads, processes, asyncio or their own loops: recorded correctly, the same each time."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MS = 1_000_000
 
 
 def seen(recording: Recording) -> str:
-    """All that counts of a recording."""
+    """Return everything that counts in a recording."""
     return to_json({"": replace(recording, log="", seconds=0.0, lockstep_seconds=0.0)})
 
 
@@ -24,7 +24,7 @@ def answers(recording: Recording) -> list[float]:
 
 
 def delays(recording: Recording) -> list[float]:
-    """How long after its message each answer came, in ms of simulated time."""
+    """Return how long after its message each answer arrived, in ms of simulated time."""
     return [(received.at - recording.sent[received.after - 1].at) / MS for received in recording.received]
 
 
@@ -82,7 +82,7 @@ def test_what_was_published_before_a_crash_is_kept(run_program: RunProgram, last
     assert {end_point.topic for end_point in recording.end_points} >= {"/in", "/out"}
 
 
-#: It subscribes with the second tick of a timer; the first is when simulated time begins.
+#: It subscribes at the second tick of a timer; the first is when simulated time begins.
 LATE = program(
     init="self.destroy_subscription(next(s for s in self.subscriptions if s.topic_name == '/in'))\n"
     "self.ticks = 0\nself.timer = self.create_timer(0.25, self.begin)",

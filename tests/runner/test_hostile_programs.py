@@ -31,7 +31,7 @@ def another():
 
 
 def attack(code: str) -> str:
-    """A node that does this when the third message comes, and answers all."""
+    """Return a node that does this when the third message arrives, and answers all."""
     indented = textwrap.indent(code.strip(), " " * 4).strip()
     return TOOLS + program(body=f"{ANSWER}\nif message.data == 3.0:\n    {indented}")
 

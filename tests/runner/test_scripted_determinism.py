@@ -1,4 +1,4 @@
-"""Programs with several threads get the same recording each time, whatever the kind, also beside busy loops."""
+"""Programs with several threads get the same recording each time, whatever the kind, even next to busy loops."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ def compiled_interfaces() -> None:
 
 @pytest.fixture
 def scripted(fork_server: ForkServer) -> Scripted:
-    """Run a program's source through a scenario, as it was written by its author."""
+    """Run a program's source through a scenario, as its author wrote it."""
     level = choose(None)
 
     def run_it(source: str, scenario: Scenario) -> Recording:

@@ -1,4 +1,4 @@
-"""What a program's end is told as, where ROS 2 itself says little about the line that is to blame."""
+"""How a program's end is reported, if ROS 2 itself says little about the line that is to blame."""
 
 from __future__ import annotations
 

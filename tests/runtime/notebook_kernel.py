@@ -51,7 +51,7 @@ class Kernel:
         self.loaded = self.run("%load_ext spinbook\n%chapter test --package robot --workspace robot_ws")
 
     def run(self, code: str, on_more: Callable[[Shown], None] = lambda shown: None) -> Shown:
-        """Run a cell to its end. `on_more` is called with what has been shown so far whenever more comes."""
+        """Run a cell to its end. `on_more` is called with what has been shown so far whenever more arrives."""
         shown = Shown()
 
         def take(message: dict[str, Any]) -> None:
@@ -71,27 +71,27 @@ class Kernel:
         return shown
 
     def pressing_stop(self, when: Callable[[Shown], bool]) -> Callable[[Shown], None]:
-        """For `run`: presses the Stop button, once, when that is so of what has been shown."""
+        """Return a callback for `run` that presses Stop, once, when the condition is true for what has been shown."""
         pressed = False
 
         def look(shown: Shown) -> None:
             nonlocal pressed
             if not pressed and when(shown):
-                pressed = True  # a second time, between two cells, would lose the kernel's answer
+                pressed = True  # a second press, between two cells, would lose the kernel's answer
                 self._manager.interrupt_kernel()
 
         return look
 
     @property
     def process_id(self) -> int:
-        """The kernel's."""
+        """The kernel's process id."""
         return int(self._manager.provisioner.pid)
 
     def kill(self) -> None:
-        """kill -9."""
+        """Kill the kernel as kill -9 does."""
         os.kill(self.process_id, signal.SIGKILL)
 
     def shut_down(self) -> None:
-        """What closing the notebook does."""
+        """Shut down as closing the notebook does."""
         self._client.stop_channels()
         self._manager.shutdown_kernel(now=not self._manager.is_alive())

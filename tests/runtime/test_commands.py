@@ -50,7 +50,7 @@ def arm(module_kernel: Kernel) -> Kernel:
 
 
 def size_of(picture: dict[str, str]) -> tuple[int, int]:
-    """Width and height in pixels, from the PNG's header."""
+    """Return width and height in pixels, from the PNG's header."""
     width, height = struct.unpack(">II", b64decode(picture["image/png"])[16:24])
     return width, height
 

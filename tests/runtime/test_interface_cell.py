@@ -1,4 +1,4 @@
-"""`%%interface` in a kernel: compiled when it is new, and honest about what still has the former text."""
+"""`%%interface` in a kernel: compiled when it is new, with a warning about what still has the former text."""
 
 from __future__ import annotations
 

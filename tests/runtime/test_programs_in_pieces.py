@@ -1,4 +1,4 @@
-"""A node may be shown in pieces: its cell runs the whole, with what the cells above hold when it runs."""
+"""A node may be shown in pieces: its cell runs the whole, with the current content of the cells above."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""For how long a cell shows a process: counted from its first line, or from when it joined ROS."""
+"""How long a cell shows a process: counted from its first line, or from when it joined ROS."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_a_program_that_neither_prints_nor_joins_does_not_hold_the_cell_for_ever
     assert countdown.is_over(False)
 
 
-#: Binds the second discovery port of a domain, as a participant does, and says so.
+#: Binds the second discovery port of a domain, as a participant does, and prints so.
 BINDS = """
 import socket, sys, time
 bound = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -66,7 +66,7 @@ time.sleep(60)
 
 
 def started(tmp_path: Path, *argv: str) -> KeptProcess:
-    """A process that has printed its first line."""
+    """Start a process that has printed its first line."""
     process = KeptProcess([sys.executable, "-u", "-c", *argv], os.environ, tmp_path)
     while process.status.running and not process.read_all()[0]:
         time.sleep(0.01)

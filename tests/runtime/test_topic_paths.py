@@ -1,4 +1,4 @@
-"""rqt_plot's way to name what to draw."""
+"""rqt_plot's way to name what to plot."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Wrong usage of the notebook's commands is told in words, and each command explains itself."""
+"""Wrong usage of the notebook's commands is explained, and each command has help."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ def _rig(request: pytest.FixtureRequest, rigs: dict[tuple[Isolation, bool], Rig]
 
 @pytest.fixture(params=_rigs((*CONFINED, Isolation.NONE)))
 def any_rig(request: pytest.FixtureRequest, rigs: dict[tuple[Isolation, bool], Rig]) -> Rig:
-    """A rig at each level, also at the one that confines nothing."""
+    """A rig at each level, including the one that confines nothing."""
     return _rig(request, rigs)
 
 
@@ -56,7 +56,7 @@ def either_rig(request: pytest.FixtureRequest, rigs: dict[tuple[Isolation, bool]
 
 @pytest.fixture
 def strongest_rig(rigs: dict[tuple[Isolation, bool], Rig]) -> Rig:
-    """A rig at the strongest level that works here, the one that is chosen without a wish."""
+    """A rig at the strongest level that works here, the one that is chosen by default."""
     key = (choose(), False)
     if key not in rigs:
         rigs[key] = Rig(key[0], rootless=False)
@@ -65,7 +65,7 @@ def strongest_rig(rigs: dict[tuple[Isolation, bool], Rig]) -> Rig:
 
 @pytest.fixture(params=_rigs(CONFINED))
 def confined_rig(request: pytest.FixtureRequest, rigs: dict[tuple[Isolation, bool], Rig]) -> Rig:
-    """A rig at each level that keeps a student off this machine's files."""
+    """A rig at each level that keeps a student away from this machine's files."""
     return _rig(request, rigs)
 
 

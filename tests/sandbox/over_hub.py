@@ -30,13 +30,13 @@ class HubRun:
 
 
 class _Over(Exception):
-    """Raised out of the hub's waiting when the program has ended, or too much time has gone by."""
+    """Raised out of the hub's waiting when the program has ended, or too much time has passed."""
 
 
 def run_over_hub(
     rig: Rig, source: str, *, warm: bool = True, limits: Limits | None = None, timeout_s: float = 60.0
 ) -> HubRun:
-    """Runs a program until its first process ends; its time goes on by a second whenever it is idle."""
+    """Run a program until its first process ends; its time advances by a second whenever it is idle."""
     program = Program("student.py", {"student.py": source.encode()}, ("--ros-args",), warm=warm)
     run: HubRun = rig.do(in_the_rig, program, limits, timeout_s)
     return run
@@ -45,7 +45,7 @@ def run_over_hub(
 def in_the_rig(
     fork_server: ForkServer, level: Isolation, program: Program, limits: Limits | None, timeout_s: float
 ) -> HubRun:
-    """The same, in the rig's process."""
+    """Do the same, in the rig's process."""
     folder = Path(tempfile.mkdtemp(prefix="spinbook-hub-"))
     deadline = time.monotonic() + timeout_s
     try:

@@ -1,6 +1,6 @@
-"""A rig in a process of its own, for tests: it enters its namespaces once, then runs what a test hands to it.
+"""A rig in a process of its own, for tests: it enters its namespaces once, then runs what a test passes to it.
 
-Also as a user who is not root, when the tests are run as root: the rig's process then changes its user before anything.
+Also as a user who is not root, when the tests are run as root: the rig's process then first changes its user.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ class Run:
 
 
 class Rig:
-    """A rig's process as a test holds it: functions of a test module are run in there."""
+    """A rig's process as a test sees it: functions of a test module are run in there."""
 
     def __init__(self, level: Isolation, *, rootless: bool) -> None:
-        """Starts it."""
+        """Start it."""
         self.level = level
         self.rootless = rootless
         context = multiprocessing.get_context("spawn")
@@ -44,7 +44,7 @@ class Rig:
         theirs.close()
 
     def do(self, function: Callable[..., Any], *arguments: object) -> Any:
-        """Calls `function(fork server, level, *arguments)` in the rig and returns what it returns."""
+        """Call `function(fork server, level, *arguments)` in the rig and return what it returns."""
         self._connection.send((function, arguments))
         fault, result = self._connection.recv()
         if fault is not None:
@@ -61,7 +61,7 @@ class Rig:
         environment: Mapping[str, str] | None = None,
         timeout_s: float = 60.0,
     ) -> Run:
-        """Runs a program in a sandbox until its first process ends, and kills the rest."""
+        """Run a program in a sandbox until its first process ends, and kill the rest."""
         content = source if isinstance(source, bytes) else source.encode()
         program = Program(name, {name: content}, ("--ros-args",), environment=environment or {}, warm=warm)
         run: Run = self.do(run_to_end, program, limits, timeout_s)
@@ -69,17 +69,17 @@ class Rig:
 
     @property
     def pid(self) -> int:
-        """The number of the rig's process."""
+        """The id of the rig's process."""
         assert self._process.pid is not None
         return self._process.pid
 
     def kill(self) -> None:
-        """Kills the rig's process as the kernel would for want of memory."""
+        """Kill the rig's process as the kernel would for lack of memory."""
         self._process.kill()
         self._process.join()
 
     def close(self) -> None:
-        """Ends the rig."""
+        """End the rig."""
         self._connection.close()
         self._process.join(20)
         self._process.kill()
@@ -88,7 +88,7 @@ class Rig:
 def run_to_end(
     fork_server: ForkServer, level: Isolation, program: Program, limits: Limits | None, timeout_s: float
 ) -> Run:
-    """Runs in the rig."""
+    """Run a program to its end, in the rig."""
     with fork_server.start(program, level, limits) as student:
         end = student.wait(timeout_s)
     return Run(end, student.output().text)
@@ -111,7 +111,7 @@ def _serve(connection: Connection, level: Isolation, rootless: bool) -> None:
 
 
 def become_nobody() -> None:
-    """Gives up root for good. The Python in use stays readable, also where it lies in root's own home."""
+    """Give up root for good. The Python in use stays readable, even if it is in root's own home."""
     syscalls.unshare(syscalls.CLONE_NEWNS)
     syscalls.mount("", "/", flags=syscalls.MS_REC | syscalls.MS_PRIVATE)
     needed = {Path(path).resolve() for path in (sys.prefix, sys.base_prefix)}
@@ -136,7 +136,7 @@ def become_nobody() -> None:
 
 @cache
 def reason_against(level: Isolation, rootless: bool) -> str | None:
-    """Why a level cannot be tested here; None if it can."""
+    """Return why a level cannot be tested here; None if it can."""
     if not rootless:
         return available()[level]
     if os.geteuid() != 0:

@@ -1,6 +1,6 @@
-"""Every hostile submission, spun against a real publisher in its sandbox: it escapes nowhere, and the rig is unharmed.
+"""Every hostile submission, run against a real publisher in its sandbox: none escapes, and the rig is unharmed.
 
-What the grader makes of them is another matter (see tests/hostile); here only the sandbox is asked.
+What the grader makes of them is tested in tests/hostile; this file only tests the sandbox.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ PROFILE = Path(__file__).parents[2] / "grader" / "loopback.xml"
 # Right, and with nothing of its own to hide.
 HONEST = HOSTILE / "submissions" / "sets_use_sim_time_itself.py"
 LIMITS = Limits(cpu_s=4.0, output_bytes=4 << 20, file_bytes=16 << 20, processes=96, wall_s=90.0)
-# What is watched for files that a student has left.
+# The folders that are watched for files that a student has left.
 WATCHED = (Path("/tmp"), Path("/dev/shm"), Path("/var/tmp"), Path.home(), HOSTILE, HOSTILE.parents[1])
-# Attacks on the machine are tried at every level; others (they attack the grading, or nothing) at the strongest only.
+# Attacks on the machine are tried at every level; others (on the grading, or on nothing) at the strongest only.
 EVERYWHERE = {
     *("fork_bomb_in_the_callback", "imports_the_grader", "kills_everything", "kills_its_parent", "log_1_gb"),
     *("looks_for_solutions", "memory_in_many_processes", "outlives_by_double_fork", "ptraces_others"),
     *("raises_its_limits", "reads_proc_of_others", "remembers_between_runs", "stops_itself", "writes_everywhere"),
     *("writes_to_every_descriptor",),
 }
-# Of each kind one, for every `make test`. `make soak` goes through all.
+# One of each kind, for every `make test`. `make soak` runs all.
 ALWAYS = {
     *("disk_in_many_files", "endless_loop_in_the_callback", "escapes_by_namespaces", "fork_bomb_in_the_callback"),
     *("kills_everything", "log_1_gb", "looks_for_solutions", "memory_10_gb", "network_access"),
@@ -48,13 +48,13 @@ ALWAYS_EVERYWHERE = {"kills_everything"}
 
 
 def size(names: Iterable[str], always: set[str]) -> list[Any]:
-    """The parameters of a test, all but some of them for `make soak`."""
+    """Return the parameters of a test, most of them for `make soak` only."""
     return [pytest.param(name, marks=() if name in always else pytest.mark.soak) for name in sorted(names)]
 
 
 @dataclass(frozen=True)
 class Spun:
-    """What came of a submission: how it ended, what it printed, how many answers the rig heard, what it left."""
+    """What a submission did: how it ended, what it printed, how many answers the rig received, what it left."""
 
     exit: Exit | None
     text: str
@@ -62,15 +62,15 @@ class Spun:
     left_running: int
 
 
-#: How long a submission is spun: until it answers, until it ends by itself, or for a while where it may do neither.
+#: How long a submission runs: until it answers, until it ends by itself, or for a while if it may do neither.
 Until = Literal["it answers", "it ends", "a while has passed"]
 
-#: How long to wait for what has to come, in s.
+#: How long to wait for what has to arrive (s).
 DEADLINE_S = 60.0
 
 
 def spin(fork_server: ForkServer, level: Isolation, source: bytes, domain: int, until: Until) -> Spun:
-    """In the rig: publishes joint commands to a submission, hears its answers, interrupts and kills it."""
+    """In the rig: publish joint commands to a submission, receive its answers, interrupt and kill it."""
     import os
 
     import rclpy
@@ -117,7 +117,7 @@ def spin(fork_server: ForkServer, level: Isolation, source: bytes, domain: int, 
     finally:
         node.destroy_node()
         rclpy.shutdown(context=context)
-    # Of all that this rig's fork server has started only the fork server is left, once our own supervisor has ended.
+    # Only the fork server itself must be left of all that it has started, once our own supervisor has ended.
     deadline = time.monotonic() + DEADLINE_S
     while (left := len(psutil.Process(os.getpid()).children(recursive=True)) - 1) and time.monotonic() < deadline:
         time.sleep(0.001)
@@ -125,19 +125,19 @@ def spin(fork_server: ForkServer, level: Isolation, source: bytes, domain: int, 
 
 
 def files() -> set[Path]:
-    """What lies in the watched folders, but for what tests and Python make there."""
+    """Return what is in the watched folders, except what tests and Python make there."""
     ours = ("pytest", "spinbook-", "nobody-", "hidden-checks-", "course-", "tmp", "pymp-", "sem.", ".", "fastrtps_")
     return {path for folder in WATCHED for path in folder.iterdir() if not path.name.startswith(ours)}
 
 
 def over_limit(name: str) -> bool:
-    """Whether a submission is expected to run into a limit."""
+    """Return whether a submission is expected to hit a limit."""
     expected: bool = EXPECTED[name]["outcome"] == ["over-limit"]
     return expected
 
 
 def spin_and_look(rig: Rig, name: str, domain: int) -> Spun:
-    """Spins a submission, and checks what holds for each of them."""
+    """Run a submission, and check what is true for each of them."""
     before = files()
     until: Until = "a while has passed"
     if over_limit(name):

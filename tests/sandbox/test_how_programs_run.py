@@ -128,7 +128,7 @@ def test_a_program_stays_on_its_core(confined_rig: Rig) -> None:
 
 
 def escape_the_core(fork_server: ForkServer, level: Isolation) -> str:
-    # Python tells a program of more cores than it has, so the C library is asked.
+    # Python reports more cores to a program than it has, so the test asks the C library.
     code = (
         "import ctypes, os\nos.sched_setaffinity(0, range(os.cpu_count()))\nmask = ctypes.create_string_buffer(128)\n"
         "ctypes.CDLL(None).sched_getaffinity(0, 128, mask)\nprint(int.from_bytes(mask.raw, 'little'))"

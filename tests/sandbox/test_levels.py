@@ -1,4 +1,4 @@
-"""The strongest level that works is chosen, and where none does the reasons are told."""
+"""The strongest level that works is chosen, and if none does, the reasons are given."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def test_each_level_has_really_been_tried() -> None:
 
 @pytest.fixture
 def tried(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, reasons_of_trials: dict[Isolation, str]) -> list[Isolation]:
-    """The levels that have been tried, in order; nothing is kept from before."""
+    """The levels that have been tried, in order; no earlier results are stored."""
     found: list[Isolation] = []
     monkeypatch.setenv("SPINBOOK_CACHE", str(tmp_path))
 
@@ -92,7 +92,7 @@ def tried(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, reasons_of_trials: di
 
 @pytest.fixture
 def reasons_of_trials() -> dict[Isolation, str]:
-    """What speaks against a level when it is tried."""
+    """The reasons against a level when it is tried."""
     return {}
 
 

@@ -1,4 +1,4 @@
-"""Each limit ends the program that runs into it, tells which one it was, and harms nobody else."""
+"""Each limit ends the program that hits it, says which one it was, and harms no other program."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MIB = 1024 * 1024
 SMALL = Limits(cpu_s=20.0, memory_bytes=1024 * MIB, processes=64, file_bytes=4 * MIB, output_bytes=MIB, wall_s=240.0)
 
 
-#: What runs into each limit without meaning to.
+#: Programs that hit each limit without meaning to.
 PLAIN = [
     ("cpu", "while True: pass"),
     ("memory", "x = []\nwhile True: x.append(bytearray(1 << 20))"),
@@ -24,7 +24,7 @@ PLAIN = [
     ("output", "while True: print('x' * 1000)"),
     ("wall", "import time\ntime.sleep(3600)"),
 ]
-#: Ways round one, as a program may try them.
+#: Ways round a limit, as a program may try them.
 CUNNING = [
     ("cpu", "import signal\nsignal.signal(signal.SIGXCPU, signal.SIG_IGN)\nwhile True: pass"),
     ("cpu", "import os\nos.fork(); os.fork()\nwhile True: pass"),
@@ -38,7 +38,7 @@ CUNNING = [
 
 
 def ends_at(rig: Rig, limit: str, code: str) -> None:
-    """Runs a program and checks that this limit ends it, and nobody else."""
+    """Run a program and check that this limit ends it, and no other program."""
     if limit == "processes" and rig.level is Isolation.NONE and not rig.rootless:
         pytest.skip("the kernel does not limit root's processes, and this level leaves the program to root")
     short: dict[str, Any] = {"cpu": {"cpu_s": 1.0}, "wall": {"wall_s": 0.5}, "processes": {"processes": 32}}
@@ -138,7 +138,7 @@ def test_all_output_is_counted_whatever_the_pieces() -> None:
 
 
 def test_a_student_whose_output_nobody_wants_is_not_held_up(any_rig: Rig) -> None:
-    # 8 MiB go through a pipe that holds 64 KiB, and the program comes to its end by itself.
+    # 8 MiB go through a pipe that holds 64 KiB, and the program ends by itself.
     run = any_rig.run("import os\nfor _ in range(128): os.write(1, bytes(65536))\nos._exit(4)")
 
     assert run.exit is not None

@@ -1,4 +1,4 @@
-"""When a student's program is killed, or its rig dies, everything of it is dead and gone."""
+"""When a student's program is killed, or its rig dies, all of its processes and files are gone."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ print('daemons started', flush=True)
 
 
 def alive(name: str) -> int:
-    """How many processes of this machine have a name."""
+    """Return how many processes of this machine have a name."""
     return sum(process.info["name"] == name for process in psutil.process_iter(["name"]))
 
 
 def start_daemons(fork_server: ForkServer, level: Isolation, name: str, end: str) -> tuple[Exit | None, int, int]:
-    """Starts daemons that ignore every signal, and kills them; how many were there before and after."""
+    """Start daemons that ignore every signal, and kill them; return how many there were before and after."""
     code = DAEMON.format(name=name) + end
     with fork_server.start(Program("d.py", {"d.py": code.encode()}), level) as student:
         while "started" not in student.output().text or student.processes() < 3:
@@ -77,7 +77,7 @@ print('survived')
 
 
 def start_and_stay(fork_server: ForkServer, level: Isolation, name: str) -> None:
-    """Leaves a program with daemons running in the rig."""
+    """Leave a program with daemons running in the rig."""
     student = fork_server.start(
         Program("d.py", {"d.py": (DAEMON.format(name=name) + "signal.pause()").encode()}), level
     )
@@ -107,7 +107,7 @@ def test_when_the_rig_is_killed_its_student_dies_with_it(level: Isolation, any_l
 
 @pytest.fixture
 def any_level_works(level: Isolation) -> None:
-    """Skips a level that this machine does not allow."""
+    """Skip a level that this machine does not allow."""
     reason = reason_against(level, False)
     if reason is not None:
         pytest.skip(f"{level}: {reason}")
@@ -145,7 +145,7 @@ def test_no_connection_tells_a_program_that_it_ran_before(apart_rig: Rig) -> Non
 
 
 def enter_again(fork_server: ForkServer, level: Isolation) -> None:
-    """Makes the rig ready for the next program."""
+    """Prepare the rig for the next program."""
     enter(level)
 
 
@@ -156,7 +156,7 @@ def test_many_programs_leave_nothing(any_rig: Rig, times: int) -> None:
     for _ in range(times):
         any_rig.do(start_and_kill, name)
 
-    # A thread that has been joined is listed until the kernel has cleared it away; a leak is there for good.
+    # A thread that has been joined is listed until the kernel has removed it; a leak stays.
     deadline = time.monotonic() + 60
     while (after := any_rig.do(resources)) != before and time.monotonic() < deadline:
         time.sleep(0.01)
@@ -170,6 +170,6 @@ def start_and_kill(fork_server: ForkServer, level: Isolation, name: str) -> None
 
 
 def resources(fork_server: ForkServer, level: Isolation) -> tuple[int, int, int]:
-    """Open files, threads and mounts of the rig."""
+    """Return open files, threads and mounts of the rig."""
     me = psutil.Process()
     return me.num_fds(), me.num_threads(), len(Path("/proc/self/mounts").read_text().splitlines())

@@ -20,7 +20,7 @@ NAME_IT = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
 
 
 def answer(rig: Rig, code: str) -> Any:
-    """What a program prints as JSON."""
+    """Return what a program prints as JSON."""
     run = run_over_hub(rig, "import json, os, socket, subprocess, sys\n" + code)
     try:
         return json.loads(run.text)
@@ -128,7 +128,7 @@ def test_no_other_user_of_the_machine_reaches_the_hub(any_rig: Rig) -> None:
 
 
 def modes_while_it_runs(rig_fork_server: ForkServer, level: Isolation) -> tuple[int, int]:
-    """The modes of the hub's folder and of its socket."""
+    """Return the modes of the hub's folder and of its socket."""
     import tempfile
 
     from rmw_lockstep.hub import Hub
@@ -157,7 +157,7 @@ def test_fast_dds_never_takes_its_place_unnoticed(either_rig: Rig) -> None:
 
 
 def start_with_the_wrong_middleware(rig_fork_server: ForkServer, level: Isolation) -> str:
-    """What a rig is answered when the library that was to come first is not found."""
+    """Return the rig's answer when the library that should be first is not found."""
     found = fork_server.variables
     fork_server.variables = lambda middleware, of: {"RMW_IMPLEMENTATION": "rmw_lockstep_cpp"}  # type: ignore[assignment]
     try:

@@ -23,7 +23,7 @@ SECRET = "the expected velocities are 0.5"
 
 @pytest.fixture
 def secret_file() -> Iterator[Path]:
-    """A file that everybody on this machine may read."""
+    """A file that every user of this machine may read."""
     path = Path("/tmp", f"hidden-checks-{os.getpid()}-{threading.get_ident()}.py")
     path.write_text(SECRET)
     path.chmod(0o644)
@@ -32,7 +32,7 @@ def secret_file() -> Iterator[Path]:
 
 
 def answer(rig: Rig, code: str, **arguments: Any) -> Any:
-    """What a program prints as JSON."""
+    """Return what a program prints as JSON."""
     run = rig.run("import json, os, sys\n" + code, **arguments)
     try:
         return json.loads(run.text)
@@ -65,7 +65,7 @@ def test_only_known_folders_are_there(apart_rig: Rig) -> None:
 
 
 def way_to_python() -> set[str]:
-    """What has to stand in the program's own /tmp, because this checkout and its Python lie in the machine's."""
+    """Return what has to be in the program's own /tmp, because this checkout and its Python are in the machine's."""
     shown = [Path(place) for place in (sys.prefix, sys.base_prefix, ROOT)]
     return {place.parts[2] for place in shown if place.parts[:2] == ("/", "tmp")}
 
@@ -124,7 +124,7 @@ def test_what_one_start_writes_is_gone_in_the_next(confined_rig: Rig) -> None:
 def test_only_its_own_processes_are_there(apart_rig: Rig) -> None:
     processes = answer(apart_rig, "print(json.dumps([n for n in os.listdir('/proc') if n.isdigit()]))")
 
-    assert len(processes) <= 3  # what holds the namespace open, and itself
+    assert len(processes) <= 3  # the process that holds the namespace open, and the program itself
 
 
 def test_no_process_outside_can_be_looked_into_or_signalled(confined_rig: Rig) -> None:
@@ -260,7 +260,7 @@ def test_shared_memory_is_its_own(apart_rig: Rig) -> None:
 def look(
     fork_server: ForkServer, level: Isolation, paths: list[str], readonly: list[str], hidden: list[str]
 ) -> list[str | None]:
-    """What a program reads in files, with those shown and these hidden."""
+    """Return what a program reads in files, with those shown and these hidden."""
     code = f"""
 import json
 def read(path):

@@ -1,7 +1,7 @@
-"""A checkout to set up, and a Python whose environments and pip are played, so that nothing is downloaded.
+"""A checkout to set up, and a Python with simulated environments and pip, so that nothing is downloaded.
 
-Everything else about that Python is real: it answers for itself. What `setup.sh` decides is thus tested in
-milliseconds; that the decisions hold is tested in full by test_set_up_for_real.py.
+Everything else about that Python is real. So what `setup.sh` decides is tested in milliseconds;
+test_set_up_for_real.py tests in full that the decisions work.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 REAL_PYTHON = getattr(sys, "_base_executable", sys.executable)
 
-#: `-m venv` makes a folder with a Python that notes what it is asked, and does what the files in $STAGE say.
+#: `-m venv` makes a folder with a Python that notes its arguments, and does what the files in $STAGE say.
 _PYTHON = """#!/bin/sh
 case "$1 $2" in
     "-m venv")
@@ -57,7 +57,7 @@ fi
 
 @dataclass(frozen=True)
 class Checkout:
-    """A copy of what set-up needs, in `folder`; `stage` holds what the played programs are told and what they noted."""
+    """A copy of what set-up needs, in `folder`; `stage` has the simulated programs' instructions and notes."""
 
     folder: Path
     stage: Path
@@ -65,25 +65,25 @@ class Checkout:
 
     @property
     def python(self) -> Path:
-        """The played Python."""
+        """The simulated Python."""
         return self.stage / "bin" / "python3"
 
     @property
     def calls(self) -> list[str]:
-        """What was asked of the played programs, in order."""
+        """The arguments of the simulated programs' calls, in order."""
         notes = self.stage / "calls"
         return notes.read_text().splitlines() if notes.exists() else []
 
     def forget_calls(self) -> None:
-        """Begin a new list of calls."""
+        """Start a new list of calls."""
         (self.stage / "calls").unlink(missing_ok=True)
 
     def tell(self, what: str, text: str = "") -> None:
-        """Tell the played programs how to behave from now on."""
+        """Set how the simulated programs behave from now on."""
         (self.stage / what).write_text(text)
 
     def program(self, name: str, text: str) -> None:
-        """Put a program of this name before the real ones."""
+        """Put a program with this name before the real ones."""
         file = self.stage / "bin" / name
         file.write_text(text)
         file.chmod(0o755)
@@ -100,14 +100,14 @@ class Checkout:
         )
 
     def set_up(self, **settings: str) -> tuple[int, str]:
-        """Run set-up to its end: its exit code, and what it said."""
+        """Run set-up to its end; return its exit code and its output."""
         process = self.start(**settings)
         said, _ = process.communicate(timeout=60)
         return process.returncode, said
 
 
 def make_checkout(parent: Path) -> Checkout:
-    """A checkout in a folder below `parent`."""
+    """Make a checkout in a folder below `parent`."""
     folder, stage = parent / "spinbook", parent / "stage"
     (folder / "spinbook" / "doctor").mkdir(parents=True)
     (folder / "interface_compiler").mkdir()

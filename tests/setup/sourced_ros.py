@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 def empty_rclpy(prefix: Path, suffix: str = EXTENSION_SUFFIXES[0], distro: str = "jazzy") -> dict[str, str]:
-    """A prefix whose rclpy has the files that tell for which Python it was built, and nothing in them."""
+    """Make a prefix whose rclpy has the files that show for which Python it was built, and nothing in them."""
     packages = prefix / "lib" / "python3" / "site-packages"
     (packages / "rclpy").mkdir(parents=True)
     (packages / "rclpy" / "__init__.py").touch()
@@ -17,7 +17,7 @@ def empty_rclpy(prefix: Path, suffix: str = EXTENSION_SUFFIXES[0], distro: str =
 
 
 def ros_1(prefix: Path) -> dict[str, str]:
-    """A prefix with ROS 1's messages and no rclpy."""
+    """Make a prefix with ROS 1's messages and no rclpy."""
     packages = prefix / "lib" / "python3" / "dist-packages"
     (packages / "std_msgs").mkdir(parents=True)
     (packages / "std_msgs" / "__init__.py").touch()
@@ -25,7 +25,7 @@ def ros_1(prefix: Path) -> dict[str, str]:
 
 
 def sourcing(prefix: Path, packages: Path, distro: str) -> dict[str, str]:
-    """The variables that sourcing a prefix's setup file sets."""
+    """Return the variables that sourcing a prefix's setup file sets."""
     return {
         "ROS_DISTRO": distro,
         "AMENT_PREFIX_PATH": os.fspath(prefix),

@@ -1,4 +1,4 @@
-"""Set-up fetches Pyodide from npm: one version, with one digest, and goes on without it."""
+"""Set-up fetches Pyodide from npm: one version, with one digest, and continues without it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ SCRIPT = Path(__file__).parents[2] / "fetch-pyodide.sh"
 
 
 def fetch(tmp_path: Path, npm: str | None) -> tuple[int, str]:
-    """Run the script where `npm` is this program, or missing. Returns the exit status and what was said."""
+    """Run the script with this program as `npm`, or with none. Return the exit status and the output."""
     programs = tmp_path / "bin"
     programs.mkdir()
     for name in ("sh", "cat", "dirname", "mktemp", "rm", "mkdir", "tar", "gzip", "openssl", "cp", "basename"):

@@ -1,4 +1,4 @@
-"""Set-up makes an environment once, brings it up to date, and starts over where it was interrupted."""
+"""Set-up makes an environment once, brings it up to date, and starts over if it was interrupted."""
 
 from __future__ import annotations
 

@@ -22,13 +22,13 @@ pytestmark = [pytest.mark.soak, pytest.mark.timeout(1800)]
 
 
 def clean_environment() -> dict[str, str]:
-    """What a terminal has in which neither an environment is active nor a ROS is sourced."""
+    """Return a terminal's environment if no environment is active and no ROS is sourced."""
     dropped = ("PYTHONPATH", "AMENT_PREFIX_PATH", "ROS_DISTRO", "VIRTUAL_ENV", "PYTEST_DISABLE_PLUGIN_AUTOLOAD")
     return {name: value for name, value in without_bootstrap(os.environ).items() if name not in dropped}
 
 
 def checkout(folder: Path) -> Path:
-    """A copy of this checkout as git has it: what is tracked, or will be."""
+    """A copy of this checkout as git has it: all files that are tracked, or will be."""
     listed = subprocess.run(
         ["git", "ls-files", "--cached", "--others", "--exclude-standard"],
         cwd=ROOT,
@@ -52,9 +52,9 @@ def make(folder: Path, environment: dict[str, str], *arguments: str) -> subproce
 
 
 def sourced(prefix: Path) -> dict[str, str]:
-    """A ROS installation as sourcing one finds it, made of this environment's wheels; and the variables.
+    """A ROS installation as sourcing one finds it, made from this environment's wheels; and the variables.
 
-    With it comes what breaks pytest in a real one: a plugin that is found on PYTHONPATH, made for an older pytest.
+    It includes what breaks pytest in a real one: a plugin that is found on PYTHONPATH, made for an older pytest.
     """
     packages = prefix / "lib" / "python3" / "site-packages"
     packages.mkdir(parents=True)
@@ -82,7 +82,7 @@ def sourced(prefix: Path) -> dict[str, str]:
 
 
 def findings(folder: Path, environment: dict[str, str]) -> dict[str, dict[str, str]]:
-    """The doctor's findings there, by name."""
+    """Return the doctor's findings there, by name."""
     run = subprocess.run(
         [folder / ".venv" / "bin" / "spinbook", "doctor", "--json"],
         cwd=folder,

@@ -1,4 +1,4 @@
-"""`make test` installs Chromium and bubblewrap where it can, and says what to install where it can't."""
+"""`make test` installs Chromium and bubblewrap if it can, and otherwise says what to install."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Machine:
         file.chmod(0o755)
 
     def run(self) -> str:
-        """Run the script, which never ends the tests by an exit code; what it said."""
+        """Run the script, which never ends the tests by an exit code; return its output."""
         environment = {"PATH": os.fspath(self.stage / "bin"), "STAGE": os.fspath(self.stage)}
         done = subprocess.run(["sh", SCRIPT], env=environment, capture_output=True, text=True, check=True, timeout=60)
         assert done.stdout == ""

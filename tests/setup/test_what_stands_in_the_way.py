@@ -1,4 +1,4 @@
-"""What set-up can't do is told with what to do about it."""
+"""If set-up can't do something, it says what to do about it."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def test_so_is_an_environment_in_one(checkout: Checkout, tmp_path: Path) -> None
 
 
 def no_venv_module(checkout: Checkout, user: int, apt: str) -> None:
-    """Play a Debian without python3-venv, where this user's apt-get ends as `apt` says."""
+    """Simulate a Debian without python3-venv, where this user's apt-get ends as `apt` says."""
     checkout.tell("no-ensurepip")
     checkout.program("id", f"#!/bin/sh\necho {user}\n")
     checkout.program("apt-get", f'#!/bin/sh\necho "apt-get $*" >>"$STAGE/calls"\n{apt}\n')

@@ -1,4 +1,4 @@
-"""Set-up uses a sourced ROS 2 where it fits, the wheels where there is none, and never both."""
+"""Set-up uses a sourced ROS 2 if it fits, the wheels if there is none, and never both."""
 
 from __future__ import annotations
 

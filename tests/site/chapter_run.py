@@ -27,10 +27,10 @@ _NUMBER = re.compile(r"\b([0-9a-f]{2}\.){8,}[0-9a-f]{2}\b|-?(?<![\w.])\d+(\.\d+)
 _FILE = re.compile(r'File "[^"]*?([^/"<>]+|<[^>]*>)"')
 _OF_THE_NOTEBOOK = re.compile(
     r"^— .* —$|^\(restarting .*\)$|^env: |^\.\.\. \(\d+ lines|^~?\^+~?$"
-    # Who looks too early waits, in a notebook as in a page.
+    # A call that is made too early waits, in a notebook as in a page.
     r"|^waiting for service"
 )
-#: The longest that a cell is waited for (ms): machines may have much else to do.
+#: How long to wait for a cell (ms): the machine may be busy.
 PATIENCE_MS = 120_000
 
 
@@ -55,7 +55,7 @@ class Recorded:
 
 
 def recorded(notebook: Path) -> list[Recorded]:
-    """The code cells of an executed notebook that a page can run."""
+    """Return the code cells of an executed notebook that a page can run."""
     cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
     return [
         Recorded(cell["id"], "".join(cell["source"]), _lines_of(cell["outputs"]), _error_of(cell["outputs"]))
@@ -84,13 +84,13 @@ def _error_of(outputs: list[dict[str, Any]]) -> str:
 
 
 def meaningful(text: str) -> list[str]:
-    """The lines without what only a notebook says."""
+    """Return the lines without what only a notebook prints."""
     lines = (line.rstrip() for line in re.sub(r"\x1b\[[0-9;]*m", "", text).splitlines())
     return [line for line in lines if line and not _OF_THE_NOTEBOOK.match(line.strip())]
 
 
 def shape(line: str) -> str:
-    """The line without numbers and folders."""
+    """Return the line without numbers and folders."""
     return _NUMBER.sub("#", _FILE.sub(r'File "\1"', line)).strip()
 
 
@@ -122,7 +122,7 @@ _SHOWS = """([cell, wanted, picture]) => {
 
 
 def _wait_for_kinds(page: Page, place: Locator, cell: Recorded) -> None:
-    """Until a line of each recorded kind is there, or the patience is over: then it differs."""
+    """Wait until a line of each recorded kind is there, or the time is up: then it differs."""
     wanted = [_pattern(kind) for kind in cell.kinds]
     try:
         page.wait_for_function(_SHOWS, arg=[place.element_handle(), wanted, PICTURE], timeout=15_000)
@@ -135,7 +135,7 @@ def _pattern(kind: str) -> str:
 
 
 def shown(place: Locator) -> list[str]:
-    """What a cell of the page shows now."""
+    """Return what a cell of the page shows now."""
     pictures = place.locator(".ran figure svg").count()
     return [*meaningful(place.locator(".ran pre").text_content() or ""), *([PICTURE] if pictures else [])]
 
@@ -156,7 +156,7 @@ def compared(cell: Recorded, lines: list[str]) -> str:
 
 
 def _exact(cell: Recorded) -> bool:
-    """Whether each number must be the same: plain code, and what only reads files."""
+    """Return whether each number must be the same: plain code, and what only reads files."""
     return not re.search(r"^%", cell.source, re.MULTILINE) or cell.source.startswith("%ros2 interface")
 
 

@@ -14,7 +14,7 @@ from small_course import ROOT, SmallCourse, served, write_course
 
 @pytest.fixture(scope="session")
 def built(tmp_path_factory: pytest.TempPathFactory) -> SmallCourse:
-    """The course with its site, as it was first built: nobody changes it."""
+    """The course with its site, as it was first built: no test changes it."""
     course = write_course(tmp_path_factory.mktemp("site") / "course")
     said = course.spinbook_site()
     assert said.returncode == 0, said.stdout + said.stderr

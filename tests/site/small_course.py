@@ -1,4 +1,4 @@
-"""A small course with all that a page can hold, and its site."""
+"""A small course with everything that a page can contain, and its site."""
 
 from __future__ import annotations
 
@@ -154,7 +154,7 @@ What is sent.
 
 @dataclass(frozen=True)
 class SmallCourse:
-    """The course's folder, and what is done with it."""
+    """The course's folder, with actions on it."""
 
     root: Path
 
@@ -169,7 +169,7 @@ class SmallCourse:
         return sorted(page.relative_to(self.site).as_posix() for page in self.site.rglob("*.html"))
 
     def page(self, name: str) -> str:
-        """A page's HTML."""
+        """Return a page's HTML."""
         return (self.site / name).read_text(encoding="utf-8")
 
     def change(self, file: str, old: str, new: str) -> None:
@@ -179,14 +179,14 @@ class SmallCourse:
         (self.root / file).write_text(text.replace(old, new), encoding="utf-8")
 
     def spinbook_site(self, *words: str) -> subprocess.CompletedProcess[str]:
-        """Run `spinbook site` in the course's folder, where npm's registry is out of reach."""
+        """Run `spinbook site` in the course's folder, without access to npm's registry."""
         environment = {**os.environ, "npm_config_registry": "http://127.0.0.1:9"}
         argv = [sys.executable, "-m", "spinbook", "site", *words]
         return subprocess.run(argv, cwd=self.root, env=environment, capture_output=True, text=True, timeout=560)
 
     @contextmanager
     def serving(self) -> Iterator[str]:
-        """`spinbook site --serve`, without running notebooks; its address, once it answers."""
+        """Run `spinbook site --serve`, without running notebooks; yield its address, once it answers."""
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             port = free.getsockname()[1]
@@ -245,7 +245,7 @@ class _Strict(SimpleHTTPRequestHandler):
 
 @contextmanager
 def served(folder: Path) -> Iterator[str]:
-    """The folder behind an address of its own, from a server that sends a strict Content-Security-Policy."""
+    """Serve the folder at its own address, from a server that sends a strict Content-Security-Policy."""
     server = ThreadingHTTPServer(("127.0.0.1", 0), partial(_Strict, directory=str(folder)))
     thread = threading.Thread(target=server.serve_forever, daemon=True)
     thread.start()

@@ -1,6 +1,6 @@
-"""A student's hour with Week 3 in a browser that knows nothing yet, from the first Run to the grade.
+"""A student's hour with Week 3 in a fresh browser, from the first Run to the grade.
 
-SPINBOOK_SCREENSHOTS names a folder that gets pictures of each step.
+SPINBOOK_SCREENSHOTS names a folder for pictures of each step.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def clean(shown: Opened) -> None:
 
 
 def the_chapter(shown: Opened) -> None:
-    """Run two nodes, edit one, break one, stop one; what was edited is there after a reload."""
+    """Run two nodes, edit one, break one, stop one; the edit is there after a reload."""
     page = shown.page
     press(page, "Run left_toe.py")
     says(page, "left_toe", "I publish 102.0 N")
@@ -89,7 +89,7 @@ def the_chapter(shown: Opened) -> None:
 
 
 def the_exercise(shown: Opened, downloads: Path) -> Path:
-    """Five typical mistakes, then the solution; the draft outlives a reload. Returns the downloaded file."""
+    """Try five typical mistakes, then the solution; the draft survives a reload. Return the downloaded file."""
     page = shown.page
     press(page, "Edit and check the starter here")
     for name in MISTAKES:

@@ -1,4 +1,4 @@
-"""Building again makes only what has changed, and what is wrong is told by the chapter's file and line."""
+"""Building again makes only what has changed, and errors are reported with the chapter's file and line."""
 
 from __future__ import annotations
 

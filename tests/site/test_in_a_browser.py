@@ -59,7 +59,7 @@ def test_the_search_answers_while_one_types_and_forgives(
             field.fill(typed)
             expect(results.first).to_be_visible(timeout=PATIENCE_MS)
             expect(shown.page.locator("#search-now")).to_contain_text("Publisher")
-        if not from_folder:  # axe asks for the style sheet itself, which a page from a folder may not
+        if not from_folder:  # axe requests the style sheet itself, which a page from a folder may not
             assert shown.violations() == []
         shown.page.keyboard.press("ArrowDown")
         expect(results.first).to_be_focused()

@@ -1,4 +1,4 @@
-"""What the pages hold: text, outputs as they came, exercises, glossary, downloads; and what they must not hold."""
+"""What the pages contain: text, outputs, exercises, glossary, downloads; and what they must not contain."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_alerts_maths_and_drawings_are_more_than_text(built: SmallCourse) -> Non
 
     assert 'class="admonition warning"' in page
     assert page.count("<math") == 2
-    assert "left toe → /left_foot/toe" in page  # in words, where no drawing can be made
+    assert "left toe → /left_foot/toe" in page  # in words, if no drawing can be made
 
 
 def test_the_chapter_leads_to_the_next_one_and_to_the_source_line(built: SmallCourse) -> None:
@@ -137,7 +137,7 @@ def test_an_exercise_s_notebook_holds_all_that_it_takes_to_do_it_and_check_it(
         alone = nbformat.read(built.root / "build" / "launch" / f"{name}.ipynb", as_version=4)
         brings = next(cell.source for cell in alone.cells if cell.id == "spinbook-exercises")
         (tmp_path / name).mkdir()
-        # As in Colab: nothing but the notebook. Then the check that its last cell makes.
+        # As in Colab: only the notebook. Then the check in its last cell.
         subprocess.run([sys.executable, "-c", brings], cwd=tmp_path / name, check=True, timeout=60)
     (tmp_path / "node.py").write_text((ROOT / "solutions/joint_velocity/solution.py").read_text())
     check = [sys.executable, "-m", "spinbook", "check", "joint_velocity", "../node.py"]
@@ -183,7 +183,7 @@ def test_no_page_holds_a_script_or_a_style_of_its_own(built: SmallCourse) -> Non
 
 
 def secret_lines() -> set[str]:
-    """Lines that stand in solutions or hidden checks and nowhere that students may look."""
+    """Return lines that are in solutions or hidden checks and nowhere that students may look."""
     exercise, solutions = ROOT / "exercises" / "joint_velocity", ROOT / "solutions" / "joint_velocity"
     secret = [exercise / "hidden_checks.py", *solutions.rglob("*.py")]
     lines = {line.strip() for file in secret for line in file.read_text().splitlines()}

@@ -14,7 +14,7 @@ from spinbook.browser.files import can_run
 
 pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Pyodide from npm")
 
-#: Pyodide starts in a few seconds; on a machine with much else to do, in many.
+#: Pyodide starts in a few seconds; on a busy machine, in many.
 PATIENCE_MS = 60_000
 CHAPTER = """\
 # Pieces

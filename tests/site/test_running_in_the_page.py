@@ -14,12 +14,12 @@ from spinbook.browser.files import can_run
 pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Pyodide from npm")
 
 ROOT = Path(__file__).parents[2]
-#: Pyodide starts in a few seconds; on a machine with much else to do, in many.
+#: Pyodide starts in a few seconds; on a busy machine, in many.
 PATIENCE_MS = 120_000
 
 
 def requested(shown: Opened, address: str) -> list[str]:
-    """What loading the page again asks the server for."""
+    """Return what loading the page again requests from the server."""
     asked: list[str] = []
     shown.page.on("request", lambda request: asked.append(request.url.removeprefix(address)))
     shown.page.reload(wait_until="networkidle")

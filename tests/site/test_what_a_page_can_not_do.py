@@ -1,4 +1,4 @@
-"""What a page can't do it says in one sentence, and it still reads: in a real Chromium."""
+"""What a page can't do it says in one sentence, and the rest still works: in a real Chromium."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from spinbook.browser.files import can_run
 
 pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Pyodide from npm")
 
-#: Pyodide starts in a few seconds; on a machine with much else to do, in many.
+#: Pyodide starts in a few seconds; on a busy machine, in many.
 PATIENCE_MS = 120_000
 WITHOUT_JSPI = "delete WebAssembly.Suspending; delete WebAssembly.promising;"
 #: What a browser does that has no memory left for another program.
@@ -31,7 +31,7 @@ def shown(browser: Browser, address: str) -> Iterator[Opened]:
 
 
 def run(cell: Locator, code: str) -> Locator:
-    """Put the code into the cell and run it; its output."""
+    """Put the code into the cell and run it; return its output."""
     if cell.get_by_role("textbox").count() == 0:
         cell.get_by_role("button", name="Run").first.click()
     field = cell.get_by_role("textbox")
@@ -41,7 +41,7 @@ def run(cell: Locator, code: str) -> Locator:
 
 
 SENTENCES = {
-    # Threads it has: they take turns.
+    # It does have threads: they take turns.
     "import threading\nthreading.Thread(target=print, args=('from a thread',)).start()": "from a thread",
     "from concurrent.futures import ThreadPoolExecutor\nThreadPoolExecutor().submit(lambda: 6 * 7).result()": "42",
     "import numpy as np\nnp.linspace(0, 1)": "a web page does not have numpy",

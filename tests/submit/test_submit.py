@@ -28,7 +28,7 @@ UPLOAD = "joint_velocity-submission.zip"
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with the exercise in it, in which the student is."""
+    """A folder with the exercise in it, as the current folder."""
     for part in ("exercises", "solutions"):
         shutil.copytree(ROOT / part / "joint_velocity", tmp_path / part / "joint_velocity")
     monkeypatch.chdir(tmp_path)

@@ -1,4 +1,4 @@
-"""`%submit` hands in the cell as it was run last, also where the notebook has not been saved."""
+"""`%submit` submits the cell as it was run last, even if the notebook has not been saved."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An upload holds everything, is the same from run to run, and tells what in it was damaged or edited."""
+"""An upload contains everything, is the same from run to run, and shows what in it was damaged or edited."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def exercise() -> Exercise:
 
 
 def changed(**contents: bytes | None) -> bytes:
-    """The upload with other contents for some of its files, or without them; every checksum of the zip is right."""
+    """Return the upload with some files changed, or removed; every checksum of the zip is right."""
     kept = entries(UPLOAD)
     for name, content in contents.items():
         kept[name.replace("__", ".")] = content or b""

@@ -1,4 +1,4 @@
-"""The picture of the world: what it tells, and that it looks the same whenever it is drawn."""
+"""The picture of the world: what it shows, and that it looks the same whenever it is drawn."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ RED = (255, 0, 0)
 
 
 def driven(seconds: float) -> World:
-    """A world after the course's circle controller has driven turtle1 for so long."""
+    """Return a world after the course's circle controller has driven turtle1 for so long."""
     world = World()
     world.start()
     for n in range(int(seconds / 0.016)):
@@ -34,14 +34,14 @@ def driven(seconds: float) -> World:
 
 
 def pixels(picture: WorldPicture, tmp_path: Path) -> np.ndarray:
-    """The colours 0..255 of the picture's PNG, rows from the top."""
+    """Return the colours 0..255 of the picture's PNG, rows from the top."""
     save(picture, tmp_path / "world.png")
     image: np.ndarray = matplotlib.image.imread(tmp_path / "world.png")[:, :, :3] * 255
     return np.asarray(image.round(), dtype=int)
 
 
 def near(image: np.ndarray, color: tuple[int, int, int]) -> int:
-    """How many pixels have nearly that colour."""
+    """Return how many pixels have nearly that colour."""
     return int((np.abs(image - color).max(axis=2) <= 3).sum())
 
 

@@ -19,7 +19,7 @@ RED = Pen(255, 0, 0, 3)
 
 
 def painted(canvas: Canvas) -> set[tuple[int, int]]:
-    """Columns and rows of the pixels that are not white."""
+    """Return columns and rows of the pixels that are not white."""
     return {
         (column, row) for column in range(500) for row in range(500) if canvas.color((column / 45, row / 45)) != WHITE
     }
@@ -60,7 +60,7 @@ def test_the_colour_sensor_sees_white_ahead_and_the_pen_where_it_has_been() -> N
     world.start()
     world.set_pen("turtle1", 10, 20, 30, 3, 0)
     world.command("turtle1", 10.0, None, 0.0, 0)
-    # 7.2 pixels a tick: beyond the cap of the line drawn so far.
+    # 7.2 pixels per tick: beyond the cap of the line drawn so far.
     assert colors(world, range(11)) == [WHITE] * 10
     world.command("turtle1", -10.0, None, 0.0, 10 * TICK_NS)
     # The way out began in the middle and drew to where the tenth tick ended.
@@ -74,7 +74,7 @@ def test_the_colour_sensor_looks_before_the_tick_s_own_line_is_drawn() -> None:
     world.set_pen("turtle1", 10, 20, 30, 3, 0)
     world.tick(0)
     world.teleport_absolute("turtle1", 2.0, 2.0, 0.0)
-    # The teleport's line is drawn first, so its end is seen.
+    # The teleport's line is drawn first, so its end is visible.
     assert colors(world, range(1, 2)) == [(10, 20, 30)]
 
 
@@ -121,7 +121,7 @@ def test_another_pen_begins_another_stroke() -> None:
 
 
 def distance(point: Point, start: Point, end: Point) -> float:
-    """From a point to a straight piece, in units."""
+    """Return the distance from a point to a straight line segment, in units."""
     way, off = complex(*end) - complex(*start), complex(*point) - complex(*start)
     part = 0.0 if way == 0 else min(1.0, max(0.0, (off * way.conjugate()).real / abs(way) ** 2))
     return abs(off - part * way)
@@ -151,7 +151,7 @@ def test_a_lap_of_a_circle_takes_few_points() -> None:
         world.command("turtle1", 2.0, None, 1.0, n * TICK_NS)
         world.tick(n * TICK_NS)
     (stroke,) = world.trail.strokes
-    # A chord that bulges by t on a radius of 2 spans 2 acos(1 - t/2): 50 a lap; thinned as they come, some more.
+    # A chord that bulges by t on a radius of 2 spans 2 acos(1 - t/2): 50 per lap; thinned while recording, some more.
     assert 40 < len(stroke.points) < 100
     radii = [math.dist(point, (CENTRE, CENTRE + 2)) for point in stroke.points]
     assert radii == [pytest.approx(2.0, abs=0.02)] * len(radii)

@@ -17,7 +17,7 @@ NEAR = 1e-5
 
 
 class Driven:
-    """A world whose clock the test moves on, 16 ms a tick."""
+    """A world whose clock the test advances, 16 ms per tick."""
 
     def __init__(self) -> None:
         self.world = World()
@@ -104,7 +104,7 @@ def test_every_tick_is_where_the_specification_puts_it(name: str) -> None:
 
 
 def act(driven: Driven, oracle: OracleTurtle, kind: str, numbers: tuple[float, ...]) -> None:
-    """Ask the same of the world and of the oracle."""
+    """Do the same with the world and with the oracle."""
     if kind in ("command", "sideways"):
         forward, left, turn = (numbers[0], None, numbers[1]) if kind == "command" else numbers
         driven.command(forward, turn, left)
@@ -187,7 +187,7 @@ def test_a_turtle_slides_along_the_wall_keeps_its_velocity_and_warns_each_tick()
     assert warnings(first) == []
     ticks = [driven.tick() for _ in range(40)]
     step = 0.032 * math.sqrt(0.5)
-    # 11 + 4 steps is the last place inside; the wall is at 11.088889.
+    # 11 + 4 steps is the last position inside; the wall is at 11.088889.
     assert [len(warnings(events)) for events in ticks] == [0, 0] + [1] * 38
     x, y_down = 11 + 4 * step, W - (5 + 4 * step)
     assert warnings(ticks[2]) == [f"Oh no! I hit the wall! (Clamping from [x={x:f}, y={y_down:f}])"]
@@ -212,7 +212,7 @@ def test_jumping_above_the_upper_wall_warns_only_for_x() -> None:
     assert pose_of(events).y == pytest.approx(W)
 
 
-# The float32 nearest to -pi lies just below turtlesim's -3.14159265, so it wraps to the other side.
+# The float32 nearest to -pi is just below turtlesim's -3.14159265, so it wraps to the other side.
 @pytest.mark.parametrize(
     ("theta", "told"), [(3.0, 3.0), (math.pi, -math.pi), (-math.pi, math.pi), (7.0, 7 - 2 * math.pi)]
 )

@@ -41,7 +41,7 @@ DEADLINE_S = 60.0
 
 
 class Running:
-    """A process of ours, its log as it comes, and its end."""
+    """One of our processes, its log so far, and its end."""
 
     def __init__(self, module: str, *arguments: str) -> None:
         command = [sys.executable, "-m", f"spinbook.turtlesim.{module}", *arguments]
@@ -58,7 +58,7 @@ class Running:
             self.log.append(line.rstrip("\n"))
 
     def end(self, how: signal.Signals) -> int:
-        """Send a signal and wait; the exit code."""
+        """Send a signal and wait; return the exit code."""
         self.process.send_signal(how)
         code = self.process.wait(timeout=DEADLINE_S)
         self._reader.join()
@@ -76,7 +76,7 @@ def running(module: str, *arguments: str) -> Iterator[Running]:
 
 
 class Outside:
-    """A node of the test's own, and what it has heard."""
+    """The test's own node, and what it has received."""
 
     def __init__(self) -> None:
         self._context = Context()
@@ -99,17 +99,17 @@ class Outside:
             self._executor.spin_once(timeout_sec=0.05)
 
     def moment(self) -> None:
-        """Spin until something comes, for 0.1 s at most."""
+        """Spin until something arrives, for 0.1 s at most."""
         self._executor.spin_once(timeout_sec=0.1)
 
     def hear(self, kind: type, topic: str) -> list[Any]:
-        """A list to which everything on a topic is added."""
+        """Return a list to which everything on a topic is added."""
         heard: list[Any] = []
         self.node.create_subscription(kind, topic, heard.append, 100)
         return heard
 
     def say(self, topic: str, message: Any) -> None:
-        """Publish once, to somebody who listens."""
+        """Publish once, when there is a subscriber."""
         if topic not in self._publishers:
             self._publishers[topic] = self.node.create_publisher(type(message), topic, 10)
         publisher = self._publishers[topic]
@@ -125,13 +125,13 @@ class Outside:
         return answer.result()
 
     def set_integer(self, name: str, value: int) -> Any:
-        """Set a parameter of the node; its answer."""
+        """Set a parameter of the node; return its answer."""
         told = ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=value)
         request = SetParameters.Request(parameters=[Parameter(name=name, value=told)])
         return self.call(SetParameters, "/turtlesim/set_parameters", request).results[0]
 
     def picture(self) -> Any:
-        """What /turtlesim/picture tells."""
+        """Return what /turtlesim/picture contains."""
         answer = self.call(Trigger, "/turtlesim/picture")
         assert answer.success
         return json.loads(answer.message)
@@ -211,7 +211,7 @@ def test_one_command_drives_an_arc_for_a_second(turtlesim: Running, outside: Out
     outside.say("/turtle1/cmd_vel", turn(2.0, 1.0))
     outside.until(lambda: poses[-1].theta > 0 and poses[-1] == poses[-5], "the end of the drive")
     last = poses[-1]
-    # 62 or 63 ticks, depending on when the command comes; fewer where the machine is too busy for 62 in a second.
+    # 62 or 63 ticks, depending on when the command arrives; fewer if the machine is too busy for 62 in a second.
     ticks = round(last.theta / 0.016)
     place, heading = circle(ticks, 2.0, 1.0, complex(CENTRE, CENTRE), 0.0)
     assert 0 < ticks <= 63
@@ -286,7 +286,7 @@ def test_a_name_that_is_taken_or_unknown_is_told_in_the_log(turtlesim: Running, 
 
 
 def rotate(outside: Outside, theta: float, remaining: list[float]) -> Any:
-    """The handle of an accepted goal, whose feedback goes into `remaining`."""
+    """Return the handle of an accepted goal, whose feedback goes into `remaining`."""
     client = ActionClient(outside.node, RotateAbsolute, "/turtle1/rotate_absolute")
     outside.until(client.server_is_ready, "the action")
     goal = client.send_goal_async(
@@ -370,7 +370,7 @@ def test_simulated_time_drives_the_turtle_tick_by_tick(outside: Outside) -> None
             outside.say("/clock", clock)
 
         def place() -> float:
-            # One call may overtake what was said, if the node is just looking for what has come; a second does not.
+            # One call may overtake the message, if the node is just checking what has arrived; a second does not.
             outside.picture()
             return float(outside.picture()["turtles"][0]["x"])
 
@@ -378,7 +378,7 @@ def test_simulated_time_drives_the_turtle_tick_by_tick(outside: Outside) -> None
             move_on(16)
             outside.picture()
         outside.say("/turtle1/cmd_vel", turn(1.0, 0.0))
-        # The first command waits until the node knows its publisher: the turtle is seen to move, and stopped.
+        # The first command waits until the node knows its publisher: the turtle is seen to move, then stopped.
         while place() == pytest.approx(CENTRE, abs=1e-4):
             move_on(16)
         outside.say("/turtle1/cmd_vel", turn(0.0, 0.0))
@@ -405,7 +405,7 @@ def test_a_turtlesim_without_pictures_is_listened_to(outside: Outside, tmp_path:
     publisher = outside.node.create_publisher(Pose, "/turtle1/pose", 10)
     arguments = ("--timeout", "0", "--listen", "1.5")
     deadline, code = time.monotonic() + DEADLINE_S, 1
-    while code != 0:  # on a busy machine it may find the publisher only when asked again
+    while code != 0:  # on a busy machine it may find the publisher only at a second try
         assert time.monotonic() < deadline
         with running("picture", str(tmp_path / "heard.png"), *arguments) as listener:
             published = 0

@@ -100,7 +100,7 @@ class Keyboard:
 
 @pytest.fixture
 def keyboard(outside: Outside) -> Iterator[Keyboard]:
-    """Teleop, once it says how it is used."""
+    """Teleop, once it has printed its usage."""
     keyboard = Keyboard()
     outside.until(lambda: b"'q' to quit." in keyboard.shown, "the help")
     yield keyboard

@@ -1,4 +1,4 @@
-"""Requests in turtlesim's own messages reach the world, and what it reports fills them."""
+"""Requests in turtlesim's own messages reach the world, and its reports fill them."""
 
 from __future__ import annotations
 

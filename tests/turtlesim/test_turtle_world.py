@@ -1,4 +1,4 @@
-"""Turtles come and go, turn to a heading on request, and say what turtlesim says."""
+"""Turtles appear and disappear, turn to a heading on request, and print the same messages as turtlesim."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""An independent turtle: the specification's formulas once more, in complex numbers and with y upwards.
+"""An independent turtle: the specification's formulas again, in complex numbers and with y upwards.
 
-A place is x + iy, a velocity forward + i left, so that one product with exp(i theta) turns it into the world's frame.
-Nothing of the node's code is used here.
+A position is x + iy, a velocity forward + i left, so one product with exp(i theta) turns it into the world's frame.
+None of the node's code is used here.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ DT = 0.016
 
 
 def wrap(angle: float) -> float:
-    """The angle's direction once more, in (-pi, pi], by way of the unit circle."""
+    """Return the angle's direction again, in (-pi, pi], by way of the unit circle."""
     return cmath.phase(cmath.rect(1.0, angle))
 
 
@@ -35,7 +35,7 @@ class OracleTurtle:
     hits: int = 0
 
     def tick(self, now_ms: float) -> tuple[complex, float, float, float]:
-        """One tick: place, heading, speed, turn."""
+        """Do one tick: position, heading, speed, turn."""
         for kind, numbers in self.jumps:
             if kind == "relative":
                 linear, angular = numbers
@@ -63,9 +63,9 @@ class OracleTurtle:
 
 
 def circle(turns: int, speed: float, rate: float, start: complex, heading: float) -> tuple[complex, float]:
-    """Where constant velocities lead after `turns` ticks, as the sum of a geometric series.
+    """Return the pose after `turns` ticks of constant velocities, as the sum of a geometric series.
 
-    The k-th tick moves along heading + k rate DT, so the way is speed DT e^(i heading) (q + q^2 + … + q^turns) with
+    The k-th tick moves along heading + k rate DT, so the path is speed DT e^(i heading) (q + q^2 + … + q^turns) with
     q = e^(i rate DT).
     """
     q = cmath.exp(1j * rate * DT)
@@ -74,5 +74,5 @@ def circle(turns: int, speed: float, rate: float, start: complex, heading: float
 
 
 def apart(one: float, other: float) -> float:
-    """The angle between two headings, in rad."""
+    """Return the angle between two headings, in rad."""
     return abs(math.remainder(one - other, 2 * math.pi))

@@ -1,4 +1,4 @@
-"""A student's cells and an author's changes go together, and nothing of the student's is ever lost."""
+"""A student's cells and an author's changes are merged, and nothing of the student's is ever lost."""
 
 from __future__ import annotations
 
@@ -165,7 +165,7 @@ EDITS = st.lists(
 
 
 def after(cells: list[Cell], edits: list[tuple[str, int, int, str]], who: str) -> list[Cell]:
-    """What somebody makes of cells."""
+    """Return somebody's edits of cells."""
     cells = copy.deepcopy(cells)
     for number, (edit, at, to, words) in enumerate(edits):
         if edit == "add" or not cells:
@@ -200,8 +200,8 @@ def test_no_cell_of_the_students_is_ever_lost(base: list[Cell], mine: list[Any],
     once, _ = merged(base, students, authors)
     own = counted(students) - counted(base)
     assert own <= counted(once)
-    # Nor when the update is done again, after one that was broken off before it was remembered; only a mere copy of a
-    # cell that the author took out can't be told from that cell then.
+    # Nor when the update is done again, after one that was interrupted before it was remembered; only a mere copy of a
+    # cell that the author removed can't be distinguished from that cell then.
     theirs = Counter({cell: count for cell, count in own.items() if cell not in counted(base)})
     assert theirs <= counted(merged(base, once, authors)[0])
 

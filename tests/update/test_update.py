@@ -1,4 +1,4 @@
-"""`spinbook update` brings a folder up to a newer handout: with a backup, whole or not at all, or only in words."""
+"""`spinbook update` brings a folder up to a newer handout: with a backup, completely or not at all, or as a preview."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LOUDER = {**TALKER, "source": "%%node talker\nprint('talks louder')"}
 
 
 def handout(*cells: Cell, **others: bytes) -> dict[str, bytes]:
-    """A handout's files by name, with this chapter."""
+    """Return a handout's files by name, with this chapter."""
     files = {"week3.ipynb": notebook(*cells), "README.md": b"Three steps.\n", "wheels/x.whl": b"1"}
     files["exercises/listener/listener.py"] = b"# TODO\n"
     files |= {name.replace("__", "/").replace("_DOT_", "."): content for name, content in others.items()}
@@ -56,7 +56,7 @@ def everything(folder: Path) -> dict[str, bytes]:
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The student's folder, in which the student is: the exercise is solved, and everything was run."""
+    """The student's folder, as the current folder: the exercise is solved, and everything was run."""
     folder = write(tmp_path / "mine", OLD)
     (folder / "week3.ipynb").write_bytes(notebook(TITLE, ran(TALKER, "talks"), ran(MINE, "heard")))
     monkeypatch.chdir(folder)

@@ -1,1 +1,1 @@
-"""The second opinion: the same run over Fast DDS, where it has to be inferred when a node is done."""
+"""The second opinion: the same run over Fast DDS, where the grader has to infer when a node is done."""

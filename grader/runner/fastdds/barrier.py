@@ -1,13 +1,13 @@
 """Knows when a node has handled everything that was published so far.
 
-A barrier is a call of a service that the node's own executor answers, and the rest of the program's threads after it.
-What is published comes to the node before the call does, and wakes a program that waits for nothing else, so its
-executor finds the message first; when all threads rest after the answer, what the message set off is over, too.
+A barrier is a call of a service that the node's own executor answers; then the rest of the program's threads finish.
+A published message reaches the node before the call does, and wakes a program that waits for nothing else, so its
+executor finds the message first; when all threads are idle after the answer, the message's effects are over, too.
 
-A program that also wakes by itself, by a clock of its own, may be looking for what is ready at the very moment when
-message and call arrive, and so find the call first. By the answer to a second call it has looked again, and messages
-come before calls; a third lets the timers go off that a new time has made due. They are sent at once: each is answered
-in a round of its own.
+A program that also wakes by itself, by a clock of its own, may check what is ready at the very moment when message
+and call arrive, and so find the call first. By the answer to a second call it has checked again, and messages come
+before calls; a third lets the timers fire that a new time has made due. They are sent at once: each is answered in a
+round of its own.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ Hold = Literal["parameters", "type description", "quiet"]
 AFTER_CLOCK = 3
 AFTER_MESSAGES = 2
 
-#: A node that gives no hold counts as idle when none of its threads ran for this long.
+#: A node without a synchronization method counts as idle when none of its threads ran for this long.
 STILL_S = 0.004
 
-#: A node that never rests is given this long, so often, before the rig relies on its answers alone.
+#: A node that is never idle is given this long, so often, before the rig relies on its answers alone.
 RESTLESS_S, RESTLESS_TIMES = 0.25, 3
 
 ENDLESS = "Your node used {0:g} s of computing time on one message without an end. Is there an endless loop?"
@@ -42,13 +42,13 @@ DEAF = (
 
 SLEEPY = "Your node waits and sleeps instead of answering: {0:g} s in this scenario. Let callbacks return at once."
 
-#: How often is looked whether the student's program is still alive and well, while an answer is waited for.
+#: How often to check that the student's program is still running, while waiting for an answer.
 CHECK_S = 0.02
 
-#: After so much idle time a call that has had no answer is repeated.
+#: After so much idle time, a call that has had no answer is repeated.
 AGAIN_S = 0.5
 
-#: How often is looked for what the graph may show at any time.
+#: How often to look for changes of the graph.
 LOOK_S = 0.002
 
 #: A node may be blocked this long in one scenario, over all messages.
@@ -62,7 +62,7 @@ class Gone(Exception):
 class Barrier:
     """Holds the rig until the student's nodes have handled what was published.
 
-    `hear` takes what they publish; it is called again and again, and may raise what ends the run.
+    `hear` takes what they publish; it is called repeatedly, and may raise an exception that ends the run.
     """
 
     def __init__(self, node: Any, watch: Watch, hear: Callable[[], None]) -> None:
@@ -79,16 +79,16 @@ class Barrier:
             raise Gone
 
     def choose_method(self, graph: Graph, nodes: list[str], no_more_to_come: Callable[[], bool]) -> None:
-        """Find a service of each node to call; create these clients last, for their answers prove that all earlier
-        end points of the rig are known to the node. `no_more_to_come` says when all there is must be in the graph."""
+        """Find a service of each node to call; create these clients last, as their answers prove that all earlier end
+        points of the rig are known to the node. `no_more_to_come` returns whether the graph must be complete."""
         found: dict[str, tuple[str, Any, Any]] = {}
         while True:
             for node in nodes:
                 services = graph.services(node)
                 if f"{node}/get_parameters" in services:
                     found[node] = (f"{node}/get_parameters", GetParameters, GetParameters.Request())
-                elif f"{node}/get_type_description" in services:  # which every node makes after the other
-                    # Of a type that does not exist, in the form of a type's hash: else the node logs an error.
+                elif f"{node}/get_type_description" in services:  # which every node creates after the other one
+                    # Of a type that does not exist, in the form of a type's hash: otherwise the node logs an error.
                     request = GetTypeDescription.Request(type_name="none", type_hash=f"RIHS01_{64 * '0'}")
                     found[node] = (f"{node}/get_type_description", GetTypeDescription, request)
             self.alive()
@@ -104,7 +104,7 @@ class Barrier:
         self._wait_for(self._calls.ready, lambda: time.sleep(LOOK_S), 10.0)
 
     def look(self) -> None:
-        """See whether the program has done anything since it was at rest; to be called before anything is published."""
+        """Check whether the program has done anything since it was idle; to be called before anything is published."""
         self._wakes_itself = self._wakes_itself or self._watch.threads.has_run()
 
     def wait(self, times: int) -> None:
@@ -127,7 +127,7 @@ class Barrier:
         self._wait_for(calls.answered, pause)
 
     def _wait_for(self, done: Callable[[], bool], pause: Callable[[], None], cpu_s: float = 3.0) -> None:
-        """Pause until `done`. Raises `Stopped` or `Gone` when it can't be waited for any longer."""
+        """Pause until `done`. Raises `Stopped` or `Gone` when waiting any longer is pointless."""
         budget: TimeBudget | None = None
         due = time.monotonic() + CHECK_S
         while not done():
@@ -136,7 +136,7 @@ class Barrier:
                 continue
             self.alive()
             self._hear()
-            # Most waits are over before this is needed the first time.
+            # Most waits are over before this is needed.
             budget = budget or TimeBudget(self._watch, cpu_s)
             blocked = budget.blocked
             budget.check(ENDLESS.format(cpu_s), DEAF)
@@ -174,7 +174,7 @@ class Barrier:
             caller.close()
 
     def use_sim_time(self, node: str) -> bool:
-        """Whether `node` takes its time from /clock; where it does not yet, tell it to."""
+        """Return whether `node` takes its time from /clock; if it does not yet, make it do so."""
         asked = GetParameters.Request(names=["use_sim_time"])
         values = self.call(GetParameters, f"{node}/get_parameters", asked).values
         if values and values[0].bool_value:

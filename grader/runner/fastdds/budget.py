@@ -12,28 +12,28 @@ from grader.runner.student import Student
 
 @dataclass(frozen=True)
 class Watch:
-    """The student's program with its threads, and the threads by which the rig hears of what it does."""
+    """The student's program with its threads, and the threads by which the rig receives what it sends."""
 
     student: Student
     threads: Threads
     receivers: Receivers
 
     def close(self) -> None:
-        """Look no more."""
+        """Stop looking."""
         self.threads.close()
         self.receivers.close()
 
 
-#: The longest piece of time between two looks that counts: a rig that did not run itself saw nothing. Where a machine
-#: is not busy the looks come sooner than this.
+#: The longest time between two looks that counts (s): a rig that did not run itself saw nothing. On a machine that
+#: is not busy the looks are closer together than this.
 LONGEST_LOOK_S = 0.025
 
 
 class TimeBudget:
     """Ends when the program has used `cpu_s` of CPU time, or was blocked for `blocked_s`, since this was made.
 
-    A program that waits for a CPU on a busy machine uses up neither. One that has run into a limit of its sandbox is
-    about to end, and its end tells which limit it was: that is waited for.
+    A program that waits for a CPU on a busy machine uses up neither. A program that has hit a limit of its sandbox is
+    about to end, and its exit names the limit: the caller waits for that.
     """
 
     def __init__(self, watch: Watch, cpu_s: float = 3.0, blocked_s: float = 3.0) -> None:
@@ -56,14 +56,14 @@ class TimeBudget:
         self._looked = now
 
     def ended(self) -> str | None:
-        """ "cpu" or "blocked" when it has ended, else None."""
+        """Return "cpu" or "blocked" when it has ended, otherwise None."""
         self.look()
         if self.blocked >= self._blocked_s:
             return "blocked"
         return "cpu" if self.cpu >= self._cpu_s and not self._student.at_limit() else None
 
     def check(self, busy: str, blocked: str) -> None:
-        """Raise `Stopped` with one of the two stories once the budget has ended."""
+        """Raise `Stopped` with one of the two messages once the budget has ended."""
         which = self.ended()
         if which:
             raise Stopped("timed-out", busy if which == "cpu" else blocked)
@@ -72,7 +72,7 @@ class TimeBudget:
 class IdleTime:
     """The time in which neither the program nor the rig has anything to do but wait (s), since this was made.
 
-    What is on its way between the two, on a busy machine, is work for one of them. So what has not come after
+    A message in transit between the two, on a busy machine, is work for one of them. So what has not arrived after
     sufficient idle time was not sent, or got lost.
     """
 
@@ -82,7 +82,7 @@ class IdleTime:
         self.seconds = 0.0
 
     def look(self) -> float:
-        """Count the time since the last look if all is idle. Returns what has been counted."""
+        """Count the time since the last look if all is idle. Return what was counted."""
         now = time.monotonic()
         if not self._threads.at_work() and not self._receivers.at_work():
             self.seconds += min(now - self._looked, LONGEST_LOOK_S)

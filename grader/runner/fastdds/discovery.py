@@ -1,4 +1,4 @@
-"""The rig and the student's node get to know one another."""
+"""Lets the rig and the student's node discover each other."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from grader.runner.fastdds.graph import Graph
 from grader.runner.fastdds.ros import Clock, Recorder, ReferencePublishers
 from grader.runner.stopped import Stopped
 
-#: Importing large libraries takes computing time; nothing that a node needs takes this much.
+#: Importing large libraries takes CPU time; nothing that a node needs takes this much.
 START_CPU_S, START_BLOCKED_S = 20.0, 3.0
 
-#: How often is looked for a node; on the way from one program to another its name takes a tenth of a second, mostly.
+#: How often to look for a node; its name mostly takes a tenth of a second from one program to another.
 NODE_LOOK_S = 0.005
 
 NO_NODE_BUSY = f"Your program computed for {START_CPU_S:g} s and created no node. Is there an endless loop before it?"
@@ -25,7 +25,7 @@ NO_NODE_BLOCKED = (
 
 
 def wait_for_nodes(graph: Graph, barrier: Barrier, watch: Watch) -> list[str]:
-    """The student's nodes, once there is one. Raises `Stopped` when none appears and `Gone` when the program ends."""
+    """Return the student's nodes, once there is one. Raises `Stopped` if none appears, `Gone` if the program ends."""
     budget, idle_time = TimeBudget(watch), IdleTime(watch)
     due = time.monotonic() + CHECK_S
     while not (nodes := graph.nodes()):
@@ -41,15 +41,15 @@ def wait_for_nodes(graph: Graph, barrier: Barrier, watch: Watch) -> list[str]:
     return nodes
 
 
-#: What of the graph has got lost on its way is told again once a second (Fast DDS 2.14, `edp_heartbeat_period`).
+#: Graph data that got lost on its way is sent again once a second (Fast DDS 2.14, `edp_heartbeat_period`).
 TOLD_AGAIN_S = 1.5
 
-#: A program that computes this long (s) is not about to make more of the graph.
+#: A program that computes for this long (s) is not about to change the graph.
 BUSY_S = 5.0
 
 
 class Discovery:
-    """Ends after `idle_s` idle seconds: then all that there is, of the graph or on its way, must have been heard."""
+    """Ends after `idle_s` idle seconds: by then the rig must have all graph data that exists or is in transit."""
 
     def __init__(self, watch: Watch, idle_s: float = TOLD_AGAIN_S) -> None:
         self._idle_s = idle_s
@@ -58,7 +58,7 @@ class Discovery:
         self._due = time.monotonic()
 
     def ended(self) -> bool:
-        """Whether it has; to be asked again and again. It looks as often as that needs, and no more."""
+        """Return whether it has ended; to be called repeatedly. It looks as often as needed, and no more."""
         if time.monotonic() < self._due:
             return False
         self._due = time.monotonic() + CHECK_S
@@ -70,7 +70,7 @@ def wait_until_connected(
 ) -> None:
     """Wait until every topic has found its other end, or until it is clear that some never will.
 
-    A topic of another name or type never does; the checks tell that from the graph.
+    A topic with another name or type never does; the checks see that in the graph.
     """
     while not (publishers.heard and recorder.hears and clock.heard):
         barrier.alive()
@@ -80,13 +80,13 @@ def wait_until_connected(
         recorder.adapt()
 
 
-#: What was published before its two ends knew one another is sent again within this much idle time.
+#: What was published before its two ends knew each other is sent again within this much idle time.
 SENT_AGAIN_S = 0.4
 
 
 def wait_for_publisher(watch: Watch, barrier: Barrier, recorder: Recorder, topic: Topic, came: int) -> None:
-    """Wait until a publisher of `topic`, which the student's node has made only now, has found the recorder, if it ever
-    will, and has sent again what it has already published: something other than the first `came` messages."""
+    """Wait until a publisher of `topic`, which the student's node has only just created, has found the recorder, if it
+    ever will, and has sent again what it has already published: something other than the first `came` messages."""
 
     def found() -> bool:
         return recorder.hears_all(topic)

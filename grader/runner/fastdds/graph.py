@@ -1,4 +1,4 @@
-"""What of the ROS graph is the student's, and calls of its services without an executor."""
+"""The student's part of the ROS graph, and calls of the student's services without an executor."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from grader.recording.recording import EndPoint
 #: The first 12 bytes of an end point's identity name its DDS participant.
 PARTICIPANT = 12
 
-#: Topics that every node has by itself.
+#: Topics that every node has.
 OWN_TO_ROS = ("/rosout", "/parameter_events")
 
 
 class Graph:
-    """Sees the graph through `node`, and tells the student's part of it from the rig's."""
+    """Sees the graph through `node`, and separates the student's part of it from the rig's."""
 
     def __init__(self, node: Any, own_nodes: list[str]) -> None:
         self._node = node
         self._own_nodes = Counter(own_nodes)
-        # On a topic that nobody can know beforehand, the only publisher is the rig's own.
+        # On a topic with an unpredictable name, the only publisher is the rig's own.
         topic = f"/rig_{secrets.token_hex(16)}"
         publisher = node.create_publisher(Empty, topic, 1)
         mine = node.get_publishers_info_by_topic(topic)
@@ -35,14 +35,14 @@ class Graph:
         self._participant = bytes(mine[0].endpoint_gid[:PARTICIPANT])
 
     def nodes(self) -> list[str]:
-        """Full names of the student's nodes, such as `/joint_velocity`, sorted."""
+        """Return the full names of the student's nodes, such as `/joint_velocity`, sorted."""
         names = Counter(
             f"{namespace.rstrip('/')}/{name}" for name, namespace in self._node.get_node_names_and_namespaces()
         )
         return sorted((names - self._own_nodes).elements())
 
     def services(self, node: str) -> set[str]:
-        """Full names of the services of one of the student's nodes."""
+        """Return the full names of the services of one of the student's nodes."""
         namespace, _, name = node.rpartition("/")
         try:
             return {service for service, _ in self._node.get_service_names_and_types_by_node(name, namespace or "/")}
@@ -50,7 +50,7 @@ class Graph:
             return set()
 
     def end_points(self) -> tuple[EndPoint, ...]:
-        """The student's publishers and subscriptions, sorted; those that every node has are left out."""
+        """Return the student's publishers and subscriptions, sorted, without those that every node has."""
         found: list[EndPoint] = []
         for topic, _ in self._node.get_topic_names_and_types():
             if topic not in OWN_TO_ROS:
@@ -93,12 +93,12 @@ class Caller:
 
     @property
     def handle(self) -> Any:
-        """What can be waited for."""
+        """The handle to wait for."""
         return self._client.handle
 
     @property
     def answered(self) -> bool:
-        """Whether all calls are."""
+        """Whether all calls are answered."""
         return not self._unanswered
 
     def call(self, request: Any) -> None:
@@ -106,13 +106,13 @@ class Caller:
         self._unanswered.add(self._client.handle.send_request(request))
 
     def call_again(self, request: Any) -> None:
-        """Send a request in place of all that have had no answer; should theirs come yet, they count for nothing."""
+        """Send a request in place of all that have had no answer; their answers no longer count."""
         times, self._unanswered = len(self._unanswered), set()
         for _ in range(times):
             self.call(request)
 
     def take(self) -> None:
-        """Take the answers that have come."""
+        """Take the answers that have arrived."""
         while self._unanswered:
             header, answer = self._client.handle.take_response(self._kind.Response)
             if header is None:
@@ -123,23 +123,23 @@ class Caller:
                 self.answer = answer
 
     def close(self) -> None:
-        """Forget the service."""
+        """Destroy the client."""
         self._node.destroy_client(self._client)
 
 
 class Calls:
-    """Calls under way, each of `(caller, request)`, all of one context's."""
+    """Pending calls, each of `(caller, request)`, all of one context."""
 
     def __init__(self, context: Any, calls: Sequence[tuple[Caller, Any]]) -> None:
         self._calls = calls
         self._waiting = rclpy_implementation.WaitSet(0, 0, 0, len(calls), 0, 0, context.handle)
 
     def ready(self) -> bool:
-        """Whether every service can be called."""
+        """Return whether every service can be called."""
         return all(caller.ready for caller, _ in self._calls)
 
     def call(self, times: int) -> None:
-        """Call every service so often, and return at once."""
+        """Call every service that often, and return at once."""
         for caller, request in self._calls:
             for _ in range(times):
                 caller.call(request)
@@ -147,18 +147,18 @@ class Calls:
     def call_again(self) -> None:
         """Repeat what has not been answered.
 
-        An answer is lost where the service has not yet heard of who asks: a service of rclpy that does not find the
+        An answer is lost if the service has not yet discovered the caller: a service of rclpy that does not find the
         reader of its answer drops it (rmw_fastrtps, `__rmw_send_response`).
         """
         for caller, request in self._calls:
             caller.call_again(request)
 
     def answered(self) -> bool:
-        """Whether every call is answered."""
+        """Return whether every call is answered."""
         return all(caller.answered for caller, _ in self._calls)
 
     def wait(self, at_most_s: float) -> None:
-        """Wait until an answer comes, and take what has come."""
+        """Wait until an answer arrives, and take what has arrived."""
         self._waiting.clear_entities()
         for caller, _ in self._calls:
             if not caller.answered:

@@ -1,4 +1,4 @@
-"""Whether anything at all happens inside a program, from what the kernel keeps about its threads."""
+"""Detects whether anything happens inside a program, from what the kernel records about its threads."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from typing import NamedTuple
 #: Thread -> what its schedstat says: ns on a CPU, ns waiting for one, times it got one.
 Activity = dict[str, bytes]
 
-#: How the middleware names its threads, and those of them that listen to a socket.
+#: How the middleware names its threads, and those of them that listen on a socket.
 MIDDLEWARE, RECEIVER = b"dds.", "dds.udp"
 
-#: How long to wait between two looks for the end of something that takes less than a millisecond.
+#: How long to wait between two looks for the end of something that takes less than a millisecond (s).
 LOOK_S = 0.0001
 
 
 class Receivers:
-    """The threads of this process that take in what the middleware gets: all that there are when this is made."""
+    """The threads of this process that receive for the middleware: all that exist when this is created."""
 
     def __init__(self) -> None:
         self._states = [
@@ -31,12 +31,12 @@ class Receivers:
         assert self._states, "the middleware has no thread of its own"
 
     def at_work(self) -> bool:
-        """Whether one of them runs, or waits for a CPU to run on."""
+        """Return whether one of them runs, or waits for a CPU."""
         return any(state(stat) == b"R" for stat in self._states)
 
     def wait(self, deadline_s: float = 5.0) -> None:
-        """Wait until what has reached this process is handled: all that was sent to it before can be taken then, and
-        what it knows of the graph is complete."""
+        """Wait until everything that has reached this process is handled: then all messages sent to it before can be
+        taken, and its knowledge of the graph is complete."""
         deadline = time.monotonic() + deadline_s
         while self.at_work() and time.monotonic() < deadline:
             time.sleep(LOOK_S)
@@ -48,13 +48,13 @@ class Receivers:
 
 
 def state(stat: int) -> bytes:
-    """The state of the thread whose stat file this is, such as R, S or D. Raises OSError when it has ended."""
+    """Return the state of the thread whose stat file this is, such as R, S or D. Raises OSError if it has ended."""
     # It follows the program's name, which may hold any character but ends with the last bracket.
     return os.pread(stat, 512, 0).rpartition(b") ")[2][:1]
 
 
 class _Thread(NamedTuple):
-    """The open files of one thread: its state, and what it has got of the CPU."""
+    """The open files of one thread: its state, and how much CPU it has got."""
 
     stat: int
     schedstat: int
@@ -62,7 +62,7 @@ class _Thread(NamedTuple):
 
     @classmethod
     def of(cls, name: str, folder: int) -> _Thread:
-        """Raises OSError when it has ended."""
+        """Open the files of a thread. Raises OSError if it has ended."""
         stat = os.open(f"{name}/stat", os.O_RDONLY | os.O_CLOEXEC, dir_fd=folder)
         try:
             schedstat = os.open(f"{name}/schedstat", os.O_RDONLY | os.O_CLOEXEC, dir_fd=folder)
@@ -77,7 +77,7 @@ class _Thread(NamedTuple):
 
 
 class _Process:
-    """The threads of one process. The number of links of their folder tells when it has to be read again."""
+    """The threads of one process. The folder's number of links shows when it has to be read again."""
 
     def __init__(self, pid: int) -> None:
         self._folder = os.open(f"/proc/{pid}/task", os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
@@ -85,7 +85,7 @@ class _Process:
         self._threads: dict[str, _Thread] = {}
 
     def threads(self) -> dict[str, _Thread]:
-        """Those that there are, by number. Raises OSError when the process has ended."""
+        """Return the current threads, by number. Raises OSError if the process has ended."""
         links = os.fstat(self._folder).st_nlink
         if links != self._links:
             self._read(links)
@@ -98,11 +98,11 @@ class _Process:
         for name in names - self._threads.keys():
             with contextlib.suppress(OSError):
                 self._threads[name] = _Thread.of(name, self._folder)
-        # Linux counts two links, and one for each thread. Where that does not hold, the folder is read each time.
+        # Linux counts two links, and one for each thread. If that does not hold, the folder is read each time.
         self._links = links if links == len(self._threads) + 2 else 0
 
     def ended(self, name: str) -> None:
-        """One of the threads has ended; another may have begun, which the number of links would not tell."""
+        """Note that a thread has ended; another may have begun, which the number of links would not show."""
         self._threads.pop(name).close()
         self._links = 0
 
@@ -113,19 +113,19 @@ class _Process:
 
 
 class Threads:
-    """The threads of a program's processes. Files stay open between looks, which makes a look cheap."""
+    """The threads of a program's processes. Files stay open between looks, which makes looking cheap."""
 
     def __init__(self, pids: Callable[[], Collection[int]]) -> None:
-        """`pids` tells the numbers of the processes that there are now."""
+        """`pids` returns the ids of the current processes."""
         self._pids = pids
         self._processes: dict[int, _Process] = {}
         self._last_idle: Activity | None = None
         self.with_middleware = True
-        """Whether the middleware's own threads count as the program's activity. They don't where an answer of the
-        program shows what they did."""
+        """Whether the middleware's own threads count as the program's activity. They don't if an answer of the program
+        shows what they did."""
 
     def activity(self) -> Activity | None:
-        """What each thread has done so far; None where one of them runs or could run."""
+        """Return what each thread has done so far; None if one of them runs or is runnable."""
         seen: Activity = {}
         for process, name, thread in self._all():
             if thread.of_the_middleware and not self.with_middleware:
@@ -139,7 +139,7 @@ class Threads:
         return seen
 
     def at_work(self) -> bool:
-        """Whether one of them runs, waits for a CPU, or waits for the disk; the middleware's own count here, too."""
+        """Return whether one runs, or waits for a CPU or the disk; the middleware's own threads count here, too."""
         for process, name, thread in self._all():
             try:
                 if state(thread.stat) in (b"R", b"D"):
@@ -160,10 +160,10 @@ class Threads:
         return found
 
     def wait_until_idle(self, for_s: float, deadline_s: float) -> bool:
-        """Wait until no thread has got a CPU for `for_s` seconds; False when it does not come to that in time.
+        """Wait until no thread has got a CPU for `for_s` seconds; return False if that does not happen in time.
 
         Packets on the loopback reach the receiving thread before the sender's call returns, and each thread wakes the
-        next before it sleeps, so a message that is on its way always shows as a thread that runs, could run or has run.
+        next one before it sleeps, so a message in transit always shows as a thread that runs, is runnable or has run.
         """
         deadline = time.monotonic() + deadline_s
         before, since = self.activity(), time.monotonic()
@@ -179,7 +179,7 @@ class Threads:
         return False
 
     def has_run(self) -> bool:
-        """Whether one of them has got a CPU since they were last found still, or could do with one."""
+        """Return whether one of them has got a CPU since they were last found idle, or is waiting for one."""
         return self.activity() != self._last_idle
 
     def close(self) -> None:

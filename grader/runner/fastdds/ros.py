@@ -20,11 +20,11 @@ from grader.runner.message import message_class, to_fields, to_message
 from grader.runner.stopped import Stopped
 from grader.scenario.scenario import SECOND, Message, Scenario
 
-# The grader's end has no executor. It publishes, calls services (see `call`) and takes what has come (see `recorder`)
-# in the order that it decides on itself; waiting by executor costs more than all else.
+# The grader's end has no executor. It publishes, calls services (see `call`) and takes what has arrived (see
+# `recorder`) in an order that it decides itself; waiting by executor costs more than everything else together.
 
 
-#: Compatible with whatever a student's subscription asks for.
+#: Compatible with whatever a student's subscription requests.
 OFFER = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1000,
@@ -32,7 +32,7 @@ OFFER = QoSProfile(
     durability=DurabilityPolicy.TRANSIENT_LOCAL,
 )
 
-#: Loses nothing of what a student publishes, not even what is published before the two ends know one another.
+#: Loses nothing of what a student publishes, not even what is published before the two ends know each other.
 ACCEPT = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=10_000,
@@ -59,7 +59,7 @@ class Ros:
         self._nodes: list[Any] = []
 
     def node(self, name: str) -> Any:
-        """A new node of the rig's, as light as a node can be."""
+        """Return a new node of the rig's, as light as a node can be."""
         node = Node(
             name,
             context=self.context,
@@ -82,14 +82,14 @@ class Ros:
 
 
 class Clock:
-    """The only clock a node under test should know: the topic /clock."""
+    """The only clock that a node under test should use: the topic /clock."""
 
     def __init__(self, node: Any) -> None:
         self._publisher = node.create_publisher(ClockMessage, "/clock", OFFER)
         self.now = 0
 
     def set(self, now: int) -> None:
-        """Make it `now` (ns)."""
+        """Set the time to `now` (ns)."""
         self.now = now
         message = ClockMessage()
         message.clock.sec, message.clock.nanosec = divmod(now, SECOND)
@@ -104,7 +104,7 @@ class Clock:
 class ReferencePublishers:
     """Publishes a scenario's messages, in order, when the rig says so.
 
-    All publishers are there from the beginning, so that the student's node knows each of them before it speaks;
+    All publishers exist from the beginning, so that the student's node knows each of them before it publishes;
     one that is replaced by another is destroyed when the other begins.
     """
 
@@ -145,7 +145,7 @@ MOST_BYTES = 1_000_000
 class Recorder:
     """Subscribes to the topics that the exercise's node is to publish.
 
-    Reliably, and as best effort goes where a publisher of the student's offers no more: see `adapt`.
+    It is reliable, and best effort if one of the student's publishers offers no more: see `adapt`.
     """
 
     def __init__(self, node: Any, topics: tuple[Topic, ...], moment: Callable[[], tuple[int, int]]) -> None:
@@ -159,13 +159,13 @@ class Recorder:
         self._subscriptions = {topic.name: self._subscription(topic, ACCEPT) for topic in topics}
 
     def _subscription(self, topic: Topic, quality: Any) -> Any:
-        # Never called back: what comes is taken when the rig says so.
+        # Never called back: what has arrived is taken when the rig says so.
         return self._node.create_subscription(
             message_class(topic.type), topic.name, lambda data: None, quality, raw=True
         )
 
     def adapt(self) -> None:
-        """Ask for less where what was asked for is not offered."""
+        """Request less if what was requested is not offered."""
         for topic in self._topics:
             offers = [info["qos_profile"]["reliability"] for info in self._publishers(topic)]
             if topic.name not in self._modest and ReliabilityPolicy.BEST_EFFORT in offers:
@@ -174,7 +174,7 @@ class Recorder:
                 self._modest.add(topic.name)
 
     def take(self) -> None:
-        """Take what has come."""
+        """Take what has arrived."""
         for topic in self._topics:
             kind, handle = message_class(topic.type), self._subscriptions[topic.name].handle
             while not self.too_much:
@@ -192,13 +192,13 @@ class Recorder:
             at, after = self._moment()
             try:
                 fields = to_fields(deserialize_message(data, kind))
-            except Exception as error:  # whatever a made-up packet leads to
+            except Exception as error:  # made-up packets can raise anything
                 self.too_much = Stopped("over-limit", f"Your node published bytes that are not a message: {error}")
             else:
                 self.received.append(Received(at, after, topic.name, topic.type, fields))
 
     def hear(self) -> None:
-        """Take what has come. Raises `Stopped` when it is too much."""
+        """Take what has arrived. Raises `Stopped` when it is too much."""
         self.take()
         if self.too_much:
             raise self.too_much
@@ -209,9 +209,9 @@ class Recorder:
         return all(subscription.get_publisher_count() for subscription in self._subscriptions.values())
 
     def new_publishers(self) -> list[Topic]:
-        """Topics that have got a publisher since this was asked the last time.
+        """Return the topics that have got a publisher since the last call.
 
-        A publisher of another type counts as none: nothing of it can ever reach this recorder.
+        A publisher of another type does not count: nothing from it can ever reach this recorder.
         """
         found = []
         for topic in self._topics:
@@ -222,16 +222,16 @@ class Recorder:
         return found
 
     def hears_all(self, topic: Topic) -> bool:
-        """Whether every publisher of `topic` has found this recorder."""
+        """Return whether every publisher of `topic` has found this recorder."""
         return bool(self._subscriptions[topic.name].get_publisher_count() >= len(self._publishers(topic)))
 
     def _publishers(self, topic: Topic) -> list[dict[str, Any]]:
-        # What the node's get_publishers_info_by_topic makes objects of, which would cost more than all that is done
-        # for a message else.
+        # These are what the node's get_publishers_info_by_topic turns into objects, which would cost more than
+        # everything else that is done for a message.
         with self._node.handle:
             infos = rclpy_implementation.rclpy_get_publishers_info_by_topic(self._node.handle, topic.name, False)
         return [info for info in infos if info["topic_type"] == topic.type]
 
     def since(self, count: int, topic: Topic) -> bool:
-        """Whether anything came on `topic` after the first `count` messages."""
+        """Return whether anything arrived on `topic` after the first `count` messages."""
         return any(received.topic == topic.name for received in self.received[count:])

@@ -21,7 +21,7 @@ from grader.scenario.scenario import SECOND, START
 
 
 def interrupted(watch: Watch, file_name: str, source: str) -> Ending:
-    """Ask the program to end, as Ctrl-C does, and see how it takes it."""
+    """Ask the program to end, as Ctrl-C does, and return how it ends."""
     student = watch.student
     before = student.output().text.count(TRACEBACK)
     student.interrupt()
@@ -36,14 +36,14 @@ def interrupted(watch: Watch, file_name: str, source: str) -> Ending:
     return Ending("completed", interrupted=True, traceback=words.error if words else "")
 
 
-#: How far simulated time goes on after the last message, for what a node does by timer.
+#: How long simulated time continues after the last message, for what a node does by timer.
 AFTERWARDS = SECOND // 2
 
 
 def run(task: Task, start: Callable[[], Student]) -> Recording:
-    """Start the student's program and run it through the scenario; every fault of the student's is in the recording.
+    """Start the student's program and run it through the scenario; every fault of the program is in the recording.
 
-    Anything raised is a fault of the machine's or of ours.
+    Any exception is a fault of the machine or of ours.
     """
     began = time.monotonic()
     student = start()
@@ -76,7 +76,7 @@ class Run:
         return self._clock.now, len(self._publishers.sent)
 
     def run(self, began: float) -> Recording:
-        """The whole run, from the first sign of the node to its end."""
+        """Do the whole run, from the first sign of the node to its end."""
         program = self._task.file_name, self._task.source
         try:
             self._discover()
@@ -87,7 +87,7 @@ class Run:
         except Gone:
             ending = cut_short(self._student, *program, self._met, f"at message {len(self._publishers.sent)}")
         end_points = self._end_points or self._graph.end_points()
-        self._student.kill()  # before the last look at what has come: it may never stop publishing
+        self._student.kill()  # before the last look at what has arrived: it may never stop publishing
         self._watch.receivers.wait()
         self._watch.close()
         self._recorder.take()
@@ -138,7 +138,7 @@ class Run:
         self._lockstep_seconds = time.monotonic() - began
 
     def _wait_for_late_publishers(self, came: int) -> None:
-        """A node may make a publisher only when it has something to publish; `came` messages had come before."""
+        """Wait for publishers that the node creates only when it has something to publish, after `came` messages."""
         late = self._recorder.new_publishers()
         for topic in late:
             wait_for_publisher(self._watch, self._barrier, self._recorder, topic, came)

@@ -1,1 +1,1 @@
-"""Runs inside a web worker, on Pyodide: one process of the page. Nothing of it is imported anywhere else."""
+"""Runs inside a web worker, on Pyodide: one process of the page. None of it is imported anywhere else."""

@@ -1,4 +1,4 @@
-"""Turtlesim's canvas without numpy: what spinbook/turtlesim/canvas.py does, pixel by pixel."""
+"""Turtlesim's canvas without numpy: does what spinbook/turtlesim/canvas.py does, pixel by pixel."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class PlainCanvas:
         self._pixels = bytearray(b"\xff" * (WINDOW_PX * WINDOW_PX * _PIXEL))
 
     def color(self, place: canvas.Place) -> tuple[int, int, int]:
-        """Red, green and blue (0..255) of the pixel at `place` (units, y down)."""
+        """Return red, green and blue (0..255) of the pixel at `place` (units, y down)."""
         column, row = (math.floor(part * PIXELS_PER_UNIT + 0.5) for part in place)
         if not (0 <= column < WINDOW_PX and 0 <= row < WINDOW_PX):
             return (0, 0, 0)
@@ -49,10 +49,10 @@ class PlainCanvas:
 
 
 def _pixels(low: float, high: float) -> range:
-    """The pixels from `low` to `high` that are on the canvas."""
+    """Return the pixels from `low` to `high` that are on the canvas."""
     return range(math.floor(min(max(low, 0), WINDOW_PX)), math.ceil(min(max(high + 1, 0), WINDOW_PX)))
 
 
 def use() -> None:
-    """Let turtlesim draw on it. To be called before its other modules are imported."""
+    """Let turtlesim draw on it. Call this before its other modules are imported."""
     canvas.Canvas = PlainCanvas  # type: ignore[misc, assignment]

@@ -1,4 +1,4 @@
-"""Cells that are no nodes: plain Python, a terminal's `ros2 …`, and plots. They share one process."""
+"""Cells that are not nodes: plain Python, a terminal's `ros2 …`, and plots. They share one process."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _variables: dict[str, Any] = {"__name__": "__main__"}
 
 
 def run_python(source: str) -> int:
-    """Run a plain cell and show the value of its last expression, as a notebook does; 0 if it went well."""
+    """Run a plain cell and show the value of its last expression, as a notebook does; return 0 if it succeeded."""
     return status_of(lambda: _run(source))
 
 
@@ -36,12 +36,12 @@ def _run(source: str) -> None:
 
 
 def set_environment(variables: Mapping[str, str]) -> None:
-    """Set what `%env` and `export` have set in the page."""
+    """Set the variables that `%env` and `export` have set in the page."""
     os.environ.update(variables)
 
 
 def commands(source: str) -> str:
-    """The commands of a terminal's cell, read as a chapter's are: JSON of kind, words and text, or why it can't run."""
+    """Read a terminal cell's commands as a chapter's are read: JSON of kind, words and text, or why it can't run."""
     from spinbook.chapter.terminal import Command, read_commands
 
     return json.dumps(
@@ -62,7 +62,7 @@ _OTHER_TEXT = (
 
 
 def define(path: str, text: str) -> int:
-    """Say that an interface of the chapter (`PACKAGE/msg/NAME.msg`) can be used; 1 if its text was changed."""
+    """Make an interface of the chapter (`PACKAGE/msg/NAME.msg`) available; return 1 if its text was changed."""
     file = _SHARE / path
     if not file.is_file() or file.read_text(encoding="utf-8").strip() != text.strip():
         print(_OTHER_TEXT, file=sys.stderr)
@@ -73,9 +73,9 @@ def define(path: str, text: str) -> int:
 
 
 def run_command(line: str) -> int:
-    """Run one `ros2 …` of a terminal; its exit status."""
+    """Run one `ros2 …` of a terminal; return its exit status."""
     os.environ["SPINBOOK_ROS2"] = "own"
-    # One command leaves the signals as it wants them, and the next expects them as they were.
+    # One command changes the signal handlers, and the next expects them unchanged.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     words = shlex.split(line)
     status = status_of(lambda: _ros2(words[1:]))
@@ -90,7 +90,7 @@ def _ros2(words: Sequence[str]) -> None:
 
 
 def record(topics: Sequence[str], seconds: float) -> list[dict[str, Any]]:
-    """What the values at these paths (`/joint_commands/position[2]`) were for so long: name, times (s), values."""
+    """Record the values at these paths (`/joint_commands/position[2]`) for that long: name, times (s), values."""
     import rclpy
     from rclpy.executors import SingleThreadedExecutor
 
@@ -112,7 +112,7 @@ def record(topics: Sequence[str], seconds: float) -> list[dict[str, Any]]:
 
 
 def _subscribed(node: Any, path: str, line: dict[str, Any], began: float) -> bool:
-    """Whether a topic is there that the path begins with; then it is heard from now on."""
+    """Subscribe to the topic that the path begins with. Return whether there is one."""
     from grader.runner.message import message_class
 
     for topic, kinds in node.get_topic_names_and_types():
@@ -129,7 +129,7 @@ def _subscribed(node: Any, path: str, line: dict[str, Any], began: float) -> boo
 
 
 def _reader(path: str) -> Any:
-    """What reads a field: `position[2]`, `twist.linear.x` or `twist/linear/x`."""
+    """Return a function that reads a field: `position[2]`, `twist.linear.x` or `twist/linear/x`."""
     steps = path.replace("/", ".").replace("[", ".").replace("]", "").split(".")
 
     def read(message: Any) -> Any:

@@ -44,7 +44,7 @@ def check(name: str, source: str) -> str:
 
 
 def hindrance_of(source: str) -> str:
-    """Why this program can't be checked in a page, in one sentence; "" if it can."""
+    """Return why this program can't be checked in a page, in one sentence; "" if it can."""
     try:
         tree = ast.parse(source)
     except (SyntaxError, ValueError):
@@ -80,14 +80,14 @@ def _unpacked(name: str) -> Path:
 
 
 def public_part(exercise: Exercise) -> tuple[list[Scenario], dict[str, Recording], dict[str, Any]]:
-    """The scenarios, the solution's recordings of them, and what stays hidden, from public.json."""
+    """Return the scenarios, the solution's recordings of them, and the counts of hidden checks, from public.json."""
     entries = json.loads(exercise.public_file.read_text(encoding="utf-8"))
     scenarios = [_scenario(item, exercise.folder) for item in entries["scenarios"]]
     return scenarios, from_plain(entries["expected"]), entries["hidden"]
 
 
 def _scenario(entries: dict[str, Any], folder: Path) -> Scenario:
-    """A scenario as public.json has it: one that only publishes in a form of its own."""
+    """Return a scenario from public.json: one that only publishes has a form of its own."""
     if "is" in entries:
         found: Scenario = scenario_from_plain(entries, folder)
         return found
@@ -109,14 +109,14 @@ def record(exercise: Exercise, scenarios: list[Scenario], program: Program) -> d
 def verdicts(
     exercise: Exercise, scenarios: list[Scenario], recordings: dict[str, Recording], references: dict[str, Recording]
 ) -> tuple[Verdict, ...]:
-    """What the checks say."""
+    """Return the checks' verdicts."""
     from grader.checking.judging import judge
 
     return judge(exercise, recordings, references, {scenario.name: scenario.title for scenario in scenarios})
 
 
 def shown(found: tuple[Verdict, ...], recordings: dict[str, Recording], hidden: dict[str, Any]) -> dict[str, Any]:
-    """The result as the page shows it."""
+    """Return the result in the page's form."""
     titles = {verdict.name: verdict.title for verdict in found}
     earned, points = sum(v.earned for v in found), sum(v.points for v in found)
     passed = sum(verdict.status == "passed" for verdict in found)

@@ -1,7 +1,7 @@
-"""The grader's hub in a page: the program is in the same interpreter, and turns are taken instead of sockets read.
+"""The grader's hub in a page: the program runs in the same interpreter, and turns replace the sockets.
 
-What happens, and when, is decided by the grader's own code (grader/runner, rmw_lockstep/hub). Here are only its two
-ends of the connection: `PageHub` and `PageConnection` on the hub's side, `Turns` between them and the program.
+The grader's own code (grader/runner, rmw_lockstep/hub) decides what happens, and when. Here are only the two ends of
+its connection: `PageHub` and `PageConnection` on the hub's side, `Turns` between them and the program.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ PROGRAM = 1
 
 
 class Over(BaseException):
-    """Raised in the program when its run has ended. No program catches it by mistake."""
+    """Raised in the program when its run has ended. Programs can't catch it by mistake."""
 
 
 class Turns:
-    """Two sides that never run at the same time: the program's threads and the hub's."""
+    """Lets two sides take turns, which never run at the same time: the program's threads and the hub's."""
 
     def __init__(self) -> None:
         self._program, self._hub = threads.raw_lock(), threads.raw_lock()
@@ -35,12 +35,12 @@ class Turns:
         """Whether the program is to end now, as one that is killed."""
         self.has_ended = False
         self.fault: BaseException | None = None
-        """What went wrong in the hub's code while it took what the program sent."""
+        """The exception in the hub's code while it handled what the program sent."""
         self.signal = ""
-        """A signal that the program gets when it goes on."""
+        """A signal that the program gets when it continues."""
 
     def let_program_go_on(self) -> None:
-        """The hub waits until the program has nothing left to do, or has ended. Raises what went wrong meanwhile."""
+        """Wait, on the hub's side, until the program is idle or has ended. Raises the `fault` kept meanwhile."""
         if not self.has_ended:
             self._program.release()
             self._hub.acquire()
@@ -49,7 +49,7 @@ class Turns:
             raise fault
 
     def wait_for_first(self) -> None:
-        """The program waits until it may begin."""
+        """Wait, on the program's side, until it may begin."""
         self._program.acquire()
 
     def let_hub_go_on(self) -> None:
@@ -59,7 +59,7 @@ class Turns:
             self._program.acquire()
 
     def end(self) -> None:
-        """The program has ended."""
+        """Note that the program has ended."""
         self.has_ended = True
         self._hub.release()
 
@@ -69,7 +69,7 @@ class PageConnection(Link):
 
     def __init__(self, use: Use) -> None:
         self.queued: deque[bytes] = deque()
-        # There is no socket: what is queued is taken out by the program's side.
+        # There is no socket: the program's side takes out what is queued.
         super().__init__(None, PROGRAM, use)  # type: ignore[arg-type]
         self.hello = Hello(1, PROGRAM, 0, True)
 
@@ -77,19 +77,19 @@ class PageConnection(Link):
         return 0, 0  # no process of this machine has the number 0
 
     def queue(self, frame: bytes) -> None:
-        """Put a frame where the program finds it."""
+        """Put a frame into the program's queue."""
         self.queued.append(frame)
         self.sent += 1
         self.idle = None
 
     def flush(self) -> None:
-        """Nothing is on its way."""
+        """Do nothing: frames are never in transit."""
 
     def close(self) -> None:
-        """There is nothing to close."""
+        """Do nothing: there is nothing to close."""
 
     def rests(self, now: int, until: int | None, in_ros: int) -> None:
-        """The program has nothing left to do before `until` (ns), or before something comes; so many wait in ROS."""
+        """Note that the program is idle until `until` (ns), or until a frame arrives; so many threads wait in ROS."""
         self.believe(Idle(self.handled, now, -1 if until is None else until, in_ros, 0, 0, 0, 1, ()))
 
 
@@ -112,16 +112,16 @@ class PageHub(Hub):
 
     @property
     def router(self) -> Router:
-        """What takes the program's frames."""
+        """The router that handles the program's frames."""
         return self._router
 
     def pause(self) -> None:
-        """Let the program go on, and see whether it takes too long."""
+        """Let the program continue, and check whether it takes too long."""
         self._take()
         self.patience()
 
     def drain(self, at_most_s: float = 1.0) -> None:
-        """Whatever the program has sent was taken at once."""
+        """Do nothing: everything the program has sent was taken at once."""
 
     def _take(self) -> None:
         self._turns.let_program_go_on()
@@ -132,7 +132,7 @@ class PageHub(Hub):
             self.patience()
 
     def _flush(self) -> None:
-        """Nothing is on its way."""
+        """Do nothing: frames are never in transit."""
 
     def _accept(self) -> bool:
         return False

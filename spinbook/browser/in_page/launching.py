@@ -15,10 +15,10 @@ _planned: list[dict[str, Any]] = []
 
 
 class _Planned:
-    """In the place of `Launched`: notes what is to be started."""
+    """Replaces `Launched`: notes what is to be started."""
 
     def run(self, steps: Sequence[ProcessToStart | str]) -> int:
-        """Note the steps, with the parameter files that were made for them, which are gone afterwards."""
+        """Note the steps, with their parameter files, which are removed afterwards."""
         _planned[:] = map(_step, steps)
         return 0
 
@@ -32,16 +32,16 @@ def _step(step: ProcessToStart | str) -> dict[str, Any]:
 
 
 def _as_it_is(package: str, executable: str, cwd: Path) -> SimpleNamespace:
-    """The page knows its nodes by their names."""
+    """Return the package and executable as they are: the page knows its nodes by these names."""
     return SimpleNamespace(argv=(package, executable), env={})
 
 
 def plan(line: str) -> str:
-    """What `ros2 launch …` is to start, as JSON: its exit status and the steps. Errors are printed."""
+    """Return what `ros2 launch …` is to start, as JSON: its exit status and the steps. Errors are printed."""
     from spinbook.browser.in_page.cells import run_command
 
-    # Instead of processes of the system, those of the page.
-    setattr(command, "Launched", _Planned)  # noqa: B010 - as far as types go, it is another module's import
+    # Processes of the page replace those of the system.
+    setattr(command, "Launched", _Planned)  # noqa: B010 - for the type checker, it is another module's import
     setattr(processes, "find", _as_it_is)  # noqa: B010
     _planned.clear()
     status = run_command(line)

@@ -1,7 +1,7 @@
 """How a process in a web worker reaches the others: through the page, which is the hub.
 
 Waiting is a promise, awaited on the program's own stack (see threads.py), so that a program blocks in `rclpy.spin`
-while the worker's event loop goes on.
+while the worker's event loop continues.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any, SupportsFloat
 from rcl_python.link import Frame
 from spinbook.browser.in_page import threads
 
-#: A program that never waits lets others in after this (s).
+#: A program that never waits lets others run after this time (s).
 _BREATH_S = 0.02
 
 
@@ -30,16 +30,16 @@ class PageLink:
         self._breathed = time.monotonic()
 
     def send(self, frame: Frame, data: bytes = b"") -> None:
-        """Hand a frame to the page."""
+        """Send a frame to the page."""
         self._page.send(json.dumps(frame), self._to_js(data) if data else None)
 
     def receive(self) -> Iterator[tuple[Frame, bytes]]:
-        """Yield what the page has handed on."""
+        """Yield the frames that the page has forwarded."""
         while (item := self._page.receive()) is not None:
             yield json.loads(item.head), item.data.to_bytes() if item.data else b""
 
     def wait(self, nanoseconds: int | None) -> None:
-        """Wait for a frame, for another thread, or for this long."""
+        """Wait for a frame, for another thread, or until the time is up."""
         held = self.lock._release_save()  # type: ignore[attr-defined]
         try:
             self._pause(nanoseconds)
@@ -56,15 +56,15 @@ class PageLink:
             self.wait(0)
 
     def steady(self) -> int:
-        """The steady clock (ns)."""
+        """Return the steady clock (ns)."""
         return time.monotonic_ns()
 
     def system(self) -> int:
-        """The system clock (ns since the epoch)."""
+        """Return the system clock (ns since the epoch)."""
         return time.time_ns()
 
     def sleep(self, seconds: SupportsFloat) -> None:
-        """Do what time.sleep does; signals end it."""
+        """Sleep as time.sleep does; signals end it."""
         from rcl_python import participant
 
         until = time.monotonic() + float(seconds)
@@ -73,7 +73,7 @@ class PageLink:
             participant.current().pump()
 
     def heed(self) -> None:
-        """Do what the signals that have come ask for."""
+        """Handle the signals that have arrived."""
         from rcl_python import participant
 
         while (name := self._page.signal()) is not None:

@@ -1,4 +1,4 @@
-"""The node graph of the page: as this process knows it at once, or with the rates that a look has counted."""
+"""The node graph of the page: as this process knows it, at once, or with rates counted over some seconds."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _INTERNAL = ("/rosout", "/parameter_events")
 
 
 def now() -> str:
-    """The graph as JSON: `pictures`, an SVG element for each part, and `words`. Never waits."""
+    """Return the graph as JSON: `pictures`, an SVG element for each part, and `words`. Never waits."""
     here = participant.current()
     here.join()
     here.pump()
@@ -24,7 +24,7 @@ def now() -> str:
 
 
 def counted(seconds: float) -> str:
-    """As `now`, with the rates of what could be counted in so many seconds."""
+    """Return the same as `now`, with the rates counted over so many seconds."""
     from spinbook.graph.now import graph_now
 
     return _shown(graph_now(seconds))
@@ -36,7 +36,7 @@ def _shown(graph: NodeGraph) -> str:
 
 
 def node_graph(graph: Graph) -> NodeGraph:
-    """What `%graph` draws: nodes and topics that are not hidden."""
+    """Return what `%graph` draws: nodes and topics that are not hidden."""
     nodes = {node.key: _full_name(node) for node in graph.nodes_in(0)}
     shown = {key: name for key, name in nodes.items() if not _is_hidden(name)}
     ends = [end for end in graph.ends(0, PUBLISHER, SUBSCRIPTION) if end.node in shown and _is_shown(end.topic)]
@@ -52,7 +52,7 @@ def _topic(name: str, ends: list[EndpointInfo], nodes: dict[str, str]) -> Topic:
 
 
 def _ends(ends: list[EndpointInfo], others: list[EndpointInfo], nodes: dict[str, str]) -> tuple[End, ...]:
-    """One end for each node and type; connected if any of its ends is."""
+    """Return one end for each node and type; connected if any of its ends is."""
     connected: dict[tuple[str, str], bool] = {}
     for end in ends:
         key = nodes[end.node], end.type

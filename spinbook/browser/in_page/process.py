@@ -29,7 +29,7 @@ _ABSENT = ("numpy", "matplotlib", "scipy", "cv2", "pandas")
 
 
 def open_process(page: Any, identity: str) -> None:
-    """Get ready: join the graph, and let waiting be what a page can do."""
+    """Prepare the process: join the graph, and replace waiting by what a page can do."""
     threads.use(page, lambda: link.heed())
     link = PageLink(page)
     participant.use(link, identity)
@@ -53,13 +53,13 @@ def import_rclpy() -> None:
 
 
 def run_program(source: str, file: str, args: Sequence[str], environment: Mapping[str, str]) -> int:
-    """Run a program; its exit status. What it prints, tracebacks included, goes to the page."""
+    """Run a program; return its exit status. Its output, tracebacks included, goes to the page."""
     os.environ.update(environment)
     main = types.ModuleType("__main__")
     main.__file__ = file
     sys.modules["__main__"] = main
     sys.argv = [file, *args]
-    # Tracebacks show lines of the program, which lies in no file.
+    # Tracebacks show lines of the program, which is not in a file.
     linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
     return status_of(lambda: _to_its_end(source, file, main))
 
@@ -73,7 +73,7 @@ def _to_its_end(source: str, file: str, main: types.ModuleType) -> None:
 
 
 def status_of(program: Any) -> int:
-    """Call `program`; the status with which a process would end."""
+    """Call `program`; return the status with which a process would end."""
     try:
         program()
     except SystemExit as error:
@@ -99,7 +99,7 @@ def _exit_status(error: SystemExit) -> int:
 
 
 def _show_traceback() -> None:
-    """Print the traceback without what is around the program."""
+    """Print the traceback without the frames around the program."""
     kind, error, trace = sys.exc_info()
     while trace is not None and trace.tb_frame.f_code.co_filename.startswith(("/ros.zip/spinbook/browser", "/lib/")):
         trace = trace.tb_next
@@ -107,7 +107,7 @@ def _show_traceback() -> None:
 
 
 def _explain(error: BaseException) -> None:
-    """Say in one sentence what a page does not have, where that was it."""
+    """Explain in one sentence what a page does not have, if that was the reason."""
     name = (getattr(error, "name", None) or "").partition(".")[0]
     if isinstance(error, ImportError) and name in _ABSENT:
         print(_NO_NUMPY.format(name=name), file=sys.stderr)

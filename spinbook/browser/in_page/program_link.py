@@ -1,7 +1,7 @@
-"""The program's end of the connection to a page's hub: what rcl_python says and hears, as frames of PROTOCOL.md.
+"""The program's end of the connection to a page's hub: what rcl_python sends and receives, as frames of PROTOCOL.md.
 
-Time is what the hub grants. The program waits in one place only, and that it waits means that it has nothing left to
-do: then it is the hub's turn.
+Time is what the hub grants. The program waits in one place only, and when it waits there, it is idle: then it is the
+hub's turn.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class ProgramLink:
             try:
                 self._hub.router.handle(self._connection, ord(kind), payload)
             except Exception as fault:
-                # The hub's thread raises it, and the program goes no further.
+                # The hub's thread raises it, and the program stops here.
                 self._turns.fault = fault
                 self._turns.let_hub_go_on()
                 self.heed()
@@ -62,7 +62,7 @@ class ProgramLink:
     # --- in
 
     def receive(self) -> Iterator[tuple[Frame, bytes]]:
-        """Yield what has come, up to where time goes on."""
+        """Yield the frames that have arrived, up to the next advance of time."""
         queued = self._connection.queued
         while queued and queued[0][4] not in (_BARRIER, _TIME_KIND):
             frame = queued.popleft()
@@ -84,7 +84,7 @@ class ProgramLink:
             self.lock._acquire_restore(held)  # type: ignore[attr-defined]
 
     def sleep(self, seconds: SupportsFloat) -> None:
-        """Do what time.sleep does, by the hub's time."""
+        """Sleep as time.sleep does, in the hub's time."""
         until = self._now + round(float(seconds) * 1e9)
         while self._now < until:
             self.rota.wait(until - self._now, in_ros=False)
@@ -106,16 +106,16 @@ class ProgramLink:
 
     @property
     def is_wanted(self) -> bool:
-        """Whether the main thread has something to heed."""
+        """Whether the main thread has a request to handle."""
         return self._turns.is_over or bool(self._turns.signal)
 
     @property
     def has_frames(self) -> bool:
-        """Whether anything waits to be taken in."""
+        """Whether frames are waiting."""
         return bool(self._connection.queued)
 
     def _goes_on(self, until: int | None) -> bool:
-        """Whether there is anything to take in, or the time has come; time goes on as far as it was granted."""
+        """Advance time as far as it was granted. Return whether a frame is waiting, or the time has come."""
         queued = self._connection.queued
         while queued:
             if queued[0][4] == _TIME_KIND:
@@ -137,11 +137,11 @@ class ProgramLink:
             self.wait(None)
 
     def steady(self) -> int:
-        """What the hub says that the time is (ns)."""
+        """Return the hub's time (ns)."""
         return self._now
 
     def system(self) -> int:
-        """What the hub's calendar says (ns since the epoch)."""
+        """Return the hub's calendar time (ns since the epoch)."""
         return EPOCH + self._now
 
     def run(self, main: Callable[[], None]) -> None:
@@ -160,7 +160,7 @@ class ProgramLink:
 
 
 def _encoded(frame: Frame, data: bytes, moment: tuple[int, int, int]) -> Iterator[tuple[str, bytes]]:
-    """What the hub is told: kind and payload of each frame. `moment` is what was handled, the time, and the thread."""
+    """Yield kind and payload of each frame for the hub. `moment` has the handled frames, the time, and the thread."""
     op = frame["op"]
     if op == "hello":
         yield "J", b""
@@ -209,7 +209,7 @@ def _end_point(frame: Frame) -> frames.EndPoint:
 
 
 def _decoded(kind: int, payload: bytes, number: int) -> tuple[Frame, bytes] | None:
-    """What rcl_python is told, if anything."""
+    """Return what rcl_python receives, if anything."""
     decode = _DECODERS.get(chr(kind))
     return decode(payload, number) if decode else None
 

@@ -1,6 +1,6 @@
-"""What spinbook/kernel/reply_reader.py is in a page: it is put into its place, where the timeline's recorder looks.
+"""Replaces spinbook/kernel/reply_reader.py in a page, for the timeline's recorder.
 
-The page hands every answer to the recorder as well, so nothing of the middleware's is needed.
+The page sends every answer to the recorder as well, so nothing of the middleware is needed.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class ReplyReader:
             self._heard.append((frame["sent"] / 1e9, data))
 
     def take(self) -> Iterator[tuple[float, Any]]:
-        """What has arrived since: (when it was sent in s since the epoch, the answer)."""
+        """Yield what has arrived since the last call: (when it was sent in s since the epoch, the answer)."""
         while self._heard:
             sent, data = self._heard.popleft()
             yield sent, cdr.deserialize(data, self._answer)

@@ -1,8 +1,8 @@
 """Runs a student's program through a scenario, in simulated time and in one interpreter with the grader's own runner.
 
 The program's threads take turns, and when all of them wait it is the turn of the thread in which grader/runner does
-what the scenario says. So there is no timing and no patience in it, and every run is the same; the recording is the
-grader's own.
+what the scenario says. So nothing depends on timing, and every run is the same; the recording is the grader's own.
+
 """
 
 from __future__ import annotations
@@ -67,11 +67,11 @@ class PageStudent:
         self.code = 0
 
     def pids(self) -> Collection[int]:
-        """It is no process of its own."""
+        """Its process ids: none, as it runs in this process."""
         return ()
 
     def output(self) -> Printed:
-        """What it has printed."""
+        """Return what it has printed."""
         return Printed(self._log.getvalue())
 
     def poll(self) -> Ended | None:
@@ -79,23 +79,23 @@ class PageStudent:
         return Ended(self.code) if self._turns.has_ended else None
 
     def wait(self, timeout_s: float) -> Ended | None:
-        """The same: nothing happens meanwhile."""
+        """Return the same as `poll`: nothing happens meanwhile."""
         return self.poll()
 
     def interrupt(self) -> None:
-        """Let it find a SIGINT when it goes on."""
+        """Let it receive SIGINT when it continues."""
         self._turns.signal = "SIGINT"
 
     def cpu_seconds(self) -> float:
-        """What everything here has computed (s)."""
+        """Return the CPU time of everything here (s)."""
         return time.process_time()
 
     def at_limit(self) -> bool:
-        """There are none."""
+        """Return whether it has hit a limit: there are none."""
         return False
 
     def kill(self) -> Ended:
-        """Let it go no further."""
+        """Stop it."""
         if not self._turns.has_ended:
             self._turns.is_over = True
             self._turns.let_program_go_on()
@@ -103,7 +103,7 @@ class PageStudent:
 
 
 def run(exercise: Exercise, scenario: Scenario, program: Program) -> Recording:
-    """Run the program. Every fault of it is in the recording. Raises what is a fault of ours."""
+    """Run the program. Every fault of it is in the recording. Raises for faults of ours."""
     turns, log = Turns(), io.StringIO()
     hub, student = PageHub(turns), PageStudent(turns, log)
     link = join(hub, turns)
@@ -160,7 +160,7 @@ def _without_rig(trace: types.TracebackType | None) -> types.TracebackType | Non
 
 
 def _forget_rclpy_s() -> None:
-    """Let the next program find rclpy as it is after its import: a signal ends contexts behind rclpy's back."""
+    """Let the next program see rclpy as it is after its import: a signal ends contexts without rclpy noticing."""
     import rclpy
     import rclpy.utilities
 
@@ -198,7 +198,7 @@ def _as_main(program: Program, scenario: Scenario, log: io.StringIO, link: Progr
 
 @contextmanager
 def _time_of(link: ProgramLink) -> Iterator[None]:
-    """Let the clocks of the program's thread show what the hub grants; those of the grader's stay as they are."""
+    """Let the clocks of the program's threads show what the hub grants; those of the grader's stay as they are."""
     ours = {name: getattr(time, name) for name in ("sleep", "time", "time_ns", "monotonic", "monotonic_ns")}
     theirs: dict[str, Callable[..., float | None]] = {
         "sleep": link.sleep,

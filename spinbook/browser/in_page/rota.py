@@ -1,7 +1,7 @@
-"""Whose turn it is among the threads of a program that is being checked: one runs at a time, in a fixed order.
+"""Decides whose turn it is among the threads of a program that is being checked: one at a time, in a fixed order.
 
-A thread goes on until it waits; then the next one has its turn that has anything new to look at. When all of them
-wait, the program has nothing left to do, and that is what the hub is told.
+A thread runs until it waits; then it is the turn of the next one that has anything new to look at. When all of them
+wait, the program is idle, and the hub is notified.
 """
 
 from __future__ import annotations
@@ -34,15 +34,15 @@ class Rota:
         threads.forget(number for number in self._numbers if number != self._main)
 
     def governs(self, thread: int) -> bool:
-        """Whether a thread is one of the program's."""
+        """Return whether a thread is one of the program's."""
         return thread in self._gates
 
     def number(self) -> int:
-        """The thread whose turn it is, counted from 1."""
+        """Return the thread whose turn it is, counted from 1."""
         return self._numbers.get(threads.get_ident(), 1)
 
     def start(self, run: Callable[[], None]) -> int:
-        """Start another thread of the program's, whose turn comes later."""
+        """Start another thread of the program, whose turn comes later."""
         gate = _closed()
 
         def body() -> None:
@@ -60,11 +60,11 @@ class Rota:
         return number
 
     def changed(self) -> None:
-        """Let all who wait look again."""
+        """Let all waiting threads check again."""
         self._curious.update(self._due)
 
     def pause(self, milliseconds: float) -> None:
-        """Wait for another thread, for so long at most (-1: without end)."""
+        """Wait for another thread, for so long at most (-1: without a limit)."""
         self.wait(None if milliseconds < 0 else round(milliseconds * 1e6), in_ros=False)
 
     def wait(self, nanoseconds: int | None, in_ros: bool) -> None:
@@ -84,14 +84,14 @@ class Rota:
             self._link.heed()
 
     def _leave(self) -> None:
-        """This thread has ended."""
+        """End this thread."""
         mine = threads.get_ident()
         next_ = self._next(mine)
         del self._gates[mine]
         self._gates[next_].release()
 
     def _next(self, mine: int) -> int:
-        """Whose turn it is after this one; waits for the hub where all wait."""
+        """Return whose turn it is after this one; wait for the hub if all wait."""
         while True:
             if self._link.is_wanted and self._main in self._due:
                 return self._main
@@ -110,7 +110,7 @@ class Rota:
         dues = [due for due in self._due.values() if due is not None]
         self._link.rest(min(dues, default=None), len(self._in_ros))
         if not self._in_ros and self._link.has_frames:
-            # Nobody else takes them in.
+            # No other thread takes them in.
             participant.current().pump()
         self.changed()
 

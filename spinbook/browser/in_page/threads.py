@@ -1,9 +1,9 @@
 """Threads in a page: each runs on a stack of its own in the one thread that a web worker has, and they take turns.
 
-A thread that waits, for a lock, a message or the time, lets the others go on: it awaits a promise on its own stack
+A thread that waits, for a lock, a message or the time, lets the others run: it awaits a promise on its own stack
 (JavaScript Promise Integration, JSPI). Nothing else interrupts it, so a thread that computes without a pause keeps the
-others waiting. What `threading` is made of is replaced: locks, and the start and the identity of threads; all that is
-built of these (Condition, Event, Semaphore, queues, ThreadPoolExecutor) is Python's own.
+others waiting. The primitives of `threading` are replaced: locks, and the start and the identity of threads; all that
+is built on these (Condition, Event, Semaphore, queues, ThreadPoolExecutor) is Python's own.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _waiting = 0
 
 
 class Governor(Protocol):
-    """What decides whose turn it is among the threads of a program that is being checked (rota.py)."""
+    """Decides whose turn it is among the threads of a program that is being checked (rota.py)."""
 
     def governs(self, thread: int) -> bool: ...
     def pause(self, milliseconds: float) -> None: ...
@@ -41,18 +41,18 @@ _governor: Governor | None = None
 
 
 def govern(governor: Governor | None) -> None:
-    """Let this one decide from now on, or nobody."""
+    """Let this governor decide from now on, or none."""
     global _governor
     _governor = governor
 
 
 def get_ident() -> int:
-    """The number of the thread whose turn it is."""
+    """Return the number of the thread whose turn it is."""
     return _current if _page else _thread.get_ident()
 
 
 def pause(milliseconds: float, for_frames: bool) -> None:
-    """Let others go on for so long (-1: without end), or until anything has changed, or a frame has come."""
+    """Let others run for so long (-1: without a limit), or until something has changed, or a frame has arrived."""
     if _governor and _governor.governs(get_ident()):
         _governor.pause(milliseconds)
     elif _page:
@@ -75,7 +75,7 @@ def _pause_in_page(milliseconds: float, for_frames: bool) -> None:
 
 
 def changed() -> None:
-    """Let all who wait look again."""
+    """Let all waiting threads check again."""
     if _governor:
         _governor.changed()
     if _waiting:
@@ -83,14 +83,14 @@ def changed() -> None:
 
 
 class Lock:
-    """What `threading.Lock` makes."""
+    """The replacement of `threading.Lock`."""
 
     def __init__(self) -> None:
         self._held = False
         self._wanted = 0
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Take it, waiting for it for at most `timeout` seconds; whether it was taken."""
+        """Take it, waiting for at most `timeout` seconds; return whether it was taken."""
         until = None if timeout < 0 else time.monotonic() + timeout
         while self._held:
             left = -1.0 if until is None else 1000 * (until - time.monotonic())
@@ -108,7 +108,7 @@ class Lock:
             self._wanted -= 1
 
     def release(self) -> None:
-        """Give it back. Raises RuntimeError where nobody holds it."""
+        """Release it. Raises RuntimeError if it is not held."""
         if not self._held:
             raise RuntimeError("release unlocked lock")
         self._held = False
@@ -116,7 +116,7 @@ class Lock:
             changed()
 
     def locked(self) -> bool:
-        """Whether somebody holds it."""
+        """Return whether it is held."""
         return self._held
 
     def __enter__(self) -> bool:
@@ -130,10 +130,10 @@ class Lock:
 
 
 class _RawLock(Lock):
-    """One that nobody governs."""
+    """A lock without a governor."""
 
     def release(self) -> None:
-        """Give it back."""
+        """Release it."""
         self._held = False
         if self._wanted:
             _page.wake()
@@ -147,23 +147,23 @@ class _RawLock(Lock):
 
 
 class Told(threading.Condition):
-    """A condition that also tells who waits for messages."""
+    """A condition that also notifies those who wait for messages."""
 
     def notify_all(self) -> None:
-        """Let all who wait look again."""
+        """Let all waiting threads check again."""
         super().notify_all()
         changed()
 
 
 class Handle:
-    """What `threading.Thread` holds of a thread that has been started."""
+    """The replacement of what `threading.Thread` holds of a started thread."""
 
     def __init__(self) -> None:
         self.ident = 0
         self._done = False
 
     def is_done(self) -> bool:
-        """Whether it has ended."""
+        """Return whether it has ended."""
         return self._done
 
     def _set_done(self) -> None:
@@ -178,12 +178,12 @@ class Handle:
 
 
 def raw_lock() -> Any:
-    """A lock for those who govern: it waits by what is below all this."""
+    """Return a lock for governors: it waits without one."""
     return _RawLock() if _page else _thread.allocate_lock()
 
 
 def raw_start(run: Callable[[], None]) -> int:
-    """Start a thread that nobody governs yet; its number."""
+    """Start a thread without a governor; return its number."""
     if not _page:
         return _thread.start_new_thread(run, ())
     from pyodide.ffi import create_proxy  # type: ignore[import-not-found]
@@ -206,7 +206,7 @@ def _begin(run: Callable[[], None]) -> int:
 
 
 def _start(function: Callable[[], None], handle: Handle | None = None, daemon: bool = True) -> Handle:
-    """What `threading` calls to start a thread (Python 3.13 and newer)."""
+    """Start a thread: called by `threading` (Python 3.13 and newer)."""
     started = handle or Handle()
 
     def run() -> None:
@@ -223,12 +223,12 @@ _sentinels: dict[int, Lock] = {}
 
 
 def _set_sentinel() -> Lock:
-    """What `threading` asks for a lock that is free when this thread has ended (Python 3.12 and older)."""
+    """Return a lock that is released when this thread has ended: called by `threading` (Python 3.12 and older)."""
     return _sentinels.setdefault(get_ident(), Lock())
 
 
 def _start_new(function: Callable[..., None], given: tuple[Any, ...]) -> int:
-    """What `threading` calls to start a thread (Python 3.12 and older)."""
+    """Start a thread: called by `threading` (Python 3.12 and older)."""
 
     def run() -> None:
         try:
@@ -244,7 +244,7 @@ def _start_new(function: Callable[..., None], given: tuple[Any, ...]) -> int:
 def use(page: Any, heed: Callable[[], None]) -> None:
     """Replace Python's threads. `heed` is called in the main thread after each wait: it handles signals.
 
-    To be called before anything is imported that keeps a lock.
+    Call this before anything is imported that keeps a lock.
     """
     global _page, _await, _heed
     from pyodide.ffi import run_sync
@@ -254,7 +254,7 @@ def use(page: Any, heed: Callable[[], None]) -> None:
 
 
 def replace_threading() -> None:
-    """Let `threading` and what is built of it use what is here. Without a page, threads must be governed."""
+    """Let `threading` and what is built on it use these threads. Without a page, threads must have a governor."""
     patched: dict[str, Any] = {
         "Lock": Lock,
         "_allocate_lock": Lock,
@@ -270,12 +270,12 @@ def replace_threading() -> None:
     for name, value in patched.items():
         if hasattr(threading, name):
             setattr(threading, name, value)
-    # The one in C waits in a way of its own.
+    # The one in C has its own way of waiting.
     queue.SimpleQueue = queue._PySimpleQueue  # type: ignore[misc, attr-defined]
 
 
 def wait_for_all() -> None:
-    """Wait for the threads that keep a program from ending, as Python does behind a program's last line."""
+    """Wait for the threads that keep a program from ending, as Python does after a program's last line."""
     for call in reversed(threading._threading_atexits):  # type: ignore[attr-defined]
         call()
     for thread in threading.enumerate():
@@ -284,7 +284,7 @@ def wait_for_all() -> None:
 
 
 def forget(started: Iterable[int]) -> None:
-    """Let `threading` and its pools know nothing more of these threads, so that another program can run."""
+    """Make `threading` and its pools forget these threads, so that another program can run."""
     for number in started:
         threading._active.pop(number, None)  # type: ignore[attr-defined]
     getattr(threading, "_shutdown_locks", set()).clear()

@@ -1,4 +1,4 @@
-"""`%timeline` in a page: a process of its own records, and the page's other one draws."""
+"""`%timeline` in a page: one process records, and the page's other one draws."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 
 
 def record(names: Sequence[str]) -> None:
-    """Print every event of these services, actions and topics, until told to end."""
+    """Print every event of these services, actions and topics, until asked to end."""
     from spinbook.kernel import timeline_recorder
 
     sys.argv = ["timeline", *names]
@@ -16,7 +16,7 @@ def record(names: Sequence[str]) -> None:
 
 
 def drawn(names: Sequence[str], lines: Iterable[str], title: str) -> str:
-    """The picture of what was recorded, as JSON: `picture`, `words` and `problem`, which is "" if all is well."""
+    """Return the picture of what was recorded, as JSON: `picture`, `words` and `problem`, "" if there is none."""
     from spinbook.kernel.timeline import RecordedEvents, in_words, lanes
     from spinbook.kernel.timeline_picture import moving_timeline, span_of
 

@@ -1,4 +1,4 @@
-"""Turtlesim's window: a program that asks the running turtlesim for its picture, and drives the turtle by keys."""
+"""Turtlesim's window: a program that requests the running turtlesim's picture, and drives the turtle by keys."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from geometry_msgs.msg import Twist
 from rclpy.node import Node
 from std_srvs.srv import Trigger
 
-#: How often the picture is asked for (s).
+#: How often the picture is requested (s).
 _PERIOD_S = 0.25
-#: How fast a key drives: the real one's teleop_turtle (units and radians per second).
+#: How fast a key drives, as with the real teleop_turtle (units and radians per second).
 _SPEED = 2.0
 
 
 class Window(Node):
-    """Hands pictures to `page`, and takes keys from it: pairs of how far ahead and how far to the left, -1 to 1."""
+    """Sends pictures to `page`, and takes keys from it: pairs of how far ahead and how far to the left, -1 to 1."""
 
     def __init__(self, page: Any) -> None:
         super().__init__("turtle_window", start_parameter_services=False, enable_rosout=False)
@@ -37,6 +37,6 @@ class Window(Node):
 
 
 def show(page: Any) -> None:
-    """Show the window until the program is told to end."""
+    """Show the window until the program is asked to end."""
     rclpy.init(args=[])
     rclpy.spin(Window(page))

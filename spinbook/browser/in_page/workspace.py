@@ -1,4 +1,4 @@
-"""The chapter's package as files: what its cells have written, for programs and commands that read them."""
+"""The chapter's package as files: what its cells have written, for programs and commands that read it."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-#: Where a terminal of the page is, as behind `cd` into the workspace.
+#: A terminal's current folder in the page, as after `cd` into the workspace.
 FOLDER = Path("/workspace")
 _PREFIX = Path("/opt/ros")
 
 
 def put(files: Mapping[str, str], package: str) -> None:
-    """Write the package's files (path within it -> text): in the workspace, and where an installed package has them."""
+    """Write the package's files (path within it -> text): in the workspace, and where a package is installed."""
     share = _PREFIX / "share"
     _write(share / "ament_index" / "resource_index" / "packages" / package, "")
     for path, text in files.items():

@@ -1,4 +1,4 @@
-"""As much of numpy as generated message classes need: one-dimensional arrays of a fixed number of numbers.
+"""The part of numpy that generated message classes need: one-dimensional arrays of a fixed number of numbers.
 
 There is no numpy for web pages without a package repository of their own. rclpy itself needs none.
 """
@@ -12,7 +12,7 @@ from typing import Any
 
 
 class generic:  # noqa: N801
-    """What numbers of numpy have in common: here they are Python's own, so that nothing is one."""
+    """The base class of numpy's numbers: here numbers are Python's own, so nothing is an instance of it."""
 
 
 class dtype:  # noqa: N801
@@ -50,7 +50,7 @@ class ndarray:  # noqa: N801
 
     @property
     def shape(self) -> tuple[int]:
-        """How many there are, as numpy says it."""
+        """The shape in numpy's form."""
         return (len(self._values),)
 
     @property
@@ -83,25 +83,25 @@ class ndarray:  # noqa: N801
         return f"array({list(self._values)})"
 
     def tolist(self) -> list[Any]:
-        """The numbers as a list."""
+        """Return the numbers as a list."""
         return self._values.tolist()
 
     def tobytes(self) -> bytes:
-        """The numbers as they lie in memory."""
+        """Return the bytes of the numbers in memory."""
         return self._values.tobytes()
 
     def copy(self) -> ndarray:
-        """The same numbers once more."""
+        """Return a copy."""
         return ndarray(self._values, self.dtype)
 
 
 def array(values: Iterable[Any], dtype: dtype = float64) -> ndarray:
-    """An array of these numbers."""
+    """Return an array of these numbers."""
     return ndarray(values, dtype)
 
 
 def zeros(shape: int | tuple[int, ...], dtype: dtype = float64) -> ndarray:
-    """An array of zeros."""
+    """Return an array of zeros."""
     return ndarray([0] * (shape if isinstance(shape, int) else shape[0]), dtype)
 
 

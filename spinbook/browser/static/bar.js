@@ -22,7 +22,7 @@ function fill(list, graph) {
   const nodes = [...running(), ...working()];
   place.hidden = nodes.length === 0;
   document.body.classList.toggle("has-running", !place.hidden);
-  // Buttons that stay are left alone, so that the focus stays as well.
+  // Buttons that stay are not replaced, so that they keep the focus.
   const there = new Map([...list.children].map((item) => [item.dataset.key, item]));
   const items = nodes.map((node) => there.get(key(node)) ?? item(node));
   if (items.length !== list.children.length || items.some((each) => !each.isConnected)) list.replaceChildren(...items);

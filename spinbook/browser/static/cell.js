@@ -17,13 +17,13 @@ class Cell {
     this.file = node.querySelector(".cell-file")?.textContent ?? "";
     this.kind = KINDS.find((kind) => node.classList.contains(`cell-${kind}`));
     this.name = this.file.replace(/\.py$/, "") || `cell ${cells.size + 1}`;
-    // What makes the code a whole program where the chapter shows it in pieces; how long its output is waited for.
+    // What completes a program that the chapter shows in pieces; how long to wait for its output.
     this.about = JSON.parse(node.querySelector(".cell-head").dataset.run ?? "{}");
     this.code = node.querySelector(".cell_input pre, .highlight pre");
     this.recorded = node.querySelector(".cell_output");
     this.links = node.querySelector(".cell-links");
     const language = this.kind === "node" || this.kind === "snippet" ? "python" : "";
-    // A chapter may show a program again, changed: each has changes of its own.
+    // A chapter may show a changed version of a program again: each keeps its own edits.
     const before = [...cells.values()].filter((cell) => cell.name === this.name).length;
     const own = before ? `${this.name}-${before + 1}` : this.name;
     this.editor = editing(this.code, `${location.pathname}#${own}`, this.file || "this cell", language);
@@ -43,7 +43,7 @@ class Cell {
     return before + this.source + call;
   }
 
-  // The page's own code and its recorded output again.
+  // Restore the page's own code and its recorded output.
   restore() {
     this.editor.restore();
     this.shown?.remove();
@@ -52,7 +52,7 @@ class Cell {
     this.reset.hidden = true;
   }
 
-  // A new place for output, instead of the recorded one.
+  // A new element for output, instead of the recorded one.
   clear() {
     this.shown?.remove();
     if (this.recorded) this.recorded.hidden = true;
@@ -88,7 +88,7 @@ class Cell {
     if (text) this.print(text, "stderr");
   }
 
-  // Until its output holds what the chapter waits for, or for as long as the chapter shows it (s).
+  // Wait until its output contains what the chapter waits for, or for as long as the chapter shows it (s).
   shows(seconds) {
     return Promise.race([this.seen, new Promise((resolve) => setTimeout(resolve, 1000 * (this.about.seconds ?? seconds)))]);
   }
@@ -111,7 +111,7 @@ export function cellAt(node) {
   return cells.get(node);
 }
 
-// The cell that belongs to a module of the chapter, as `ros2 run` names it: of several, the one that was run last.
+// The cell that belongs to a module of the chapter, as `ros2 run` names it: if there are several, the one run last.
 export const cellOf = (name, full = "") =>
   [...cells.values()]
     .filter((cell) => cell.kind === "node" && (cell.name === name || cell.about.executables?.includes(full)))

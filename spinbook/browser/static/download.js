@@ -1,10 +1,10 @@
-// The one download that all nodes of a course share: shown as it comes, and kept for pages without a network.
+// The one download that all nodes of a course share: shown in progress, and kept for pages without a network.
 
 const base = new URL("./", import.meta.url);
 const READY_MS = 4000;
 let done = null;
 
-// Load what nodes need, once; `say` hears how far it is. Without a service worker, each part loads when it is needed.
+// Load what nodes need, once; `say` gets the progress. Without a service worker, each part loads when it is needed.
 export function download(say) {
   done ??= load(say).catch(() => null);
   return done;
@@ -48,7 +48,7 @@ async function fetchInto(kept, address, tell) {
   await storing;
 }
 
-// The service worker, once it answers for this page; null where there can be none.
+// The service worker, once it serves this page; null if there can be none.
 async function keeper() {
   if (!("serviceWorker" in navigator) || !window.isSecureContext) return null;
   const known = await navigator.serviceWorker.register(new URL("../offline.js", base), { scope: new URL("../", base).href });

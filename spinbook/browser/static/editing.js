@@ -1,4 +1,4 @@
-// Code that can be changed in place. Changes are kept in this browser.
+// Code that can be edited in place. Changes are kept in this browser.
 import { colours } from "./highlight.js";
 
 const STEP = "    ";
@@ -20,9 +20,9 @@ function store(key, text) {
   }
 }
 
-// Makes the code in `place`, a <pre>, a field. Tab indents; Escape, then Tab, leaves it. Python keeps its colours.
+// Turns the code in `place`, a <pre>, into a field. Tab indents; Escape, then Tab, leaves it. Python keeps its colours.
 export function editing(place, key, name, language = "") {
-  // A field of its own: the page gives the <pre> another role where it scrolls.
+  // A field of its own: the page gives the <pre> another role if it scrolls.
   const code = document.createElement("span");
   code.className = "editor";
   code.append(...place.childNodes);
@@ -56,7 +56,7 @@ export function editing(place, key, name, language = "") {
   };
   fill(stored(key) ?? written);
   code.contentEditable = "plaintext-only";
-  code.tabIndex = 0; // What can be edited can be focused in any case, but not everybody knows.
+  code.tabIndex = 0; // Editable elements can always be focused, but not every tool knows that.
   code.spellcheck = false;
   code.setAttribute("role", "textbox");
   code.setAttribute("aria-multiline", "true");

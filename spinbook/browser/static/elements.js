@@ -1,4 +1,4 @@
-// What every part of a page that runs is made of: elements, buttons, the style sheet, and why a page can't run.
+// What every part of a running page is made of: elements, buttons, the style sheet, and why a page can't run.
 
 const TOO_OLD =
   "This browser can't run nodes: it lacks JavaScript Promise Integration. Chrome and Edge 137 or newer and " +
@@ -7,7 +7,7 @@ const FROM_FILE =
   "Nodes can't run in a page that is opened from a file. Open this course on its website, or put it on any web server.";
 const NO_MEMORY = "There is not enough memory for this. Stop a node, close other tabs, or reload the page.";
 
-// What a page can't do, in one sentence, or "".
+// What this page can't do, in one sentence, or "".
 export function hindrance() {
   if (location.protocol === "file:") return FROM_FILE;
   return typeof WebAssembly === "object" && "Suspending" in WebAssembly ? "" : TOO_OLD;
@@ -35,12 +35,12 @@ export function button(text, label, act) {
   return made;
 }
 
-// For screen readers, what has just happened.
+// Announce to screen readers what has just happened.
 export function announce(text) {
   document.getElementById("said").textContent = text;
 }
 
-// The page's style sheet for all this, once.
+// The page's style sheet for all this, added once.
 export function style() {
   if (document.querySelector("link[data-run]")) return;
   const sheet = element("link", { rel: "stylesheet", href: new URL("run.css", import.meta.url).href });

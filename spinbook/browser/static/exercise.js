@@ -9,7 +9,7 @@ const SIGNS = { passed: "✓", failed: "✗", blocked: "–", error: "!" };
 
 let process = null;
 
-// The process that checks: one for the page, until it has to be ended.
+// The process that checks: one per page, until it has to be ended.
 function checker(hears) {
   process ??= new Process("check", {});
   Object.assign(process.hears, hears, { end: () => (process = null) });

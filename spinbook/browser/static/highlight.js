@@ -24,7 +24,7 @@ function registered(kind) {
   return registry.get(kind);
 }
 
-// Where each coloured piece begins and ends, and its kind.
+// The start, the end and the kind of each coloured piece.
 export function tokens(source) {
   const found = [];
   let before = "";
@@ -54,7 +54,7 @@ export function tokens(source) {
 const newLine = (source, at) => at === 0 || source[at - 1] === "\n";
 const line = (source, at) => source.slice(at, (source.indexOf("\n", at) + 1 || source.length + 1) - 1);
 
-// What an f-string computes is not text.
+// The expressions in an f-string are not text.
 function pieces(text, at) {
   if (!/^[rb]?f/i.test(text)) return [["text", at, at + text.length]];
   const found = [];
@@ -66,7 +66,7 @@ function pieces(text, at) {
   return [...found, ["text", at + from, at + text.length]];
 }
 
-// What colours the text in `place`: to be called again after each change.
+// Returns a function that colours the text in `place`: to be called after each change.
 export function colours(place) {
   if (!can) return () => {};
   let mine = [];

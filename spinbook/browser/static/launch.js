@@ -1,4 +1,4 @@
-// `ros2 launch`: several nodes under one name, whose lines begin with theirs; one Stop ends them all.
+// `ros2 launch`: several nodes under one name, which begins each of their lines; one Stop ends them all.
 import { logs } from "./cell.js";
 import { programOf, started } from "./nodes.js";
 import { Process } from "./processes.js";
@@ -77,7 +77,7 @@ export async function launch(cell, process, line) {
   const launched = new Launch(name, cell);
   started.set(name, launched);
   launched.begin(steps);
-  // Several start at once: how long their output is shown counts from when all have started.
+  // Several start at once: the time for their output counts from when all have started.
   const allReady = Promise.allSettled(launched.parts.map(({ ready }) => ready));
   await Promise.race([allReady, launched.over]);
   cell.say(`${name} runs.`);

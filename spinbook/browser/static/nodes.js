@@ -8,7 +8,7 @@ import { turtle } from "./turtle.js";
 const TURTLESIM =
   "import sys\nfrom spinbook.browser.in_page import canvas\ncanvas.use()\n" +
   "from spinbook.turtlesim.node import main\nsys.exit(main())\n";
-// What `ros2 run` of a turtlesim_node shows before the cell goes on (s).
+// How long `ros2 run` of a turtlesim_node shows output before the cell goes on (s).
 const SHOWN_S = 3;
 // The longest that `%log --until` waits (s).
 const LOG_S = 30;
@@ -16,7 +16,7 @@ const LOG_S = 30;
 // Every node that was started and not stopped since, by name, in order.
 export const started = new Map();
 
-// Start a program as a node; its process, once it runs.
+// Start a program as a node; returns its process, once it runs.
 async function start(name, into, program, file, args) {
   await (started.get(name)?.running ? started.get(name) : named(name))?.stop();
   logs.delete(name);
@@ -73,7 +73,7 @@ export function showNodes(cell) {
   }
 }
 
-// What a program is that a launch file names: its text and its file.
+// The program that a launch file names: its text and its file.
 export function programOf(pack, executable) {
   if (executable === "turtlesim_node") return { source: TURTLESIM, file: "turtlesim_node.py" };
   const cell = cellOf(executable, `${pack}/${executable}`);
@@ -92,7 +92,7 @@ export async function showLog(cell, args) {
   for (const line of logs.get(name) ?? []) cell.print(line);
 }
 
-// Resolves when a log holds a text (true), or when the time is up or the node has ended.
+// Resolves when a log contains a text (true), or when the time is up or the node has ended.
 async function logHolds(name, text, seconds) {
   const end = Date.now() + 1000 * seconds;
   const holds = () => (logs.get(name) ?? []).some((line) => line.includes(text));

@@ -27,14 +27,14 @@ async function sharedProcess(cell) {
   return shared;
 }
 
-// The shared process if it is there, for who only looks; it draws the graph while a cell runs as well.
+// The shared process, for reading only; it also draws the graph while a cell runs.
 export async function observer() {
   if (!shared || shared.gone) shared = new Process("notebook", { end: () => (shared.gone = true) });
   await shared.ready;
   return shared;
 }
 
-// Have the shared process do something on behalf of a cell; the bar can stop it.
+// Let the shared process do something on behalf of a cell; the bar can stop it.
 async function busy(cell, process, op, given) {
   process.work(cell.name);
   try {
@@ -89,7 +89,7 @@ async function magic(cell, process, [word, ...args]) {
   else cell.fail(`%${word} does not work in a page. It works in the notebook.`);
 }
 
-// `%env NAME=VALUE`, `%env NAME VALUE`, `%env NAME`, `%env`, and a terminal's `export`: for what starts from now on.
+// `%env NAME=VALUE`, `%env NAME VALUE`, `%env NAME`, `%env`, and a terminal's `export`: for processes started later.
 function setVariable(cell, args) {
   const [name, ...rest] = args.join(" ").split(/[=\s]+/);
   if (!name) return Object.entries(environment).forEach(([key, value]) => cell.print(`${key}=${value}`));
@@ -138,7 +138,7 @@ async function runCommand(cell, process, command) {
   else if (kind === "ros2") await bounded(cell, process, text);
 }
 
-// What does not end by itself is ended after a while, as in the notebook, or once it shows what the chapter waits for.
+// Endless output is ended after a while, as in the notebook, or once it shows what the chapter waits for.
 async function bounded(cell, process, line) {
   const endless = ENDLESS.test(line) && !BOUNDED.test(`${line} `);
   const seconds = endless ? (cell.about.seconds ?? LOOK_S) : LONGEST_S;

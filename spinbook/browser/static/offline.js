@@ -1,7 +1,7 @@
-// The service worker of a course that has been run once: its pages and its nodes go on without a network.
+// The service worker of a course that has been run once: its pages and its nodes work without a network.
 
 const PAGES = "pages";
-// What changes only with its version is taken from the cache first; see download.js.
+// Files that change only with their version are taken from the cache first; see download.js.
 const LARGE = /\/run\/(pyodide[^/]*|[^/]+\.(zip|wasm))$/;
 
 self.addEventListener("install", () => self.skipWaiting());

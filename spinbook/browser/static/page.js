@@ -1,4 +1,4 @@
-// Runs the cells of a page, one by one or all that stand above one.
+// Runs the cells of a page, one by one or all those above one.
 import { bar } from "./bar.js";
 import { cellAt } from "./cell.js";
 import { download } from "./download.js";
@@ -6,13 +6,13 @@ import { announce, failure, hindrance, style } from "./elements.js";
 import { runFile, runInterface, runPlain, runTerminal } from "./notebook.js";
 import { runNode } from "./nodes.js";
 
-// As long as a notebook shows a node's log before it goes on (s).
+// How long a notebook shows a node's log before it goes on (s).
 const NODE_S = 3;
 const RUNNABLE = "main .cell:is(.cell-node, .cell-shell, .cell-snippet, .cell-interface, .cell-package_file)";
 
 const nodesOf = () => [...document.querySelectorAll(RUNNABLE)];
 
-// Get the cells of a page ready: each can be changed from now on.
+// Prepare the cells of a page: each can be edited from now on.
 export function open() {
   style();
   bar();

@@ -1,12 +1,12 @@
-// The processes of a page and the hub between them: each is a web worker, and what one sends the others get.
+// The processes of a page and the hub between them: each is a web worker, and its frames are sent to the others.
 
 const STOP_MS = 2000;
-// How often a program is asked whether it still listens, and after how long without an answer it does not.
+// How often to check that a program still responds, and after how long without an answer it counts as blocked.
 const ASK_MS = 2000;
 const SILENT_MS = 10_000;
-// What programs find in os.environ; log lines look as in the notebook.
+// The os.environ of programs; log lines look as in the notebook.
 export const environment = { RCUTILS_CONSOLE_OUTPUT_FORMAT: "[{severity}] [{name}]: {message}" };
-// Says when a process has started or ended.
+// Announces that a process has started or ended.
 export const changes = new EventTarget();
 const base = new URL("./", import.meta.url);
 const all = new Map();
@@ -20,12 +20,12 @@ const changed = () => changes.dispatchEvent(new Event("change"));
 const processOf = (key) => key.slice(0, key.lastIndexOf("."));
 const after = (ms) => new Promise((resolve) => setTimeout(resolve, ms, "late"));
 
-// Frames to named endpoints go to the processes that have them; all others go to everybody.
+// Frames to named endpoints go to the processes that have them; all others go to all processes.
 function route(from, head, data) {
   const frame = JSON.parse(head);
   const wanted = frame.to ? new Set(frame.to.map(processOf)) : null;
   for (const process of all.values()) {
-    // Who overhears gets all answers.
+    // A process that overhears gets all answers.
     const overhears = process.overhears && frame.op === "response";
     if (process !== from && (!wanted || wanted.has(process.identity) || overhears)) {
       process.worker.postMessage({ op: "frame", head, data });
@@ -48,7 +48,7 @@ export class Process {
     this.ready.catch(() => this.end());
   }
 
-  // Have the worker do something; a promise of what comes of it, null where it is ended before.
+  // Let the worker do something; a promise of the result, null if it is ended before.
   call(op, given = {}) {
     if (!all.has(this.identity)) return Promise.resolve(null);
     const id = ++count;
@@ -80,7 +80,7 @@ export class Process {
     this.worker.postMessage({ op: "signal", name });
   }
 
-  // As Ctrl-C; what does not end then is ended.
+  // Interrupt it as Ctrl-C does; if it does not end then, it is killed.
   async stop() {
     if (!all.has(this.identity)) return;
     this.signal("SIGINT");
@@ -91,7 +91,7 @@ export class Process {
     await ended;
   }
 
-  // Run a program to its end; its exit status, or null if it had to be ended.
+  // Run a program to its end; returns its exit status, or null if it had to be ended.
   async program(source, file, args = [], files = undefined) {
     this.running = true;
     changed();
@@ -102,7 +102,7 @@ export class Process {
     return this.ended;
   }
 
-  // It works on this cell from now on, or on nothing.
+  // Work on this cell from now on, or on none.
   work(task) {
     this.task = task;
     if (task) this.idle = new Promise((resolve) => (this.rest = resolve));
@@ -110,7 +110,7 @@ export class Process {
     changed();
   }
 
-  // Ask again and again whether it listens: a program that computes without a pause does not.
+  // Check repeatedly whether it responds: a program that computes without a pause does not.
   #watch() {
     this.watching = setInterval(() => {
       if (!this.asked) {

@@ -2,7 +2,7 @@
 import { element } from "./elements.js";
 import { Process } from "./processes.js";
 
-// How long names are waited for, and what may still be on its way at the end (ms).
+// How long to wait for names, and for what may still be in transit at the end (ms).
 const APPEAR_MS = 20_000;
 const LATE_MS = 300;
 
@@ -48,7 +48,7 @@ async function show(cell, process, title) {
   const { picture, words, problem } = await process.call("drawn", { names, lines, title });
   if (problem) return cell.fail(problem);
   const figure = element("figure", { className: "live-timeline" });
-  // Drawn by Spinbook's own code, which escapes names. Its style goes where the page's policy allows it.
+  // Drawn by Spinbook's own code, which escapes names. Its style is added where the page's policy allows it.
   figure.innerHTML = picture.replace(/<style>(.*?)<\/style>/gs, (_, rules) => (dress(rules), ""));
   figure.dataset.words = words;
   cell.shown?.append(figure);

@@ -6,7 +6,7 @@ const keys = [];
 const signals = [];
 const waiting = new Set();
 
-// What in_page/link.py calls: frames out, frames in, and waiting, which is a promise.
+// Called by in_page/link.py: frames out, frames in, and waiting, which is a promise.
 const page = {
   send: (head, data) => self.postMessage({ op: "frame", head, data }),
   receive: () => inbox.shift(),
@@ -15,7 +15,7 @@ const page = {
   signal: () => signals.shift(),
   wait: (ms, forFrames) =>
     new Promise((resolve) => {
-      // Even a wait for nothing lets the event loop turn.
+      // Even a wait of 0 lets the event loop run.
       if (ms === 0 || (forFrames && inbox.length > 0)) return void setTimeout(resolve, 0);
       waiting.add(resolve);
       if (ms > 0) setTimeout(() => waiting.delete(resolve) && resolve(), ms);
@@ -25,7 +25,7 @@ const page = {
   spawn: (run) => void setTimeout(() => run.callPromising().finally(() => run.destroy())),
 };
 
-// Let all threads that wait look again.
+// Let all waiting threads check again.
 function arrived() {
   const all = [...waiting];
   waiting.clear();
@@ -42,7 +42,7 @@ async function archive(py, name, part) {
   self.postMessage({ op: "progress", part });
 }
 
-// Where there is no memory for another program, Pyodide only warns and never comes back: a promise that fails then.
+// Without memory for another program, Pyodide only warns and never returns: a promise that fails in that case.
 const lacking = new Promise((resolve, reject) => {
   for (const name of ["instantiate", "instantiateStreaming"]) {
     const original = WebAssembly[name];
@@ -151,7 +151,7 @@ async function put(py, { pack, texts, more } = { texts: {} }) {
   }
 }
 
-// What interfaces there are, and their files: unpacked when the first command or check runs.
+// The available interfaces and their files: unpacked when the first command or check runs.
 function shares(py) {
   py.shared ??= unpackShares(py);
   return py.shared;

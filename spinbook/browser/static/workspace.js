@@ -12,11 +12,11 @@ function pack() {
   return names[0] ?? "package";
 }
 
-// Write a file; where it lies in the workspace.
+// Write a file; returns its path in the workspace.
 export function keep(path, text) {
   texts[path] = `${text.trimEnd()}\n`;
   return `src/${pack()}/${path}`;
 }
 
-// All of them, as a process gets them; `more` are files with whole paths.
+// All of them, in the form that a process gets; `more` are files with full paths.
 export const files = (more = {}) => ({ pack: pack(), texts, more });

@@ -1,4 +1,4 @@
-"""Arrays, bounded sequences, bytes and characters of real messages, as they come through serialization."""
+"""Arrays, bounded sequences, bytes and characters of real messages, as they are after serialization."""
 
 from __future__ import annotations
 

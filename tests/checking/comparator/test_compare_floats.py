@@ -29,7 +29,7 @@ BIG, TINY = sys.float_info.max, 5e-324
         (1e9 + 900, 1e9, 1e-6, True),
         (1e9 + 1100, 1e9, 1e-6, False),
         (-1e9 - 900, -1e9, 1e-6, True),
-        # where both apply, the one that allows more
+        # the larger one, if both apply
         (0.5, 0.5 + 9e-7, 1e-6, True),
         (0.5, 0.5 + 1.1e-6, 1e-6, False),
         (2.0, 2.0 + 1.9e-6, 1e-6, True),
@@ -45,7 +45,7 @@ BIG, TINY = sys.float_info.max, 5e-324
         (BIG, BIG, 1e-6, True),
         (BIG, -BIG, 1e-6, False),
         (TINY, 0.0, 1e-6, True),
-        # what a float32 field makes of 0.1, sent by both
+        # what 0.1 is in a float32 field, sent by both
         (0.10000000149011612, 0.1, 1e-6, True),
     ],
 )

@@ -1,4 +1,4 @@
-"""Nested messages are equal if each field is; where they differ is told by its path."""
+"""Nested messages are equal if each field is; the path shows where they differ."""
 
 from __future__ import annotations
 

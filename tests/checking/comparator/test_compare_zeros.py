@@ -1,4 +1,4 @@
-"""-0.0 equals 0.0: arithmetic that is right gives the one or the other."""
+"""-0.0 equals 0.0: correct arithmetic gives either."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Answers rightly, with four threads that burn the CPU beside."""
+"""Answers correctly, while four threads burn the CPU."""
 
 import math
 import threading

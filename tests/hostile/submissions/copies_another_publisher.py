@@ -1,4 +1,4 @@
-"""Starts a second node that listens for anybody who publishes velocities, and publishes them as its own."""
+"""Starts a second node that listens for any publisher of velocities, and publishes them as its own."""
 
 import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor

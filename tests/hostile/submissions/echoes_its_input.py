@@ -1,4 +1,4 @@
-"""Publishes what it hears, and hopes that the velocities are in it."""
+"""Publishes what it receives, and hopes that the velocities are in it."""
 
 import rclpy
 from rclpy.executors import ExternalShutdownException

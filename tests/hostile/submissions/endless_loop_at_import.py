@@ -1,4 +1,4 @@
-"""Never comes to its first import."""
+"""Never gets to its first import."""
 
 while True:
     pass

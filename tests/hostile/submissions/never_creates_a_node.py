@@ -1,3 +1,3 @@
-"""Does something else altogether."""
+"""Does something entirely different."""
 
 print("Hello, world!")

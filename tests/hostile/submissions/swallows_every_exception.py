@@ -1,4 +1,4 @@
-"""Goes on whatever happens."""
+"""Continues whatever happens."""
 
 import math
 

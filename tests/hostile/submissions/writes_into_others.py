@@ -10,7 +10,7 @@ from sensor_msgs.msg import JointState
 
 me = os.getpid()
 for process in os.listdir('/proc') if os.access('/proc', os.R_OK) else ():
-    # 1 to 3 hold the sandbox itself: nothing that anybody trusts.
+    # 1 to 3 hold the sandbox itself: nothing that is trusted.
     if process.isdigit() and int(process) > 3 and int(process) != me:
         try:
             with open(f'/proc/{process}/mem', 'r+b'):

@@ -1,4 +1,4 @@
-"""Publishes so that a message that gets lost is not sent again, and asks for late ones that nobody kept."""
+"""Publishes so that a lost message is not sent again, and requests late ones that no publisher keeps."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Prints what is said of names: which are valid, how they expand, how they are remapped."""
+"""Prints the results for names: which are valid, how they expand, how they are remapped."""
 
 import rclpy
 from rclpy.impl.implementation_singleton import rclpy_implementation as module

@@ -1,4 +1,4 @@
-"""Prints what a program with most things in it does: topics, a service, an action, parameters, timers, the graph."""
+"""Prints what a program with most entities does: topics, a service, an action, parameters, timers, the graph."""
 
 import rclpy
 from rcl_interfaces.srv import GetParameters

@@ -1,4 +1,4 @@
-"""Prints what is said of profiles of quality of service, and which endpoints meet and hear of it."""
+"""Prints the results for profiles of quality of service, and which endpoints match and get events of it."""
 
 import time
 from collections.abc import Callable
