@@ -25,7 +25,7 @@ AUTHORS = {
     "import": Verb(
         "spinbook.importing.command:import_book", "Make a course of a book that exists (MkDocs, Docusaurus …)."
     ),
-    "lint": Verb("spinbook.lint.command:lint", "Say what is wrong in the chapters and what will not run."),
+    "lint": Verb("spinbook.lint:lint", "Say what is wrong in the chapters and what will not run."),
     "build": Verb(
         "spinbook.build.command:build", "Build notebooks from chapters; --execute runs them with real nodes."
     ),
@@ -39,7 +39,7 @@ AUTHORS = {
 INSTRUCTORS = {
     "grade": Verb("grader.command:grade", "Grade one submission, or a whole class."),
     "audit": Verb("grader.audit.command:audit", "Show whether an exercise's checks catch what is wrong."),
-    "gradebook": Verb("spinbook.gradebook.command:gradebook", "Write one page and one table for all exercises."),
+    "gradebook": Verb("spinbook.gradebook:gradebook", "Write one page and one table for all exercises."),
     "gradescope": Verb("grader.gradescope.command:gradescope", "Write an autograder to upload to Gradescope."),
     "classroom50": Verb(
         "grader.classroom50.command:classroom50", "Write an autograder for Classroom 50 and GitHub Actions."

@@ -9,7 +9,7 @@ from enum import Enum
 from pathlib import Path
 
 from spinbook.chapter.fence import ATTRIBUTES, Fence, interface_path, is_someone_elses
-from spinbook.chapter.package_file import is_package_file, unsupported_in_launch_file
+from spinbook.chapter.launch_files import is_package_file, unsupported_in_launch_file
 from spinbook.chapter.python_code import CodeError, PythonCode, has_magics, inspect, programs_in_magics
 from spinbook.chapter.terminal import Command, CommandKind, NotRunnable, looks_like_shell, read_commands
 from spinbook.problem import Problem, Severity

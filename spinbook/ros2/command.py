@@ -16,7 +16,7 @@ NOUNS = {
     "action": Entry("spinbook.ros2.action:action", "List actions, send a goal to one."),
     "bag": Entry("spinbook.ros2.bag:bag", "Record topics into a file, play them again."),
     "daemon": Entry("spinbook.ros2.command:daemon", "There is none: says so."),
-    "doctor": Entry("spinbook.doctor.ros2_noun:doctor", "Check whether ROS 2 works here."),
+    "doctor": Entry("spinbook.doctor.command:ros2_doctor", "Check whether ROS 2 works here."),
     "interface": Entry("spinbook.ros2.interface:interface", "Show the fields of message, service and action types."),
     "launch": Entry("spinbook.ros2.launch.command:launch", "Start the nodes of a launch file."),
     "node": Entry("spinbook.ros2.node:node", "List running nodes, show what one offers."),
