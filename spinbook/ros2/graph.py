@@ -22,7 +22,7 @@ from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 from rclpy.validate_full_topic_name import validate_full_topic_name
 
 from spinbook.ros2.cli import CommandError, held_back
-from spinbook.ros2.middleware import domain_id
+from spinbook.ros2.opening import domain_id
 from spinbook.ros2.participants import hears_other_hosts, participants
 
 # Each call of the command starts its own node, so each has to let discovery finish before it answers. What finished
