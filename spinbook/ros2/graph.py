@@ -85,7 +85,7 @@ class Graph:
     def __init__(self, *, node_name: str | None, spin_time: float | None, use_sim_time: bool) -> None:
         self.context = Context()
         try:
-            # Signals are ours: see stopping.py.
+            # Signals are ours: see cli.py.
             rclpy.init(args=[], context=self.context, signal_handler_options=SignalHandlerOptions.NO)
         except RuntimeError as error:
             raise CommandError(f"ROS 2 could not start: {str(error).splitlines()[0]}") from None
@@ -210,7 +210,7 @@ class Graph:
     # Working
 
     def spin_once(self) -> None:
-        """Handle what came, waiting a moment for it. A signal is raised when that has been done: see stopping.py."""
+        """Handle what came, waiting a moment for it. A signal is raised when that has been done: see cli.py."""
         with held_back():
             self.executor.spin_once(timeout_sec=NAP)
 

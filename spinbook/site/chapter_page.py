@@ -14,8 +14,6 @@ from spinbook.site.drawing import smaller, still_of
 from spinbook.site.page import exercise_page
 from spinbook.site.repository import Repository
 
-_FAILS = "raises-exception"
-
 
 @dataclass(frozen=True)
 class Ran:
