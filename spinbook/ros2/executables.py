@@ -16,6 +16,7 @@ import click
 
 from interface_compiler import prefixes
 from spinbook.ros2.cli import CONTEXT, CommandError
+from spinbook.ros2.opening import check_installed
 
 # The wheels' `.pth` file re-executes Python once with the wheels' libraries in LD_LIBRARY_PATH, and marks that with a
 # guard variable. Another Python that inherits the guard skips its own turn and then misses its libraries; a program of
@@ -179,6 +180,7 @@ def find(package: str, executable: str, cwd: Path) -> Launch:
         )
     if executable not in modules:
         raise CommandError("No executable found", f"Executables of {package}: {', '.join(sorted(modules))}.")
+    check_installed()
     return Launch([sys.executable, "-m", modules[executable]], environment)
 
 

@@ -34,7 +34,7 @@ LARGEST_DOMAIN = 232
 
 def prepare() -> None:
     """Raise `CommandError` for what would make rclpy fail, and give it a folder for its logs."""
-    _check_installed()
+    check_installed()
     _check_rmw()
     domain_id()
     _give_log_folder()
@@ -51,7 +51,8 @@ def domain_id() -> int:
     return int(text)
 
 
-def _check_installed() -> None:
+def check_installed() -> None:
+    """Raise `CommandError` where there is no rclpy."""
     import importlib.util
 
     if importlib.util.find_spec("rclpy") is None:
