@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from grader.recording.types import OWN_SERVICES
 from interface_compiler import prefixes
 from spinbook.chapter.classify import CellKind, Classified
 from spinbook.chapter.imports import interfaces_of, own_names, remedy, ros_packages
@@ -25,15 +26,6 @@ _ASKING = {
     "node": {"info"},
     "action": {"info", "send_goal"},
     "param": {"list", "get", "set", "describe", "dump", "load", "delete"},
-}
-#: The services that every node has for its parameters.
-_PARAMETER_SERVICES = {
-    "describe_parameters",
-    "get_parameter_types",
-    "get_parameters",
-    "list_parameters",
-    "set_parameters",
-    "set_parameters_atomically",
 }
 #: Programs that fail where there is no keyboard.
 _READ_KEYS = {("turtlesim", "turtle_teleop_key")}
@@ -274,7 +266,7 @@ class Shells:
 def _last_name(path: str) -> str:
     """The last part of a name, which a program's text holds; of a node's parameter services, the node's name."""
     node, _, last = path.strip("/").lower().rpartition("/")
-    return _last_name(node) if last in _PARAMETER_SERVICES and node else last
+    return _last_name(node) if last in OWN_SERVICES and node else last
 
 
 def _file_name(path: str) -> str:
