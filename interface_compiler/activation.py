@@ -8,7 +8,6 @@ import sys
 from collections.abc import Iterable, MutableMapping
 from pathlib import Path
 
-from interface_compiler import prefixes
 from interface_compiler.prefixes import PYTHON
 
 #: The environment variable, in every process that uses prefixes, that lists them.
@@ -43,11 +42,6 @@ def extend(environment: MutableMapping[str, str], prefix: Path, instead_of: Iter
         entries = [entry for entry in environment.get(variable, "").split(os.pathsep) if entry]
         kept = [entry for entry in entries if entry not in unwanted]
         environment[variable] = os.pathsep.join([str(prefix / folder), *kept])
-
-
-def active_packages() -> list[str]:
-    """The packages in the prefixes that are in use, sorted."""
-    return sorted(prefixes.interfaces(active()))
 
 
 def imported(packages: Iterable[str], prefix: Path) -> list[str]:

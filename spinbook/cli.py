@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import importlib
+import importlib.util
 import sys
 from dataclasses import dataclass
+from typing import Any
 
 import click
 
@@ -14,10 +16,14 @@ from spinbook.problem import SpinbookError
 
 @dataclass(frozen=True)
 class Verb:
-    """Where a verb's click command is, as `module:name`, and one line for `spinbook --help`."""
+    """Where a verb's click command is, as `module:name`, and one line for `spinbook --help`.
+
+    `needs` is a module without which the verb can do nothing but show its help.
+    """
 
     command: str
     summary: str
+    needs: str = ""
 
 
 AUTHORS = {
@@ -25,7 +31,7 @@ AUTHORS = {
     "import": Verb(
         "spinbook.importing.command:import_book", "Make a course of a book that exists (MkDocs, Docusaurus …)."
     ),
-    "lint": Verb("spinbook.lint.command:lint", "Say what is wrong in the chapters and what will not run."),
+    "lint": Verb("spinbook.lint:lint", "Say what is wrong in the chapters and what will not run."),
     "build": Verb(
         "spinbook.build.command:build", "Build notebooks from chapters; --execute runs them with real nodes."
     ),
@@ -34,25 +40,35 @@ AUTHORS = {
     ),
     "package": Verb("spinbook.package.command:package", "Write the chapters' nodes as a ROS 2 package."),
     "site": Verb("spinbook.site.command:site", "Build the course's website from the notebooks as they ran."),
-    "handout": Verb("spinbook.handout.command:command", "Write what students get: no solutions, no hidden checks."),
+    "handout": Verb(
+        "spinbook.handout.command:command", "Write what students get: no solutions, no hidden checks.", needs="rclpy"
+    ),
 }
 INSTRUCTORS = {
-    "grade": Verb("grader.command:grade", "Grade one submission, or a whole class."),
-    "audit": Verb("grader.audit.command:audit", "Show whether an exercise's checks catch what is wrong."),
-    "gradebook": Verb("spinbook.gradebook.command:gradebook", "Write one page and one table for all exercises."),
-    "gradescope": Verb("grader.gradescope.command:gradescope", "Write an autograder to upload to Gradescope."),
+    "grade": Verb("grader.command:grade", "Grade one submission, or a whole class.", needs="rclpy"),
+    "audit": Verb(
+        "grader.audit.command:audit", "Show whether an exercise's checks catch what is wrong.", needs="rclpy"
+    ),
+    "gradebook": Verb("spinbook.gradebook:gradebook", "Write one page and one table for all exercises."),
+    "gradescope": Verb(
+        "grader.gradescope.command:gradescope", "Write an autograder to upload to Gradescope.", needs="rclpy"
+    ),
     "classroom50": Verb(
-        "grader.classroom50.command:classroom50", "Write an autograder for Classroom 50 and GitHub Actions."
+        "grader.classroom50.command:classroom50",
+        "Write an autograder for Classroom 50 and GitHub Actions.",
+        needs="rclpy",
     ),
 }
 STUDENTS = {
-    "check": Verb("spinbook.submit.check_command:check", "Say what the public checks say of your node."),
-    "submit": Verb("spinbook.submit.command:submit", "Write one file to upload, with what the public checks say."),
+    "check": Verb("spinbook.submit.check_command:check", "Say what the public checks say of your node.", needs="rclpy"),
+    "submit": Verb(
+        "spinbook.submit.command:submit", "Write one file to upload, with what the public checks say.", needs="rclpy"
+    ),
     "update": Verb("spinbook.update.command:update", "Bring your folder up to a newer handout; your work stays."),
 }
 EVERYBODY = {
     "ros2": Verb("spinbook.ros2.command:ros2", "The ros2 command line, where no ROS 2 is installed."),
-    "turtle": Verb("spinbook.turtlesim.command:turtle", "Draw the running turtlesim."),
+    "turtle": Verb("spinbook.turtlesim.command:turtle", "Draw the running turtlesim.", needs="rclpy"),
     "doctor": Verb("spinbook.doctor.command:doctor", "Say what works on this machine, and how to fix what does not."),
 }
 SECTIONS = {"Authors": AUTHORS, "Instructors": INSTRUCTORS, "Students": STUDENTS, "Everybody": EVERYBODY}
@@ -77,6 +93,26 @@ class Verbs(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         return _load(cmd_name, VERBS[cmd_name]) if cmd_name in VERBS else None
 
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Refuse a verb whose `needs` are missing, unless only its help is wanted."""
+        name, command, rest = super().resolve_command(ctx, args)
+        needed = VERBS[name].needs if name in VERBS else ""
+        if name and needed and not set(rest) & {"-h", "--help"} and importlib.util.find_spec(needed) is None:
+            raise _missing(name, needed)
+        return name, command, rest
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run a verb. Raises UsageError where a module is missing that an extra would have brought."""
+        try:
+            return super().invoke(ctx)
+        except ModuleNotFoundError as missing:
+            package = _package(missing)
+            if package not in EXTRAS:
+                raise
+            raise _missing(ctx.invoked_subcommand or "", package) from None
+
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the verbs by who uses them, without importing any."""
         for section, verbs in SECTIONS.items():
@@ -90,15 +126,23 @@ def _load(name: str, verb: Verb) -> click.Command:
     try:
         command = getattr(importlib.import_module(module), attribute)
     except ModuleNotFoundError as missing:
-        package = (missing.name or "").partition(".")[0]
+        package = _package(missing)
         if package not in EXTRAS:
             raise
-        raise click.UsageError(
-            f"`spinbook {name}` needs {package}, which is not installed. "
-            f"Install it with: pip install 'spinbook[{EXTRAS[package]}]'"
-        ) from None
+        raise _missing(name, package) from None
     assert isinstance(command, click.Command)
     return command
+
+
+def _package(missing: ModuleNotFoundError) -> str:
+    return (missing.name or "").partition(".")[0]
+
+
+def _missing(verb: str, package: str) -> click.UsageError:
+    return click.UsageError(
+        f"`spinbook {verb}` needs {package}, which is not installed. "
+        f"Install it with: pip install 'spinbook[{EXTRAS[package]}]'"
+    )
 
 
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"]})

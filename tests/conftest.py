@@ -19,7 +19,7 @@ from process_mark import ProcessMark
 from workers import ByPiece
 from xdist.remote import Producer
 
-from interface_compiler.activation import VARIABLE
+from interface_compiler import activation
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -52,15 +52,20 @@ def ros_domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
 def only_here() -> Iterator[None]:
     """Ends the interfaces that a file's tests activate with the file; later tests would use them, too.
 
-    Reading an exercise is enough to activate what was compiled for its course.
+    Reading an exercise is enough to activate what was compiled for its course, and a fixture of the session may do so.
     """
-    path, names = list(sys.path), (VARIABLE, "AMENT_PREFIX_PATH", "PYTHONPATH")
-    before = {name: os.environ[name] for name in names if name in os.environ}
     yield
-    for name in names:
-        os.environ.pop(name, None)
-    os.environ.update(before)
-    sys.path[:] = path
+    compiled = {str(prefix) for prefix in activation.active()}
+    for name in (activation.VARIABLE, "AMENT_PREFIX_PATH", "PYTHONPATH"):
+        entries = os.environ.pop(name, "").split(os.pathsep)
+        if kept := [entry for entry in entries if entry and not within(entry, compiled)]:
+            os.environ[name] = os.pathsep.join(kept)
+    sys.path[:] = [entry for entry in sys.path if not within(entry, compiled)]
+
+
+def within(entry: str, folders: set[str]) -> bool:
+    """Whether a path is one of these folders, or below one."""
+    return any(entry == folder or entry.startswith(folder + os.sep) for folder in folders)
 
 
 @pytest.fixture

@@ -21,7 +21,7 @@ from grades import wrong_with
 from students import ROOT, Handed, course_class, write
 
 from spinbook.course.course import find_course
-from spinbook.gradebook.command import exercises_in_order
+from spinbook.gradebook import exercises_in_order
 
 
 def main() -> int:

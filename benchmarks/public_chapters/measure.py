@@ -22,7 +22,7 @@ from typing import Any
 
 from spinbook.build.execution import Job, execute
 from spinbook.build.notebooks import build_notebooks
-from spinbook.chapter.chapter import CellKind
+from spinbook.chapter.classify import CellKind
 from spinbook.chapter.imports import missing_imports
 from spinbook.chapter.python_code import CodeError, PythonCode, inspect
 from spinbook.chapter.read import Reading

@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
-from typing import Protocol
 
 from grader.audit.candidates import (
     Candidate,
@@ -21,11 +20,10 @@ from grader.audit.candidates import (
 )
 from grader.audit.listing import Check, ChecksJob, problems_in_text
 from grader.audit.mutants.making import Mutant, mutants_of
-from grader.audit.recordings import RecordedRuns, tidy
-from grader.audit.result import LEAST_SCORE, Audit, MutantResult, Problem, score_of
-from grader.audit.store import Store
+from grader.audit.result import LEAST_SCORE, Audit, AuditProblem, MutantResult, Progress, Trial, Until, score_of
+from grader.audit.store import RecordedRuns, Store, tidy
 from grader.audit.survivors import listed, problems_of_survivors, result_of, stale
-from grader.audit.trial import Trial, Trials, Until
+from grader.audit.trial import Trials
 from grader.audit.worth import (
     check_results,
     messages,
@@ -91,16 +89,6 @@ def sample(mutants: tuple[Mutant, ...], size: int) -> tuple[Mutant, ...]:
         ranked.append((turns[mutant.operator], mutant.id, mutant))
     chosen = [mutant for _, _, mutant in sorted(ranked, key=lambda entry: entry[:2])[:size]]
     return tuple(sorted(chosen, key=lambda mutant: mutant.line))
-
-
-class Progress(Protocol):
-    """Hears how far an audit is."""
-
-    def begin(self, exercise: str, total: int) -> None:
-        """There are `total` things to try."""
-
-    def done(self) -> None:
-        """One of them is tried."""
 
 
 @dataclass(frozen=True)
@@ -206,7 +194,7 @@ def audit(
     grading = grading_of(exercise, options, workers)
     checks: tuple[Check, ...] = workers.do(ChecksJob(exercise, grading.references))
     trials = Trials(grading, checks, RecordedRuns(grading))
-    store = Store(trials)
+    store = Store(grading.runner)
     reasons = listed(exercise)
     plan = planned(trials, quick, most, seeds)
     tried = try_all(plan, trials, store, progress)
@@ -251,10 +239,10 @@ def audit(
     )
 
 
-def _low_score(exercise: Exercise, mutants: tuple[MutantResult, ...]) -> list[Problem]:
+def _low_score(exercise: Exercise, mutants: tuple[MutantResult, ...]) -> list[AuditProblem]:
     score = score_of(mutants)
     if score >= LEAST_SCORE:
         return []
     text = f"{score:.1%} of the mutants that differ from the solution are caught"
     fix = f"At least {LEAST_SCORE:.0%} are to be: add checks for what survives."
-    return [Problem(str(exercise.folder), exercise.name, text, fix)]
+    return [AuditProblem(exercise.folder, None, text, fix, about=exercise.name)]

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
-from grader.audit.listing import Check
-from grader.audit.result import Judged, Problem
+from grader.audit.listing import Check, problem_of
+from grader.audit.result import AuditProblem, Judged, Trial
 from grader.audit.store import Store
-from grader.audit.trial import Trial, Trials
+from grader.audit.trial import Trials
 from grader.exercise.exercise import Exercise
 from grader.exercise.starter import starter
 from grader.grading.reference import solution_file
@@ -169,9 +169,9 @@ def judged(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> Jud
 
 def problems_of(
     candidates: list[Candidate], trials: dict[str, Trial], checks: tuple[Check, ...], seed: int | None = None
-) -> list[Problem]:
+) -> list[AuditProblem]:
     """What did not come out as it has to; `seed` is set where another than the usual one was tried."""
-    found: list[Problem] = []
+    found: list[AuditProblem] = []
     for candidate in candidates:
         trial = trials[candidate.name]
         if candidate.kind == "nothing":
@@ -183,26 +183,26 @@ def problems_of(
     return found
 
 
-def _right(candidate: Candidate, trial: Trial, seed: int | None) -> list[Problem]:
+def _right(candidate: Candidate, trial: Trial, seed: int | None) -> list[AuditProblem]:
     with_seed = f" with --seed {seed}" if seed is not None else ""
     fix = "Fix the check if the solution is right, else the solution."
     return [
-        Problem(
-            str(candidate.file),
-            name,
+        AuditProblem(
+            candidate.file,
+            None,
             f"the right solution {candidate.name} fails {name}{with_seed}: {trial.findings[name].text}",
             fix,
+            about=name,
         )
         for name in trial.failed
     ]
 
 
-def _nothing(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> list[Problem]:
+def _nothing(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> list[AuditProblem]:
     fix = "Let it depend on the check that says that anything comes at all."
     return [
-        Problem(
-            f"{check.file}:{check.line}",
-            check.name,
+        problem_of(
+            check,
             f"{candidate.name} passes {check.name} and gets {check.points:g} points, where it must get none",
             fix,
         )
@@ -211,31 +211,34 @@ def _nothing(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> l
     ]
 
 
-def _mistake(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> list[Problem]:
-    place = f"{candidate.file}:{candidate.line}"
+def _mistake(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> list[AuditProblem]:
     said = f"the mistake {candidate.name} (“{candidate.title}”)"
     known = {check.name for check in checks}
+
+    def problem(about: str, found: str, fix: str) -> AuditProblem:
+        return AuditProblem(candidate.file, candidate.line, found, fix, about=about)
+
     if not candidate.caught_by:
         fix = "Write “Caught by:” in its docstring, and under it each check after “- ”."
-        return [Problem(place, candidate.name, f"{said} names no check that is to catch it", fix)]
+        return [problem(candidate.name, f"{said} names no check that is to catch it", fix)]
     found = []
     for name in candidate.caught_by:
         status = trial.statuses.get(name)
         fix = "Fix the check so that it fails, or take it off the list under “Caught by:”."
         if name not in known:
             fix = "Write the check (again), or take it off the list under “Caught by:”."
-            found.append(Problem(place, name, f"{said} is to be caught by {name}: there is no such check", fix))
+            found.append(problem(name, f"{said} is to be caught by {name}: there is no such check", fix))
         elif status == "passed":
-            found.append(Problem(place, name, f"{name} lets {said} through", fix))
+            found.append(problem(name, f"{name} lets {said} through", fix))
         elif status == "blocked":
             by = ", ".join(trial.failed) or "another check"
             text = f"{name} is to catch {said}, but is blocked: it depends on {by}, which fails"
-            found.append(Problem(place, name, text, fix))
+            found.append(problem(name, text, fix))
     for name in trial.failed:
         if name not in candidate.caught_by:
             text = f"{said} fails {name}, too, which it does not name: {trial.findings[name].text}"
             fix = "Fix the check if this is no mistake in its eyes, else add it under “Caught by:”."
-            found.append(Problem(place, name, text, fix))
+            found.append(problem(name, text, fix))
     return found
 
 

@@ -10,7 +10,7 @@ import click
 from rich.console import Console
 
 from grader.audit.report import on, show, show_shadow, write_json
-from grader.audit.result import Audit, Problem
+from grader.audit.result import Audit, AuditProblem
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import NoExercise, find, load
 from grader.grading.grade import Options
@@ -152,9 +152,9 @@ def _audited(
     return result
 
 
-def _problem(error: ExerciseError) -> Problem:
+def _problem(error: ExerciseError) -> AuditProblem:
     problem = error.problem
-    return Problem(problem.place, problem.file.parent.name, problem.found, problem.fix)
+    return AuditProblem(problem.file, problem.line, problem.found, problem.fix, about=problem.file.parent.name)
 
 
 def _folder(exercise: str) -> Path:

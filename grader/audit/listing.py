@@ -10,21 +10,23 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from grader.audit.result import Problem
+from grader.audit.result import AuditProblem
 from grader.checking.judging import run_pytest
 from grader.checking.plugin import Checks
-from grader.checking.proofreading import without_marks
+from grader.checking.proofreading import rule_that_the_task_lacks
 from grader.checking.run import Run
 from grader.checking.verdict import check_options
 from grader.exercise.exercise import Exercise
 from grader.exercise.starter import starter
 from grader.grading.reference import solution_file
 from grader.recording.recording import Recording
-from grader.sandbox.fork_server import ForkServer
+
+if TYPE_CHECKING:
+    from grader.sandbox.fork_server import ForkServer  # the worker hands it in
 
 
 @dataclass(frozen=True)
@@ -103,26 +105,29 @@ class _Listing(Checks):
 SHORTEST = 12
 
 
-def problems_in_text(exercise: Exercise, checks: tuple[Check, ...]) -> list[Problem]:
+def problem_of(check: Check, found: str, fix: str) -> AuditProblem:
+    """Something to fix in a check."""
+    return AuditProblem(check.file, check.line, found, fix, about=check.name)
+
+
+def problems_in_text(exercise: Exercise, checks: tuple[Check, ...]) -> list[AuditProblem]:
     """Hidden checks without their sentence in the task; hints and titles that hold a line of the solution."""
     return [*_rules(exercise, checks), *_giveaways(exercise, checks)]
 
 
-def _rules(exercise: Exercise, checks: tuple[Check, ...]) -> list[Problem]:
-    task = without_marks(exercise.task)
+def _rules(exercise: Exercise, checks: tuple[Check, ...]) -> list[AuditProblem]:
     found = []
     for check in checks:
-        place = f"{check.file}:{check.line}"
         if check.hidden and not check.rule:
             text = f"the hidden check {check.name} does not name the sentence of the task on which it stands"
-            found.append(Problem(place, check.name, text, 'Add rule="…" to @check, with the sentence of task.md.'))
-        elif check.rule and without_marks(check.rule) not in task:
-            text = f"{check.name} stands on a sentence that is not in the task: “{check.rule}”"
-            found.append(Problem(place, check.name, text, "Write the sentence in task.md, or name the one there is."))
+            found.append(problem_of(check, text, 'Add rule="…" to @check, with the sentence of task.md.'))
+        elif check.rule:
+            for error in rule_that_the_task_lacks(exercise.task, check.rule, check.file, check.line):
+                found.append(problem_of(check, error.problem.found, error.problem.fix))
     return found
 
 
-def _giveaways(exercise: Exercise, checks: tuple[Check, ...]) -> list[Problem]:
+def _giveaways(exercise: Exercise, checks: tuple[Check, ...]) -> list[AuditProblem]:
     source = solution_file(exercise).read_text(encoding="utf-8")
     given = {_squeezed(line) for line in starter(source).splitlines()}
     lines = {line.split("  #")[0].strip() for line in source.splitlines() if not line.strip().startswith("#")}
@@ -134,7 +139,7 @@ def _giveaways(exercise: Exercise, checks: tuple[Check, ...]) -> list[Problem]:
                 if squeezed in _squeezed(text):
                     message = f"the {name} of {check.name} holds a line of the solution: {line}"
                     fix = "Say where to look, not what to write."
-                    found.append(Problem(f"{check.file}:{check.line}", check.name, message, fix))
+                    found.append(problem_of(check, message, fix))
     return found
 
 

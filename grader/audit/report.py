@@ -16,8 +16,7 @@ from rich.syntax import Syntax
 from rich.table import Table
 from rich.text import Text
 
-from grader.audit.result import Audit, Fate, MutantResult, Problem
-from grader.audit.shadow import Shadow
+from grader.audit.result import Audit, AuditProblem, Fate, MutantResult, Shadow
 from grader.files import write_if_changed
 from grader.report.pages import render
 from grader.report.printable import printable
@@ -58,7 +57,7 @@ def _show_programs(audit: Audit, console: Console) -> None:
     console.print(Text(tried, style="dim"))
 
 
-def _show_problem(problem: Problem, console: Console) -> None:
+def _show_problem(problem: AuditProblem, console: Console) -> None:
     console.print(Text.assemble((" ✗ ", "red"), printable(problem.found)), soft_wrap=True)
     console.print(Padding(Text(printable(_short(problem.place)), style="dim"), (0, 0, 0, 3)))
     if problem.diff:
@@ -146,21 +145,26 @@ def on(console: Console) -> Iterator[Bar]:
         yield Bar(console, bar)
 
 
-def write_json(audits: list[Audit], faults: list[Problem], file: Path) -> None:
+def write_json(audits: list[Audit], faults: list[AuditProblem], file: Path) -> None:
     """Write everything the audits found, and the `faults` for which an exercise could not be audited."""
     entries = {
         "audits": [_entries(audit) for audit in audits],
-        "faults": [dataclasses.asdict(fault) for fault in faults],
+        "faults": [_problem_entries(fault) for fault in faults],
     }
     write_if_changed(file, json.dumps(entries, indent=2, ensure_ascii=False) + "\n")
 
 
 def _entries(audit: Audit) -> dict[str, Any]:
     entries = dataclasses.asdict(audit)
+    entries["problems"] = [_problem_entries(problem) for problem in audit.problems]
     for mutant in entries["mutants"]:
         del mutant["mutant"]["source"]
     counts = {fate: audit.count(fate) for fate in ("caught", "equivalent", "listed", "survived")}
     return {**entries, "score": audit.score, "different": audit.different, **counts}
+
+
+def _problem_entries(problem: AuditProblem) -> dict[str, str]:
+    return {name: getattr(problem, name) for name in ("place", "about", "found", "fix", "diff", "evidence")}
 
 
 #: Fate -> what it is called, and the page's colour for it.
@@ -172,7 +176,7 @@ FATES: dict[Fate, tuple[str, str]] = {
 }
 
 
-def write_html(audits: list[Audit], faults: list[Problem], file: Path) -> None:
+def write_html(audits: list[Audit], faults: list[AuditProblem], file: Path) -> None:
     """Write a page about these audits, and the `faults` for which an exercise could not be audited.
 
     It is one file, needs no network and runs no script.

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
 
 from grader.audit.mutants.making import Mutant
+from grader.checking.verdict import Finding, Status
+from grader.problem import Problem
 
 #: The part of the mutants that must be caught, of those that can be told from the solution.
 LEAST_SCORE = 0.95
@@ -16,17 +18,54 @@ Fate = Literal["caught", "equivalent", "listed", "survived"]
 
 
 @dataclass(frozen=True)
-class Problem:
-    """Something for the exercise's author to fix.
+class Difference:
+    """One thing that differs in one scenario, in words."""
 
-    `place` is a file, with a line where there is one. `about` names the check, the mistake or the mutant that it is
-    about. `diff` is there for a mutant, and `evidence` for what it is that differs.
+    scenario: str
+    what: str
+
+
+#: Where a trial may end before its end.
+Until = Literal["a failure", "the end"]
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What became of one program.
+
+    `statuses` is how each check that could be judged ended, `findings` what those that failed or broke tell.
+    `spun` are the scenarios that were needed; in `differences` stands what differs from the solution there, and
+    `messages` is how many messages came. `seconds` is how long each spin took.
     """
 
-    place: str
-    about: str
-    found: str
-    fix: str
+    story: str
+    statuses: dict[str, Status]
+    findings: dict[str, Finding]
+    spun: tuple[str, ...]
+    messages: int
+    differences: tuple[Difference, ...]
+    seconds: dict[str, float] = field(default_factory=dict, compare=False)
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """The checks that failed, in their order."""
+        return tuple(name for name, status in self.statuses.items() if status == "failed")
+
+    @property
+    def caught(self) -> bool:
+        """Whether any check failed."""
+        return bool(self.failed)
+
+
+@dataclass(frozen=True)
+class AuditProblem(Problem):
+    """Something for the exercise's author to fix.
+
+    `about` names the check, the mistake or the mutant that it is about. `diff` is there for a mutant, and `evidence`
+    for what it is that differs.
+    """
+
+    about: str = ""
     diff: str = ""
     evidence: str = ""
 
@@ -104,7 +143,7 @@ class Audit:
     sampled: bool
     seeds: int
     randomised: tuple[str, ...]
-    problems: tuple[Problem, ...]
+    problems: tuple[AuditProblem, ...]
     programs: tuple[Judged, ...]
     mutants: tuple[MutantResult, ...]
     checks: tuple[CheckResult, ...]
@@ -137,3 +176,48 @@ def score_of(mutants: tuple[MutantResult, ...]) -> float:
     """The part of those that is caught, between 0 and 1; 1 where there are none."""
     many = different(mutants)
     return sum(result.fate == "caught" for result in mutants) / many if many else 1.0
+
+
+@dataclass(frozen=True)
+class Opinion:
+    """What one middleware led to: a check's status or a grade's outcome, and the words for the student."""
+
+    verdict: str
+    text: str = ""
+
+    def __str__(self) -> str:
+        """Both."""
+        return f"{self.verdict}: {self.text}" if self.text else self.verdict
+
+
+@dataclass(frozen=True)
+class Differing:
+    """A verdict on which the two disagree. `reason` is why, where the recordings show it; else it is empty."""
+
+    program: str
+    check: str
+    lockstep: Opinion
+    fast_dds: Opinion
+    reason: str
+
+
+@dataclass(frozen=True)
+class Shadow:
+    """All of one exercise. `equal` and `differing` are its verdicts, outcomes included."""
+
+    exercise: str
+    title: str
+    programs: int
+    equal: int
+    differing: tuple[Differing, ...]
+    seconds: float
+
+
+class Progress(Protocol):
+    """Hears how far an audit is."""
+
+    def begin(self, exercise: str, total: int) -> None:
+        """There are `total` things to try."""
+
+    def done(self) -> None:
+        """One of them is tried."""

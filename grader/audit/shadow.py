@@ -9,10 +9,10 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from grader.audit.audit import Progress
 from grader.audit.candidates import Candidate, mistakes, right_ones
+from grader.audit.result import Differing, Opinion, Progress, Shadow
 from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade, Options
@@ -25,41 +25,6 @@ from grader.workers.pool import HostFault, WorkerPool
 OUTCOME = "outcome"
 
 INFERRED = "over Fast DDS the grader could only infer from sleeping threads when the node was done"
-
-
-@dataclass(frozen=True)
-class Opinion:
-    """What one middleware led to: a check's status or a grade's outcome, and the words for the student."""
-
-    verdict: str
-    text: str = ""
-
-    def __str__(self) -> str:
-        """Both."""
-        return f"{self.verdict}: {self.text}" if self.text else self.verdict
-
-
-@dataclass(frozen=True)
-class Differing:
-    """A verdict on which the two disagree. `reason` is why, where the recordings show it; else it is empty."""
-
-    program: str
-    check: str
-    lockstep: Opinion
-    fast_dds: Opinion
-    reason: str
-
-
-@dataclass(frozen=True)
-class Shadow:
-    """All of one exercise. `equal` and `differing` are its verdicts, outcomes included."""
-
-    exercise: str
-    title: str
-    programs: int
-    equal: int
-    differing: tuple[Differing, ...]
-    seconds: float
 
 
 def shadow(exercise: Exercise, options: Options, workers: WorkerPool, progress: Progress) -> Shadow:

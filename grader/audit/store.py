@@ -1,28 +1,128 @@
-"""Keeps trials: a program that has been judged is not judged again while nothing that it depends on has changed."""
+"""Keeps what audits know: what programs published, and how they were judged.
+
+After a change to a check no program has to run again; what has been judged is not judged again while nothing that it
+depends on has changed.
+"""
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
+import gzip
 import hashlib
 import json
+import os
 import threading
+import time
 from collections.abc import Callable
+from functools import cache
+from pathlib import Path
 from typing import Any
 
-from grader.audit.recordings import audit_folder, engine, keep
-from grader.audit.trial import Difference, Trial, Trials
+from grader.audit.result import Difference, Trial
 from grader.checking.verdict import Finding
-from grader.grading.reference import digest_of, solution_file
+from grader.files import write_if_changed
+from grader.grading.grading import Grading
+from grader.grading.reference import GRADER, cache_folder, digest_of, solution_file, versions
+from grader.grading.running import ScenarioRunner
+from grader.recording.recording import Recording
+from grader.recording.store import from_json, to_json
+from grader.sandbox.program import Middleware
+from grader.scenario.scenario import Scenario
+from grader.submission.reading import Submission
+from grader.workers.pool import Worker
+
+#: The parts of the grader that decide what a recording holds.
+SPINNING = ("workers", "exercise", "recording", "runner", "sandbox", "scenario", "submission")
+SPINNING_FILES = ("grading/running.py", "loopback.xml")
 
 #: What decides a trial beside what decides a recording.
 JUDGING = ("checking", "audit/trial.py", "audit/listing.py")
+
+#: What nobody has asked for since is thrown away.
+KEPT_DAYS = 30
+
+#: A program that logs more than this is spun each time.
+LONGEST_LOG = 20_000
+
+
+class Stopped(Exception):
+    """Raised in place of a recording when the audit is to end at once."""
+
+
+class RecordedRuns:
+    """The kept recordings of one exercise's programs. Once `stopped` is set, no more are made."""
+
+    def __init__(self, grading: Grading) -> None:
+        self.stopped = threading.Event()
+        self._grading = grading
+        self._folder = audit_folder(grading.runner.exercise.name)
+
+    def process(self) -> Worker:
+        """A process for the spins of one program: what it has made ready for one, it has ready for the next."""
+        return self._grading.runner.workers.hand()
+
+    def spin(self, submission: Submission, scenario: Scenario, turn: int, process: Worker) -> Recording:
+        """The recording of a program in one scenario, kept or made now; `turn` chooses the core that it runs on.
+
+        Raises `HostFault` where the machine or we are at fault, `Stopped` when no more are to be made.
+        """
+        runner = self._grading.runner
+        made_by = (str(runner.isolation), engine(runner.middleware))
+        exercise = runner.exercise
+        interface = (exercise.topics, exercise.endpoints, exercise.parameters, exercise.programs, exercise.node_name)
+        key = (submission.digest, scenario.digest, interface, exercise.reference_node, *made_by)
+        file = self._folder / f"{hashlib.sha256(repr(key).encode()).hexdigest()[:32]}.spin.gz"
+        try:
+            kept = from_json(gzip.decompress(file.read_bytes()).decode())[scenario.name]
+            file.touch()
+            return kept
+        except (OSError, EOFError, ValueError, KeyError, TypeError):
+            pass
+        recording: Recording | None = process.do(runner.job(submission, scenario, turn), self.stopped)
+        if recording is None:
+            raise Stopped
+        if len(recording.log) <= LONGEST_LOG:
+            keep(file, gzip.compress(to_json({scenario.name: recording}).encode(), 5))
+        return recording
+
+
+def audit_folder(exercise: str) -> Path:
+    """Where an exercise's audits keep what they know."""
+    return cache_folder().parent / "audit" / exercise
+
+
+def keep(file: Path, content: bytes) -> None:
+    """Write a file as a whole. Where nothing can be kept, it is made anew each time."""
+    with contextlib.suppress(OSError):
+        write_if_changed(file, content)
+
+
+def tidy(exercise: str) -> None:
+    """Throw away what has not been asked for in a long time."""
+    oldest = time.time() - KEPT_DAYS * 24 * 3600
+    with contextlib.suppress(OSError):
+        for entry in os.scandir(audit_folder(exercise)):
+            if entry.stat().st_mtime < oldest:
+                Path(entry.path).unlink(missing_ok=True)
+
+
+@cache
+def engine(middleware: Middleware, also: tuple[str, ...] = ()) -> str:
+    """A digest of all of ours that decides what a recording holds, and the versions of Python, ROS and the middleware.
+
+    `also` names further files and folders, by their paths below grader/.
+    """
+    named = [GRADER / name for name in (*SPINNING_FILES, *SPINNING, *also)]
+    files = [file for path in named for file in (sorted(path.rglob("*.py")) if path.is_dir() else [path])]
+    others = {name: version for name, version in versions(middleware).items() if name != "grader"}
+    return f"{digest_of(files)} {json.dumps(others, sort_keys=True)}"
 
 
 class Store:
     """The kept trials of one exercise. `made` and `kept` count those made now and known from before."""
 
-    def __init__(self, trials: Trials) -> None:
-        runner = trials.grading.runner
+    def __init__(self, runner: ScenarioRunner) -> None:
         exercise = runner.exercise
         self._folder = audit_folder(exercise.name)
         self._common = {

@@ -7,9 +7,9 @@ from collections import Counter
 from pathlib import Path
 
 from grader.audit.mutants.making import Mutant
-from grader.audit.result import Fate, MutantResult, Problem
-from grader.audit.trial import Trial
+from grader.audit.result import AuditProblem, Fate, MutantResult, Trial
 from grader.exercise.exercise import Exercise, ExerciseError
+from grader.grading.reference import solution_file
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -46,7 +46,7 @@ def listed(exercise: Exercise) -> dict[str, str]:
     return reasons
 
 
-def stale(exercise: Exercise, reasons: dict[str, str], fates: dict[str, Fate]) -> list[Problem]:
+def stale(exercise: Exercise, reasons: dict[str, str], fates: dict[str, Fate]) -> list[AuditProblem]:
     """The entries that hold no longer."""
     file = survivors_file(exercise)
     lines = file.read_text(encoding="utf-8").splitlines() if reasons else []
@@ -56,7 +56,7 @@ def stale(exercise: Exercise, reasons: dict[str, str], fates: dict[str, Fate]) -
         if fate in NOW:
             line = next((i for i, text in enumerate(lines, start=1) if id_ in text), 1)
             message = f"the mutant {id_} is listed as a survivor, but {NOW[fate]}"
-            found.append(Problem(f"{file}:{line}", id_, message, "Take the entry out."))
+            found.append(AuditProblem(file, line, message, "Take the entry out.", about=id_))
     return found
 
 
@@ -87,17 +87,18 @@ def _evidence(trial: Trial) -> str:
     return "; ".join([*text, *([f"and {len(seen) - 4} more"] if len(seen) > 4 else [])])
 
 
-def problems_of_survivors(exercise: Exercise, results: tuple[MutantResult, ...]) -> list[Problem]:
+def problems_of_survivors(exercise: Exercise, results: tuple[MutantResult, ...]) -> list[AuditProblem]:
     """A question for each mutant that no check catches and nobody has judged."""
     file = survivors_file(exercise)
     return [
-        Problem(
-            f"{exercise.solution_file}:{result.mutant.line}",
-            result.mutant.id,
+        AuditProblem(
+            solution_file(exercise),
+            result.mutant.line,
             f"no check catches the mutant {result.mutant.id}: {result.mutant.what}",
             QUESTION.format(file.name, result.mutant.id),
-            result.mutant.diff,
-            f"It differs from the solution: {result.evidence}.",
+            about=result.mutant.id,
+            diff=result.mutant.diff,
+            evidence=f"It differs from the solution: {result.evidence}.",
         )
         for result in results
         if result.fate == "survived"

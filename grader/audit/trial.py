@@ -7,10 +7,11 @@ import json
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any, Literal
+from typing import Any
 
 from grader.audit.listing import Check
-from grader.audit.recordings import RecordedRuns
+from grader.audit.result import Difference, Trial, Until
+from grader.audit.store import RecordedRuns
 from grader.checking.verdict import Finding, Status, Verdict
 from grader.grading.grading import Grading
 from grader.recording.recording import Ending, Received, Recording
@@ -18,14 +19,6 @@ from grader.scenario.scenario import Scenario
 from grader.submission.reading import Submission
 from grader.workers.jobs import JudgeJob
 from grader.workers.pool import Worker
-
-
-@dataclass(frozen=True)
-class Difference:
-    """One thing that differs in one scenario, in words."""
-
-    scenario: str
-    what: str
 
 
 def differences(recording: Recording, reference: Recording) -> tuple[Difference, ...]:
@@ -89,38 +82,6 @@ def _events(recording: Recording, reference: Recording) -> list[str]:
 def _text(value: Any) -> str:
     """NaN is not equal to itself; its text is."""
     return json.dumps(value, sort_keys=True)
-
-
-#: Where a trial may end before its end.
-Until = Literal["a failure", "the end"]
-
-
-@dataclass(frozen=True)
-class Trial:
-    """What became of one program.
-
-    `statuses` is how each check that could be judged ended, `findings` what those that failed or broke tell.
-    `spun` are the scenarios that were needed; in `differences` stands what differs from the solution there, and
-    `messages` is how many messages came. `seconds` is how long each spin took.
-    """
-
-    story: str
-    statuses: dict[str, Status]
-    findings: dict[str, Finding]
-    spun: tuple[str, ...]
-    messages: int
-    differences: tuple[Difference, ...]
-    seconds: dict[str, float] = field(default_factory=dict, compare=False)
-
-    @property
-    def failed(self) -> tuple[str, ...]:
-        """The checks that failed, in their order."""
-        return tuple(name for name, status in self.statuses.items() if status == "failed")
-
-    @property
-    def caught(self) -> bool:
-        """Whether any check failed."""
-        return bool(self.failed)
 
 
 @dataclass(frozen=True)

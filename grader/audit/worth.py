@@ -6,9 +6,8 @@ import re
 from itertools import combinations
 from statistics import median
 
-from grader.audit.listing import Check
-from grader.audit.result import CheckResult, Problem, ScenarioResult
-from grader.audit.trial import Trial
+from grader.audit.listing import Check, problem_of
+from grader.audit.result import AuditProblem, CheckResult, ScenarioResult, Trial
 from grader.checking.verdict import Finding
 from grader.scenario.scenario import Scenario
 
@@ -19,7 +18,7 @@ WORDS = re.compile(r"expect|must|should|has to|have to|was to|were to|instead of
 EACH = 4
 
 
-def problems_of_checks(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Problem]:
+def problems_of_checks(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
     """`trials` are those of mistakes and of mutants that can be told from the solution, by name."""
     return [*_that_never_fail(checks, trials), *_that_fail_together(checks, trials), *messages(checks, trials)]
 
@@ -66,11 +65,10 @@ def _undecided(check: Check, trial: Trial) -> bool:
     return check.name not in trial.statuses and not set(check.depends) & set(trial.failed)
 
 
-def _that_never_fail(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Problem]:
+def _that_never_fail(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
     return [
-        Problem(
-            f"{check.file}:{check.line}",
-            check.name,
+        problem_of(
+            check,
             f"no mutant and no mistake fails {check.name}: can it fail at all?",
             "Write a mistake that it must catch, or remove it.",
         )
@@ -78,12 +76,11 @@ def _that_never_fail(checks: tuple[Check, ...], trials: dict[str, Trial]) -> lis
     ]
 
 
-def _that_fail_together(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Problem]:
+def _that_fail_together(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
     fix = "Write a mistake that fails only one, let one depend on the other, or make them one check."
     return [
-        Problem(
-            f"{other.file}:{other.line}",
-            other.name,
+        problem_of(
+            other,
             f"{one.name} and {other.name} always fail together ({many} times): do both judge the same?",
             fix,
         )
@@ -91,7 +88,7 @@ def _that_fail_together(checks: tuple[Check, ...], trials: dict[str, Trial]) -> 
     ]
 
 
-def problems_of_broken(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Problem]:
+def problems_of_broken(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
     """Checks that broke themselves on what some program published; `trials` are those of all programs, by name."""
     found = []
     for check in checks:
@@ -99,7 +96,7 @@ def problems_of_broken(checks: tuple[Check, ...], trials: dict[str, Trial]) -> l
             if trial.statuses.get(check.name) == "error":
                 text = f"{check.name} breaks on what {name} publishes: {trial.findings[check.name].text}"
                 fix = "Whatever a student's node publishes, a check has to pass or to fail: look before you take."
-                found.append(Problem(f"{check.file}:{check.line}", check.name, text, fix))
+                found.append(problem_of(check, text, fix))
                 break
     return found
 
@@ -109,7 +106,7 @@ def _broke_off(finding: Finding) -> bool:
     return bool(finding.scenario) and finding.message is None
 
 
-def messages(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Problem]:
+def messages(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
     """Checks that failed and did not say what they expected."""
     found = []
     for check in checks:
@@ -117,7 +114,7 @@ def messages(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Proble
             finding = trial.findings.get(check.name) if check.name in trial.failed else None
             if finding and not _broke_off(finding) and not finding.expected and not WORDS.search(finding.text):
                 message = f"{check.name} fails for {name} and does not say what was expected: “{finding.text}”"
-                found.append(Problem(f"{check.file}:{check.line}", check.name, message, "Name it in the message."))
+                found.append(problem_of(check, message, "Name it in the message."))
                 break
     return found
 

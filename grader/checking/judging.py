@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import contextlib
+import difflib
 import io
 import os
+import re
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
 
 from grader.checking.plugin import Checks, fixtures_of
 from grader.checking.run import Run
-from grader.checking.spelling import with_spelling
-from grader.checking.verdict import Verdict
+from grader.checking.verdict import Finding, Verdict
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.recording.recording import Recording
 
@@ -115,3 +116,28 @@ def listed(exercise: Exercise, scenarios: tuple[str, ...] = ()) -> tuple[Listed,
         Listed(verdict.name, verdict.points, verdict.hidden, checks.fixtures[verdict.name])
         for verdict in checks.verdicts.values()
     )
+
+
+TOPIC = re.compile(r"(?<![\w/])/\w[\w/]*")
+
+#: How alike two names have to be, as difflib counts: /joint_comands and /joint_commands are 0.97.
+ALIKE = 0.8
+
+
+def with_spelling(verdict: Verdict, topics: Collection[str], node: str) -> Verdict:
+    """Add to a finding about topics which of the exercise's `topics` a name in it is probably meant to be.
+
+    The name of its `node` may be like that of a topic, and is no slip.
+    """
+    finding = verdict.finding
+    if finding is None or finding.message is not None:
+        return verdict
+    return replace(verdict, finding=_suggest(finding, topics, node))
+
+
+def _suggest(finding: Finding, topics: Collection[str], node: str) -> Finding:
+    for name in dict.fromkeys(TOPIC.findall(finding.text)):
+        meant = [] if name in (*topics, node) else difflib.get_close_matches(name, topics, n=1, cutoff=ALIKE)
+        if meant:
+            return replace(finding, text=f"{finding.text} Is {name} a misspelling of {meant[0]}?")
+    return finding

@@ -78,15 +78,19 @@ def same_name_twice(file: Path) -> Iterator[ExerciseError]:
 
 def rules_that_the_task_lacks(task: str, check_files: Iterable[Path]) -> Iterator[ExerciseError]:
     """Checks whose `rule` is no sentence of `task`, the text of task.md."""
-    words = without_marks(task)
     for file in check_files:
         for line, rule in _rules(file):
-            if without_marks(rule) not in words:
-                found = f"a check is based on a sentence that is not in task.md: “{rule}”"
-                yield ExerciseError(file, found, "Write the sentence in task.md, or name the one there is.", line)
+            yield from rule_that_the_task_lacks(task, rule, file, line)
 
 
-def without_marks(text: str) -> str:
+def rule_that_the_task_lacks(task: str, rule: str, file: Path, line: int) -> Iterator[ExerciseError]:
+    """The error of a check in this line of `file` whose `rule` is no sentence of `task`; none if it is one."""
+    if _without_marks(rule) not in _without_marks(task):
+        found = f"a check is based on a sentence that is not in task.md: “{rule}”"
+        yield ExerciseError(file, found, "Write the sentence in task.md, or name the one there is.", line)
+
+
+def _without_marks(text: str) -> str:
     """A text of task.md or of a rule without Markdown's marks, and with one space wherever there is some."""
     return " ".join(re.sub(r"[*`]", "", text).split())
 

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import io
+import re
 import shlex
 import sys
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib import metadata
 from pathlib import Path
 
 import click
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import NoExercise, find, load
-from grader.gradescope.installed import NotInstalled, installed_wheel, pins
 from grader.grading.reference import solution_file
 from grader.sandbox.isolation import Isolation
 from interface_compiler import activation
+from interface_compiler.archive import zipped
 from interface_compiler.building import DEFINITIONS
+from interface_compiler.wheel import record
 
 #: Where this software's own source is: the folder with pyproject.toml.
 SOURCE = Path(__file__).parents[2]
@@ -157,3 +160,52 @@ def gradescope(exercise: str, out: Path | None, isolation: Isolation | None) -> 
     except OSError as error:
         raise click.UsageError(f"{file}: {error.strerror}") from None
     click.echo(f"{file}: upload it to Gradescope, under Configure Autograder.")
+
+
+NAME = "spinbook"
+
+#: What the installer adds to a wheel's own files.
+_INSTALLERS = ("INSTALLER", "REQUESTED", "direct_url.json", "RECORD")
+
+
+class NotInstalled(Exception):
+    """Raised where this software is not installed from a wheel; says what to do."""
+
+
+def installed_wheel() -> tuple[str, bytes]:
+    """Return the name and the content of the wheel from which this software is installed, made again from its files.
+
+    A wheel is a zip whose RECORD lists every file with its hash (PEP 427, and "Recording installed projects"). Raises
+    `NotInstalled`.
+    """
+    try:
+        distribution = metadata.distribution(NAME)
+    except metadata.PackageNotFoundError:
+        raise NotInstalled(f"{NAME} is not installed here: pip install {NAME}") from None
+    files = {}
+    for file in distribution.files or ():
+        name = file.as_posix()
+        if not name.startswith("..") and "__pycache__" not in name and name.rpartition("/")[2] not in _INSTALLERS:
+            files[name] = Path(str(distribution.locate_file(file))).read_bytes()
+    if "grader/__init__.py" not in files:
+        raise NotInstalled(f"{NAME} is installed neither from a wheel nor in a checkout: pip install it from a wheel.")
+    listing = f"{NAME}-{distribution.version}.dist-info/RECORD"
+    files[listing] = record(files, listing)
+    return f"{NAME}-{distribution.version}-py3-none-any.whl", zipped(files, last=listing)
+
+
+def pins() -> list[str]:
+    """Return the versions, such as `numpy==2.3.1`, of what is installed here of all that the wheel may need."""
+    found: dict[str, str] = {}
+    waiting = [NAME]
+    while waiting:
+        name = re.sub(r"[-_.]+", "-", waiting.pop()).lower()  # PEP 503, "Normalized Names"
+        if name in found:
+            continue
+        try:
+            distribution = metadata.distribution(name)
+        except metadata.PackageNotFoundError:
+            continue
+        found[name] = distribution.version
+        waiting += [match[0] for line in distribution.requires or () if (match := re.match(r"[\w.-]+", line))]
+    return sorted(f"{name}=={version}" for name, version in found.items() if name != NAME)

@@ -6,17 +6,16 @@ import dataclasses
 import json
 from typing import Any
 
-from grader.recording.events import (
-    Call,
-    Cancel,
-    Exit,
-    Feedback,
-    Goal,
-    GoalState,
-    ParameterChange,
-    ParameterReading,
-)
+from grader.recording import events
 from grader.recording.recording import Ending, EndPoint, Received, Recording, Sent
+
+#: Recordings from before there were these have none of them.
+_LATER = {
+    "calls": events.Call,
+    "parameters": events.ParameterChange,
+    "readings": events.ParameterReading,
+    "exits": events.Exit,
+}
 
 
 def to_json(recordings: dict[str, Recording]) -> str:
@@ -57,22 +56,18 @@ def _recording(entries: dict[str, Any]) -> Recording:
             "nodes": tuple(entries["nodes"]),
             "end_points": tuple(EndPoint(**end_point) for end_point in entries["end_points"]),
             "ending": Ending(**entries["ending"]),
-            # Recordings from before there were these have none of them.
-            "calls": tuple(Call(**call) for call in entries.get("calls", ())),
+            **{name: tuple(kind(**one) for one in entries.get(name, ())) for name, kind in _LATER.items()},
             "goals": tuple(_goal(goal) for goal in entries.get("goals", ())),
-            "parameters": tuple(ParameterChange(**change) for change in entries.get("parameters", ())),
-            "readings": tuple(ParameterReading(**reading) for reading in entries.get("readings", ())),
-            "exits": tuple(Exit(**exit_) for exit_ in entries.get("exits", ())),
         }
     )
 
 
-def _goal(entries: dict[str, Any]) -> Goal:
-    return Goal(
+def _goal(entries: dict[str, Any]) -> events.Goal:
+    return events.Goal(
         **{
             **entries,
-            "states": tuple(GoalState(**state) for state in entries["states"]),
-            "feedback": tuple(Feedback(**feedback) for feedback in entries["feedback"]),
-            "cancels": tuple(Cancel(**cancel) for cancel in entries["cancels"]),
+            "states": tuple(events.GoalState(**state) for state in entries["states"]),
+            "feedback": tuple(events.Feedback(**feedback) for feedback in entries["feedback"]),
+            "cancels": tuple(events.Cancel(**cancel) for cancel in entries["cancels"]),
         }
     )

@@ -1,10 +1,21 @@
-"""The Python classes of messages, services and actions."""
+"""The Python classes of messages, services and actions, and the services that every node has."""
 
 from __future__ import annotations
 
 import importlib
 from functools import cache
 from typing import Any
+
+#: Services that every node of rclpy has by itself, under its own name.
+OWN_SERVICES = (
+    "describe_parameters",
+    "get_parameter_types",
+    "get_parameters",
+    "list_parameters",
+    "set_parameters",
+    "set_parameters_atomically",
+    "get_type_description",
+)
 
 
 @cache

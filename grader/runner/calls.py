@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters
@@ -15,6 +15,9 @@ from grader.runner.ends import Ends
 from grader.runner.message import message_class
 from grader.scenario.scenario import GetParameter, Request, Scenario, SetParameter
 from rmw_lockstep.hub import Client
+
+#: What `Calls` carries out.
+CallStep: TypeAlias = Request | SetParameter | GetParameter
 
 SET, GET = "rcl_interfaces/srv/SetParameters", "rcl_interfaces/srv/GetParameters"
 
@@ -50,7 +53,7 @@ class Calls:
             self._clients[service] = self._ends.node.client(service, type_name)
         return self._clients[service]
 
-    def make(self, step: Request | SetParameter | GetParameter) -> None:
+    def make(self, step: CallStep) -> None:
         """Send one request."""
         client = self._client(step)
         self._made.append(Made(step, client, client.call(_request_of(step))))

@@ -13,7 +13,6 @@ from grader.scenario.scenario import SECOND, START
 from rmw_lockstep.hub import Hub, HubNode
 from rmw_lockstep.hub import Qos as HubQos
 from rmw_lockstep.hub.ends import Moment
-from rmw_lockstep.hub.frames import EndPoint
 from rmw_lockstep.hub.qos import BEST_EFFORT, RELIABLE, TRANSIENT_LOCAL, VOLATILE
 
 
@@ -68,9 +67,3 @@ def hub_qos(qos: Qos) -> HubQos:
         reliability=BEST_EFFORT if qos.reliability == "best_effort" else RELIABLE,
         durability=TRANSIENT_LOCAL if qos.durability == "transient_local" else VOLATILE,
     )
-
-
-def node_of(ends: Ends, end_point: EndPoint) -> str:
-    """The full name of the node that an end point belongs to."""
-    node = ends.hub.graph.nodes.get(end_point.node)
-    return node.full_name if node else ""

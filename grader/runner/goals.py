@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeAlias
 
 from action_msgs.msg import GoalStatusArray
 from action_msgs.srv import CancelGoal as CancelService
@@ -17,6 +17,8 @@ from grader.runner.recorder import ACCEPT_ANY
 from grader.scenario.scenario import CancelAll, CancelGoal, Scenario, SendGoal
 from rmw_lockstep.hub import Client, Heard, Subscription
 from rmw_lockstep.hub.ends import Moment
+
+CancelStep: TypeAlias = CancelGoal | CancelAll
 
 CANCEL, STATUS = "action_msgs/srv/CancelGoal", "action_msgs/msg/GoalStatusArray"
 
@@ -171,7 +173,7 @@ class Goals:
         self._actions[number] = step.action
         self._clients[step.action].send(step, number)
 
-    def cancel(self, step: CancelGoal | CancelAll) -> None:
+    def cancel(self, step: CancelStep) -> None:
         """Ask to cancel."""
         if isinstance(step, CancelAll):
             self._clients[step.action].cancel(step.at, 0)

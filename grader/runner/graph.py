@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from grader.recording.recording import EndPoint, EndPointKind
+from grader.recording.types import OWN_SERVICES
 from rmw_lockstep.hub import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, Hub
 from rmw_lockstep.hub import EndPoint as OnHub
 from rmw_lockstep.hub.graph import Graph
@@ -12,17 +13,6 @@ from rmw_lockstep.hub.qos import INFINITE, KEEP_ALL
 
 #: Topics that every node has.
 OWN_TO_ROS = ("/rosout", "/parameter_events")
-
-#: Services that every node of rclpy has by itself, under its own name.
-OWN_SERVICES = (
-    "describe_parameters",
-    "get_parameter_types",
-    "get_parameters",
-    "list_parameters",
-    "set_parameters",
-    "set_parameters_atomically",
-    "get_type_description",
-)
 
 #: How the service is called by which an action takes goals.
 SEND_GOAL = "/_action/send_goal"

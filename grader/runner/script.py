@@ -7,9 +7,9 @@ from collections.abc import Callable
 from grader.exercise.exercise import ExerciseError
 from grader.recording.events import Call, Goal, ParameterChange, ParameterReading
 from grader.runner.acting import ScriptedActionServer
-from grader.runner.calls import Calls
+from grader.runner.calls import Calls, CallStep
 from grader.runner.ends import Ends, Schedule, hub_qos, nanoseconds
-from grader.runner.goals import Goals
+from grader.runner.goals import CancelStep, Goals
 from grader.runner.playing import RunningWorld
 from grader.runner.publishers import ReferencePublishers
 from grader.runner.recorder import Recorder
@@ -18,17 +18,12 @@ from grader.runner.task import Task
 from grader.runner.team import Team
 from grader.scenario.scenario import (
     START,
-    CancelAll,
-    CancelGoal,
     ComeBack,
-    GetParameter,
     Kill,
     Leave,
     Message,
     Program,
-    Request,
     SendGoal,
-    SetParameter,
     StartProgram,
     Step,
     Subscribe,
@@ -94,11 +89,11 @@ class Script:
 
     def do(self, step: Step) -> None:
         """Carry out one step."""
-        if isinstance(step, (Request, SetParameter, GetParameter)):
+        if isinstance(step, CallStep):
             self._calls.make(step)
         elif isinstance(step, SendGoal):
             self._goals.send(step)
-        elif isinstance(step, (CancelGoal, CancelAll)):
+        elif isinstance(step, CancelStep):
             self._goals.cancel(step)
         elif isinstance(step, Subscribe):
             self._recorder.join(step.name, step.topic, step.type, hub_qos(step.qos))

@@ -12,9 +12,9 @@ import sys
 from collections.abc import Sequence
 from types import TracebackType
 
-from grader.sandbox import filesystem, namespaces, network, trials
+from grader.sandbox import filesystem, namespaces, network
 from grader.sandbox.confine import Start
-from grader.sandbox.isolation import Isolation
+from grader.sandbox.isolation import Isolation, forget
 from grader.sandbox.middleware import variables
 from grader.sandbox.program import Limits, Middleware, Program, SandboxError
 from grader.sandbox.student import Student
@@ -102,7 +102,7 @@ class ForkServer:
         try:
             return Student(ours, output, limits)
         except SandboxError:
-            trials.forget()
+            forget()
             raise
 
     def close(self) -> None:

@@ -1,17 +1,42 @@
-"""How well a student's program is isolated from this machine, and which levels this machine offers."""
+"""How well a student's program is isolated from this machine, and which levels this machine offers.
+
+Which levels have been tried and work is kept until something changes that this depends on: a trial takes as long as the
+runs of four scenarios. What is kept makes no start less safe: each start makes its sandbox anew, and where a step of
+that fails nothing runs. What did not work is not kept.
+"""
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
 import os
+import resource
+import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from enum import Enum
 from functools import cache
+from pathlib import Path
 
-from grader.sandbox import filesystem, trials
+from grader.files import cached, write_if_changed
+from grader.sandbox import filesystem
 from grader.sandbox.program import SandboxUnavailable
 
 _TRIAL_S = 30.0
+
+#: What decides on this machine whether a process may make namespaces, and which process this is: proc(5), and
+#: user_namespaces(7). The first differs each time that the machine is started.
+_FILES = (
+    "/proc/sys/kernel/random/boot_id",
+    "/proc/sys/user/max_user_namespaces",
+    "/proc/sys/kernel/unprivileged_userns_clone",
+    "/proc/sys/kernel/apparmor_restrict_unprivileged_userns",
+    "/proc/self/attr/current",
+    "/proc/self/uid_map",
+)
+_NAMESPACES = ("user", "mnt", "pid", "net", "ipc")
+_STATUS = ("Uid", "Gid", "CapEff", "CapBnd", "NoNewPrivs", "Seccomp", "Seccomp_filters")
 
 
 class Isolation(str, Enum):
@@ -62,11 +87,11 @@ def choose(wanted: Isolation | None = None) -> Isolation:
 
 def _reason_against(level: Isolation) -> str | None:
     """None where the level works, or has worked under the same circumstances; else the reason in words."""
-    if trials.has_worked(level.value):
+    if has_worked(level):
         return None
     reason = _tried(level)
     if reason is None:
-        trials.keep(level.value)
+        _keep(level)
     return reason
 
 
@@ -90,3 +115,50 @@ def _tried(level: Isolation) -> str | None:
         return None
     lines = (trial.stdout.strip() or trial.stderr.strip()).splitlines()
     return lines[-1] if lines else f"trying it ended with {trial.returncode}"
+
+
+def has_worked(level: Isolation) -> bool:
+    """Whether a trial of this level has worked, under all the same circumstances."""
+    try:
+        return _file(level).exists()
+    except OSError:  # another user's folder: it is tried each time
+        return False
+
+
+def _keep(level: Isolation) -> None:
+    """Remember that a trial has worked."""
+    with contextlib.suppress(OSError):  # where nothing can be kept, it is tried each time
+        write_if_changed(_file(level), "")
+
+
+def forget() -> None:
+    """Try every level again the next time: a sandbox could not be made that ought to work."""
+    shutil.rmtree(cached("sandbox"), ignore_errors=True)
+
+
+def _file(level: Isolation) -> Path:
+    text = "\n".join((level.value, *_circumstances()))
+    return cached("sandbox") / f"{level.value}-{hashlib.sha256(text.encode()).hexdigest()[:32]}"
+
+
+def _circumstances() -> Iterator[str]:
+    yield from map(_text, _FILES)
+    yield from (line for line in _text("/proc/self/status").splitlines() if line.partition(":")[0] in _STATUS)
+    for name in _NAMESPACES:
+        with contextlib.suppress(OSError):
+            yield os.readlink(f"/proc/self/ns/{name}")  # noqa: PTH115 - no path
+    yield repr([resource.getrlimit(which) for which in (resource.RLIMIT_NPROC, resource.RLIMIT_AS)])
+    yield repr((sys.executable, sys.version))
+    for name in sorted({*filesystem.RUNTIME_VARIABLES} - {"PATH"}):
+        yield f"{name}={sorted(os.environ.get(name, '').split(os.pathsep))}"  # ROS's wheels give theirs in any order
+    bubblewrap = shutil.which("bwrap")
+    for file in (*sorted(Path(__file__).parent.glob("*.py")), *([Path(bubblewrap)] if bubblewrap else [])):
+        found = file.stat()
+        yield f"{file} {found.st_mtime_ns} {found.st_size} {found.st_mode}"
+
+
+def _text(file: str) -> str:
+    try:
+        return Path(file).read_text(errors="replace")
+    except OSError:
+        return ""

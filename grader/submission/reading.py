@@ -9,14 +9,13 @@ import json
 import os
 import re
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from grader.exercise.exercise import Exercise
 from grader.sandbox.program import Program
-from grader.submission.parts import joined, parts
 from grader.submission.upload import NoUpload, Upload, unpack
 
 
@@ -305,3 +304,28 @@ def _executable(given: str, exercise: Exercise) -> Submission:
 
 def _digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
+
+
+#: Several programs in one file: each begins with such a line.
+_BEGIN = re.compile(r"# file: (?P<name>[a-z_][a-z0-9_]*\.py)\s*")
+
+
+def parts(source: str) -> dict[str, str]:
+    """The programs in a file, by their names. What stands before the first one belongs to none.
+
+    Each has as many empty lines in front as it has lines before it, so that line numbers are those of the whole file.
+    """
+    found: dict[str, list[str]] = {}
+    current: list[str] | None = None
+    for number, line in enumerate(source.splitlines()):
+        if begins := _BEGIN.fullmatch(line):
+            current = found.setdefault(begins["name"], [""] * number)
+        if current is not None:
+            current.append(line)
+    return {name: "\n".join(lines) + "\n" for name, lines in found.items()}
+
+
+def joined(files: Mapping[str, bytes]) -> str:
+    """Several files as one."""
+    texts = (f"# file: {name}\n{code.decode(errors='replace').rstrip()}\n" for name, code in files.items())
+    return "\n\n".join(texts)

@@ -8,18 +8,20 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from grader.exercise.exercise import Exercise
 from grader.locks import claim_number
 from grader.recording.recording import Recording
 from grader.runner.task import Task
-from grader.sandbox.fork_server import ForkServer
 from grader.sandbox.isolation import Isolation
 from grader.sandbox.network import enter
 from grader.sandbox.program import Limits, Middleware, Program
-from grader.sandbox.student import Student
 from grader.scenario.scenario import Scenario
+
+if TYPE_CHECKING:
+    from grader.sandbox.fork_server import ForkServer  # the worker hands it in
+    from grader.sandbox.student import Student
 
 #: Inside network namespaces of its own a rig is alone in every domain.
 ALONE = 42

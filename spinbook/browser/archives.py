@@ -30,6 +30,7 @@ _SPINBOOK = (
     "ros2",
     "kernel/__init__.py",
     "kernel/entry.py",
+    "kernel/recorder_lines.py",
     "kernel/timeline.py",
     "kernel/timeline_picture.py",
     "kernel/timeline_recorder.py",

@@ -13,7 +13,8 @@ import nbformat
 from grader.exercise.loading import load
 from grader.exercise.starter import starter
 from spinbook.build.portable import Place, portable
-from spinbook.chapter.chapter import Cell, CellKind, Chapter
+from spinbook.chapter.chapter import Cell, Chapter
+from spinbook.chapter.classify import CellKind
 from spinbook.chapter.flavours import parser
 from spinbook.chapter.terminal import Command, CommandKind
 from spinbook.course.course import Course

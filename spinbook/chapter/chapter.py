@@ -5,26 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from enum import Enum
 from pathlib import Path
 
 from spinbook.chapter.block import Kind, Line
-from spinbook.chapter.classify import Classified, FenceKind
+from spinbook.chapter.classify import CellKind, Classified
 from spinbook.chapter.layout import Piece
 from spinbook.chapter.terminal import Command, CommandKind
-
-
-class CellKind(str, Enum):
-    """What a cell is, which decides what it becomes in each product."""
-
-    PROSE = "prose"
-    NODE = "node"
-    SNIPPET = "snippet"
-    PART = "part"
-    SHELL = "shell"
-    INTERFACE = "interface"
-    FILE = "package_file"
-    EXERCISE = "exercise"
 
 
 @dataclass(frozen=True)
@@ -109,14 +95,6 @@ class Chapter:
 
 #: nbformat allows 64 characters of [A-Za-z0-9_-].
 _LONGEST_ID = 64
-_KINDS = {
-    FenceKind.NODE: CellKind.NODE,
-    FenceKind.PART: CellKind.PART,
-    FenceKind.SNIPPET: CellKind.SNIPPET,
-    FenceKind.SHELL: CellKind.SHELL,
-    FenceKind.INTERFACE: CellKind.INTERFACE,
-    FenceKind.FILE: CellKind.FILE,
-}
 
 
 def make_cells(pieces: Iterable[Piece], classified: dict[int, Classified]) -> tuple[Cell, ...]:
@@ -155,7 +133,7 @@ def _prose(pieces: list[Piece], ids: _Ids) -> Iterator[Cell]:
 def _runnable(item: Classified, ids: _Ids) -> Cell:
     fence = item.fence
     return Cell(
-        _KINDS[item.kind],
+        item.kind,
         _id(item, ids),
         fence.code,
         fence.first_code_line,
@@ -174,15 +152,15 @@ def _runnable(item: Classified, ids: _Ids) -> Cell:
 
 
 def _id(item: Classified, ids: _Ids) -> str:
-    if item.kind is FenceKind.NODE:
+    if item.kind is CellKind.NODE:
         return ids.named(f"node-{item.name}")
-    if item.kind is FenceKind.PART:
+    if item.kind is CellKind.PART:
         return ids.named(f"part-{item.name}")
-    if item.kind is FenceKind.INTERFACE:
+    if item.kind is CellKind.INTERFACE:
         return ids.named(f"interface-{(item.name or '').rpartition('/')[2]}")
-    if item.kind is FenceKind.FILE:
+    if item.kind is CellKind.FILE:
         return ids.named(f"file-{(item.name or '').rpartition('/')[2]}")
-    if item.kind is FenceKind.SHELL:
+    if item.kind is CellKind.SHELL:
         return ids.named(next(command for command in item.commands if command.kind is not CommandKind.NOTE).text)
     return ids.snippet()
 

@@ -9,7 +9,7 @@ from enum import Enum
 from pathlib import Path
 
 from spinbook.chapter.fence import ATTRIBUTES, Fence, interface_path, is_someone_elses
-from spinbook.chapter.package_file import is_package_file, unsupported_in_launch_file
+from spinbook.chapter.launch_files import is_package_file, unsupported_in_launch_file
 from spinbook.chapter.python_code import CodeError, PythonCode, has_magics, inspect, programs_in_magics
 from spinbook.chapter.terminal import Command, CommandKind, NotRunnable, looks_like_shell, read_commands
 from spinbook.problem import Problem, Severity
@@ -62,15 +62,21 @@ NEVER_RUN = frozenset(
 )
 
 
-class FenceKind(str, Enum):
-    """What a fence is. A part is code that later programs of the chapter use; a file is a launch or parameter file."""
+class CellKind(str, Enum):
+    """What a cell is, which decides what it becomes in each product; and what a fence is.
 
+    A part is code that later programs of the chapter use; a file is a launch or parameter file. Prose and exercises
+    come from the text around fences. A static fence is shown in the prose and becomes no cell of its own.
+    """
+
+    PROSE = "prose"
     NODE = "node"
     SNIPPET = "snippet"
     PART = "part"
     SHELL = "shell"
     INTERFACE = "interface"
     FILE = "package_file"
+    EXERCISE = "exercise"
     STATIC = "static"
 
 
@@ -84,7 +90,7 @@ class Classified:
     """
 
     fence: Fence
-    kind: FenceKind
+    kind: CellKind
     why: str = ""
     sign: str = ""
     name: str | None = None
@@ -100,13 +106,13 @@ class Classified:
     @property
     def runs_main(self) -> bool:
         """Whether the runtime must call the code's `main`."""
-        return self.kind is FenceKind.NODE and self.code is not None and self.code.runs_main
+        return self.kind is CellKind.NODE and self.code is not None and self.code.runs_main
 
     @property
     def spin_classes(self) -> tuple[str, ...]:
         """The classes that the runtime must spin, where the code defines Nodes and never spins them."""
         code = self.code
-        if self.kind is not FenceKind.NODE or code is None or code.is_complete or code.calls_main:
+        if self.kind is not CellKind.NODE or code is None or code.is_complete or code.calls_main:
             return ()
         return code.alone
 
@@ -123,7 +129,7 @@ def first_look(fence: Fence, file: Path, interface_package: str = "") -> tuple[C
     """
     problems = _unknown_attributes(fence, file)
     if fence.has("static"):
-        return Classified(fence, FenceKind.STATIC, "it says `static`"), problems
+        return Classified(fence, CellKind.STATIC, "it says `static`"), problems
     if interface := interface_path(fence.title or "", interface_package):
         return _interface(fence, interface, interface_package), problems
     if is_package_file(fence.title or "") and (item := _package_file(fence)):
@@ -136,15 +142,15 @@ def first_look(fence: Fence, file: Path, interface_package: str = "") -> tuple[C
         item, found = _python(fence, file)
         return item, problems + found
     what = f"`{fence.language}` is" if fence.language else "a fence without a language is"
-    return Classified(fence, FenceKind.STATIC, f"{what} neither Python nor shell"), problems
+    return Classified(fence, CellKind.STATIC, f"{what} neither Python nor shell"), problems
 
 
 def _interface(fence: Fence, path: str, own: str) -> Classified:
     """A definition that is compiled, or one of an installed package, which is shown."""
     package = path.partition("/")[0]
     if is_someone_elses(package, own):
-        return Classified(fence, FenceKind.STATIC, f"it shows an interface of {package}, which is installed")
-    return Classified(fence, FenceKind.INTERFACE, name=path)
+        return Classified(fence, CellKind.STATIC, f"it shows an interface of {package}, which is installed")
+    return Classified(fence, CellKind.INTERFACE, name=path)
 
 
 def _package_file(fence: Fence) -> Classified | None:
@@ -155,7 +161,7 @@ def _package_file(fence: Fence) -> Classified | None:
                 return None
         except SyntaxError:
             return None
-    return Classified(fence, FenceKind.FILE, name=fence.title)
+    return Classified(fence, CellKind.FILE, name=fence.title)
 
 
 def with_language(fence: Fence) -> Fence:
@@ -187,13 +193,13 @@ def _shell(fence: Fence, file: Path) -> tuple[Classified, list[Problem]]:
     commands = tuple(command for command in read if isinstance(command, Command))
     runnable = [command for command in commands if command.kind is not CommandKind.NOTE]
     if runnable and not refused:
-        return Classified(fence, FenceKind.SHELL, commands=commands), []
+        return Classified(fence, CellKind.SHELL, commands=commands), []
     ros = next((command for command in refused if command.is_ros), None)
     if runnable or ros:
         shown = ros or refused[0]
-        return Classified(fence, FenceKind.STATIC, shown.why, f"{shown.why}."), [_not_run(fence, shown, file)]
+        return Classified(fence, CellKind.STATIC, shown.why, f"{shown.why}."), [_not_run(fence, shown, file)]
     why = refused[0].why if refused else "it holds no command that a notebook runs"
-    return Classified(fence, FenceKind.STATIC, why), []
+    return Classified(fence, CellKind.STATIC, why), []
 
 
 def _not_run(fence: Fence, command: NotRunnable, file: Path) -> Problem:
@@ -210,17 +216,17 @@ def _python(fence: Fence, file: Path) -> tuple[Classified, list[Problem]]:
         return _broken(fence, error, file)
     if why := _why_static(fence, code):
         sign = f"{why}." if why.startswith("it is a fragment") else ""
-        return Classified(fence, FenceKind.STATIC, why, sign, code=code), []
+        return Classified(fence, CellKind.STATIC, why, sign, code=code), []
     if refused := _refused(fence, code):
-        return Classified(fence, FenceKind.STATIC, refused, f"{refused}.", code=code), []
+        return Classified(fence, CellKind.STATIC, refused, f"{refused}.", code=code), []
     if _is_file(fence) or code.is_node:
         problems = _magics_in_node(fence, file)
         if problems:
             return Classified(
-                fence, FenceKind.STATIC, "it holds a notebook command", "it holds a notebook command.", code=code
+                fence, CellKind.STATIC, "it holds a notebook command", "it holds a notebook command.", code=code
             ), problems
-        return Classified(fence, FenceKind.NODE, code=code), []
-    return Classified(fence, FenceKind.SNIPPET, code=code), []
+        return Classified(fence, CellKind.NODE, code=code), []
+    return Classified(fence, CellKind.SNIPPET, code=code), []
 
 
 def _broken(fence: Fence, error: CodeError, file: Path) -> tuple[Classified, list[Problem]]:
@@ -229,7 +235,7 @@ def _broken(fence: Fence, error: CodeError, file: Path) -> tuple[Classified, lis
     found = f"not Python: {error.message} (column {error.column})."
     problem = Problem(file, line, found, fix, Severity.NOT_RUN)
     sign = f"line {error.line} is not valid Python ({error.message})."
-    return Classified(fence, FenceKind.STATIC, "it is not Python", sign), [problem]
+    return Classified(fence, CellKind.STATIC, "it is not Python", sign), [problem]
 
 
 def _magics_in_node(fence: Fence, file: Path) -> list[Problem]:

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from spinbook.chapter.attributes import STYLES
 from spinbook.chapter.block import Block, Kind, Line
 
-_CHANGED = frozenset({Kind.ADMONITION, Kind.TAB, Kind.DETAILS, Kind.GROUP, Kind.DROPPED})
 _RESHAPED = frozenset({Kind.ADMONITION, Kind.TAB, Kind.GROUP})
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from spinbook.chapter.classify import Classified, FenceKind, node_name
+from spinbook.chapter.classify import CellKind, Classified, node_name
 from spinbook.chapter.imports import Missing, missing_imports
 from spinbook.chapter.joining import Joined, join
 from spinbook.chapter.python_code import PythonCode, inspect
@@ -35,9 +35,9 @@ class Programs:
         """What becomes of each fence; those that hold no Python stay as they are."""
         out = list(items)
         for number, item in enumerate(items):
-            if item.kind is FenceKind.NODE:
+            if item.kind is CellKind.NODE:
                 out[number] = self._node(number, item, out)
-            elif item.kind is FenceKind.SNIPPET:
+            elif item.kind is CellKind.SNIPPET:
                 out[number] = self._snippet(item)
             if item.code and not item.code.fragment and not item.code.is_setup_script and not item.code.is_launch_file:
                 self._pieces.append(number)
@@ -155,27 +155,27 @@ def _is_file(item: Classified) -> bool:
 
 
 def _static(item: Classified, why: str, sign: str = "") -> Classified:
-    return replace(item, kind=FenceKind.STATIC, why=why, sign=sign or f"{why}.")
+    return replace(item, kind=CellKind.STATIC, why=why, sign=sign or f"{why}.")
 
 
 def _with_parts(items: list[Classified], used: Mapping[int, Iterable[int]]) -> list[Classified]:
     """Name the pieces from which later nodes are made whole, and turn those into parts that are no program alone."""
     out = list(items)
-    needed = {i for number, pieces in used.items() if out[number].kind is FenceKind.NODE for i in pieces}
+    needed = {i for number, pieces in used.items() if out[number].kind is CellKind.NODE for i in pieces}
     names: dict[int, str] = {}
     taken: set[str | None] = {item.name for item in items if item.name}
     for number in sorted(needed):
         item = out[number]
-        if item.kind is FenceKind.NODE and _goes_on(number, used, out):
-            out[number] = replace(item, kind=FenceKind.PART, runs_in_kernel=False)
-        elif item.kind is not FenceKind.NODE:
-            runs = item.kind is FenceKind.SNIPPET
+        if item.kind is CellKind.NODE and _goes_on(number, used, out):
+            out[number] = replace(item, kind=CellKind.PART, runs_in_kernel=False)
+        elif item.kind is not CellKind.NODE:
+            runs = item.kind is CellKind.SNIPPET
             name = _part_name(item, taken)
-            out[number] = replace(item, kind=FenceKind.PART, name=name, runs_in_kernel=runs, why="", sign="")
+            out[number] = replace(item, kind=CellKind.PART, name=name, runs_in_kernel=runs, why="", sign="")
         names[number] = out[number].name or ""
         taken.add(names[number])
     for number, pieces in used.items():
-        if out[number].kind in {FenceKind.NODE, FenceKind.PART}:
+        if out[number].kind in {CellKind.NODE, CellKind.PART}:
             after = tuple(dict.fromkeys(names[i] for i in pieces if i in names))
             out[number] = replace(out[number], after=after)
     return out
@@ -188,7 +188,7 @@ def _goes_on(number: int, used: Mapping[int, Iterable[int]], items: Sequence[Cla
         return False
     for later, pieces in used.items():
         item = items[later]
-        if number in pieces and item.kind is FenceKind.NODE and item.code and item.code.is_complete:
+        if number in pieces and item.kind is CellKind.NODE and item.code and item.code.is_complete:
             return True
     return False
 

@@ -13,7 +13,7 @@ from markdown_it.token import Token
 from spinbook.chapter.block import Block, Kind, Line
 from spinbook.chapter.blocks import read_blocks
 from spinbook.chapter.chapter import Chapter, StaticFence, make_cells
-from spinbook.chapter.classify import Classified, FenceKind, first_look, with_language
+from spinbook.chapter.classify import CellKind, Classified, first_look, with_language
 from spinbook.chapter.fence import Fence, interface_package
 from spinbook.chapter.files import is_elsewhere, locate, read_included
 from spinbook.chapter.layout import Layout, Piece
@@ -84,7 +84,7 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> Reading:
         static_fences=tuple(
             StaticFence(item.fence.line, item.fence.language, item.why, item.sign)
             for item in classified
-            if item.kind is FenceKind.STATIC
+            if item.kind is CellKind.STATIC
         ),
     )
     return Reading(chapter, tuple(problems))
@@ -141,7 +141,7 @@ def _classify(parsed: _Parsed, file: Path, surroundings: Surroundings) -> tuple[
     own_modules = _own(packages, surroundings, items)
     programs = Programs(file, own_modules, named_files(parsed.blocks), surroundings.interfaces)
     items = programs.decide(items)
-    modules = surroundings.modules | {item.name for item in items if item.kind is FenceKind.NODE and item.name}
+    modules = surroundings.modules | {item.name for item in items if item.kind is CellKind.NODE and item.name}
     exercise = any(block.kind is Kind.EXERCISE for top in parsed.blocks for block in top.walk())
     shells = Shells(
         file, surroundings.package, modules, packages, programs.told, exercise, interfaces=surroundings.interfaces
@@ -169,7 +169,7 @@ def _unclosed(block: Block, file: Path) -> tuple[Classified, list[Problem]]:
     found = f"the code fence that opens here (`{block.lines[0].text.strip()[:60]}`) is never closed."
     mark = block.lines[0].text.strip()[:3]
     problem = Problem(file, block.fence.line, found, f"Close it with a line of its own: {mark}", Severity.NOT_RUN)
-    return Classified(block.fence, FenceKind.STATIC, "its fence is never closed", "its fence is never closed."), [
+    return Classified(block.fence, CellKind.STATIC, "its fence is never closed", "its fence is never closed."), [
         problem
     ]
 
@@ -178,7 +178,7 @@ def _layout(by_line: Mapping[int, Classified], surroundings: Surroundings) -> La
     def runs(block: Block) -> bool:
         if block.kind is Kind.EXERCISE:
             return block.title in surroundings.exercises
-        return block.fence is not None and by_line[block.fence.line].kind is not FenceKind.STATIC
+        return block.fence is not None and by_line[block.fence.line].kind is not CellKind.STATIC
 
     def sign(block: Block) -> str:
         item = by_line[block.fence.line] if block.fence is not None else None

@@ -9,8 +9,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from grader.recording.types import OWN_SERVICES
 from interface_compiler import prefixes
-from spinbook.chapter.classify import Classified, FenceKind
+from spinbook.chapter.classify import CellKind, Classified
 from spinbook.chapter.imports import interfaces_of, own_names, remedy, ros_packages
 from spinbook.chapter.launch_files import launched_nodes
 from spinbook.chapter.own_packages import OwnPackages, created_package
@@ -25,15 +26,6 @@ _ASKING = {
     "node": {"info"},
     "action": {"info", "send_goal"},
     "param": {"list", "get", "set", "describe", "dump", "load", "delete"},
-}
-#: The services that every node has for its parameters.
-_PARAMETER_SERVICES = {
-    "describe_parameters",
-    "get_parameter_types",
-    "get_parameters",
-    "list_parameters",
-    "set_parameters",
-    "set_parameters_atomically",
 }
 #: Programs that fail where there is no keyboard.
 _READ_KEYS = {("turtlesim", "turtle_teleop_key")}
@@ -97,20 +89,20 @@ class Shells:
         """What becomes of each fence; a node that `ros2 run` starts further down gets the names it has there."""
         out = list(items)
         for number, item in enumerate(items):
-            if item.kind is FenceKind.NODE and item.name:
+            if item.kind is CellKind.NODE and item.name:
                 self._nodes[item.name] = number
-            elif item.kind is FenceKind.SHELL:
+            elif item.kind is CellKind.SHELL:
                 out[number] = self._fence(item, out)
-            elif item.kind is FenceKind.INTERFACE:
+            elif item.kind is CellKind.INTERFACE:
                 self._created.add((item.name or "").partition("/")[0])
-            elif item.kind is not FenceKind.STATIC:
+            elif item.kind is not CellKind.STATIC:
                 self._said.add(item.whole)
-            if item.kind is FenceKind.FILE:
+            if item.kind is CellKind.FILE:
                 self._files.add((item.name or "").rpartition("/")[2])
             if item.code is not None and item.code.is_launch_file:
                 name = item.fence.title or self.told.get(item.fence.line) or f"launch file {number}"
                 self._launch_files[name.rsplit("/", 1)[-1]] = item.fence.code
-            if item.kind is FenceKind.NODE:
+            if item.kind is CellKind.NODE:
                 self._said.add(item.whole)
         return out
 
@@ -124,7 +116,7 @@ class Shells:
             line = item.fence.first_code_line + command.line - 1
             found = f"{refused.why} (`{command.text}`)."
             self.problems.append(Problem(self.file, line, found, refused.fix, Severity.NOT_RUN, group=refused.group))
-            return replace(item, kind=FenceKind.STATIC, why=refused.why, sign=f"{refused.why}.")
+            return replace(item, kind=CellKind.STATIC, why=refused.why, sign=f"{refused.why}.")
         return item
 
     def _refused(self, command: Command, out: list[Classified]) -> _Refused | None:
@@ -274,7 +266,7 @@ class Shells:
 def _last_name(path: str) -> str:
     """The last part of a name, which a program's text holds; of a node's parameter services, the node's name."""
     node, _, last = path.strip("/").lower().rpartition("/")
-    return _last_name(node) if last in _PARAMETER_SERVICES and node else last
+    return _last_name(node) if last in OWN_SERVICES and node else last
 
 
 def _file_name(path: str) -> str:

@@ -1,4 +1,4 @@
-"""`spinbook doctor`: what works on this machine, and how to fix what does not."""
+"""`spinbook doctor` and `ros2 doctor`: what works on this machine, and how to fix what does not."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from spinbook.doctor.diagnosis import CHECKS, Check, diagnose
-from spinbook.doctor.finding import Finding, is_able, show
+from spinbook.doctor.finding import Finding, State, is_able, show
+from spinbook.ros2.cli import CONTEXT, CommandError
 
 
 @click.command()
@@ -54,3 +55,31 @@ def _with_progress(chosen: list[Check]) -> list[Finding]:
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task("", total=len(chosen))
         return diagnose(chosen, lambda finding: bar.update(task, advance=1, description=finding.name))
+
+
+#: The checks of `spinbook doctor` that are about ROS 2, and not about courses.
+OF_ROS = ("python", "libraries", "ros", "middleware", "logs", "message", "environment", "memory")
+
+
+@click.command(name="doctor", context_settings=CONTEXT)
+@click.option("-r", "--report", is_flag=True, help="Also print what was found.")
+@click.option("-iw", "--include-warnings", is_flag=True, help="Count warnings as failures.")
+def ros2_doctor(report: bool, include_warnings: bool) -> None:
+    """Check whether ROS 2 works here: libraries, middleware, a message from one process to another.
+
+    \b
+      ros2 doctor
+      ros2 doctor --report
+    """
+    findings = diagnose([check for check in CHECKS if check.word in OF_ROS], lambda finding: None)
+    if report:
+        for finding in findings:
+            click.echo(f"{finding.name:<24}: {finding.found}")
+    for finding in findings:
+        if finding.state is not State.OK:
+            click.echo(f"UserWarning: {finding.name}: {finding.found} {finding.fix}", err=True)
+    bad = (State.MISSING, State.WARNING) if include_warnings else (State.MISSING,)
+    failed = [finding.name for finding in findings if finding.state in bad]
+    if failed:
+        raise CommandError(f"{len(failed)}/{len(findings)} check(s) failed", "", f"Failed modules: {' '.join(failed)}")
+    click.echo(f"\nAll {len(findings)} checks passed\n")

@@ -32,7 +32,7 @@ def examine(name: str) -> Finding:
     except subprocess.CalledProcessError as error:
         lines = (error.stderr or "").strip().splitlines() or [f"exit code {error.returncode}"]
         return missing(
-            name, f"the listener failed: {lines[-1]}", "Its whole output: python -m spinbook.doctor.listener"
+            name, f"the listener failed: {lines[-1]}", "Its whole output: python -m spinbook.doctor.talk listen"
         )
     finally:
         claimed.release()
@@ -45,7 +45,7 @@ def examine(name: str) -> Finding:
 
 def _send_one(environment: dict[str, str]) -> dict[str, float]:
     talker = subprocess.Popen(
-        [sys.executable, "-m", "spinbook.doctor.talker"],
+        [sys.executable, "-m", "spinbook.doctor.talk"],
         env=environment,
         stdin=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
@@ -53,7 +53,7 @@ def _send_one(environment: dict[str, str]) -> dict[str, float]:
     )
     try:
         listener = subprocess.run(
-            [sys.executable, "-m", "spinbook.doctor.listener"],
+            [sys.executable, "-m", "spinbook.doctor.talk", "listen"],
             env=environment,
             capture_output=True,
             text=True,

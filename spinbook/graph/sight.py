@@ -18,7 +18,7 @@ from spinbook.graph.model import End, NodeGraph, SeenNode, Topic
 from spinbook.ros2.cli import CommandError
 from spinbook.ros2.graph import LOOK, Graph
 from spinbook.ros2.interfaces import message_class
-from spinbook.ros2.middleware import domain_id, prepare
+from spinbook.ros2.opening import domain_id, prepare
 from spinbook.ros2.participants import participants
 
 #: A rate is told from at least this long (s).

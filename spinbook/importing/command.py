@@ -14,7 +14,8 @@ from markupsafe import Markup, escape
 
 from grader.files import write_if_changed
 from spinbook.build.notebooks import Built, build_notebooks
-from spinbook.chapter.chapter import CellKind, Chapter
+from spinbook.chapter.chapter import Chapter
+from spinbook.chapter.classify import CellKind
 from spinbook.chapters import read_all
 from spinbook.course.course import FILE, Course, read_course
 from spinbook.course.obstacles import by_itself, obstacles, ranked

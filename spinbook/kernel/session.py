@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from spinbook.chapter.joining import join
-from spinbook.chapter.package_file import is_package_file
+from spinbook.chapter.launch_files import is_package_file
 from spinbook.chapter.python_code import CodeError
 from spinbook.course.course import Package
 from spinbook.kernel import environment

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Literal
+
+from spinbook.kernel.recorder_lines import read_lines
 
 #: The states of a goal in which nothing more happens to it.
 ENDS = ("SUCCEEDED", "CANCELED", "ABORTED")
@@ -38,12 +39,8 @@ class RecordedEvents:
     error: str | None = None
 
     def take(self, lines: Iterable[str]) -> None:
-        """Take in lines that the recorder printed; whatever a library printed among them is passed over."""
-        for line in lines:
-            try:
-                kind, *rest = json.loads(line)
-            except (ValueError, TypeError):
-                continue
+        """Take in lines that the recorder printed."""
+        for kind, rest in read_lines(lines):
             if kind == "event":
                 self.events.append(Event(*rest))
             elif kind == "found":

@@ -15,7 +15,6 @@ of an action also wait for its status and feedback, which this does not publish.
 
 from __future__ import annotations
 
-import json
 import signal
 import sys
 import threading
@@ -36,8 +35,8 @@ from rclpy.qos import (
 )
 from rclpy.signals import SignalHandlerOptions
 
+from spinbook.kernel.recorder_lines import errors_written, write_line
 from spinbook.kernel.reply_reader import ReplyReader
-from spinbook.ros2.cli import CommandError
 from spinbook.ros2.interfaces import action_class, message_class, service_class
 
 _HEARS_ALL = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE)
@@ -71,7 +70,7 @@ class TimelineRecorder(Node):
                 self._missing.remove(name)
                 kind, type_name = found
                 getattr(self, f"_follow_{kind}")(name, type_name)
-                _tell("found", name, kind)
+                write_line("found", name, kind)
         for take, tell in self._polled:
             for sent, message in take():
                 tell(sent, message)
@@ -144,13 +143,13 @@ class TimelineRecorder(Node):
             kind.SendGoalService,
             f"{own}/send_goal",
             lambda at, asked: _event(name, "goal", at, asked.goal, _number(asked.goal_id)),
-            lambda at, answer: _tell("event", at, name, "accepted" if answer.accepted else "rejected", "", ""),
+            lambda at, answer: write_line("event", at, name, "accepted" if answer.accepted else "rejected", "", ""),
         )
         self._follow_calls(
             kind.CancelGoalService,
             f"{own}/cancel_goal",
-            lambda at, asked: _tell("event", at, name, "cancel", _number(asked.goal_info.goal_id), ""),
-            lambda at, answer: _tell(
+            lambda at, asked: write_line("event", at, name, "cancel", _number(asked.goal_info.goal_id), ""),
+            lambda at, answer: write_line(
                 "event", at, name, "cancel answered", "", f"{len(answer.goals_canceling)} to be canceled"
             ),
         )
@@ -170,7 +169,7 @@ class TimelineRecorder(Node):
                 self._states[number] = goal.status
                 # The status is kept for late listeners: what is older than the recording is none of its business.
                 if at >= self._began:
-                    _tell("event", at, name, _STATES.get(goal.status, "UNKNOWN"), number, "")
+                    write_line("event", at, name, _STATES.get(goal.status, "UNKNOWN"), number, "")
 
 
 _STATES = {
@@ -193,7 +192,7 @@ def _number(goal_id: Any) -> str:
 
 
 def _event(name: str, what: str, at: float, message: Any, goal: str = "") -> None:
-    _tell("event", at, name, what, goal, in_short(message))
+    write_line("event", at, name, what, goal, in_short(message))
 
 
 def in_short(message: Any) -> str:
@@ -207,10 +206,6 @@ def in_short(message: Any) -> str:
         if isinstance(value, float):
             return f"{field} {value:.4g}"
     return ""
-
-
-def _tell(*line: Any) -> None:
-    print(json.dumps(line), flush=True)
 
 
 #: How many messages may have arrived and not been taken in when the recorder is told to stop.
@@ -240,13 +235,12 @@ def main() -> None:
     told_to_stop = _told_to_stop()
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     try:
-        recorder: TimelineRecorder = TimelineRecorder(sys.argv[1:])
-        try:
-            record(recorder, told_to_stop)
-        finally:
-            recorder.destroy_node()  # type: ignore[no-untyped-call]
-    except CommandError as error:
-        _tell("error", error.format_message())
+        with errors_written():
+            recorder: TimelineRecorder = TimelineRecorder(sys.argv[1:])
+            try:
+                record(recorder, told_to_stop)
+            finally:
+                recorder.destroy_node()  # type: ignore[no-untyped-call]
     finally:
         rclpy.try_shutdown()
 

@@ -9,20 +9,20 @@ import click
 
 from interface_compiler.near import use_near
 from spinbook.ros2 import cli
-from spinbook.ros2.cli import Entry, Menu
+from spinbook.ros2.cli import CONTEXT, Entry, Menu
 from spinbook.ros2.executables import hand_over
 
 NOUNS = {
     "action": Entry("spinbook.ros2.action:action", "List actions, send a goal to one."),
     "bag": Entry("spinbook.ros2.bag:bag", "Record topics into a file, play them again."),
-    "daemon": Entry("spinbook.ros2.daemon:daemon", "There is none: says so."),
-    "doctor": Entry("spinbook.doctor.ros2_noun:doctor", "Check whether ROS 2 works here."),
+    "daemon": Entry("spinbook.ros2.command:daemon", "There is none: says so."),
+    "doctor": Entry("spinbook.doctor.command:ros2_doctor", "Check whether ROS 2 works here."),
     "interface": Entry("spinbook.ros2.interface:interface", "Show the fields of message, service and action types."),
     "launch": Entry("spinbook.ros2.launch.command:launch", "Start the nodes of a launch file."),
     "node": Entry("spinbook.ros2.node:node", "List running nodes, show what one offers."),
     "param": Entry("spinbook.ros2.param:param", "Read and change parameters of running nodes."),
     "pkg": Entry("spinbook.ros2.pkg:pkg", "List packages and their executables, make a package."),
-    "run": Entry("spinbook.ros2.run:run", "Start an executable of a package."),
+    "run": Entry("spinbook.ros2.executables:run", "Start an executable of a package."),
     "service": Entry("spinbook.ros2.service:service", "List services, call one."),
     "topic": Entry("spinbook.ros2.topic:topic", "Watch, measure and publish topics."),
 }
@@ -63,3 +63,50 @@ ros2 = Ros2(
     Where a ROS 2 installation provides `ros2`, that one answers. SPINBOOK_ROS2=own prevents it.
     """,
 )
+
+
+daemon = Menu(
+    name="daemon",
+    entries={
+        "start": Entry("spinbook.ros2.command:start", "Says that none is needed."),
+        "status": Entry("spinbook.ros2.command:status", "Says that none is running."),
+        "stop": Entry("spinbook.ros2.command:stop", "Says that none is running."),
+    },
+    help="""The ROS 2 installation's ros2 keeps a daemon that remembers the graph. Here each call looks for itself.
+
+    \b
+      ros2 daemon status
+    """,
+)
+
+_WHY = "(none is needed: each command looks at the graph itself, so there is nothing to restart)"
+
+
+@click.command(context_settings=CONTEXT)
+def status() -> None:
+    """Say that none is running.
+
+    \b
+      ros2 daemon status
+    """
+    click.echo(f"The daemon is not running {_WHY}")
+
+
+@click.command(context_settings=CONTEXT)
+def start() -> None:
+    """Say that none is needed.
+
+    \b
+      ros2 daemon start
+    """
+    click.echo(f"The daemon has not been started {_WHY}")
+
+
+@click.command(context_settings=CONTEXT)
+def stop() -> None:
+    """Say that none is running.
+
+    \b
+      ros2 daemon stop
+    """
+    click.echo(f"The daemon is not running {_WHY}")

@@ -22,7 +22,7 @@ from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 from rclpy.validate_full_topic_name import validate_full_topic_name
 
 from spinbook.ros2.cli import CommandError, held_back
-from spinbook.ros2.middleware import domain_id
+from spinbook.ros2.opening import domain_id
 from spinbook.ros2.participants import hears_other_hosts, participants
 
 # Each call of the command starts its own node, so each has to let discovery finish before it answers. What finished
@@ -85,7 +85,7 @@ class Graph:
     def __init__(self, *, node_name: str | None, spin_time: float | None, use_sim_time: bool) -> None:
         self.context = Context()
         try:
-            # Signals are ours: see stopping.py.
+            # Signals are ours: see cli.py.
             rclpy.init(args=[], context=self.context, signal_handler_options=SignalHandlerOptions.NO)
         except RuntimeError as error:
             raise CommandError(f"ROS 2 could not start: {str(error).splitlines()[0]}") from None
@@ -210,7 +210,7 @@ class Graph:
     # Working
 
     def spin_once(self) -> None:
-        """Handle what came, waiting a moment for it. A signal is raised when that has been done: see stopping.py."""
+        """Handle what came, waiting a moment for it. A signal is raised when that has been done: see cli.py."""
         with held_back():
             self.executor.spin_once(timeout_sec=NAP)
 

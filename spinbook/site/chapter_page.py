@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from spinbook.chapter.chapter import Cell, CellKind, Chapter
+from spinbook.chapter.chapter import Cell, Chapter
+from spinbook.chapter.classify import CellKind
 from spinbook.site.drawing import smaller, still_of
 from spinbook.site.page import exercise_page
 from spinbook.site.repository import Repository
-
-_FAILS = "raises-exception"
 
 
 @dataclass(frozen=True)

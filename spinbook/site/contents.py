@@ -16,7 +16,8 @@ from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
 from grader.exercise.starter import starter
 from spinbook.browser.files import can_run, public_parts, run_files
-from spinbook.chapter.chapter import CellKind, Chapter
+from spinbook.chapter.chapter import Chapter
+from spinbook.chapter.classify import CellKind
 from spinbook.chapter.comments import without_comments
 from spinbook.chapters import read_all
 from spinbook.course.course import Course

@@ -18,7 +18,8 @@ from pygments.formatters.html import HtmlFormatter
 
 from grader.exercise.exercise import Exercise
 from spinbook.build.digest import digest
-from spinbook.chapter.chapter import Cell, CellKind, Chapter
+from spinbook.chapter.chapter import Cell, Chapter
+from spinbook.chapter.classify import CellKind
 from spinbook.course.course import Course
 from spinbook.site.chapter_page import Ran, alternative, is_picture
 from spinbook.site.drawing import PICTURE_FOLDER, Picture, drawing_html, smaller, still_of

@@ -16,7 +16,7 @@ from grader.sandbox.program import SandboxUnavailable
 from grader.submission.reading import Submission
 from grader.workers.pool import HostFault
 from spinbook.problem import SpinbookError
-from spinbook.submit.choosing import exercise_named, found, given
+from spinbook.submit.hand_in import exercise_named, found, given
 
 #: Exit codes, besides click's 2 for usage.
 ALL_PASS, SOME_FAIL, HOST_FAULT = 0, 1, 3

@@ -13,13 +13,15 @@ from grader.exercise.exercise import Exercise
 from grader.report.terminal import show
 from spinbook.problem import Problem, SpinbookError
 from spinbook.submit import hand_in as names
-from spinbook.submit.choosing import exercise_named, found, given
 from spinbook.submit.hand_in import (
     Candidate,
     HandIn,
     SelfCheck,
     cells_that_differ,
     default_target,
+    exercise_named,
+    found,
+    given,
     is_starter,
     self_check,
     write_upload,

@@ -10,9 +10,8 @@ from small_exercise import SmallExercise
 
 from grader.audit.audit import sample
 from grader.audit.mutants import Mutant, mutants_of
-from grader.audit.result import MutantResult, score_of
+from grader.audit.result import Difference, MutantResult, Trial, score_of
 from grader.audit.survivors import listed, problems_of_survivors, result_of, stale
-from grader.audit.trial import Difference, Trial
 from grader.checking.verdict import Finding
 from grader.exercise import ExerciseError, load
 

@@ -84,7 +84,7 @@ def test_a_right_solution_that_a_check_refuses_with_some_numbers_only(small: Sma
 SPOILT = [
     (HIDDEN, 'rule="Publish nothing on /numbers or /clock."', "", "test_leaves_other_topics_alone",
      "does not name the sentence"),
-    (HIDDEN, "Zero counts as positive", "Zero counts", "test_nothing_below_zero", "a sentence that is not in the task"),
+    (HIDDEN, "Zero counts as positive", "Zero counts", "test_nothing_below_zero", "a sentence that is not in task.md"),
     (CHECKS, 'hint="Multiply."', 'hint="if message.data  >= 0:"', "test_twice_the_number", "hint of test_twice"),
     (HIDDEN, "It says nothing to a number below zero, and twice zero to zero.", "if message.data >= 0: it is doubled.",
      "test_nothing_below_zero", "title of test_nothing_below_zero"),

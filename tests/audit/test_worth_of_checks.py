@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from grader.audit.listing import Check
-from grader.audit.trial import Trial
+from grader.audit.result import Trial
 from grader.audit.worth import problems_of_checks, worth_spinning_on
 from grader.checking.verdict import Finding, Status
 

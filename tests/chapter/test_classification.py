@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from spinbook.chapter.chapter import CellKind, Chapter
+from spinbook.chapter.chapter import Chapter
+from spinbook.chapter.classify import CellKind
 from spinbook.chapter.read import Surroundings, read_chapter
 
 NODE = "import rclpy\nfrom rclpy.node import Node\nrclpy.init()\nnode = Node('talker')\nrclpy.spin(node)\n"

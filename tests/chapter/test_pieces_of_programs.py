@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from spinbook.chapter.chapter import Cell, CellKind, Chapter
+from spinbook.chapter.chapter import Cell, Chapter
+from spinbook.chapter.classify import CellKind
 from spinbook.chapter.python_code import inspect
 from spinbook.chapter.read import Reading, Surroundings, read_chapter
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 
 import click
 import pytest
 from click.testing import CliRunner
+from course_folder import CourseFolder
 
 from spinbook import cli
 
@@ -51,3 +53,44 @@ def test_a_missing_extra_is_one_sentence_with_the_pip_command(monkeypatch: pytes
     assert done.exit_code == 2
     assert "pip install 'spinbook[audit]'" in done.output
     assert "Traceback" not in done.output
+
+
+@pytest.mark.parametrize("name", [name for name, verb in cli.VERBS.items() if verb.needs])
+def test_without_ros_a_verb_that_needs_it_says_so_in_one_sentence(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "rclpy", None)
+
+    done = CliRunner().invoke(cli.spinbook, [name, "joint_velocity"])
+
+    assert done.exit_code == 2
+    expected = f"`spinbook {name}` needs rclpy, which is not installed. Install it with: pip install 'spinbook[ros]'"
+    assert done.output.splitlines()[-1] == f"Error: {expected}"
+
+
+def test_the_help_of_a_verb_needs_no_ros(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "rclpy", None)
+
+    assert CliRunner().invoke(cli.spinbook, ["check", "--help"]).exit_code == 0
+
+
+def test_a_module_that_is_missed_only_while_a_verb_runs_is_one_sentence_too(
+    course: CourseFolder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "livereload", None)
+    course.write(**{"01-one": "# One\n\nText.\n"})
+
+    done = CliRunner().invoke(cli.spinbook, ["site", "--serve", "--course", str(course.root)])
+
+    assert done.exit_code == 2
+    assert "`spinbook site` needs livereload" in done.output
+    assert "pip install 'spinbook[site]'" in done.output
+
+
+def test_ros2_run_without_ros_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("SPINBOOK_ROS2", "own")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+
+    done = CliRunner().invoke(cli.spinbook, ["ros2", "run", "turtlesim", "turtlesim_node"])
+
+    assert done.exit_code == 1
+    assert "pip install 'spinbook[ros]'" in done.output

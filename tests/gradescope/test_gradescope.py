@@ -20,7 +20,7 @@ from small_class import EXERCISE, ROOT, TEMPLATE
 
 from grader.classroom import Adjustment
 from grader.classroom50.command import classroom50
-from grader.classroom50.result import result, summary
+from grader.classroom50.run import result, summary
 from grader.exercise import load
 from grader.gradescope.command import bundle
 from grader.report.gradescope import results

@@ -12,27 +12,10 @@ import pytest
 import ros_domains
 from ros2_terminal import PATIENCE, ROBOT, Robot, Terminal
 
-from interface_compiler import activation
-
 
 @pytest.fixture(autouse=True)
 def _own_command(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SPINBOOK_ROS2", "own")
-
-
-@pytest.fixture(autouse=True)
-def _without_a_course(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An earlier test of this process may use a course's interfaces: `ros2` would list them, too."""
-    compiled = {str(prefix) for prefix in activation.active()}
-    for variable in (activation.VARIABLE, "AMENT_PREFIX_PATH", "PYTHONPATH"):
-        entries = os.environ.get(variable, "").split(os.pathsep)
-        monkeypatch.setenv(variable, os.pathsep.join(e for e in entries if e and not within(e, compiled)))
-    monkeypatch.setattr(sys, "path", [entry for entry in sys.path if not within(entry, compiled)])
-
-
-def within(entry: str, folders: set[str]) -> bool:
-    """Whether a path is one of these folders, or below one."""
-    return any(entry == folder or entry.startswith(folder + os.sep) for folder in folders)
 
 
 @pytest.fixture

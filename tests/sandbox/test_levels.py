@@ -19,7 +19,6 @@ from grader.sandbox import (
     available,
     choose,
     isolation,
-    trials,
 )
 
 NOTHING_WORKS = {
@@ -123,7 +122,7 @@ def test_a_sandbox_that_could_not_be_made_has_its_level_tried_again(tried: list[
     with ForkServer(preload=()) as fork_server, pytest.raises(SandboxError):
         fork_server.start(program, Isolation.NONE)
 
-    assert not trials.has_worked(Isolation.BUBBLEWRAP.value)
+    assert not isolation.has_worked(Isolation.BUBBLEWRAP)
 
 
 def test_without_bubblewrap_that_level_is_told_to_be_absent(monkeypatch: pytest.MonkeyPatch) -> None:

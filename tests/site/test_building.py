@@ -7,7 +7,7 @@ from pathlib import Path
 
 from small_course import SmallCourse
 
-from spinbook.site.serve import pages_of
+from spinbook.site.command import pages_of
 
 
 def snapshot(site: Path) -> dict[str, int]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
+
+from spinbook.kernel.recorder_lines import read_lines
 
 _STEP = re.compile(r"([A-Za-z]\w*)((?:\[\d+\])*)")
 
@@ -188,12 +189,8 @@ class Recording:
     """Whether the recorder takes part in ROS yet."""
 
     def take(self, lines: Iterable[str]) -> None:
-        """Take in lines that the recorder printed; whatever else a library printed among them is passed over."""
-        for line in lines:
-            try:
-                kind, *rest = json.loads(line)
-            except (ValueError, TypeError):
-                continue
+        """Take in lines that the recorder printed."""
+        for kind, rest in read_lines(lines):
             if kind == "sample":
                 topic, axis, unit, label, when, value = rest
                 quantity = Quantity(topic, axis, unit, label)

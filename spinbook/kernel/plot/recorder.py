@@ -9,7 +9,6 @@ A process and not a thread: the kernel then needs no rclpy, and its Stop button 
 
 from __future__ import annotations
 
-import json
 import sys
 import time
 from functools import partial
@@ -21,15 +20,11 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from spinbook.kernel.plot.quantity import TopicPath, quantities, resolve, stamp_of
-from spinbook.ros2.cli import CommandError
+from spinbook.kernel.recorder_lines import errors_written, write_line
 from spinbook.ros2.interfaces import message_class
 
 #: Hears publishers of every reliability and durability.
 _HEARS_ALL = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE)
-
-
-def _tell(*line: Any) -> None:
-    print(json.dumps(line), flush=True)
 
 
 class Recorder(Node):
@@ -39,7 +34,7 @@ class Recorder(Node):
         super().__init__("spinbook_plot", start_parameter_services=False)
         self._missing = list(paths)
         self._subscribed: set[tuple[str, str]] = set()
-        _tell("looking")
+        write_line("looking")
         self._look()
         self.create_timer(0.05, self._look)
 
@@ -53,7 +48,9 @@ class Recorder(Node):
                 self._missing.remove(path)
                 self._subscribe(found, published[found.topic])
         if self._missing:
-            _tell("waiting", self._missing, sorted(t for t in published if t not in {"/rosout", "/parameter_events"}))
+            write_line(
+                "waiting", self._missing, sorted(t for t in published if t not in {"/rosout", "/parameter_events"})
+            )
 
     def _subscribe(self, path: TopicPath, full_type: str) -> None:
         short = full_type.replace("/msg/", "/")
@@ -62,27 +59,30 @@ class Recorder(Node):
     def _hear(self, path: TopicPath, type_name: str, message: Any) -> None:
         now = stamp_of(message) or time.time()
         for quantity, value in quantities(path, message, type_name):
-            _tell("sample", quantity.topic, quantity.kind, quantity.unit, quantity.label, now, value)
+            write_line("sample", quantity.topic, quantity.kind, quantity.unit, quantity.label, now, value)
 
 
 def main() -> None:
     """Record until told to stop."""
     rclpy.init()
     try:
-        recorder: Node = Recorder(sys.argv[1:])
-        try:
-            rclpy.spin(recorder)
-        finally:
-            # Without this its end is not announced, and others see it for another minute.
-            recorder.destroy_node()
+        with errors_written():
+            _record(sys.argv[1:])
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     except (LookupError, ValueError) as error:
-        _tell("error", str(error.args[0] if error.args else error))
-    except CommandError as error:
-        _tell("error", error.format_message())
+        write_line("error", str(error.args[0] if error.args else error))
     finally:
         rclpy.try_shutdown()
+
+
+def _record(paths: list[str]) -> None:
+    recorder: Node = Recorder(paths)
+    try:
+        rclpy.spin(recorder)
+    finally:
+        # Without this its end is not announced, and others see it for another minute.
+        recorder.destroy_node()
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""`ros2 topic`: a file a verb."""
+"""`ros2 topic`: list, measure, echo and publish."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from spinbook.ros2.cli import Entry, Menu
 topic = Menu(
     name="topic",
     entries={
-        "bw": Entry("spinbook.ros2.topic.bw:bw", "How many bytes per second a topic carries."),
-        "delay": Entry("spinbook.ros2.topic.delay:delay", "How old messages are on arrival, by their header."),
+        "bw": Entry("spinbook.ros2.topic.measuring:bw", "How many bytes per second a topic carries."),
+        "delay": Entry("spinbook.ros2.topic.measuring:delay", "How old messages are on arrival, by their header."),
         "echo": Entry("spinbook.ros2.topic.echo:echo", "Print the messages of a topic."),
-        "find": Entry("spinbook.ros2.topic.find:find", "The topics of a type."),
-        "hz": Entry("spinbook.ros2.topic.hz:hz", "How many messages per second arrive."),
-        "info": Entry("spinbook.ros2.topic.info:info", "Who publishes and subscribes, with which QoS."),
-        "list": Entry("spinbook.ros2.topic.list:list_", "The topics there are."),
+        "find": Entry("spinbook.ros2.topic.listing:find", "The topics of a type."),
+        "hz": Entry("spinbook.ros2.topic.measuring:hz", "How many messages per second arrive."),
+        "info": Entry("spinbook.ros2.topic.listing:info", "Who publishes and subscribes, with which QoS."),
+        "list": Entry("spinbook.ros2.topic.listing:list_", "The topics there are."),
         "pub": Entry("spinbook.ros2.topic.pub:pub", "Publish messages."),
-        "type": Entry("spinbook.ros2.topic.type:type_", "The type of a topic."),
+        "type": Entry("spinbook.ros2.topic.listing:type_", "The type of a topic."),
     },
     help="""Watch, measure and publish topics.
 

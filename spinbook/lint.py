@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 
 from grader.checking.proofreading import problems_of
-from spinbook.chapter.chapter import CellKind
+from spinbook.chapter.classify import CellKind
 from spinbook.chapter.read import Reading
 from spinbook.chapters import read_all
 from spinbook.course.course import Course, find_course

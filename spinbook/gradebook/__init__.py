@@ -1,1 +1,0 @@
-"""The gradebook of a course, from the results of its exercises."""

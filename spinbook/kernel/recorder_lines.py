@@ -1,0 +1,34 @@
+"""What a recorder, a process of its own, says to the kernel: one JSON array per line, its kind first."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from spinbook.ros2.cli import CommandError
+
+
+def write_line(kind: str, *values: Any) -> None:
+    """Print one line, at once."""
+    print(json.dumps((kind, *values)), flush=True)
+
+
+def read_lines(lines: Iterable[str]) -> Iterator[tuple[str, list[Any]]]:
+    """The kind and the values of each line; whatever a library printed among them is passed over."""
+    for line in lines:
+        try:
+            kind, *values = json.loads(line)
+        except (ValueError, TypeError):
+            continue
+        yield kind, values
+
+
+@contextmanager
+def errors_written() -> Iterator[None]:
+    """Write what a `ros2` command would refuse as a line ["error", words], and end."""
+    try:
+        yield
+    except CommandError as error:
+        write_line("error", error.format_message())
