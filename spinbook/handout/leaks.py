@@ -8,7 +8,7 @@ import json
 import re
 import zipfile
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -24,11 +24,16 @@ _PIECE = 8
 
 @dataclass(frozen=True)
 class Secret:
-    """A piece of text that no student may see, without spaces, and what it is; `at` is its file and first line."""
+    """A piece of text that no student may see, without spaces, and what it is; `at` is its file and first line.
+
+    `tells` is whether it gives something away in Spinbook's own files, too, which everybody has. They may well have the
+    same `main` as a mistake, or the same line as a hidden check. What they must not have is a whole part of a solution.
+    """
 
     what: str
     text: str
     at: str = ""
+    tells: bool = False
 
 
 #: A line's number, and the line without spaces.
@@ -54,7 +59,8 @@ def secrets(exercise: Exercise, taught: str, others: str = "") -> list[Secret]:
         known = bare(message)
         for lines in _solved(source):
             found += _pieces(what, place, lines, known)
-            found += [secret for secret in _windows(what, place, lines) if secret.text not in elsewhere]
+            windows = [secret for secret in _windows(what, place, lines) if secret.text not in elsewhere]
+            found += [replace(secret, tells=True) for secret in windows]
     known = bare(message)
     if exercise.solution_folder:
         for file in sorted(exercise.solution_folder.rglob("*.py")):

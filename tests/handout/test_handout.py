@@ -130,7 +130,7 @@ def test_the_means_to_install_are_there_and_can_be_read(real: HandedOut) -> None
     ]
     wheel = next((real.folder / "wheels").glob("spinbook-*.whl"))
     turtlesim = next((real.folder / "wheels").glob("spinbook_interfaces_turtlesim-*.whl"))
-    assert f"./wheels/{turtlesim.name} ; python_version" in (real.folder / "requirements.txt").read_text()
+    assert f"./wheels/{turtlesim.name} ; platform_machine" in (real.folder / "requirements.txt").read_text()
     assert f"./wheels/{wheel.name}[ros,colcon,lab]" in (real.folder / "requirements.txt").read_text().splitlines()
     conda = yaml.safe_load((real.folder / "environment.yml").read_text())
     assert conda["channels"] == ["robostack-jazzy", "conda-forge"]
