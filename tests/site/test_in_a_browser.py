@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import gzip
 import json
 from pathlib import Path
@@ -119,6 +120,53 @@ def test_the_menu_of_a_phone_opens_and_closes_by_keyboard(browser: Browser, addr
         expect(link).to_be_visible(timeout=PATIENCE_MS)
         shown.page.keyboard.press("Escape")
         expect(link).to_be_hidden(timeout=PATIENCE_MS)
+
+
+#: The brightness of the picture's left and right edge: of a row in the middle, where only a shadow can be.
+EDGES = """async (address) => {
+    const picture = new Image();
+    picture.src = address;
+    await picture.decode();
+    const canvas = new OffscreenCanvas(picture.width, picture.height).getContext("2d");
+    canvas.drawImage(picture, 0, 0);
+    const column = (x) => {
+        const bytes = canvas.getImageData(x, 0, 1, picture.height).data;
+        const values = [...bytes].filter((_, index) => index % 4 == 0).sort((a, b) => a - b);
+        return values[Math.floor(values.length / 2)];
+    };
+    return [column(1), column(picture.width - 2)];
+}"""
+
+
+def test_on_a_phone_a_wide_table_has_a_shadow_at_the_side_where_there_is_more(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/02-more.html", width=390) as shown:
+        table = shown.page.locator("main .table")
+
+        def edges() -> list[int]:
+            picture = base64.b64encode(table.screenshot()).decode()
+            return shown.page.evaluate(EDGES, f"data:image/png;base64,{picture}")
+
+        assert table.evaluate("table => table.scrollWidth > table.clientWidth + 20")
+        left, right = edges()
+        assert right < left - 20
+        table.evaluate("table => { table.scrollLeft = table.scrollWidth; }")
+        left, right = edges()
+        assert left < right - 20
+
+
+def test_on_a_phone_code_in_a_sentence_does_not_break_at_its_hyphens(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/02-more.html", width=390) as shown:
+        lines = shown.page.locator("main p code").evaluate_all(
+            """codes => codes.map(code => {
+                const text = document.createRange();
+                text.selectNodeContents(code);
+                return [code.innerText, new Set([...text.getClientRects()].map(box => box.top)).size];
+            })"""
+        )
+        paragraph = shown.page.locator("main p", has_text="colcon links")
+        assert paragraph.evaluate("words => words.getClientRects()[0].height") > 100  # so lines end next to some of them
+        assert len(lines) >= 6
+        assert [text for text, count in lines if count != 1] == []
 
 
 def test_a_chapter_is_below_a_megabyte_over_the_wire(browser: Browser, built: SmallCourse, address: str) -> None:
