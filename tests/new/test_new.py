@@ -154,7 +154,6 @@ def test_either_a_course_or_an_exercise(words: list[str]) -> None:
     assert "one of them" in done.output
 
 
-@pytest.mark.soak
 def test_the_untouched_course_can_be_handed_out(course: Path) -> None:
     done = run("spinbook", "handout", cwd=course)
 
@@ -162,6 +161,7 @@ def test_the_untouched_course_can_be_handed_out(course: Path) -> None:
     assert "no solution and no hidden check among them" in done.stdout
 
 
+@pytest.mark.soak
 def test_an_audit_of_the_untouched_course_has_nothing_to_fix(pristine: Path, tmp_path: Path) -> None:
     for number in range(2):
         environment = {**os.environ, "PYTEST_ADDOPTS": "", "SPINBOOK_CACHE": str(tmp_path / f"cache{number}")}
