@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any, NoReturn, get_args
 
 from grader.exercise.exercise import (
+    PUBLIC_FILE,
     Durability,
     Elements,
     Endpoint,
     ExerciseError,
     Parameter,
-    PUBLIC_FILE,
     ProgramFile,
     Reliability,
     Role,

@@ -30,7 +30,10 @@ def test_a_failed_public_check_tells_what_was_expected_and_got_when_and_where(
     shown = text(page_of(graded["position_for_velocity"], exercise))
     assert "Begin here The first check that your node fails: Each joint's velocity" in shown
     assert shown.index("Begin here") < shown.index("Checks ") < shown.index("Your node and the solution")
-    assert "expected 0.499167 rad/s got 0.0499167 rad/s when 0.10 s after the start (message 2) joint left_shoulder_pitch" in shown
+    assert (
+        "expected 0.499167 rad/s got 0.0499167 rad/s when 0.10 s after the start (message 2) joint left_shoulder_pitch"
+        in shown
+    )
     assert "Every velocity is the position of the message that arrived, unchanged." in shown
     assert "Hint: (position now - position before)" in shown
 

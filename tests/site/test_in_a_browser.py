@@ -164,7 +164,9 @@ def test_on_a_phone_code_in_a_sentence_does_not_break_at_its_hyphens(browser: Br
             })"""
         )
         paragraph = shown.page.locator("main p", has_text="colcon links")
-        assert paragraph.evaluate("words => words.getClientRects()[0].height") > 100  # so lines end next to some of them
+        assert (
+            paragraph.evaluate("words => words.getClientRects()[0].height") > 100
+        )  # so lines end next to some of them
         assert len(lines) >= 6
         assert [text for text, count in lines if count != 1] == []
 
