@@ -133,8 +133,8 @@ Words only. <!-- NOTE_IN_A_LINE -->
 | --- | --- | --- | --- |
 | `--symlink-install` | links to your files instead of copies | while you write a package | always |
 
-With `--symlink-install` colcon links, and `--packages-select` builds one: so `--symlink-install` and `--packages-select`
-save time, `--event-handlers` shows output, and `--symlink-install` once more, with `--packages-up-to` for all that it needs.
+With `--symlink-install` colcon links, and `--packages-select` builds one: `--symlink-install` and `--packages-select`
+save time, `--event-handlers` shows output, and `--symlink-install` once more, with `--packages-up-to` for the rest.
 
 ## Last words
 
