@@ -18,6 +18,8 @@ from grader.exercise.starter import BEGIN, END, starter
 #: One line with so many characters besides spaces is no coincidence, nor are so many lines with so many together.
 _ONE_LINE = 40
 _LINES, _CHARACTERS = 3, 40
+#: Spinbook's own modules, in a wheel or in what a page loads.
+_OWN = re.compile(r"\.(whl|zip)/(spinbook|grader|interface_compiler|rcl_python|rmw_lockstep)/")
 #: So many characters of a secret are looked up before the whole of it is compared.
 _PIECE = 8
 
@@ -26,8 +28,8 @@ _PIECE = 8
 class Secret:
     """A piece of text that no student may see, without spaces, and what it is; `at` is its file and first line.
 
-    `tells` is whether it gives something away in Spinbook's own files, too, which everybody has. They may well have the
-    same `main` as a mistake, or the same line as a hidden check. What they must not have is a whole part of a solution.
+    `tells` is whether it gives something away in Spinbook's own modules, too, which everybody has. They may well have
+    the same `main` as a mistake, or the same line as a hidden check. What they must not have is a part of a solution.
     """
 
     what: str
@@ -237,7 +239,9 @@ class _Search:
 def _located(files: Mapping[str, bytes], search: _Search) -> Iterator[Leak]:
     for name, content in files.items():
         first: dict[str, Secret] = {}
-        for secret in search.found_in(bare(f"{name}\n{_readable(name, content)}")):
+        own = _OWN.search(name)
+        found = search.found_in(bare(f"{name}\n{_readable(name, content)}"))
+        for secret in (secret for secret in found if secret.tells or not own):
             first.setdefault(secret.what, secret)
         for secret in first.values():
             yield _leak(name, content, secret)
