@@ -99,6 +99,11 @@ def interface_wheels(course: Course, texts: Iterable[bytes]) -> dict[str, bytes]
     return found
 
 
+def package_of(wheel: str) -> str:
+    """The ROS package in a wheel of interfaces, by the wheel's file name."""
+    return wheel.partition("-")[0].removeprefix("spinbook_interfaces_")
+
+
 def _packages(course: Course, text: bytes) -> Iterator[tuple[str, Path]]:
     """The packages, each with the prefix that has it."""
     environment = Path(sys.prefix)
