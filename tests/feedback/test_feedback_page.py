@@ -72,7 +72,7 @@ def test_the_plot_shows_a_public_scenario_only_and_nothing_where_nothing_differs
 
 def test_the_plot_says_in_words_where_it_first_goes_wrong(graded: dict[str, Grade], exercise: Exercise) -> None:
     page = page_of(graded["position_for_velocity"], exercise)
-    said = "6 of them differ; the first that is wrong is left_elbow at 0.10 s, marked with a cross."
+    said = "6 of them differ; the first wrong value, left_elbow at 0.10 s, is marked with a cross."
     assert re.search(rf'<img src="data:image/svg\+xml;base64,[^"]+" alt="[^"]*{said}">', unescape(page))
     assert said in text(page)
 
