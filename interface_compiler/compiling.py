@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import re
 import subprocess
-import sysconfig
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -35,8 +34,15 @@ _PARTS_BY_CMAKE = (
     *("rosidl_generator_c", "rosidl_generator_py", "rosidl_typesupport_c"),
     *("rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c"),
 )
-_FLAGS = ("-O1", "-fPIC", "-g0", "-w", "-fvisibility=default")
+_FLAGS = ("-O1", "-fPIC", "-g0", "-fvisibility=default")
 _DISPATCH = Path(__file__).with_name("dispatch.cpp.in")
+#: Holds the conversion from and to Python to the limited API. What it does not have has to be an error, not a warning.
+_PYTHON_UNIT = "python.c"
+_LIMITED_API = Path(__file__).with_name("limited_api.h")
+_CONVERTING = ("-include", str(_LIMITED_API), "-Werror=implicit-function-declaration")
+#: The type's name, which the limited API does not show: how the generated code asks for it, and how it can.
+_TYPE_NAME = re.compile(r'strcmp\(field->ob_type->tp_name, ("[\w.]+")\) == 0')
+_TYPE_IS_NAMED = "assert(field->ob_type->tp_name != NULL);"
 _SYMBOL = re.compile(r"STRINGIFY\(ROSIDL_TYPESUPPORT_INTERFACE__(MESSAGE|SERVICE)_SYMBOL_NAME\((\w+), ([^)]*)\)\)")
 #: The file with the compiler's output if it fails.
 LOG = "compiler.log"
@@ -68,8 +74,11 @@ class Dependency:
 
 
 def module_name(package: str) -> str:
-    """The file name of a package's extension module, which rosidl's Python code imports by this name."""
-    return f"{package}_s__rosidl_typesupport_c{sysconfig.get_config_var('EXT_SUFFIX')}"
+    """The file name of a package's extension module, which rosidl's Python code imports by this name.
+
+    Its ending is that of every Python from 3.10 on (PEP 3149, PEP 384).
+    """
+    return f"{package}_s__rosidl_typesupport_c.abi3.so"
 
 
 def compile_package(generated: Generated, work: Path, dependencies: Sequence[Dependency], wheels: Path) -> Path:
@@ -116,7 +125,9 @@ def _units(generated: Generated, work: Path) -> list[Path]:
         units += _joined(work / f"{kind}_functions.c", plain)
         # These define the same static names and can't be joined.
         units += sorted(detail.glob("*__description.c"))
-    units += _joined(work / "python.c", _python_sources(generated))
+    for source in _python_sources(generated):
+        _limit(source)
+    units += _joined(work / _PYTHON_UNIT, _python_sources(generated))
     dispatch = work / "dispatch.cpp"
     dispatch.write_text(_dispatch(c), encoding="utf-8")
     return [*units, dispatch]
@@ -132,6 +143,12 @@ def _joined(unit: Path, sources: Sequence[Path]) -> list[Path]:
 def _python_sources(generated: Generated) -> list[Path]:
     converters = sorted(generated.python.glob("*/*_s.c"))
     return [*converters, *sorted(generated.python.glob(f"_{generated.package}_s.ep.*.c"))]
+
+
+def _limit(source: Path) -> None:
+    """Let the code ask for the name of a type in a way that the limited API has."""
+    text = source.read_text(encoding="utf-8").replace(_TYPE_IS_NAMED, "")
+    source.write_text(_TYPE_NAME.sub(r"is_named(field, \1)", text), encoding="utf-8")
 
 
 def _dispatch(c: Path) -> str:
@@ -167,6 +184,7 @@ def _compile(unit: Path, target: Path, flags: Sequence[str], package: str) -> No
         compiler = ["g++", "-std=c++17", *renamed]
     else:
         compiler = ["gcc", "-std=gnu11"]
+    compiler += _CONVERTING if unit.name == _PYTHON_UNIT else ["-w"]
     _run([*compiler, *flags, "-c", str(unit), "-o", str(target)], package)
 
 

@@ -24,7 +24,7 @@ from interface_compiler.prefixes import PYTHON, RESOURCES
 #: Wheels whose version affects the generated code.
 _WHEELS = ("ros-rosidl-adapter", "ros-rosidl-generator-py", "ros-rosidl-typesupport-fastrtps-c", "ros-fastcdr")
 #: The files of this folder that decide it, too.
-_OWN = ("generating.py", "compiling.py", "building.py", "dispatch.cpp.in")
+_OWN = ("generating.py", "compiling.py", "building.py", "dispatch.cpp.in", "limited_api.h")
 #: Prefixes that a store keeps: notebooks that are open may still use one of an earlier text.
 _KEPT = 8
 _KEY = "spinbook-key"

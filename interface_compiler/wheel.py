@@ -1,4 +1,4 @@
-"""A compiled package as a wheel, for an environment of the same Python: the same bytes each time.
+"""A compiled package as a wheel, for every Python from 3.10 on: the same bytes each time.
 
 A wheel is a zip whose RECORD lists every file with its hash (PEP 427, and "Recording installed projects").
 """
@@ -24,6 +24,8 @@ from interface_compiler.definition import CompileError, Definition
 from interface_compiler.prefixes import PYTHON, RESOURCES
 
 _VERSION = "0.1.0"
+#: Python 3.10 and every later one: limited_api.h sees to it.
+_PYTHONS = "cp310-abi3"
 
 
 def wheel(package: str, prefix: Path) -> tuple[str, bytes]:
@@ -33,8 +35,7 @@ def wheel(package: str, prefix: Path) -> tuple[str, bytes]:
     """
     version = f"{_VERSION}+{store.key_of(package, prefix)}"
     name = f"{_project(package).replace('-', '_')}-{version}"
-    python = f"cp{sys.version_info.major}{sys.version_info.minor}"
-    tag = f"{python}-{python}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
+    tag = f"{_PYTHONS}-{wheel_platform()}"
     files = dict(_files(package, prefix, f"{name}.data/data"))
     files[f"{name}.dist-info/METADATA"] = (
         f"Metadata-Version: 2.1\nName: {_project(package)}\nVersion: {version}\n"
@@ -46,6 +47,11 @@ def wheel(package: str, prefix: Path) -> tuple[str, bytes]:
     listing = f"{name}.dist-info/RECORD"
     files[listing] = record(files, listing)
     return f"{name}-{tag}.whl", zipped(files, last=listing)
+
+
+def wheel_platform() -> str:
+    """What the name of a wheel that is compiled here ends in, such as `linux_x86_64`."""
+    return sysconfig.get_platform().replace("-", "_").replace(".", "_")
 
 
 def record(files: dict[str, bytes], listing: str) -> bytes:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from grader.checking import Run, check, fail
 
 
-@check(points=8, hint="Create the publisher in __init__ and call publish() in the callback.")
+@check(points=8, hint="Create the subscription and the publisher in __init__, and call publish() in the callback.")
 def test_answers_each_message(default: Run) -> None:
     """It hears /joint_commands, and publishes one message on /joint_filtered for each."""
     default.must_have_interface()

@@ -63,11 +63,11 @@ def show_result(
         full = sum(final >= points for final in finals)
         _say(console, f"{len(finals)} grades: median {middle:g} of {points:g} points, {full} with full marks.", "bold")
     if entries and (unknown := unknown_to_moodle(entries)):
-        who = "no student" if unknown == len(entries) else f"not {unknown} of the {len(entries)} students"
+        who = "any student" if unknown == len(entries) else f"{unknown} of the {len(entries)} students"
         _say(
             console,
-            f"moodle.csv: Moodle will find {who}, for lack of an Identifier. If you use Moodle, grade its own "
-            "download, or a CSV file with the column Identifier.",
+            f"moodle.csv has no Identifier for {who}, so Moodle can't match them. If you use Moodle, grade the folder "
+            "that you downloaded from it, or a CSV file with the column Identifier.",
             "dim",
         )
     for question in questions:

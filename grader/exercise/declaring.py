@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, NoReturn, get_args
 
 from grader.exercise.exercise import (
+    PUBLIC_FILE,
     Durability,
     Elements,
     Endpoint,
@@ -119,12 +120,19 @@ class Table:
         package, _, rest = value.partition("/")
         known = prefixes.interfaces_of(package, prefixes.installed())
         if not known:
-            fix = f"If the course defines it: spinbook build. If Spinbook brings it: spinbook interfaces add {package}."
-            self.fault("type", f"type = {value!r}: the package {package} is not installed here", fix)
+            self.fault("type", f"type = {value!r}: the package {package} is not installed here", self._install(package))
         if rest not in known:
             fix = "Look at its name. If the course has just defined it: spinbook build."
             self.fault("type", f"type = {value!r}: the package {package} has no {rest}", fix)
         return value
+
+    def _install(self, package: str) -> str:
+        if (self.file.parent / PUBLIC_FILE).exists():
+            return (
+                "It comes with the handout. In the handout's folder: .venv/bin/pip install -r requirements.txt. "
+                "If it is still missing then, send this message to whoever gave you the handout."
+            )
+        return f"If the course defines it: spinbook build. If Spinbook brings it: spinbook interfaces add {package}."
 
     def units(self) -> dict[str, str]:
         """Return the unit of each field."""

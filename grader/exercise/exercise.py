@@ -89,6 +89,9 @@ class ProgramFile:
     class_name: str = ""
 
 
+#: What a student's copy of an exercise has in place of scenarios and a solution: see `grader.grading.public`.
+PUBLIC_FILE = "public.json"
+
 #: What the grader's own node is called, on which the reference publishers, servers and clients are.
 REFERENCE_NODE = "reference"
 
@@ -134,8 +137,8 @@ class Exercise:
 
     @property
     def public_file(self) -> Path:
-        """What a student's copy has in place of scenarios and a solution: see `grader.grading.public`."""
-        return self.folder / "public.json"
+        """What the student's copy has in place of scenarios and a solution."""
+        return self.folder / PUBLIC_FILE
 
     def public(self) -> Exercise:
         """The same exercise with the public checks only."""

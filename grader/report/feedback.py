@@ -103,8 +103,8 @@ HEADLINES: dict[Outcome, tuple[str, str]] = {
         "reason: only your node's own time counts.",
     ),
     "over-limit": (
-        "Your program used more than it may",
-        "It was ended in the very first scenario, so no check could be passed.",
+        "Your program exceeded a limit",
+        "It was stopped in the very first scenario, so no check could be passed.",
     ),
     "host-error": (
         "This could not be graded, and that is not your fault",
@@ -132,7 +132,7 @@ def advice(grade: Grade, exercise: Exercise) -> Advice | None:
             f"{again}, with a publisher in another terminal. It must answer each message at once.",
         ),
         "over-limit": (
-            "Look for what is made over and over: messages, lists that grow, files, threads, processes.",
+            "Look for things that are created again and again: messages, list items, files, threads, processes.",
             f"{again}, and watch it with top.",
         ),
         "host-error": ("There is nothing for you to do: it will be graded again.",),

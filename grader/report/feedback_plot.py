@@ -129,7 +129,6 @@ def _said(drawn: tuple[Curve, ...], field: str, called: str, end: float) -> str:
     times = [(curve.first_wrong[0], curve.element) for curve in wrong if curve.first_wrong]
     at, element = min(times)
     if alone:
-        return begin + f"The first that is wrong is at {at:.2f} s, marked with a cross."
-    return (
-        begin + f"{len(wrong)} of them differ; the first that is wrong is {element} at {at:.2f} s, marked with a cross."
-    )
+        return begin + f"The first wrong value, at {at:.2f} s, is marked with a cross."
+    first = f"the first wrong value, {element} at {at:.2f} s, is marked with a cross."
+    return begin + f"{len(wrong)} of them {'differs' if len(wrong) == 1 else 'differ'}; {first}"

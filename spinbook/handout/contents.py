@@ -76,7 +76,6 @@ def guide_files(
         "exercises": exercises,
         "pins": _pins(distro),
         "interfaces": [requirement(file) for file in interfaces],
-        "pythons": sorted({file.split("-")[2].replace("cp3", "3.") for file in interfaces}),
         "version": __version__,
     }
     return {name: environment.get_template(template).render(values).encode() for name, template in _TEMPLATES.items()}

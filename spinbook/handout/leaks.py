@@ -8,7 +8,7 @@ import json
 import re
 import zipfile
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,17 +18,24 @@ from grader.exercise.starter import BEGIN, END, starter
 #: A line with so many characters besides spaces is not a coincidence, nor are so many lines with so many together.
 _ONE_LINE = 40
 _LINES, _CHARACTERS = 3, 40
+#: Spinbook's own modules, in a wheel or in what a page loads.
+_OWN = re.compile(r"\.(whl|zip)/(spinbook|grader|interface_compiler|rcl_python|rmw_lockstep)/")
 #: So many characters of a secret are looked up before the whole of it is compared.
 _PIECE = 8
 
 
 @dataclass(frozen=True)
 class Secret:
-    """A piece of text that no student may see, without spaces, and what it is; `at` is its file and first line."""
+    """A piece of text that no student may see, without spaces, and what it is; `at` is its file and first line.
+
+    `tells` is whether it gives something away in Spinbook's own modules, too, which everybody has. They may well have
+    the same `main` as a mistake, or the same line as a hidden check. What they must not have is a part of a solution.
+    """
 
     what: str
     text: str
     at: str = ""
+    tells: bool = False
 
 
 #: A line's number, and the line without spaces.
@@ -54,7 +61,8 @@ def secrets(exercise: Exercise, taught: str, others: str = "") -> list[Secret]:
         known = bare(message)
         for lines in _solved(source):
             found += _pieces(what, place, lines, known)
-            found += [secret for secret in _windows(what, place, lines) if secret.text not in elsewhere]
+            windows = [secret for secret in _windows(what, place, lines) if secret.text not in elsewhere]
+            found += [replace(secret, tells=True) for secret in windows]
     known = bare(message)
     if exercise.solution_folder:
         for file in sorted(exercise.solution_folder.rglob("*.py")):
@@ -231,7 +239,9 @@ class _Search:
 def _located(files: Mapping[str, bytes], search: _Search) -> Iterator[Leak]:
     for name, content in files.items():
         first: dict[str, Secret] = {}
-        for secret in search.found_in(bare(f"{name}\n{_readable(name, content)}")):
+        own = _OWN.search(name)
+        found = search.found_in(bare(f"{name}\n{_readable(name, content)}"))
+        for secret in (secret for secret in found if secret.tells or not own):
             first.setdefault(secret.what, secret)
         for secret in first.values():
             yield _leak(name, content, secret)

@@ -14,7 +14,7 @@ from pathlib import Path
 import spinbook
 from interface_compiler import shipped, store
 from interface_compiler.archive import zipped
-from interface_compiler.wheel import record, wheel
+from interface_compiler.wheel import record, wheel, wheel_platform
 from spinbook.course.course import Course
 from spinbook.interfaces.compiling import FOLDER, compile_course
 from spinbook.problem import Problem, SpinbookError
@@ -80,7 +80,7 @@ def _installed() -> dict[str, bytes]:
     return files
 
 
-#: Where a course keeps wheels that were compiled for other versions of Python.
+#: Where a course keeps wheels that were compiled for other processors.
 OTHERS = Path(FOLDER, "wheels")
 
 
@@ -92,9 +92,16 @@ def interface_wheels(course: Course, texts: Iterable[bytes]) -> dict[str, bytes]
     Raises:
         SpinbookError: if the course's interfaces have faults or can't be compiled.
     """
-    found = {path.name: path.read_bytes() for path in sorted((course.root / OTHERS).glob("*.whl"))}
+    own = wheel_platform()
+    others = (path for path in sorted((course.root / OTHERS).glob("*.whl")) if not path.stem.endswith(own))
+    found = {path.name: path.read_bytes() for path in others}
     found.update(wheel(package, prefix) for package, prefix in _packages(course, b"".join(texts)))
     return found
+
+
+def package_of(wheel: str) -> str:
+    """The ROS package in a wheel of interfaces, by the wheel's file name."""
+    return wheel.partition("-")[0].removeprefix("spinbook_interfaces_")
 
 
 def _packages(course: Course, text: bytes) -> Iterator[tuple[str, Path]]:
@@ -110,8 +117,9 @@ def _packages(course: Course, text: bytes) -> Iterator[tuple[str, Path]]:
 
 
 def requirement(file: str) -> str:
-    """The line of a requirements.txt for a wheel, for the Python and the machine that it was compiled for."""
-    version, platform = file.removesuffix(".whl").split("-")[2:5:2]
-    minor = version.removeprefix("cp3")
-    machine = platform.partition("_")[2]
-    return f'./wheels/{file} ; python_version == "3.{minor}" and platform_machine == "{machine}"'
+    """The line of a requirements.txt for a wheel: for the machine, and the Pythons, that it was compiled for."""
+    version, abi, platform = file.removesuffix(".whl").split("-")[2:5]
+    machine = f'platform_machine == "{platform.partition("_")[2]}"'
+    if abi == "abi3":
+        return f"./wheels/{file} ; {machine}"
+    return f'./wheels/{file} ; python_version == "3.{version.removeprefix("cp3")}" and {machine}'

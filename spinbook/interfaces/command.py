@@ -25,7 +25,7 @@ def interfaces() -> None:
       spinbook interfaces list             what this course defines, and what can be added
       spinbook interfaces build            compile what has changed; `spinbook build` does it too
       spinbook interfaces add nav2_msgs    compile a package into this environment, once
-      spinbook interfaces wheels           wheels for students with this Python's version
+      spinbook interfaces wheels           wheels for students with this computer's processor
     """
 
 
@@ -84,9 +84,10 @@ def add(packages: tuple[str, ...]) -> None:
 @interfaces.command()
 @_course
 def wheels(start: Path) -> None:
-    """Write wheels of the course's interfaces, for this Python, into interfaces/wheels/.
+    """Write wheels of the course's interfaces, for this computer's processor, into interfaces/wheels/.
 
-    `spinbook handout` adds those it finds there. Run this with each version of Python that your students have.
+    They fit every Python from 3.10 on. `spinbook handout` has those for the computer that it runs on anyway, and adds
+    those for other processors that it finds there.
     """
     course = find_course(start)
     compiled = compile_course(course)

@@ -21,6 +21,7 @@ from spinbook.chapter.classify import CellKind
 from spinbook.chapter.comments import without_comments
 from spinbook.chapters import read_all
 from spinbook.course.course import Course
+from spinbook.handout.wheels import interface_wheels, package_of
 from spinbook.problem import Problem, Severity, SpinbookError
 from spinbook.site import page as names
 from spinbook.site.addresses import address_files
@@ -329,21 +330,32 @@ def _notebooks(
 ) -> None:
     """The notebooks to download and to open elsewhere, which install what they need and bring their exercises."""
     wanted = requirement(repository)
+    wheels = interface_wheels(course, contents.copies.values())
     written: list[str] = []
     for chapter in chapters:
         file = course.build_folder / "notebooks" / f"{chapter.name}.ipynb"
         notebook = json.loads(file.read_text(encoding="utf-8"))
         held = [cell for cell in chapter.cells if cell.kind is CellKind.EXERCISE and cell.name]
         brought = {path: data for cell in held for path, data in copies[cell.name or ""].items()}
-        _add_notebook(chapter.name, notebook, wanted, brought, contents)
+        _add_notebook(chapter.name, notebook, wanted, _with_wheels(brought, notebook, wheels), contents)
         written.append(chapter.name)
         for cell in held:
             name = names.exercise_notebook(cell.name or "")
-            _add_notebook(name, _only_exercise(notebook, cell.id), wanted, copies[cell.name or ""], contents)
+            alone = _only_exercise(notebook, cell.id)
+            _add_notebook(name, alone, wanted, _with_wheels(copies[cell.name or ""], alone, wheels), contents)
             written.append(name)
     contents.branch |= branch_files(written, wanted, course.title)
     for name in written:
         contents.openers[name] = [{"name": o.name, "url": o.url} for o in openers(repository, name)]
+
+
+def _with_wheels(
+    files: Mapping[str, bytes], notebook: Mapping[str, Any], wheels: Mapping[str, bytes]
+) -> dict[str, bytes]:
+    """Add the wheels of the packages that a notebook, or a file that it brings, names."""
+    text = json.dumps(notebook).encode() + b"".join(files.values())
+    needed = {f"wheels/{name}": data for name, data in wheels.items() if package_of(name).encode() in text}
+    return {**files, **needed}
 
 
 def _only_exercise(notebook: Mapping[str, Any], cell_id: str) -> dict[str, Any]:

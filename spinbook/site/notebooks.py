@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import lzma
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -87,8 +88,8 @@ else:
 
 
 _EXERCISES = '''\
-# Brings the files by which %check works: what students may see of the exercises. Yours are left as they are.
-import base64, json, lzma, pathlib
+# Brings what %check needs: the exercises without what is hidden, and compiled messages. Your files stay as they are.
+import base64, importlib.util, json, lzma, pathlib, subprocess, sys
 
 packed = r"""
 {packed}
@@ -98,7 +99,12 @@ for name, text in json.loads(lzma.decompress(base64.b85decode("".join(packed.spl
     if not file.exists():
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_bytes(text.encode("utf-8", "surrogateescape"))
-print("The exercises are in the folder", pathlib.Path("exercises").resolve())'''
+for wheel in sorted(pathlib.Path("wheels").glob("spinbook_interfaces_*.whl")):
+    if importlib.util.find_spec(wheel.name.partition("-")[0].removeprefix("spinbook_interfaces_")) is None:
+        subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", str(wheel)], check=False)
+importlib.invalidate_caches()
+if pathlib.Path("exercises").is_dir():
+    print("The exercises are in the folder", pathlib.Path("exercises").resolve())'''
 
 
 @dataclass(frozen=True)
@@ -122,19 +128,29 @@ def openers(repository: Repository, notebook: str) -> tuple[Opener, ...]:
     )
 
 
+#: Spinbook's own repository, and the line of a course's requirements.txt that names another place for it.
+_SPINBOOK = "git+https://github.com/spinbook/spinbook"
+_NAMED = re.compile(r"^spinbook(?:\[[\w,]*\])?\s*@\s*(\S+)", re.MULTILINE)
+
+
 def requirement(repository: Repository) -> str:
-    """What pip installs to run a notebook: Spinbook with ROS 2 and colcon, as the site was built with."""
-    extras = "spinbook[ros,colcon]"
-    if not repository.url:
-        return extras
-    return f"{extras} @ git+{repository.url}@{repository.commit or 'main'}"
+    """What pip installs to run a notebook: Spinbook with ROS 2 and colcon, from where the course has it."""
+    return f"spinbook[ros,colcon] @ {_origin(repository)}"
+
+
+def _origin(repository: Repository) -> str:
+    if repository.url and (repository.root / "spinbook" / "cli.py").is_file():
+        return f"git+{repository.url}@{repository.commit or 'main'}"
+    requirements = repository.root / "requirements.txt"
+    named = _NAMED.search(requirements.read_text(encoding="utf-8")) if requirements.is_file() else None
+    return named[1] if named else _SPINBOOK
 
 
 def launch_notebook(notebook: Mapping[str, Any], wanted: str, exercises: Mapping[str, bytes]) -> dict[str, Any]:
     """The notebook with a cell before its first code cell that installs `wanted` where it is missing.
 
-    `exercises` are the files of students' copies, by path: a notebook that somebody opens by itself brings them along,
-    so that `%check` works wherever it is opened.
+    `exercises` are the files of students' copies, and wheels of interfaces, by path: a notebook that somebody opens by
+    itself brings them along, so that `%check` works wherever it is opened.
     """
     cells = list(notebook["cells"])
     first = next((index for index, cell in enumerate(cells) if cell["cell_type"] == "code"), len(cells))

@@ -24,13 +24,16 @@ def page_of(grade: Grade, exercise: Exercise) -> str:
     return feedback_page(entry(grade), exercise, feedback_plot(grade, exercise))
 
 
-def test_a_failed_public_check_tells_what_was_expected_what_came_when_and_where(
+def test_a_failed_public_check_tells_what_was_expected_and_got_when_and_where(
     graded: dict[str, Grade], exercise: Exercise
 ) -> None:
     shown = text(page_of(graded["position_for_velocity"], exercise))
-    assert "Begin here The first check that your node does not pass: Each joint's velocity" in shown
+    assert "Begin here The first check that your node fails: Each joint's velocity" in shown
     assert shown.index("Begin here") < shown.index("Checks ") < shown.index("Your node and the solution")
-    assert "expected 0.499167 rad/s came 0.0499167 rad/s when 0.10 s message 2 which left_shoulder_pitch" in shown
+    assert (
+        "expected 0.499167 rad/s got 0.0499167 rad/s when 0.10 s after the start (message 2) joint left_shoulder_pitch"
+        in shown
+    )
     assert "Every velocity is the position of the message that arrived, unchanged." in shown
     assert "Hint: (position now - position before)" in shown
 
@@ -69,7 +72,7 @@ def test_the_plot_shows_a_public_scenario_only_and_nothing_where_nothing_differs
 
 def test_the_plot_says_in_words_where_it_first_goes_wrong(graded: dict[str, Grade], exercise: Exercise) -> None:
     page = page_of(graded["position_for_velocity"], exercise)
-    said = "6 of them differ; the first that is wrong is left_elbow at 0.10 s, marked with a cross."
+    said = "6 of them differ; the first wrong value, left_elbow at 0.10 s, is marked with a cross."
     assert re.search(rf'<img src="data:image/svg\+xml;base64,[^"]+" alt="[^"]*{said}">', unescape(page))
     assert said in text(page)
 
@@ -113,7 +116,7 @@ def test_adjustments_are_told_with_their_reasons(graded: dict[str, Grade], exerc
     counts = f"{grade.score - 5.1:.1f}"
     assert f"{counts} of 100 points" in shown
     assert f"All checks {grade.score:g} Late handed in 1 day late −8.1" in shown
-    assert f"Extra credit found a mistake in the task +3 What counts {counts}" in shown
+    assert f"Extra credit found a mistake in the task +3 Total {counts}" in shown
 
 
 def test_it_tells_what_was_handed_in_when_and_how_it_was_graded(graded: dict[str, Grade], exercise: Exercise) -> None:

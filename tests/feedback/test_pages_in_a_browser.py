@@ -89,9 +89,11 @@ def test_the_class_at_a_glance(browser: Browser, site: Path) -> None:
         group = page.locator("details", has_text="2 students: dt is always 0.1 s.")
         group.locator("summary").click()
         expect(group.get_by_role("link", name="Jörg Müller")).to_be_visible()
-        expect(page.get_by_role("region", name="Not graded, by a fault of ours")).to_contain_text("Unlucky Person")
+        expect(page.get_by_role("region", name="Not graded because of a fault on our side")).to_contain_text(
+            "Unlucky Person"
+        )
         expect(page.get_by_role("region", name="Skipped")).to_contain_text("s77/")
-        expect(page.get_by_role("region", name="Checks that fail most")).to_contain_text("Each joint's velocity")
+        expect(page.get_by_role("region", name="Most failed checks")).to_contain_text("Each joint's velocity")
 
 
 def test_a_row_opens_the_students_page(browser: Browser, site: Path) -> None:

@@ -36,4 +36,4 @@ def test_one_curve_and_where_it_first_goes_wrong() -> None:
     assert plot
     assert plot.count('<polyline class="got"') == 1
     assert "The data over 0.3 s, yours drawn over the solution's." in plot.replace("&#39;", "'")
-    assert "The first that is wrong is at 0.20 s, marked with a cross." in plot
+    assert "The first wrong value, at 0.20 s, is marked with a cross." in plot

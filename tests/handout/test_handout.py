@@ -130,7 +130,7 @@ def test_the_means_to_install_are_there_and_can_be_read(real: HandedOut) -> None
     ]
     wheel = next((real.folder / "wheels").glob("spinbook-*.whl"))
     turtlesim = next((real.folder / "wheels").glob("spinbook_interfaces_turtlesim-*.whl"))
-    assert f"./wheels/{turtlesim.name} ; python_version" in (real.folder / "requirements.txt").read_text()
+    assert f"./wheels/{turtlesim.name} ; platform_machine" in (real.folder / "requirements.txt").read_text()
     assert f"./wheels/{wheel.name}[ros,colcon,lab]" in (real.folder / "requirements.txt").read_text().splitlines()
     conda = yaml.safe_load((real.folder / "environment.yml").read_text())
     assert conda["channels"] == ["robostack-jazzy", "conda-forge"]
@@ -255,15 +255,23 @@ def test_one_line_is_found_in_any_file_and_in_archives_in_archives(what: str, kn
     files = {
         "README.md": secret,
         "public.json": json.dumps({"expected": [SECRET_LINES[what]]}).encode(),
-        "wheels/x.whl": zipped({"spinbook/a.py": secret}),
+        "wheels/x.whl": zipped({"notes/a.py": secret}),
         "more.zip": zipped({"inner.zip": zipped({"a.txt": secret})}),
     }
     assert {name for name, _ in leaks(files, known)} == {
         "README.md",
         "public.json",
-        "wheels/x.whl/spinbook/a.py",
+        "wheels/x.whl/notes/a.py",
         "more.zip/inner.zip/a.txt",
     }
+
+
+def test_spinbooks_own_modules_may_share_a_line_with_a_check_and_no_part_of_a_solution(known: list[Secret]) -> None:
+    line = (EXERCISE / "hidden_checks.py").read_text(encoding="utf-8")
+    part = (SOLUTIONS / "solution.py").read_text(encoding="utf-8")
+
+    assert not list(leaks({"wheels/spinbook.whl": zipped({"grader/a.py": line.encode()})}, known))
+    assert list(leaks({"wheels/spinbook.whl": zipped({"grader/hidden.py": part.encode()})}, known))
 
 
 def test_a_file_that_is_named_after_a_hidden_check_is_found(known: list[Secret]) -> None:

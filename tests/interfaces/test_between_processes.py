@@ -46,6 +46,7 @@ def talk(tmp_path: Path, asked: Asked, ours: Compiled | None, theirs: Compiled |
 LIMITS = {
     "name": "hip",
     "kind": 1,
+    "axis": [0.5, -0.25, 0.0],
     "samples": [1.0, 2.0],
     "label": "Hüfte 腰",
     "poses": [{"position": {"x": 1.5}}, {"orientation": {"w": 0.5}}],

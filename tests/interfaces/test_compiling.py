@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
+import re
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -97,6 +100,20 @@ def test_the_same_definitions_give_the_same_wheel_wherever_it_is_made(tmp_path: 
     first, second = (wheel("small_interfaces", ensure([POINT], tmp_path / name).prefix) for name in ("one", "two"))
 
     assert first == second
+
+
+def test_one_wheel_fits_every_python_from_3_10_on(robot_interfaces: Compiled) -> None:
+    name, content = wheel("robot_interfaces", robot_interfaces.prefix)
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        (module,) = (file for file in archive.namelist() if file.endswith(".so"))
+        code = archive.read(module)
+
+    assert "-cp310-abi3-linux_" in name
+    assert module.endswith("_s__rosidl_typesupport_c.abi3.so")
+    # Only the limited API's: functions of later versions, and what looks into Python's objects, are not called.
+    called = {symbol.decode() for symbol in re.findall(rb"\0(_?Py[A-Za-z]\w+)(?=\0)", code)}
+    assert {"PyBytes_FromObject", "PyMemoryView_FromObject", "PyList_GetItem"} <= called
+    assert not called & {"PyObject_GetBuffer", "PyObject_CheckBuffer", "PyBuffer_Release", "PyBuffer_ToContiguous"}
 
 
 def test_two_who_want_the_same_wait_for_one_another(tmp_path: Path) -> None:

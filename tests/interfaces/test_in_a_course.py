@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 from course_folder import CourseFolder
 
+from grader.exercise.exercise import ExerciseError
+from grader.exercise.loading import load
 from interface_compiler.wheel import wheel
 from spinbook.handout.wheels import requirement
 
@@ -147,7 +149,7 @@ def test_a_wheel_for_students_is_the_same_bytes_each_time(built: CourseFolder) -
     name, content = wheel("robot_interfaces", prefix)
 
     assert wheel("robot_interfaces", prefix) == (name, content)
-    assert requirement(name).startswith(f"./wheels/{name} ; python_version == ")
+    assert requirement(name).startswith(f"./wheels/{name} ; platform_machine == ")
     assert str(built.root).encode() not in content
 
 
@@ -277,6 +279,22 @@ def test_an_exercise_on_a_message_that_was_not_compiled_says_what_to_do(tmp_path
 
     assert "the package robot_interfaces is not installed here" in said.stderr
     assert "spinbook build" in said.stderr
+
+
+def test_a_student_without_a_package_is_told_to_install_what_came_with_the_handout(tmp_path: Path) -> None:
+    for name, text in EXERCISE.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text.replace("robot_interfaces", "absent_interfaces"))
+    (tmp_path / "exercises" / "width" / "public.json").write_text("{}")
+
+    with pytest.raises(ExerciseError) as told:
+        load(tmp_path / "exercises" / "width")
+
+    assert "the package absent_interfaces is not installed here" in str(told.value)
+    assert "It comes with the handout. In the handout's folder: .venv/bin/pip install -r requirements.txt." in str(
+        told.value
+    )
+    assert "spinbook build" not in str(told.value)
 
 
 def test_what_asks_for_an_interface_that_the_course_lacks_is_shown_with_the_remedy(tmp_path: Path) -> None:

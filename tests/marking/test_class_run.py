@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import csv
 import fcntl
+import itertools
 import json
 import re
 import shutil
 import zipfile
+from collections import Counter
 from pathlib import Path
 
 import jsonschema
@@ -121,7 +123,7 @@ def test_a_fault_of_ours_is_tried_again_listed_apart_and_never_scored(done: Smal
     assert "emil" in printed, "of an earlier run, and said so"
     assert done.finals() == {**POINTS, "carl": None}
     page = (done.folder / "results" / "index.html").read_text(encoding="utf-8")
-    assert "Not graded, by a fault of ours" in page
+    assert "Not graded because of a fault on our side" in page
     with (done.folder / "results" / "grades.csv").open(encoding="utf-8-sig") as file:
         assert [row["student"] for row in csv.DictReader(file)] == ["ana", "bert", "dora", "fay"]
     hidden.write_text(right, encoding="utf-8")
@@ -207,6 +209,31 @@ def test_no_name_of_a_student_and_no_fault_in_one_stops_a_class_of_thirty(small_
     code, printed = small_class.grade()
     assert code == 0, printed
     assert "29 unchanged since they were graded." in printed
+
+
+@pytest.mark.soak
+def test_sixty_students_get_the_grades_of_their_programs_whatever_their_files_are_called(
+    small_class: SmallClass,
+) -> None:
+    sources = {name: (small_class.submissions / f"{name}.py").read_text(encoding="utf-8") for name in POINTS}
+    for file in small_class.submissions.iterdir():
+        file.unlink()
+    expected: Counter[float] = Counter()
+    names = [*HOSTILE_NAMES, *(f"student{number:02}" for number in range(60 - len(HOSTILE_NAMES)))]
+    for name, program in zip(names, itertools.cycle(sources), strict=False):
+        small_class.hand_in(name, sources[program])
+        expected[POINTS[program]] += 1
+
+    code, printed = small_class.grade()
+
+    assert code == 0, printed
+    finals = small_class.finals()
+    assert len(finals) == 60
+    assert Counter(finals.values()) == expected
+    results = small_class.folder / "results"
+    assert {file.name for file in results.iterdir()} == {
+        *(".lock", "students", "index.html", "grades.csv", "nbgrader.csv", "canvas.csv", "moodle.csv", "junit.xml")
+    }
 
 
 def test_changed_checks_judge_what_was_recorded_and_replace_nothing_unasked(done: SmallClass) -> None:

@@ -154,6 +154,13 @@ def test_either_a_course_or_an_exercise(words: list[str]) -> None:
     assert "one of them" in done.output
 
 
+def test_the_untouched_course_can_be_handed_out(course: Path) -> None:
+    done = run("spinbook", "handout", cwd=course)
+
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "no solution and no hidden check among them" in done.stdout
+
+
 @pytest.mark.soak
 def test_an_audit_of_the_untouched_course_has_nothing_to_fix(pristine: Path, tmp_path: Path) -> None:
     for number in range(2):

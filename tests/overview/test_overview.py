@@ -41,5 +41,5 @@ def test_a_fault_of_ours_is_in_no_number() -> None:
     page = overview_page(plain.exercise(), entries, [], faults, grouped(entries, []))
     assert "<div><dt>students</dt><dd>1</dd></div>" in page
     assert "<div><dt>mean</dt><dd>6</dd></div>" in page
-    assert "Not graded, by a fault of ours" in page
+    assert "Not graded because of a fault on our side" in page
     assert "the disk is full" in page

@@ -129,6 +129,13 @@ summary: What comes next.
 
 Words only. <!-- NOTE_IN_A_LINE -->
 
+| Option | What colcon does with it | When you need it | Since |
+| --- | --- | --- | --- |
+| `--symlink-install` | links to your files instead of copies | while you write a package | always |
+
+With `--symlink-install` colcon links, and `--packages-select` builds one: `--symlink-install` and `--packages-select`
+save time, `--event-handlers` shows output, and `--symlink-install` once more, with `--packages-up-to` for the rest.
+
 ## Last words
 
 Good-bye.

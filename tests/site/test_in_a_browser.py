@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import gzip
+import io
 import json
+import statistics
 from pathlib import Path
 
 import pytest
 from browser import opened
-from playwright.sync_api import Browser, expect
+from PIL import Image
+from playwright.sync_api import Browser, Locator, expect
 from small_course import SmallCourse
 
 PAGES = [
@@ -119,6 +122,40 @@ def test_the_menu_of_a_phone_opens_and_closes_by_keyboard(browser: Browser, addr
         expect(link).to_be_visible(timeout=PATIENCE_MS)
         shown.page.keyboard.press("Escape")
         expect(link).to_be_hidden(timeout=PATIENCE_MS)
+
+
+def edges(table: Locator) -> list[float]:
+    """The brightness of a table's left and right edge: the median over its height, so that letters do not count."""
+    picture = Image.open(io.BytesIO(table.screenshot())).convert("L")
+    return [statistics.median(picture.getpixel((x, y)) for y in range(picture.height)) for x in (1, picture.width - 2)]
+
+
+def test_on_a_phone_a_wide_table_has_a_shadow_at_the_side_where_there_is_more(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/02-more.html", width=390) as shown:
+        table = shown.page.locator("main .table")
+        assert table.evaluate("table => table.scrollWidth > table.clientWidth + 20")
+        left, right = edges(table)
+        assert right < left - 20
+        table.evaluate("table => { table.scrollLeft = table.scrollWidth; }")
+        left, right = edges(table)
+        assert left < right - 20
+
+
+def test_on_a_phone_code_in_a_sentence_does_not_break_at_its_hyphens(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/02-more.html", width=390) as shown:
+        lines = shown.page.locator("main p:not(td p) code").evaluate_all(
+            """codes => codes.map(code => {
+                const text = document.createRange();
+                text.selectNodeContents(code);
+                return [code.innerText, new Set([...text.getClientRects()].map(box => box.top)).size];
+            })"""
+        )
+        paragraph = shown.page.locator("main p", has_text="colcon links")
+        assert (
+            paragraph.evaluate("words => words.getClientRects()[0].height") > 100
+        )  # so lines end next to some of them
+        assert len(lines) >= 6
+        assert [text for text, count in lines if count != 1] == []
 
 
 def test_a_chapter_is_below_a_megabyte_over_the_wire(browser: Browser, built: SmallCourse, address: str) -> None:

@@ -8,7 +8,7 @@ WANTED, SAFE = "/wanted_speed", "/safe_speed"
 FLOAT = "std_msgs/msg/Float64"
 
 
-@check(points=2, hint="Create the publisher in __init__ and call publish() in the callback.")
+@check(points=2, hint="Create the subscription and the publisher in __init__, and call publish() in the callback.")
 def test_publishes_safe_speeds(gentle: Run) -> None:
     """It hears /wanted_speed and publishes Float64 messages on /safe_speed."""
     if not gentle.subscriptions(WANTED):
