@@ -19,11 +19,11 @@ def test_refuses_what_is_out_of_range(refused: Run) -> None:
     """It refuses values outside of their ranges, and goes on as before."""
     refused.must_refuse("target")
     refused.must_refuse("margin")
+    refused.must_match("data")
     for change in refused.recording.parameters:
         if not change.reason:
             part = f"parameter {change.name}"
             refused.wrong_at(change.at, "a reason was expected, got none.", part, "a reason", "none")
-    refused.must_match("data")
 
 
 @check(
