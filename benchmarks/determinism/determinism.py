@@ -3,12 +3,13 @@
     python benchmarks/determinism/determinism.py --rounds 4 --json build/determinism.json
     python benchmarks/determinism/determinism.py --rounds 20 --exercise calibration --exercise heartbeat
     python benchmarks/determinism/determinism.py --only solution.py --only thread
+    python benchmarks/determinism/determinism.py --course my-robots
 
-Of each exercise the solution and the right ones with threads are graded in each round; of joint_velocity every file in
-solutions/, and the programs in the folder programs/, which do what makes a grader flaky: they answer from threads,
-timers, processes and asyncio, they sleep, poll, and wait by the clock. Every other round runs next to busy loops, four
-per core. A recording differs if any message in it does, by one bit, or the time at which it came, or the order, or a
-call, goal or parameter; a grade differs if any verdict does.
+Of each exercise the solution and the right ones with threads are graded in each round; of this course's joint_velocity
+every file in solutions/, and the programs in the folder programs/, which do what makes a grader flaky: they answer from
+threads, timers, processes and asyncio, they sleep, poll, and wait by the clock. Every other round runs next to busy
+loops, four per core. A recording differs if any message in it does, by one bit, or the time at which it came, or the
+order, or a call, goal or parameter; a grade differs if any verdict does.
 """
 
 from __future__ import annotations
@@ -85,15 +86,15 @@ def main() -> int:
     """Run all rounds, print a line for each program, and return 1 if anything differed."""
     options = _options()
     # Workers can import the course's own interfaces only if these were there before the workers start.
-    compile_course(find_course(COURSE))
-    exercises = [load(file.parent) for file in sorted(COURSE.glob("exercises/*/exercise.toml"))]
+    compile_course(find_course(options.course))
+    exercises = [load(file.parent) for file in sorted(options.course.glob("exercises/*/exercise.toml"))]
     wanted = [one for one in exercises if not options.exercise or one.name in options.exercise]
     counts: dict[Path, Counts] = {}
     with WorkerPool() as workers:
         for exercise in wanted:
             grading = grading_of(exercise, Options(parallel=1), workers)
             counts |= _rounds(grading, _files(exercise, options.only), options)
-    return _report(counts, options.json)
+    return _report(counts, options.course, options.json)
 
 
 def _options() -> argparse.Namespace:
@@ -101,6 +102,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument(
         "--rounds", type=int, default=2, help="how often each program is graded  (default: %(default)s)"
     )
+    parser.add_argument("--course", type=_folder, default=COURSE, help="a course's folder  (default: this course)")
     parser.add_argument("--exercise", action="append", help="only this one; may be given several times")
     parser.add_argument("--only", action="append", help="only programs whose path contains this, or another such text")
     parser.add_argument("--nice", type=int, default=0, help="how nice the busy loops are  (default: %(default)s)")
@@ -108,10 +110,14 @@ def _options() -> argparse.Namespace:
     return parser.parse_args()
 
 
+def _folder(path: str) -> Path:
+    return Path(path).resolve()
+
+
 def _files(exercise: Exercise, only: list[str] | None) -> list[Path]:
-    folder = COURSE / "solutions" / exercise.name
+    folder = exercise.folder.parents[1] / "solutions" / exercise.name
     found = [folder / "solution.py", *sorted(folder.glob("right/*thread*.py"))]
-    if exercise.name == HARDEST:
+    if folder == COURSE / "solutions" / HARDEST:
         found = [*sorted((HERE / "programs").glob("*.py")), *sorted(folder.rglob("*.py"))]
     return [file for file in found if not only or any(text in str(file) for text in only)]
 
@@ -150,20 +156,24 @@ def _load(busy: bool, nice: int) -> Iterator[None]:
             process.wait()
 
 
-def _report(counts: dict[Path, Counts], file: Path | None) -> int:
+def _report(counts: dict[Path, Counts], course: Path, file: Path | None) -> int:
     total = Counts()
     print("| program | spins | other recordings | grades | other grades | faults of the machine |")
     print("| --- | --- | --- | --- | --- | --- |")
     for path, count in counts.items():
-        _print(path.relative_to(COURSE).as_posix(), count)
+        _print(_shown(path, course), count)
         for name, value in count.plain.items():
             setattr(total, name, getattr(total, name) + value)
     _print("**all**", total)
     if file:
         file.parent.mkdir(parents=True, exist_ok=True)
-        each = {path.relative_to(COURSE).as_posix(): count.plain for path, count in counts.items()}
+        each = {_shown(path, course): count.plain for path, count in counts.items()}
         file.write_text(json.dumps({"all": total.plain, "programs": each}, indent=2) + "\n")
     return 1 if total.other_recordings or total.other_grades or total.host_errors else 0
+
+
+def _shown(path: Path, course: Path) -> str:
+    return (path.relative_to(course) if path.is_relative_to(course) else path).as_posix()
 
 
 def _print(name: str, count: Counts) -> None:

@@ -13,6 +13,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from grader.checking.agreement import disagreements
 from grader.checking.judging import Listed, listed
 from grader.child_process import run_program
 from grader.exercise.exercise import Exercise, ExerciseError
@@ -48,6 +49,7 @@ def faults(folder: Path) -> Iterator[ExerciseError]:
         yield error
         return
     yield from _of_solution(exercise)
+    yield from disagreements(exercise)
     try:
         scenarios = tuple(scenario.name for scenario in declared(exercise, seed=0))
     except ExerciseError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -199,6 +200,13 @@ def test_a_mutants_id_outlives_changes_in_other_places(mutants: tuple[Mutant, ..
     longer = SOURCE.replace("import rclpy\n", "# A line more.\nimport rclpy\n", 1)
     again = mutants_of(longer, load(ROOT / "exercises" / "joint_velocity"))
     assert {mutant.id for mutant in again} == {mutant.id for mutant in mutants}
+
+
+def test_a_mutants_id_does_not_depend_on_what_the_exercise_is_called(mutants: tuple[Mutant, ...]) -> None:
+    exercise = replace(load(ROOT / "exercises" / "joint_velocity"), name="goal", class_name="Goal", node_name="goal")
+    source = SOURCE.replace("JointVelocity", "Goal").replace("'joint_velocity'", "'goal'")
+    assert source != SOURCE
+    assert [mutant.id for mutant in mutants_of(source, exercise)] == [mutant.id for mutant in mutants]
 
 
 def test_a_sample_is_always_the_same_and_of_all_kinds(mutants: tuple[Mutant, ...]) -> None:

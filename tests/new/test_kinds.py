@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
+from grader.audit.mutants.making import mutants_of
+from grader.audit.survivors import listed
 from grader.exercise import load, starter
 from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
@@ -143,6 +145,17 @@ def test_the_exercise_has_its_own_names(course: Path) -> None:
         text = "".join(file.read_text(encoding="utf-8") for file in files)
         assert kind.exercise not in text
         assert f'title = "{name.replace("_", " ").capitalize()}"' in text
+
+
+def test_the_listed_survivors_are_mutants_of_the_exercise_whatever_it_is_called(course: Path) -> None:
+    found = 0
+    for kind in KINDS:
+        exercise = load(course / "exercises" / exercise_of(kind.name))
+        if survivors := set(listed(exercise)):
+            source = (course / "solutions" / exercise.name / "solution.py").read_text(encoding="utf-8")
+            assert survivors <= {mutant.id for mutant in mutants_of(source, exercise)}, kind.name
+            found += len(survivors)
+    assert found
 
 
 def test_the_command_says_what_it_made_and_how_to_grade_it(course: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -95,7 +95,7 @@ def node_name(node: cst.CSTNode, program: Program) -> Iterator[Change]:
         first = node.args[0]
         if isinstance(first.value, cst.SimpleString):
             name = str(first.value.evaluated_value)
-            yield Change(node, first.value, expression(repr(f"{name}_node")), f"the node is called {name}_node")
+            yield Change(node, first.value, expression(repr(f"{name}_node")), f"the node is called {name + '_node'!r}")
             namespace = cst.parse_expression("f(namespace='robot')")
             assert isinstance(namespace, cst.Call)
             args = [first.with_changes(comma=cst.Comma(whitespace_after=cst.SimpleWhitespace(" "))), *node.args[1:]]

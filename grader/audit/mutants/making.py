@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import difflib
 import hashlib
+import re
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -21,9 +22,9 @@ from grader.exercise.exercise import Exercise
 class Mutant:
     """A program that differs from a right one by one change.
 
-    `id` names the change: it stays the same as long as the changed lines and the function around them do. `operator`
-    is the kind of change, `what` says it in words, `line` is where, counted from 1. `source` is the whole program,
-    `diff` the change as a unified diff.
+    `id` names the change: it stays the same as long as the changed lines and the function around them do, whatever the
+    exercise, its class and its node are called. `operator` is the kind of change, `what` says it in words, `line` is
+    where, counted from 1. `source` is the whole program, `diff` the change as a unified diff.
     """
 
     id: str
@@ -66,13 +67,21 @@ def _mutant(program: Program, operator: str, change: Change, changed: str, ids: 
     diff = list(difflib.unified_diff(old, new, file, file, lineterm=""))
     lines = [line[0] + line[1:].strip() for line in diff[2:] if line[0] in "+-"]
     text = "\n".join([program.place(change.where), change.what, *lines])
-    id_ = hashlib.sha256(text.encode()).hexdigest()[:10]
+    id_ = hashlib.sha256(_without_names(text, program.exercise).encode()).hexdigest()[:10]
     # The same change may be possible in two places of one function.
     ids[id_] = ids.get(id_, 0) + 1
     if ids[id_] > 1:
         id_ += f"-{ids[id_]}"
     name = operator.replace("_", " ")
     return Mutant(id_, name, change.what, program.line(change.where), changed, "\n".join(diff))
+
+
+def _without_names(text: str, exercise: Exercise) -> str:
+    """The text without the names that differ between two exercises made from one template: its class and its node."""
+    if exercise.class_name and not exercise.programs:
+        text = re.sub(rf"\b{re.escape(exercise.class_name)}\b", "CLASS", text)
+    # A node's name may be a word that the program uses for something else, such as `goal`: it is one only in quotes.
+    return re.sub(rf"(?<=[\"']){re.escape(exercise.node_name)}", "node", text)
 
 
 def _meaning(source: str) -> str:

@@ -6,6 +6,17 @@ from grader.checking import Run, check, fail
 
 SORTS = ["test_sorter_moves_the_gate"]
 
+#: What each node publishes and hears.
+ENDS = (
+    ("/bottle_scale", "publisher", "/full"),
+    ("/bottle_scale", "subscription", "/weight"),
+    ("/bottle_sorter", "publisher", "/gate"),
+    ("/bottle_sorter", "subscription", "/full"),
+)
+
+#: What every node has.
+OF_EVERY_NODE = {"publisher": ("/rosout", "/parameter_events"), "subscription": ("/clock", "/parameter_events")}
+
 
 @check(
     points=3,
@@ -67,6 +78,8 @@ def test_node_is_as_described(line: Run) -> None:
     """The node has the name and the quality of service of the task."""
     line.must_have_nodes()
     line.must_have_qos()
-    for end in line.end_points("subscription", "/weight"):
-        if end.node != "/bottle_scale":
-            fail("The weights are the scale's.", expected="/bottle_scale", got=end.node)
+    for node, kind, topic in ENDS:
+        mine = [end for end in line.end_points(kind) if end.node == node and end.topic not in OF_EVERY_NODE[kind]]
+        expected, got = f"{topic}, reliable", "; ".join(f"{end.topic}, {end.reliability}" for end in mine) or "none"
+        if got != expected:
+            fail(f"{node} has other {kind}s than in the task.", expected=expected, got=got)

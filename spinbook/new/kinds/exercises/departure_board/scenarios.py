@@ -15,7 +15,7 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
     trains = tuple(at(i).publish("/destination", data=name) for i, name in ((1.0, "Wien"), (2.0, "Wien"), (3.0, "Ulm")))
     return (
         Scenario("one_train", "a destination, then a delay", train, interrupt=True, rate=20.0),
-        Scenario("passenger", "somebody subscribes to the board late", (train, late), duration=3.0, rate=20.0),
+        Scenario("passenger", "somebody subscribes to the board late", (train[0], late), duration=3.0, rate=20.0),
         Scenario("delays", "delays that change and stay", (train[0], delays, latest), duration=7.5, rate=20.0),
         Scenario(
             "early",

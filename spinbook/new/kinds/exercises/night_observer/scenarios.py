@@ -42,6 +42,6 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
             turned,
         ),
         scenario("idle_clouds", "clouds while no goal is served", gap, turned),
-        scenario("late", "the telescope appears after 2.2 s", three, turned, appears=2.2),
+        scenario("late", "the telescope appears after 2.1 s", three, turned, appears=2.1),
         scenario("slow", "the telescope accepts goals late", three, succeeds(after=1.5, answers_after=0.7)),
     )

@@ -20,6 +20,10 @@ def test_refuses_what_is_out_of_range(refused: Run) -> None:
     refused.must_refuse("target")
     refused.must_refuse("margin")
     refused.must_match("data")
+    for change in refused.recording.parameters:
+        if not change.reason:
+            part = f"parameter {change.name}"
+            refused.wrong_at(change.at, "a reason was expected, got none.", part, "a reason", "none")
 
 
 @check(

@@ -37,7 +37,7 @@ def test_reaches_a_course_to_the_right(right: Run) -> None:
 @check(
     points=1,
     hint="A smaller gain turns more gently.",
-    depends=LEFT,
+    depends=RIGHT,
     misconception="a gain that is too great",
     rule="The ship swings past its course by 0.01 rad at most.",
 )

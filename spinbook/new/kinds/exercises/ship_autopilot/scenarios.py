@@ -6,7 +6,7 @@ import math
 from typing import Any, ClassVar
 
 from grader.scenario import Scenario, World, at
-from grader.scenario.numbers import numbers, wave
+from grader.scenario.numbers import numbers
 from grader.scenario.times import every
 
 
@@ -43,7 +43,9 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         ship = World(Ship, heading=heading, period=0.1)
         return Scenario(name, title, steps, world=ship, duration=duration, rate=20.0)
 
-    bench = (numbers("/heading", wave(2.0, every(0.1, 4.0))), at(1.05).publish("/course", data=0.5))
+    # As fast as the ship can turn: a rudder that also minds how fast it turns is right, too.
+    turning = [(time, 1.1 - 0.3 * time) for time in every(0.1, 4.0)]
+    bench = (numbers("/heading", turning), at(1.05).publish("/course", data=0.5))
     return (
         Scenario("bench", "headings from a table: there is no ship yet", bench, interrupt=True),
         voyage("left", "a course to the left", 0.0, 1.0),

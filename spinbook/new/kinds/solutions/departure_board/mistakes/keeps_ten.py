@@ -1,7 +1,7 @@
 """Keeps ten lines and not one: whoever comes late gets old ones, too.
 
 Caught by:
-- test_a_late_passenger_sees_the_line
+- test_a_late_passenger_sees_no_older_line
 """
 
 import rclpy

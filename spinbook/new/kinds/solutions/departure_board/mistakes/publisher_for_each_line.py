@@ -1,7 +1,7 @@
-"""Creates a publisher for each line and destroys the one before, with what it had kept.
+"""Creates a publisher for each line: each keeps its own, and whoever comes late gets all of them.
 
 Caught by:
-- test_a_late_passenger_sees_the_line
+- test_a_late_passenger_sees_no_older_line
 - test_ends_are_as_described
 """
 

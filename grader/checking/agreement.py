@@ -1,0 +1,125 @@
+"""Compares what a solution creates, and the starter made from it, with the interface that exercise.toml declares."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from grader.checking.created import Created, created, texts
+from grader.exercise.declaring import line_of
+from grader.exercise.exercise import Exercise, ExerciseError, Qos
+from grader.exercise.starter import BEGIN, END
+
+#: What each kind is called in a sentence.
+_WORDS = {
+    "publish": "a publisher on",
+    "subscribe": "a subscription to",
+    "service": "the service",
+    "client": "a client of",
+    "action": "the action server",
+    "action_client": "an action client of",
+    "parameter": "the parameter",
+}
+
+_FIX = "Make the two agree: students are told what exercise.toml says, and the checks go by it."
+
+#: What rclpy or a library creates without a call in the program.
+_OF_LIBRARIES = frozenset(("/clock", "/parameter_events", "/rosout", "/tf", "/tf_static"))
+
+
+@dataclass(frozen=True)
+class _Declared:
+    """One table of exercise.toml: its kind, its place among the tables of this kind, and what it says."""
+
+    kind: str
+    number: int
+    name: str
+    type: str
+    qos: Qos | None = None
+    default: Any = None
+
+
+def disagreements(exercise: Exercise) -> Iterator[ExerciseError]:
+    """Each difference between solution.py and exercise.toml, as far as the source says literally what it creates.
+
+    A line outside the markers is the starter's, too. Nothing is said of a solution that can't be read.
+    """
+    file = exercise.solution_file
+    if file is None or not file.exists():
+        return
+    source = file.read_text(encoding="utf-8", errors="replace")
+    declared, made = tuple(_declared(exercise)), created(source, exercise.node_name)
+    for one in made:
+        if one.name is not None:
+            found = _difference(one, declared, exercise)
+            if found:
+                yield ExerciseError(file, f"{_whose(source, one.line)} {found}", _FIX, one.line)
+    yield from _missing(exercise, file, source, declared, made)
+
+
+def _declared(exercise: Exercise) -> Iterator[_Declared]:
+    """All tables, numbered as they follow one another in exercise.toml, kind by kind."""
+    counts = dict.fromkeys(_WORDS, -1)
+    for topic in exercise.topics:
+        counts[topic.direction] += 1
+        yield _Declared(topic.direction, counts[topic.direction], topic.name, topic.type, topic.qos)
+    for end in exercise.endpoints:
+        counts[end.role] += 1
+        yield _Declared(end.role, counts[end.role], end.name, end.type)
+    for number, parameter in enumerate(exercise.parameters):
+        yield _Declared("parameter", number, parameter.name, parameter.type, default=parameter.default)
+
+
+def _whose(source: str, line: int) -> str:
+    """Whether a line is the solution's alone, or the starter's, too."""
+    hidden = False
+    for text in source.splitlines()[:line]:
+        hidden = bool(BEGIN.match(text)) or (hidden and not END.match(text))
+    return "the solution" if hidden else "the starter"
+
+
+def _difference(one: Created, declared: tuple[_Declared, ...], exercise: Exercise) -> str:
+    """In what it is not as declared, after the words "the solution"; empty if it is."""
+    verb = "declares" if one.kind == "parameter" else "creates"
+    what = f"{verb} {_WORDS[one.kind]} {one.name}"
+    same = [other for other in declared if (other.kind, other.name) == (one.kind, one.name)]
+    if not same:
+        # One of several programs may hear what another one publishes, which is declared once.
+        of_topic = exercise.programs and one.kind in ("publish", "subscribe")
+        same = [other for other in declared if other.name == one.name] if of_topic else []
+        if not same:
+            return f"{what}, which exercise.toml does not declare under [[{one.kind}]]"
+    return _other_value(one, same[0], what)
+
+
+def _other_value(one: Created, other: _Declared, what: str) -> str:
+    """The first of type, QoS and default that is another than declared."""
+    pairs = [("type", one.type, other.type), ("default", one.default, other.default)]
+    if one.kind == other.kind and one.qos and other.qos:
+        pairs += [(name, getattr(one.qos, name), getattr(other.qos, name)) for name in vars(other.qos)]
+    for name, got, expected in pairs:
+        if got is not None and expected is not None and got != expected:
+            return f"{what} with {name} = {_shown(got)}; exercise.toml has {name} = {_shown(expected)}"
+    return ""
+
+
+def _shown(value: Any) -> str:
+    """As exercise.toml writes it."""
+    return f'"{value}"' if isinstance(value, str) else str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _missing(
+    exercise: Exercise, file: Path, source: str, declared: tuple[_Declared, ...], made: tuple[Created, ...]
+) -> Iterator[ExerciseError]:
+    """What is declared, and neither created nor named anywhere in the solution."""
+    toml, said = exercise.folder / "exercise.toml", texts(source)
+    computed = {one.kind for one in made if one.name is None}
+    for one in declared:
+        there = any((other.kind, other.name) == (one.kind, one.name) for other in made)
+        if there or one.kind in computed or one.name in _OF_LIBRARIES or {one.name, one.name.lstrip("/")} & said:
+            continue
+        verb = "declare" if one.kind == "parameter" else "create"
+        found = f"{file.name} does not {verb} {_WORDS[one.kind]} {one.name}, which is declared here"
+        yield ExerciseError(toml, found, _FIX, line_of(toml, one.kind, one.number, ""))

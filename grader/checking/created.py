@@ -1,0 +1,212 @@
+"""What a program creates, read from its source: publishers, subscriptions, services, actions, parameters.
+
+Only what stands there literally is read: `"/full"`, a name that is given its value once, `QoSProfile(depth=1)`. What is
+computed is None, and nothing can be said of it.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, cast
+
+from grader.exercise.exercise import Durability, Qos, Reliability
+
+#: For each call that creates something: what, and the places and keywords of type, name, and QoS or default.
+_CALLS: dict[str, tuple[str, tuple[tuple[int, str] | None, ...]]] = {
+    "create_publisher": ("publish", ((0, "msg_type"), (1, "topic"), (2, "qos_profile"))),
+    "create_subscription": ("subscribe", ((0, "msg_type"), (1, "topic"), (3, "qos_profile"))),
+    "create_service": ("service", ((0, "srv_type"), (1, "srv_name"), None)),
+    "create_client": ("client", ((0, "srv_type"), (1, "srv_name"), None)),
+    "ActionServer": ("action", ((1, "action_type"), (2, "action_name"), None)),
+    "ActionClient": ("action_client", ((1, "action_type"), (2, "action_name"), None)),
+    "declare_parameter": ("parameter", (None, (0, "name"), (1, "value"))),
+}
+
+_RELIABILITIES = {"RELIABLE": "reliable", "BEST_EFFORT": "best_effort"}
+_DURABILITIES = {"VOLATILE": "volatile", "TRANSIENT_LOCAL": "transient_local"}
+
+#: The depth of `qos_profile_sensor_data`.
+_SENSOR_DEPTH = 5
+
+
+@dataclass(frozen=True)
+class Created:
+    """One call that creates something, in a line counted from 1.
+
+    `kind` is "publish", "subscribe", "service", "client", "action", "action_client" or "parameter". `name` is the full
+    name of a topic, such as `/full`, or a parameter's. `type` is written `package/msg/Name`, and for a parameter as
+    exercise.toml writes it. Whatever the source does not say literally is None; `default` is a parameter's.
+    """
+
+    kind: str
+    line: int
+    name: str | None = None
+    type: str | None = None
+    qos: Qos | None = None
+    default: Any = None
+
+
+def created(source: str, node: str) -> tuple[Created, ...]:
+    """Everything that a program creates, in the order of its lines. `node` is its node's name, for names with ~.
+
+    A source that is not valid Python creates nothing.
+    """
+    try:
+        tree = ast.parse(source)
+    except (SyntaxError, ValueError):
+        return ()
+    return _Source(tree, node).created()
+
+
+def texts(source: str) -> frozenset[str]:
+    """Every string in a program, except docstrings; empty for what is not valid Python."""
+    try:
+        tree = ast.parse(source)
+    except (SyntaxError, ValueError):
+        return frozenset()
+    alone = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    constants = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and id(node) not in alone]
+    return frozenset(node.value for node in constants if isinstance(node.value, str))
+
+
+class _Source:
+    """A parsed program, with what its names stand for."""
+
+    def __init__(self, tree: ast.Module, node: str) -> None:
+        self.tree = tree
+        self.node = node
+        self.imports = dict(_imports(tree))
+        self.values = dict(_values(tree))
+        keywords = {keyword.arg for keyword in ast.walk(tree) if isinstance(keyword, ast.keyword)}
+        self.in_namespace = "namespace" in keywords
+
+    def created(self) -> tuple[Created, ...]:
+        found = [self._created(call) for call in ast.walk(self.tree) if isinstance(call, ast.Call)]
+        return tuple(sorted((one for one in found if one), key=lambda one: one.line))
+
+    def _created(self, call: ast.Call) -> Created | None:
+        kind, places = _CALLS.get(_called(call), ("", ()))
+        if not kind:
+            return None
+        type_, name, last = (self._argument(call, place) for place in places)
+        if kind == "parameter":
+            return self._parameter(call.lineno, name, last)
+        return Created(kind, call.lineno, self._full_name(name), self._type(type_), self._qos(last))
+
+    def _argument(self, call: ast.Call, place: tuple[int, str] | None) -> ast.expr | None:
+        """What a call is given there; a name that has one value only is that value."""
+        if place is None or any(isinstance(given, ast.Starred) for given in call.args):
+            return None
+        index, keyword = place
+        given = call.args[index] if index < len(call.args) else None
+        given = next((one.value for one in call.keywords if one.arg == keyword), given)
+        return self.values.get(given.id, given) if isinstance(given, ast.Name) else given
+
+    def _parameter(self, line: int, name: ast.expr | None, default: ast.expr | None) -> Created:
+        value = _literal(default)
+        type_ = _parameter_type(default, value)
+        text = _literal(name)
+        return Created("parameter", line, text if isinstance(text, str) else None, type_, default=value)
+
+    def _full_name(self, given: ast.expr | None) -> str | None:
+        """A topic's name from the root; None where it is not known, or where a namespace comes before it."""
+        name = _literal(given)
+        if not isinstance(name, str) or name.startswith("/"):
+            return name if isinstance(name, str) else None
+        if self.in_namespace:
+            return None
+        return f"/{self.node}/{name[2:]}" if name.startswith("~/") else f"/{name}"
+
+    def _type(self, given: ast.expr | None) -> str | None:
+        parts = _dotted(given).split(".") if given is not None else []
+        if not parts or parts[0] not in self.imports:
+            return None
+        full = [*self.imports[parts[0]].split("."), *parts[1:]]
+        return "/".join(full) if len(full) == 3 and full[1] in ("msg", "srv", "action") else None
+
+    def _qos(self, given: ast.expr | None) -> Qos | None:
+        depth = _literal(given)
+        if type(depth) is int:
+            return Qos(depth=depth)
+        if given is not None and _dotted(given).endswith("qos_profile_sensor_data"):
+            return Qos("best_effort", "volatile", _SENSOR_DEPTH)
+        if isinstance(given, ast.Call) and _called(given) == "QoSProfile" and not given.args:
+            return _profile({keyword.arg or "": keyword.value for keyword in given.keywords})
+        return None
+
+
+def _profile(given: dict[str, ast.expr]) -> Qos | None:
+    """The QoS of a profile that says its depth and nothing that a task can't ask for."""
+    depth = _literal(given.get("depth"))
+    reliability = _policy(given.get("reliability"), "RELIABLE", _RELIABILITIES)
+    durability = _policy(given.get("durability"), "VOLATILE", _DURABILITIES)
+    if set(given) - {"depth", "reliability", "durability"} or type(depth) is not int:
+        return None
+    if reliability is None or durability is None:
+        return None
+    return Qos(cast(Reliability, reliability), cast(Durability, durability), depth)
+
+
+def _policy(given: ast.expr | None, usual: str, words: dict[str, str]) -> str | None:
+    """The policy in the words of exercise.toml; None where it is none of these."""
+    return words.get(_dotted(given).rpartition(".")[2] if given is not None else usual)
+
+
+def _called(call: ast.Call) -> str:
+    """The last name of what a call calls: `create_publisher` for `self.create_publisher(…)`."""
+    return _dotted(call.func).rpartition(".")[2]
+
+
+def _dotted(node: ast.expr) -> str:
+    """`a.b.c` as text; only its end, after a dot, where it begins with something else than a name."""
+    if isinstance(node, ast.Attribute):
+        return f"{_dotted(node.value)}.{node.attr}"
+    return node.id if isinstance(node, ast.Name) else ""
+
+
+def _literal(node: ast.expr | None) -> Any:
+    """The value of a literal; None for everything else."""
+    try:
+        return ast.literal_eval(node) if node is not None else None
+    except (ValueError, TypeError):
+        return None
+
+
+def _parameter_type(default: ast.expr | None, value: Any) -> str | None:
+    """A parameter's type as exercise.toml writes it, from its default or from `Parameter.Type.DOUBLE`."""
+    if isinstance(value, list) and value:
+        kinds = {_parameter_type(None, one) for one in value}
+        only = kinds.pop()
+        return f"{only}_array" if only and not kinds else None
+    if default is not None and "Type." in _dotted(default):
+        return _dotted(default).rpartition(".")[2].lower()
+    return {bool: "bool", int: "integer", float: "double", str: "string"}.get(type(value))
+
+
+def _imports(tree: ast.Module) -> Iterator[tuple[str, str]]:
+    """What each imported name stands for, dotted: Bool -> std_msgs.msg.Bool."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom):
+            yield from ((one.asname or one.name, f"{node.module}.{one.name}") for one in node.names)
+        elif isinstance(node, ast.Import):
+            for one in node.names:
+                root = one.name.partition(".")[0]
+                yield (one.asname, one.name) if one.asname else (root, root)
+
+
+def _values(tree: ast.Module) -> Iterator[tuple[str, ast.expr]]:
+    """The value of each name that is bound once in the whole program, and never changed in part."""
+    bound = Counter(node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and not _is_read(node))
+    bound.update(node.arg for node in ast.walk(tree) if isinstance(node, ast.arg))
+    changed = {_dotted(node.value) for node in ast.walk(tree) if isinstance(node, ast.Attribute) and not _is_read(node)}
+    for node in ast.walk(tree):
+        target = node.targets[0] if isinstance(node, ast.Assign) else None
+        if isinstance(node, ast.Assign) and isinstance(target, ast.Name) and target.id not in changed:
+            yield from [(target.id, node.value)] if bound[target.id] == 1 else []
+
+
+def _is_read(node: ast.Name | ast.Attribute) -> bool:
+    return isinstance(node.ctx, ast.Load)
