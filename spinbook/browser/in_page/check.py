@@ -32,7 +32,7 @@ _SEVERAL = "This exercise has several programs, which a web page can't check tog
 
 def check(name: str, source: str) -> str:
     """What the public checks say of the code, as JSON: `problem` alone, or `total`, `full`, `rows` and more."""
-    hindrance = hindrance_of(source) or _threads_in(source)
+    hindrance = hindrance_of(source)
     if hindrance:
         return json.dumps({"problem": hindrance})
     exercise = load(_unpacked(name)).public()
@@ -54,15 +54,6 @@ def hindrance_of(source: str) -> str:
             if name in _CANNOT:
                 return _CANNOT[name]
     return ""
-
-
-_THREADS = "Your program uses threads, which a check in a web page can't follow. Check it in the notebook."
-_SIGNS = ("MultiThreadedExecutor", "threading", "concurrent.futures")
-
-
-def _threads_in(source: str) -> str:
-    """The sentence for a program with threads: Pyodide ends with a fault of its own when a check has several stacks."""
-    return _THREADS if any(sign in source for sign in _SIGNS) else ""
 
 
 def _imported(node: ast.AST) -> list[str]:

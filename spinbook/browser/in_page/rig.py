@@ -187,8 +187,9 @@ def _as_main(program: Program, scenario: Scenario, log: io.StringIO, link: Progr
         with redirect_stdout(log), redirect_stderr(log), _time_of(link):
             yield
     finally:
-        link.rota.close()
         sys.modules["__main__"], sys.argv, logs.write, environment = before
+        with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
+            link.rota.close()
         os.environ.clear()
         os.environ.update(environment)
         for number, handler in handlers.items():
