@@ -1,9 +1,9 @@
-"""Checks programs of an exercise's solutions in a real Chromium, all of them in one page's worker, as its page does.
+"""Checks programs in a real Chromium, all of them in one page's worker, as the exercises' pages do.
 
-    python tests/browser/checks_in_chromium.py EXERCISE [NAME …]
+    python tests/browser/checks_in_chromium.py joint_mover/solution.py heartbeat/right …
 
-Prints a JSON object: name of the program -> what the page shows. NAME is a file's name without `.py`. A process of its
-own, since it uses the course's interfaces.
+A program is named by its path in `solutions/`; a folder stands for all programs in it. Prints a JSON object: path ->
+what the page shows. A process of its own, since it uses the course's interfaces.
 """
 
 from __future__ import annotations
@@ -11,12 +11,13 @@ from __future__ import annotations
 import json
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
+SOLUTIONS = ROOT / "solutions"
 sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "site")]
 
 from browser import Opened, chromium, opened  # noqa: E402
@@ -37,12 +38,12 @@ _CHECK = "given => window.worker.call('check', given)"
 
 
 @contextmanager
-def page_of(exercise: str) -> Iterator[Opened]:
-    """An empty page, beside which everything lies that a check of this exercise needs."""
+def page_of(exercises: Iterable[str]) -> Iterator[Opened]:
+    """An empty page, beside which everything lies that checks of these exercises need."""
     compile_course(find_course(ROOT))
     with tempfile.TemporaryDirectory() as place, chromium() as browser:
         files: dict[str, str | bytes] = {"index.html": "<!doctype html><title>Checks</title>"}
-        files |= run_files(public_parts([load(ROOT / "exercises" / exercise)]))
+        files |= run_files(public_parts([load(ROOT / "exercises" / name) for name in exercises]))
         for name, content in files.items():
             file = Path(place, name)
             file.parent.mkdir(exist_ok=True)
@@ -52,24 +53,30 @@ def page_of(exercise: str) -> Iterator[Opened]:
             yield shown
 
 
-def checked(shown: Opened, exercise: str, file: Path) -> dict[str, Any]:
+def checked(shown: Opened, file: Path) -> dict[str, Any]:
     """What the page's check says of a program."""
-    given = {"exercise": exercise, "source": file.read_text(encoding="utf-8")}
+    given = {"exercise": file.relative_to(SOLUTIONS).parts[0], "source": file.read_text(encoding="utf-8")}
     found: dict[str, Any] = shown.page.evaluate(_CHECK, given)
     return found
 
 
-def main(exercise: str, only: list[str]) -> int:
+def programs(path: str) -> list[Path]:
+    """The program at a path in `solutions/`, or those in a folder."""
+    return [SOLUTIONS / path] if path.endswith(".py") else sorted((SOLUTIONS / path).rglob("*.py"))
+
+
+def main(paths: list[str]) -> int:
     """Check the programs, and print what the page says of each."""
-    files = sorted(f for f in (ROOT / "solutions" / exercise).rglob("*.py") if not only or f.stem in only)
+    files = [file for path in paths for file in programs(path)]
     found: dict[str, dict[str, Any]] = {}
-    with page_of(exercise) as shown:
+    with page_of(sorted({file.relative_to(SOLUTIONS).parts[0] for file in files})) as shown:
         for file in files:
-            found[file.stem] = checked(shown, exercise, file)
-            print(f"{file.stem}: {found[file.stem].get('total', found[file.stem])}", file=sys.stderr, flush=True)
+            name = file.relative_to(SOLUTIONS).as_posix()
+            found[name] = checked(shown, file)
+            print(f"{name}: {found[name].get('total', found[name])}", file=sys.stderr, flush=True)
     print(json.dumps(found))
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1], sys.argv[2:]))
+    sys.exit(main(sys.argv[1:]))

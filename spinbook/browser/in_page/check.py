@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ast
 import json
+import sys
 import zipfile
 from dataclasses import asdict
 from pathlib import Path
@@ -103,7 +104,15 @@ def verdicts(
     """What the checks say."""
     from grader.checking.judging import judge
 
+    _forget_modules_of(_FOLDER)
     return judge(exercise, recordings, references, {scenario.name: scenario.title for scenario in scenarios})
+
+
+def _forget_modules_of(folder: Path) -> None:
+    """Let each judging import the checks anew, as it does in a process of its own."""
+    for name, module in list(sys.modules.items()):
+        if (getattr(module, "__file__", None) or "").startswith(f"{folder}/"):
+            del sys.modules[name]
 
 
 def shown(found: tuple[Verdict, ...], recordings: dict[str, Recording], hidden: dict[str, Any]) -> dict[str, Any]:

@@ -33,6 +33,8 @@ class Turns:
         self._hub.acquire()
         self.is_over = False
         """Whether the program is to end now, as one that is killed."""
+        self.aborted = False
+        """Whether C code would have ended it, by SIGABRT."""
         self.has_ended = False
         self.fault: BaseException | None = None
         """What went wrong in the hub's code while it took what the program sent."""

@@ -31,6 +31,8 @@ class Rota:
         self._in_ros: set[int] = set()
         self._curious: set[int] = set()
         self._numbers = {self._main: 1}
+        self.rests: Counter[int] = Counter()
+        """How often each thread has waited, by its number."""
         self._refused: Counter[int] | None = None
         """How often each thread wanted to wait after the program's end; None before that."""
 
@@ -78,10 +80,16 @@ class Rota:
         """Wait for another thread, for so long at most (-1: without end)."""
         self.wait(None if milliseconds < 0 else round(milliseconds * 1e6), in_ros=False)
 
+    def leave_to_main(self) -> None:
+        """Wait without end, unless this is the main thread."""
+        if threads.get_ident() != self._main:
+            self.wait(None, in_ros=False)
+
     def wait(self, nanoseconds: int | None, in_ros: bool) -> None:
         """Let others have their turns: for so long, or until there is anything new to look at."""
         mine = threads.get_ident()
         self._end_behind_program(mine)
+        self.rests[self.number()] += 1
         self._due[mine] = None if nanoseconds is None else self._link.steady() + nanoseconds
         if in_ros:
             self._in_ros.add(mine)
