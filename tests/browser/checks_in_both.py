@@ -3,7 +3,8 @@
     python tests/browser/checks_in_both.py EXERCISE [NAME …]
 
 Prints a JSON object: name of the program -> "same", why a page does not check it, or how the two differ. NAME is a
-file's name without `.py`. A process of its own, since it uses the course's interfaces.
+file's name without `.py`, or the path of any other program. It is a process of its own, since it uses the course's
+interfaces.
 """
 
 from __future__ import annotations
@@ -121,6 +122,7 @@ def main(name: str, only: list[str]) -> int:
     """Compare the programs of an exercise, and print what was found."""
     compile_course(find_course(ROOT))
     files = sorted(file for file in (ROOT / "solutions" / name).rglob("*.py") if not only or file.stem in only)
+    files += [Path(given) for given in only if given.endswith(".py")]
     with tempfile.TemporaryDirectory() as place:
         copy = Path(place) / name
         copy.mkdir()

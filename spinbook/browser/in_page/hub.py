@@ -41,6 +41,11 @@ class Turns:
         self.signal = ""
         """A signal that the program gets when it goes on."""
 
+    @property
+    def is_done(self) -> bool:
+        """Whether the program goes no further."""
+        return self.is_over or self.has_ended
+
     def let_program_go_on(self) -> None:
         """The hub waits until the program has nothing left to do, or has ended. Raises what went wrong meanwhile."""
         if not self.has_ended:
@@ -56,7 +61,7 @@ class Turns:
 
     def let_hub_go_on(self) -> None:
         """The program waits until something happens, or its run is over."""
-        if not self.is_over and not self.has_ended:
+        if not self.is_done:
             self._hub.release()
             self._program.acquire()
 

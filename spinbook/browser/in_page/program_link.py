@@ -22,6 +22,7 @@ from rmw_lockstep.hub import EPOCH, frames
 from rmw_lockstep.hub.hashes import NO_HASH
 from rmw_lockstep.hub.qos import AUTOMATIC, INFINITE, Qos
 from spinbook.browser.in_page import threads
+from spinbook.browser.in_page.ending import end
 from spinbook.browser.in_page.hub import PROGRAM, Over, PageHub, Turns
 from spinbook.browser.in_page.rota import Rota
 
@@ -59,13 +60,14 @@ class ProgramLink:
         self._now = hub.now
         self._activity = self._number = 0
         self._looks: dict[int, Looks] = {}
+        self._was_told = False
         self.rota = Rota(self)
 
     # --- out
 
     def send(self, frame: Frame, data: bytes = b"") -> None:
         """Hand a frame to the hub, which takes it at once."""
-        if self._turns.is_over or self._turns.has_ended:
+        if self._turns.is_done:
             return  # such as an object of the program's that is collected later
         thread = self.rota.number()
         self._activity += 1
@@ -111,14 +113,17 @@ class ProgramLink:
 
     def rest(self, until: int | None, in_ros: int) -> None:
         """All threads wait, of which so many in ROS: until something has come, or the time has, or a signal."""
-        while not self._goes_on(until) and not self._turns.is_over and not self._turns.signal:
+        while not self._goes_on(until) and not self._turns.is_done and not self._turns.signal:
             self._connection.rests(self._now, until, in_ros)
             self._turns.let_hub_go_on()
 
     def heed(self) -> None:
         """Do, in the main thread, what the hub wants: end, or handle a signal. Raises `Over`."""
+        if self._turns.has_ended:
+            return  # what cleans up behind it may wait
         if self._turns.is_over:
-            raise Over
+            again, self._was_told = self._was_told, True
+            end(again)
         if self._turns.signal:
             name, self._turns.signal = self._turns.signal, ""
             interrupt(name)
