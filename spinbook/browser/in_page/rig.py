@@ -7,6 +7,7 @@ grader's own.
 
 from __future__ import annotations
 
+import gc
 import io
 import linecache
 import os
@@ -147,6 +148,8 @@ def _main(program: Program, student: PageStudent, log: io.StringIO) -> None:
     except BaseException as error:
         traceback.print_exception(type(error), error, _without_rig(error.__traceback__), file=log)
         student.code = 130 if isinstance(error, KeyboardInterrupt) else 1
+    if student.code:
+        gc.collect()  # nodes that only the traceback held leave the graph before the end, as in a process that ends
 
 
 def _status(code: object, log: io.StringIO) -> int:
