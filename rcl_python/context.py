@@ -22,9 +22,6 @@ from rcl_python.values import (
 )
 
 _contexts: weakref.WeakSet[Context] = weakref.WeakSet()
-#: A program that has asked so often behind the end asks for ever, such as a loop that catches everything. Then it waits
-#: so long each time (ns).
-_PATIENCE, _LITTLE = 1000, 10_000_000
 
 
 class Context(Destroyable):
@@ -32,7 +29,6 @@ class Context(Destroyable):
 
     def __init__(self, args: Sequence[str], domain_id: int) -> None:
         self._valid = False
-        self._questions = 0
         super().__init__()
         for arg in args:
             arg.encode()  # raises UnicodeEncodeError for what is not Unicode
@@ -50,23 +46,11 @@ class Context(Destroyable):
 
     def ok(self) -> bool:
         """Whether nodes may go on."""
-        if not self._valid:
-            self._count_question()
         return self._valid
-
-    def __enter__(self) -> None:
-        if self._asked:
-            self._count_question()
-        super().__enter__()
-
-    def _count_question(self) -> None:
-        self._questions += 1
-        if self._questions > _PATIENCE:
-            _wait_a_little()
 
     def require_valid(self, what: str, place: str) -> None:
         """Raise RCLError unless nodes may go on."""
-        if not self.ok():
+        if not self._valid:
             reason = "the given context is not valid, either rcl_init() was not called or rcl_shutdown() was called."
             raise RCLError(f"{what}: {at(reason, place)}")
 
@@ -154,12 +138,6 @@ def unregister_sigint_guard_condition(guard: GuardCondition) -> None:
     """Forget this guard condition."""
     if guard in _interruptible:
         _interruptible.remove(guard)
-
-
-def _wait_a_little() -> None:
-    link = participant.current().link
-    with link.lock:
-        link.wait(_LITTLE)
 
 
 def end_all() -> None:

@@ -22,7 +22,6 @@ from rmw_lockstep.hub import EPOCH, frames
 from rmw_lockstep.hub.hashes import NO_HASH
 from rmw_lockstep.hub.qos import AUTOMATIC, INFINITE, Qos
 from spinbook.browser.in_page import threads
-from spinbook.browser.in_page.ending import end
 from spinbook.browser.in_page.hub import PROGRAM, Over, PageHub, Turns
 from spinbook.browser.in_page.rota import Rota
 
@@ -60,7 +59,6 @@ class ProgramLink:
         self._now = hub.now
         self._activity = self._number = 0
         self._looks: dict[int, Looks] = {}
-        self._was_told = False
         self.rota = Rota(self)
 
     # --- out
@@ -122,8 +120,7 @@ class ProgramLink:
         if self._turns.has_ended:
             return  # what cleans up behind it may wait
         if self._turns.is_over:
-            again, self._was_told = self._was_told, True
-            end(again)
+            raise Over
         if self._turns.signal:
             name, self._turns.signal = self._turns.signal, ""
             interrupt(name)

@@ -194,7 +194,6 @@ def _as_main(program: Program, scenario: Scenario, log: io.StringIO, link: Progr
         with redirect_stdout(log), redirect_stderr(log), _time_of(link):
             yield
     finally:
-        sys.settrace(None)
         sys.modules["__main__"], sys.argv, logs.write, abort.end, environment = before
         with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
             link.rota.close()
