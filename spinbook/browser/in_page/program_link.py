@@ -59,6 +59,7 @@ class ProgramLink:
         self._now = hub.now
         self._activity = self._number = 0
         self._looks: dict[int, Looks] = {}
+        self._ends: dict[str, str] = {}
         self.rota = Rota(self)
 
     # --- out
@@ -67,6 +68,8 @@ class ProgramLink:
         """Hand a frame to the hub, which takes it at once."""
         if self._turns.is_done:
             return  # such as an object of the program's that is collected later
+        if not self._in_order(frame):
+            return
         thread = self.rota.number()
         self._activity += 1
         for kind, payload in _encoded(frame, data, (self._connection.handled, self._now, thread)):
@@ -77,6 +80,18 @@ class ProgramLink:
                 self._turns.fault = fault
                 self._turns.let_hub_go_on()
                 self.heed()
+
+    def _in_order(self, frame: Frame) -> bool:
+        """Whether to tell the hub. Garbage has no order, but end points leave before their node, and only once."""
+        op = frame["op"]
+        if op == "endpoint":
+            self._ends[frame["gid"]] = frame["node"]
+        elif op == "endpoint_gone":
+            return self._ends.pop(frame["gid"], None) is not None
+        elif op == "node_gone":
+            for gid in [gid for gid, node in self._ends.items() if node == frame["key"]]:
+                self.send({"op": "endpoint_gone", "gid": gid})
+        return True
 
     # --- in
 

@@ -108,6 +108,7 @@ class PageStudent:
 
 def run(exercise: Exercise, scenario: Scenario, program: Program) -> Recording:
     """Run the program. Every fault of it is in the recording. Raises what is a fault of ours."""
+    gc.collect()  # what the program before has left behind must not leave this one's graph
     turns, log = Turns(), io.StringIO()
     hub, student = PageHub(turns), PageStudent(turns, log)
     link = join(hub, turns)
