@@ -14,6 +14,8 @@ import sys
 from collections.abc import Callable
 from typing import Any, TypeAlias
 
+from rcl_python.abort import require_class
+
 HEADER = b"\x00\x01\x00\x00"
 PADDING = b"\x00"
 """The padding before a field that has to be aligned. Fast DDS leaves whatever the memory held."""
@@ -116,8 +118,18 @@ def writer(slot: Any) -> Writer:
     if kind.endswith("String"):
         return _write_text
     if kind in ("NamespacedType", "NamedType"):
-        return _write_fields
+        return _message_writer(slot)
     return _sequence_writer(slot, fixed=kind == "Array")
+
+
+def _message_writer(slot: Any) -> Writer:
+    package, name = slot.namespaces[0], str(slot.name)
+
+    def write(out: bytearray, value: Any) -> None:
+        require_class(value, package, name)
+        _write_fields(out, value)
+
+    return write
 
 
 def _basic_writer(name: str) -> Writer:

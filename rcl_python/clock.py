@@ -133,14 +133,20 @@ class ClockEvent:
     wait_until_ros = wait_until_steady
 
     def _wait(self, clock: Clock, until: int) -> None:
+        interrupted: KeyboardInterrupt | None = None
         here = participant.current()
         with here.link.lock:
             while not self._set:
                 left = None if clock.overridden else until - clock.now()
                 if left is not None and left <= 0:
-                    return
-                here.link.wait(left)
+                    break
+                try:
+                    here.link.wait(left)
+                except KeyboardInterrupt as error:
+                    interrupted = error  # what waits in C hears of it only afterwards
                 here.pump()
+        if interrupted is not None:
+            raise interrupted
 
 
 class Timer(Destroyable):

@@ -33,8 +33,11 @@ class Link(Protocol):
         Called with `lock` held.
         """
 
-    def breathe(self) -> None:
-        """Let frames and signals in, where a program never waits."""
+    def breathe(self, looks: bool) -> int:
+        """Let frames and signals in, where a program never waits; how long the thread is taken to wait (ns).
+
+        `looks` says that the thread only looks, and that there is nothing.
+        """
 
     def steady(self) -> int:
         """Return the steady clock (ns)."""
@@ -60,8 +63,9 @@ class LocalLink:
         """Wait for another thread, or until the time is up."""
         self.lock.wait(None if nanoseconds is None else nanoseconds / 1e9)
 
-    def breathe(self) -> None:
+    def breathe(self, looks: bool) -> int:
         """Threads and signals come in by themselves."""
+        return 0
 
     def steady(self) -> int:
         """Return the steady clock (ns)."""

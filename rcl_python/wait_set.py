@@ -10,6 +10,7 @@ from rcl_python.handle import Destroyable
 from rcl_python.values import RCLError
 
 KINDS = ("subscription", "guard_condition", "timer", "client", "service", "event")
+_NEWS = ("subscription", "client", "service", "event")
 
 
 class WaitSet(Destroyable):
@@ -63,12 +64,24 @@ class WaitSet(Destroyable):
             raise RCLError("failed to wait on wait set: wait set is empty")
         here = participant.current()
         with here.link.lock:
-            here.link.breathe()
             until = None if timeout < 0 else here.link.steady() + timeout
             here.pump(self._event_is_ready)
+            self._wait_as_one_who_looks(here.link.breathe(self._left(until) == 0 and not self._has_news()))
             while not self._collect() and (until is None or here.link.steady() < until):
                 here.link.wait(self._left(until))
                 here.pump(self._event_is_ready)
+
+    def _wait_as_one_who_looks(self, nanoseconds: int) -> None:
+        """Wait for news, for so long at most."""
+        here = participant.current()
+        until = here.link.steady() + nanoseconds
+        while not self._has_news() and (left := until - here.link.steady()) > 0:
+            here.link.wait(left)
+            here.pump(self._event_is_ready)
+
+    def _has_news(self) -> bool:
+        """Whether anything is ready that comes from outside."""
+        return any(entity.is_ready() for kind in _NEWS for entity in self._entities[kind])
 
     def _event_is_ready(self) -> bool:
         """Return whether an event can be reported: two in a row are two reports, as over a network."""

@@ -3,13 +3,15 @@
     python tests/browser/checks_in_both.py EXERCISE [NAME …]
 
 Prints a JSON object: name of the program -> "same", why a page does not check it, or how the two differ. NAME is a
-file's name without `.py`. A process of its own, since it uses the course's interfaces.
+file's name without `.py`, or the path of any other program. It is a process of its own, since it uses the course's
+interfaces.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import select
 import subprocess
 import sys
 import tempfile
@@ -19,7 +21,8 @@ from pathlib import Path
 from typing import Any
 
 from grader.exercise import Exercise, load
-from grader.grading import grade_submission
+from grader.grading.grade import Options
+from grader.grading.grading import Grading, grading_of
 from grader.recording import Recording
 from grader.recording.store import from_plain
 from grader.submission import read
@@ -29,7 +32,9 @@ from spinbook.handout.student_copy import exercise_files
 from spinbook.interfaces.compiling import compile_course
 
 ROOT = Path(__file__).resolve().parents[2]
-CHECK_FILE = Path(__file__).with_name("check_file.py")
+CHECK_FILES = Path(__file__).with_name("check_files.py")
+#: A page gives a check as long.
+LIMIT_S = 120
 
 
 def handed_out(name: str, folder: Path) -> Exercise:
@@ -41,13 +46,40 @@ def handed_out(name: str, folder: Path) -> Exercise:
     return load(folder).public()
 
 
-def in_the_page(exercise: Exercise, file: Path, out: Path) -> dict[str, Any]:
-    """What the page's check comes to, from a process that runs over rcl_python."""
-    command = [sys.executable, os.fspath(CHECK_FILE), os.fspath(exercise.folder), os.fspath(file), os.fspath(out)]
-    done = subprocess.run(["timeout", "-k", "1", "60", *command], capture_output=True, text=True, cwd=ROOT, check=False)
-    assert done.returncode == 0, f"exit code {done.returncode}: {done.stderr}"
-    found: dict[str, Any] = json.loads(out.read_text(encoding="utf-8"))
-    return found
+class InThePage:
+    """What the page's check comes to, from a process over rcl_python that checks one file after another."""
+
+    def __init__(self, exercise: Exercise) -> None:
+        self._command = [sys.executable, os.fspath(CHECK_FILES), os.fspath(exercise.folder)]
+        self._process: subprocess.Popen[str] | None = None
+
+    def check(self, file: Path) -> dict[str, Any]:
+        """What it says of a file. Raises AssertionError where the process ends, or does not answer."""
+        process = self._process or self._start()
+        assert process.stdin
+        assert process.stdout
+        process.stdin.write(f"{file}\n")
+        process.stdin.flush()
+        ready, _, _ = select.select([process.stdout], [], [], LIMIT_S)
+        answer = process.stdout.readline() if ready else ""
+        if not answer:
+            self.close()
+            raise AssertionError("ended unexpectedly" if ready else f"no answer within {LIMIT_S} s")
+        found: dict[str, Any] = json.loads(answer)
+        return found
+
+    def _start(self) -> subprocess.Popen[str]:
+        self._process = subprocess.Popen(
+            self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, encoding="utf-8", cwd=ROOT
+        )
+        return self._process
+
+    def close(self) -> None:
+        """End the process."""
+        if self._process is not None:
+            self._process.kill()
+            self._process.communicate()
+        self._process = None
 
 
 def comparable(recording: Recording) -> Recording:
@@ -55,15 +87,15 @@ def comparable(recording: Recording) -> Recording:
     return replace(recording, ending=replace(recording.ending, story=""))
 
 
-def compared(exercise: Exercise, file: Path, folder: Path) -> str:
+def compared(page: InThePage, grading: Grading, exercise: Exercise, file: Path) -> str:
     """How the page's check of a program differs from the real grader's."""
     try:
-        here = in_the_page(exercise, file, folder / "result.json")
+        here = page.check(file)
     except AssertionError as error:
         return str(error)
     if here["hindrance"]:
         return f"not checked: {here['hindrance']}"
-    grade = grade_submission(exercise, read(str(file), exercise))
+    grade = grading.grade(read(str(file), exercise))
     statuses = {v.name: [v.status, v.finding.text if v.finding else ""] for v in grade.verdicts}
     return "; ".join(_differences(here, statuses, grade.recordings)) or "same"
 
@@ -90,14 +122,18 @@ def main(name: str, only: list[str]) -> int:
     """Compare the programs of an exercise, and print what was found."""
     compile_course(find_course(ROOT))
     files = sorted(file for file in (ROOT / "solutions" / name).rglob("*.py") if not only or file.stem in only)
+    files += [Path(given) for given in only if given.endswith(".py")]
     with tempfile.TemporaryDirectory() as place:
         copy = Path(place) / name
         copy.mkdir()
         exercise = handed_out(name, copy)
-        found = {}
-        for file in files:
-            found[file.stem] = compared(exercise, file, Path(place))
-            print(f"{file.stem}: {found[file.stem]}", file=sys.stderr, flush=True)
+        page, found = InThePage(exercise), {}
+        with WorkerPool() as workers:
+            grading = grading_of(exercise, Options(), workers)
+            for file in files:
+                found[file.stem] = compared(page, grading, exercise, file)
+                print(f"{file.stem}: {found[file.stem]}", file=sys.stderr, flush=True)
+        page.close()
     print(json.dumps(found))
     return 0
 

@@ -68,8 +68,9 @@ class SocketLink:
         if not self._arrived:
             self.lock.wait(None if nanoseconds is None else nanoseconds / 1e9)
 
-    def breathe(self) -> None:
+    def breathe(self, looks: bool) -> int:
         """Frames and signals come in by themselves."""
+        return 0
 
     def steady(self) -> int:
         """The steady clock (ns)."""

@@ -37,7 +37,7 @@ def _parts(kind: str, whole: Any) -> list[Any]:
     if kind == "srv":
         return [whole.Request, whole.Response, whole.Event]
     services = (whole.Impl.SendGoalService, whole.Impl.GetResultService)
-    parts = [part for service in services for part in (service.Request, service.Response)]
+    parts = [part for service in services for part in (service.Request, service.Response, service.Event)]
     return [whole.Goal, whole.Result, whole.Feedback, whole.Impl.FeedbackMessage, *parts]
 
 

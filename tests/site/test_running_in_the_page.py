@@ -118,6 +118,7 @@ def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str) -> N
         expect(page.locator(".check-failed")).to_contain_text("Every velocity is in degrees.")
         assert shown.violations() == []
         assert not shown.scrolls_sideways()
+        check(solutions / "right" / "several_threads.py", "11 of 11 public checks, 41 of 41 points")
         check(solutions / "solution.py", "11 of 11 public checks, 41 of 41 points")
         expect(page.locator(".check-result")).to_contain_text("This is a preview, not your grade")
 
@@ -135,6 +136,13 @@ def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str) -> N
         page.get_by_role("button", name="Check joint_velocity.py").click()
         expect(page.locator(".check-message")).to_contain_text("imports numpy", timeout=PATIENCE_MS)
         assert shown.faults == []
+
+
+def test_the_documentation_counts_the_files_that_run_nodes(built: SmallCourse) -> None:
+    in_folder = len(list((built.site / "run").iterdir()))
+    assert (built.site / "offline.js").is_file()
+    text = (ROOT / "docs" / "running-in-the-browser.md").read_text(encoding="utf-8")
+    assert f"{in_folder + 1} files ({in_folder} in `run/`, and the service worker)" in text
 
 
 def test_a_page_from_a_file_says_that_it_can_not_run(browser: Browser, built: SmallCourse) -> None:

@@ -21,6 +21,34 @@ WebAssembly.instantiateStreaming = WebAssembly.instantiate = async () => {
   throw new RangeError("WebAssembly.instantiate(): Out of memory: Cannot allocate Wasm memory for new instance");
 };
 """
+#: Two threads wait deep in calls from C, while the main thread calls deeper than one of them and makes much garbage.
+GARBAGE = """
+import threading
+
+class Nested:
+    def __init__(self, depth, then):
+        self.depth, self.then = depth, then
+
+    def __getattr__(self, name):  # called from C: each level lies on the argument stack
+        return getattr(Nested(self.depth - 1, self.then), name) if self.depth else self.then()
+
+def make_garbage():
+    for _ in range(100_000):
+        ring = []
+        ring.append(ring)
+    return 'made'
+
+go_on = threading.Event()
+waiting = [threading.Thread(target=lambda depth=depth: Nested(depth, go_on.wait).value) for depth in (30, 5)]
+for thread in waiting:
+    thread.start()
+threading.Event().wait(0.1)
+print(Nested(40, make_garbage).value)
+go_on.set()
+for thread in waiting:
+    thread.join()
+print('all threads went on')
+"""
 
 
 @pytest.fixture(scope="module")
@@ -58,6 +86,12 @@ def test_a_program_that_needs_more_than_a_page_has_is_told_so(shown: Opened) -> 
     cell = shown.page.locator(".cell-snippet").first
     for code, sentence in SENTENCES.items():
         expect(run(cell, code)).to_contain_text(sentence, timeout=PATIENCE_MS)
+    assert shown.faults == []
+
+
+def test_garbage_is_collected_while_threads_wait(shown: Opened) -> None:
+    output = run(shown.page.locator(".cell-snippet").first, GARBAGE)
+    expect(output).to_contain_text("all threads went on", timeout=PATIENCE_MS)
     assert shown.faults == []
 
 

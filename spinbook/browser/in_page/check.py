@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ast
 import json
+import sys
 import zipfile
 from dataclasses import asdict
 from pathlib import Path
@@ -32,7 +33,7 @@ _SEVERAL = "This exercise has several programs, which a web page can't check tog
 
 def check(name: str, source: str) -> str:
     """What the public checks say of the code, as JSON: `problem` alone, or `total`, `full`, `rows` and more."""
-    hindrance = hindrance_of(source) or _threads_in(source)
+    hindrance = hindrance_of(source)
     if hindrance:
         return json.dumps({"problem": hindrance})
     exercise = load(_unpacked(name)).public()
@@ -54,15 +55,6 @@ def hindrance_of(source: str) -> str:
             if name in _CANNOT:
                 return _CANNOT[name]
     return ""
-
-
-_THREADS = "Your program uses threads, which a check in a web page can't follow. Check it in the notebook."
-_SIGNS = ("MultiThreadedExecutor", "threading", "concurrent.futures")
-
-
-def _threads_in(source: str) -> str:
-    """The sentence for a program with threads: Pyodide ends with a fault of its own when a check has several stacks."""
-    return _THREADS if any(sign in source for sign in _SIGNS) else ""
 
 
 def _imported(node: ast.AST) -> list[str]:
@@ -112,7 +104,15 @@ def verdicts(
     """Return the checks' verdicts."""
     from grader.checking.judging import judge
 
+    _forget_modules_of(_FOLDER)
     return judge(exercise, recordings, references, {scenario.name: scenario.title for scenario in scenarios})
+
+
+def _forget_modules_of(folder: Path) -> None:
+    """Let each judging import the checks anew, as it does in a process of its own."""
+    for name, module in list(sys.modules.items()):
+        if (getattr(module, "__file__", None) or "").startswith(f"{folder}/"):
+            del sys.modules[name]
 
 
 def shown(found: tuple[Verdict, ...], recordings: dict[str, Recording], hidden: dict[str, Any]) -> dict[str, Any]:

@@ -33,11 +33,18 @@ class Turns:
         self._hub.acquire()
         self.is_over = False
         """Whether the program is to end now, as one that is killed."""
+        self.aborted = False
+        """Whether C code would have ended it, by SIGABRT."""
         self.has_ended = False
         self.fault: BaseException | None = None
         """The exception in the hub's code while it handled what the program sent."""
         self.signal = ""
         """A signal that the program gets when it continues."""
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the program goes no further."""
+        return self.is_over or self.has_ended
 
     def let_program_go_on(self) -> None:
         """Wait, on the hub's side, until the program is idle or has ended. Raises the `fault` kept meanwhile."""
@@ -54,7 +61,7 @@ class Turns:
 
     def let_hub_go_on(self) -> None:
         """The program waits until something happens, or its run is over."""
-        if not self.is_over and not self.has_ended:
+        if not self.is_done:
             self._hub.release()
             self._program.acquire()
 

@@ -50,10 +50,11 @@ class PageLink:
         self._breathed = time.monotonic()
         threads.pause(-1 if nanoseconds is None else nanoseconds / 1e6, True)
 
-    def breathe(self) -> None:
+    def breathe(self, looks: bool) -> int:
         """Let frames in, if none could come for a while."""
         if time.monotonic() - self._breathed > _BREATH_S:
             self.wait(0)
+        return 0
 
     def steady(self) -> int:
         """Return the steady clock (ns)."""

@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import rcl_python
-from rcl_python import logs, participant
+from rcl_python import abort, logs, participant
 from spinbook.browser.in_page import threads
 from spinbook.browser.in_page.link import PageLink
 
@@ -35,10 +35,15 @@ def open_process(page: Any, identity: str) -> None:
     participant.use(link, identity)
     time.sleep = link.sleep  # type: ignore[assignment]
     logs.write = lambda line: print(line, file=sys.stderr)
+    abort.end = _abort
     # A pool of one thread would be none; how many there are is not the page's to know.
     os.cpu_count = lambda: _PROCESSORS
     rcl_python.install()
     builtins.input = _refuse_input
+
+
+def _abort(text: str) -> None:
+    raise SystemExit(text)
 
 
 def _refuse_input(prompt: object = "") -> str:

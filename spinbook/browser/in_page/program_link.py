@@ -7,8 +7,10 @@ hub's turn.
 from __future__ import annotations
 
 import struct
+import sys
 import threading
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import SupportsFloat
 
 from rcl_python import participant
@@ -29,8 +31,23 @@ _DATA, _CALL = struct.Struct("<QQqQqI"), struct.Struct("<QqqQqI")
 _IN_DATA, _IN_REQUEST, _IN_RESPONSE = struct.Struct("<QQq"), struct.Struct("<QQqq"), struct.Struct("<Qqq")
 _TIME = struct.Struct("<qB")
 _BARRIER, _TIME_KIND = ord("|"), ord("T")
-#: A program that only looks and never waits is done after so many looks.
-_LOOKS = 4
+#: A thread that looks again and again without waiting is taken to wait so long (ns) from its third look on. These are
+#: the figures of rmw_lockstep (rmw_wait.cpp).
+_LOOKS, _LOOK = 2, 10_000_000
+
+
+@dataclass
+class Looks:
+    """How often a thread has looked in a row without anything happening in between."""
+
+    activity: int = 0
+    rests: int = 0
+    quiet: int = 0
+
+    def count(self, activity: int, rests: int) -> None:
+        """One more, at these numbers of what has happened so far, and of how often the thread has waited."""
+        self.quiet = self.quiet + 1 if (activity, rests) == (self.activity, self.rests) else 0
+        self.activity, self.rests = activity, rests
 
 
 class ProgramLink:
@@ -40,16 +57,21 @@ class ProgramLink:
         self.lock = threads.Told(threading.RLock())
         self._hub, self._turns, self._connection = hub, turns, hub.connection
         self._now = hub.now
-        self._looks = self._number = 0
+        self._activity = self._number = 0
+        self._looks: dict[int, Looks] = {}
+        self._ends: dict[str, str] = {}
         self.rota = Rota(self)
 
     # --- out
 
     def send(self, frame: Frame, data: bytes = b"") -> None:
         """Hand a frame to the hub, which takes it at once."""
-        if self._turns.is_over or self._turns.has_ended:
+        if self._turns.is_done:
             return  # such as an object of the program's that is collected later
+        if not self._in_order(frame):
+            return
         thread = self.rota.number()
+        self._activity += 1
         for kind, payload in _encoded(frame, data, (self._connection.handled, self._now, thread)):
             try:
                 self._hub.router.handle(self._connection, ord(kind), payload)
@@ -58,6 +80,18 @@ class ProgramLink:
                 self._turns.fault = fault
                 self._turns.let_hub_go_on()
                 self.heed()
+
+    def _in_order(self, frame: Frame) -> bool:
+        """Whether to tell the hub. Garbage has no order, but end points leave before their node, and only once."""
+        op = frame["op"]
+        if op == "endpoint":
+            self._ends[frame["gid"]] = frame["node"]
+        elif op == "endpoint_gone":
+            return self._ends.pop(frame["gid"], None) is not None
+        elif op == "node_gone":
+            for gid in [gid for gid, node in self._ends.items() if node == frame["key"]]:
+                self.send({"op": "endpoint_gone", "gid": gid})
+        return True
 
     # --- in
 
@@ -68,6 +102,7 @@ class ProgramLink:
             frame = queued.popleft()
             self._connection.handled += 1
             self._number += 1
+            self._activity += 1
             found = _decoded(frame[4], frame[_HEADER:], self._number)
             if found:
                 yield found
@@ -76,7 +111,6 @@ class ProgramLink:
 
     def wait(self, nanoseconds: int | None) -> None:
         """Wait for what comes, for another thread, or for so long."""
-        self._looks = 0
         held = self.lock._release_save()  # type: ignore[attr-defined]
         try:
             self.rota.wait(nanoseconds, in_ros=True)
@@ -92,17 +126,26 @@ class ProgramLink:
 
     def rest(self, until: int | None, in_ros: int) -> None:
         """All threads wait, of which so many in ROS: until something has come, or the time has, or a signal."""
-        while not self._goes_on(until) and not self._turns.is_over and not self._turns.signal:
+        while not self._goes_on(until) and not self._turns.is_done and not self._turns.signal:
             self._connection.rests(self._now, until, in_ros)
             self._turns.let_hub_go_on()
 
     def heed(self) -> None:
         """Do, in the main thread, what the hub wants: end, or handle a signal. Raises `Over`."""
+        if self._turns.has_ended:
+            return  # what cleans up behind it may wait
         if self._turns.is_over:
             raise Over
         if self._turns.signal:
             name, self._turns.signal = self._turns.signal, ""
             interrupt(name)
+
+    def abort(self, text: str) -> None:
+        """End the program as C code ends one, with these last words. Raises `Over`."""
+        print(text, file=sys.stderr)
+        self._turns.aborted = self._turns.is_over = True
+        self.rota.leave_to_main()
+        raise Over
 
     @property
     def is_wanted(self) -> bool:
@@ -130,11 +173,17 @@ class ProgramLink:
             self._connection.handled += 1
         return until is not None and until <= self._now
 
-    def breathe(self) -> None:
-        """A program that looks again and again without waiting waits."""
-        self._looks += 1
-        if self._looks > _LOOKS:
-            self.wait(None)
+    def breathe(self, looks: bool) -> int:
+        """How long a thread waits that only looks (ns): from its third look in a row without news."""
+        if not looks:
+            return 0
+        thread = self.rota.number()
+        mine = self._looks.setdefault(thread, Looks())
+        mine.count(self._activity, self.rota.rests[thread])
+        if mine.quiet < _LOOKS:
+            return 0
+        mine.rests += 1  # this one is not the program's own
+        return _LOOK
 
     def steady(self) -> int:
         """Return the hub's time (ns)."""

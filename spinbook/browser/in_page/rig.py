@@ -7,6 +7,7 @@ what the scenario says. So nothing depends on timing, and every run is the same;
 
 from __future__ import annotations
 
+import gc
 import io
 import linecache
 import os
@@ -26,7 +27,7 @@ from grader.runner.run import Run
 from grader.runner.task import Task
 from grader.scenario.command_line import arguments
 from grader.scenario.scenario import Scenario
-from rcl_python import logs
+from rcl_python import abort, logs
 from spinbook.browser.in_page import threads
 from spinbook.browser.in_page.hub import Over, PageHub, Turns
 from spinbook.browser.in_page.program_link import ProgramLink, join
@@ -76,7 +77,10 @@ class PageStudent:
 
     def poll(self) -> Ended | None:
         """How it ended, if it has."""
-        return Ended(self.code) if self._turns.has_ended else None
+        return self._end() if self._turns.has_ended else None
+
+    def _end(self) -> Ended:
+        return Ended(None, signal.SIGABRT) if self._turns.aborted else Ended(self.code)
 
     def wait(self, timeout_s: float) -> Ended | None:
         """Return the same as `poll`: nothing happens meanwhile."""
@@ -99,11 +103,12 @@ class PageStudent:
         if not self._turns.has_ended:
             self._turns.is_over = True
             self._turns.let_program_go_on()
-        return Ended(self.code)
+        return self._end()
 
 
 def run(exercise: Exercise, scenario: Scenario, program: Program) -> Recording:
     """Run the program. Every fault of it is in the recording. Raises for faults of ours."""
+    gc.collect()  # what the program before has left behind must not leave this one's graph
     turns, log = Turns(), io.StringIO()
     hub, student = PageHub(turns), PageStudent(turns, log)
     link = join(hub, turns)
@@ -144,6 +149,8 @@ def _main(program: Program, student: PageStudent, log: io.StringIO) -> None:
     except BaseException as error:
         traceback.print_exception(type(error), error, _without_rig(error.__traceback__), file=log)
         student.code = 130 if isinstance(error, KeyboardInterrupt) else 1
+    if student.code:
+        gc.collect()  # nodes that only the traceback held leave the graph before the end, as in a process that ends
 
 
 def _status(code: object, log: io.StringIO) -> int:
@@ -172,7 +179,7 @@ def _forget_rclpy_s() -> None:
 @contextmanager
 def _as_main(program: Program, scenario: Scenario, log: io.StringIO, link: ProgramLink) -> Iterator[None]:
     """Let the program be `__main__`, started as the grader starts it; keep what it prints; clean up behind it."""
-    before = sys.modules["__main__"], sys.argv, logs.write, dict(os.environ)
+    before = sys.modules["__main__"], sys.argv, logs.write, abort.end, dict(os.environ)
     handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     main = types.ModuleType("__main__")
     main.__file__ = program.file
@@ -182,13 +189,15 @@ def _as_main(program: Program, scenario: Scenario, log: io.StringIO, link: Progr
     sys.modules["__main__"] = main
     sys.argv = [program.file, *arguments(scenario)]
     logs.write = lambda line: print(line, file=log)
+    abort.end = link.abort
     threads.govern(link.rota)
     try:
         with redirect_stdout(log), redirect_stderr(log), _time_of(link):
             yield
     finally:
-        link.rota.close()
-        sys.modules["__main__"], sys.argv, logs.write, environment = before
+        sys.modules["__main__"], sys.argv, logs.write, abort.end, environment = before
+        with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
+            link.rota.close()
         os.environ.clear()
         os.environ.update(environment)
         for number, handler in handlers.items():

@@ -6,6 +6,7 @@ wait, the program is idle, and the hub is notified.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,9 @@ from spinbook.browser.in_page import threads
 
 if TYPE_CHECKING:
     from spinbook.browser.in_page.program_link import ProgramLink
+
+#: A thread that is to end may wait so many times more, such as in a `finally`.
+_REFUSALS = 100
 
 
 class Rota:
@@ -27,9 +31,17 @@ class Rota:
         self._in_ros: set[int] = set()
         self._curious: set[int] = set()
         self._numbers = {self._main: 1}
+        self.rests: Counter[int] = Counter()
+        """How often each thread has waited, by its number."""
+        self._refused: Counter[int] | None = None
+        """How often each thread wanted to wait after the program's end; None before that."""
 
     def close(self) -> None:
-        """The program has ended; its threads go no further."""
+        """The program has ended. Its other threads end where they wait, so that no stack of theirs is left behind."""
+        self._refused = Counter()
+        for thread in [thread for thread in self._gates if thread != self._main]:
+            self._gates[thread].release()
+            self._gates[self._main].acquire()
         threads.govern(None)
         threads.forget(number for number in self._numbers if number != self._main)
 
@@ -48,7 +60,8 @@ class Rota:
         def body() -> None:
             gate.acquire()
             try:
-                run()
+                if self._refused is None:
+                    run()
             finally:
                 self._leave()
 
@@ -67,9 +80,16 @@ class Rota:
         """Wait for another thread, for so long at most (-1: without a limit)."""
         self.wait(None if milliseconds < 0 else round(milliseconds * 1e6), in_ros=False)
 
+    def leave_to_main(self) -> None:
+        """Wait without end, unless this is the main thread."""
+        if threads.get_ident() != self._main:
+            self.wait(None, in_ros=False)
+
     def wait(self, nanoseconds: int | None, in_ros: bool) -> None:
         """Let others have their turns: for so long, or until there is anything new to look at."""
         mine = threads.get_ident()
+        self._end_behind_program(mine)
+        self.rests[self.number()] += 1
         self._due[mine] = None if nanoseconds is None else self._link.steady() + nanoseconds
         if in_ros:
             self._in_ros.add(mine)
@@ -82,11 +102,22 @@ class Rota:
         self._curious.discard(mine)
         if mine == self._main:
             self._link.heed()
+        self._end_behind_program(mine)
+
+    def _end_behind_program(self, mine: int) -> None:
+        """Behind the program's end, end as `sys.exit` does; a thread that goes on waits for ever."""
+        if self._refused is None or mine == self._main:
+            return
+        self._refused[mine] += 1
+        if self._refused[mine] > _REFUSALS:
+            self._gates[self._main].release()
+            self._gates[mine].acquire()
+        raise SystemExit
 
     def _leave(self) -> None:
         """End this thread."""
         mine = threads.get_ident()
-        next_ = self._next(mine)
+        next_ = self._next(mine) if self._refused is None else self._main
         del self._gates[mine]
         self._gates[next_].release()
 

@@ -19,6 +19,8 @@ from collections.abc import Callable, Iterable
 from types import TracebackType
 from typing import Any, Protocol
 
+from spinbook.browser.in_page import garbage
+
 _numbers = itertools.count(1_000)
 _main = threading.get_ident()
 _current = _main
@@ -64,12 +66,14 @@ def pause(milliseconds: float, for_frames: bool) -> None:
 def _pause_in_page(milliseconds: float, for_frames: bool) -> None:
     global _current, _waiting
     mine = _current
+    garbage.before_suspending()
     _waiting += 1
     try:
         _await(_page.wait(milliseconds, for_frames))
     finally:
         _waiting -= 1
         _current = mine
+        garbage.after_resuming(_waiting)
     if mine == _main:
         _heed()
 
