@@ -99,10 +99,13 @@ def the_exercise(shown: Opened, downloads: Path) -> Path:
             clean(shown)
             picture(page, "3-degrees")
     check(page, SOLUTIONS / "solution.py")
-    expect(page.locator(".check-total")).to_contain_text("8 of 8 public checks", timeout=PATIENCE_MS)
+    expect(page.locator(".check-total")).to_contain_text("11 of 11 public checks, 41 of 41 points", timeout=PATIENCE_MS)
     picture(page, "4-solved")
     page.reload()
     press(page, "Edit and check the starter here")
+    draft = page.get_by_role("textbox", name="Code of joint_velocity.py")
+    expect(draft).to_contain_text((SOLUTIONS / "solution.py").read_text()[:40])
+    picture(page, "5-draft-found-again")
     with page.expect_download() as download:
         press(page, "Download your joint_velocity.py")
     file = downloads / download.value.suggested_filename
