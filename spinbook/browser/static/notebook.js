@@ -9,6 +9,8 @@ import { files, keep } from "./workspace.js";
 
 const LOOK_S = 6;
 const GRAPH_S = 2.5;
+// What is left and right of a plot (px).
+const EDGES = 32;
 const LONGEST_S = 60;
 const ENDLESS = /^ros2 (topic (echo|hz|bw|delay|pub)|service echo)\b/;
 const SHOWS_ONLY = / (-s|--show-arg(ument)?s|-h|--help)( |$)/;
@@ -106,7 +108,7 @@ async function drawPlot(cell, process, args) {
   cell.say(`Recording for ${seconds} s …`);
   const lines = await process.call("record", { topics, seconds });
   cell.say("");
-  cell.shown?.append(plot(lines ?? [], seconds));
+  cell.shown?.append(plot(lines ?? [], seconds, cell.shown.clientWidth - EDGES));
 }
 
 async function drawGraph(cell, process, args) {
