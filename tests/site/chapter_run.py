@@ -60,10 +60,10 @@ class Recorded:
 
 @dataclass(frozen=True)
 class Result:
-    """What a cell of the page showed, and how that differs from the notebook; "" if it does not."""
+    """What a cell of the page showed, and how that differs from the notebook: nothing if it does not."""
 
     cell: str
-    differs: str
+    differs: tuple[str, ...]
     shown: tuple[str, ...]
     seconds: float
 
@@ -178,8 +178,8 @@ def shown(place: Locator) -> list[str]:
     return [*meaningful(place.locator(".ran pre").text_content() or ""), *([PICTURE] if pictures else [])]
 
 
-def compared(cell: Recorded, lines: list[str]) -> str:
-    """How the lines differ from the recorded ones; "" if they do not."""
+def compared(cell: Recorded, lines: list[str]) -> tuple[str, ...]:
+    """How the lines differ from the recorded ones, a note for each kind of line; none if they do not."""
     here = [shape(line) for line in lines]
     missing = sorted(cell.kinds - set(here))
     if cell.error and cell.error != "CellFailed" and not any(line.startswith(cell.error) for line in lines):
@@ -190,7 +190,7 @@ def compared(cell: Recorded, lines: list[str]) -> str:
     if values:
         pairs = zip(lines, cell.lines, strict=False)
         notes += [f"got {mine!r}, expected {theirs!r}" for mine, theirs in pairs if mine != theirs][:3] or ["order"]
-    return "; ".join(notes)
+    return tuple(notes)
 
 
 def _exact(cell: Recorded) -> bool:
@@ -201,7 +201,9 @@ def _exact(cell: Recorded) -> bool:
 def read_results(file: Path) -> dict[str, Result]:
     """The last result of each cell."""
     rows = map(json.loads, file.read_text(encoding="utf-8").splitlines()) if file.exists() else ()
-    return {row["cell"]: Result(**{**row, "shown": tuple(row["shown"])}) for row in rows}
+    return {
+        row["cell"]: Result(**{**row, "differs": tuple(row["differs"]), "shown": tuple(row["shown"])}) for row in rows
+    }
 
 
 def go_on(site: Path, notebook: Path, file: Path, seconds: float) -> None:
@@ -240,7 +242,7 @@ def main() -> int:
     differ = [result for result in found.values() if result.differs]
     print(f"{len(cells)} cells, {len(found)} run, {len(found) - len(differ)} as recorded")
     for result in differ:
-        print(f"  {result.cell}: {result.differs}")
+        print(f"  {result.cell}: {'; '.join(result.differs)}")
     return 1 if differ or len(found) < len(cells) else 0
 
 
