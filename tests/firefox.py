@@ -93,13 +93,13 @@ return Boolean(found);
 
 
 @contextmanager
-def firefox(profile: Path) -> Iterator[Firefox]:
-    """A running Firefox without a window, with a fresh profile in this folder."""
+def firefox(profile: Path, *preferences: str) -> Iterator[Firefox]:
+    """A running Firefox without a window, with a fresh profile in this folder, and with these lines of preferences."""
     assert PROGRAM is not None
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    (profile / "user.js").write_text(_PREFERENCES.format(port=port))
+    (profile / "user.js").write_text("\n".join((_PREFERENCES.format(port=port), *preferences)))
     argv = [PROGRAM, "--headless", "--marionette", "--no-remote", "--profile", str(profile)]
     process = subprocess.Popen(argv, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:

@@ -46,7 +46,8 @@ START = """async ([number, source]) => {
   await download(() => {});
   await new Promise((resolve, reject) => {
     const node = new Process(`talker_${number}`, { output: (text) => text.includes("ready") && resolve() });
-    node.program(source, `talker_${number}.py`).catch(reject);
+    const ended = (status) => reject(new Error(`talker_${number} ended with ${status}`));
+    node.program(source, `talker_${number}.py`).then(ended, reject);
   });
   return (performance.now() - began) / 1000;
 }"""

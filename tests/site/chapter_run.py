@@ -1,17 +1,21 @@
 """Runs every cell of a chapter's page in order, and compares what each shows with the executed notebook.
 
-    python tests/site/chapter_run.py SITE EXECUTED_NOTEBOOK …
+    python tests/site/chapter_run.py SITE EXECUTED_NOTEBOOK RESULTS [--seconds N]
 
-prints the cells that differ. Numbers that depend on time count as equal; what a page's cell shows of something that
-goes on for ever must hold every kind of line that was recorded.
+appends a line of JSON to RESULTS for each cell, and prints the cells that differ. With --seconds it stops after so
+long; the same command then goes on. Numbers that depend on time count as equal; what a page's cell shows of something
+that goes on for ever must hold every kind of line that was recorded.
 """
 
 from __future__ import annotations
 
+import argparse
 import json
 import re
 import sys
-from dataclasses import dataclass
+import time
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -54,6 +58,16 @@ class Recorded:
         return set(map(shape, self.lines))
 
 
+@dataclass(frozen=True)
+class Result:
+    """What a cell of the page showed, and how that differs from the notebook: nothing if it does not."""
+
+    cell: str
+    differs: tuple[str, ...]
+    shown: tuple[str, ...]
+    seconds: float
+
+
 def recorded(notebook: Path) -> list[Recorded]:
     """Return the code cells of an executed notebook that a page can run."""
     cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
@@ -94,24 +108,48 @@ def shape(line: str) -> str:
     return _NUMBER.sub("#", _FILE.sub(r'File "\1"', line)).strip()
 
 
-def run_chapter(page: Page, cells: list[Recorded]) -> dict[str, str]:
-    """Run each cell of the open page in order; what differs, by the cell's id."""
+def run_chapter(page: Page, cells: list[Recorded], first: int = 0) -> Iterator[Result]:
+    """Run each cell of the open page in order, from `first` on, where `beginnings` says that this can be done."""
     places = page.locator(CELLS)
     assert places.count() == len(cells), f"{places.count()} cells on the page, {len(cells)} in the notebook"
-    differences = {}
-    for at, cell in enumerate(cells):
-        found = _run(page, places.nth(at), cell)
-        if found:
-            differences[cell.id] = found
-    return differences
+    if first:
+        _catch_up(page, [places.nth(at) for at, cell in enumerate(cells[:first]) if _leaves_something(cell)])
+    for at, cell in enumerate(cells[first:], first):
+        began = time.monotonic()
+        lines = _run(page, places.nth(at), cell)
+        yield Result(cell.id, compared(cell, lines), tuple(lines), round(time.monotonic() - began, 1))
 
 
-def _run(page: Page, place: Locator, cell: Recorded) -> str:
-    place.get_by_role("button", name=re.compile(r"^Run (?!all)")).click()
-    page.wait_for_function(_ENDED, arg=place.element_handle(), timeout=PATIENCE_MS)
+def beginnings(cells: list[Recorded]) -> list[int]:
+    """Where a run can begin: at the first cell, and after each that stops all nodes."""
+    return [0, *(at for at, cell in enumerate(cells, 1) if "%stop --all" in cell.source.splitlines())]
+
+
+def _leaves_something(cell: Recorded) -> bool:
+    """Whether later cells need what this one defines: files, variables, and which program has a name."""
+    return not cell.source.startswith(("%", "#")) or cell.source.startswith(("%%", "%env"))
+
+
+def _catch_up(page: Page, places: list[Locator]) -> None:
+    """Run these cells without looking at what they show, and stop what they started."""
+    for place in places:
+        _press(page, place)
+    every = page.get_by_role("button", name="Stop all nodes")
+    if every.is_visible():
+        every.click()
+    every.wait_for(state="hidden", timeout=PATIENCE_MS)
+
+
+def _run(page: Page, place: Locator, cell: Recorded) -> list[str]:
+    _press(page, place)
     if cell.endless:
         _wait_for_kinds(page, place, cell)
-    return compared(cell, shown(place))
+    return shown(place)
+
+
+def _press(page: Page, place: Locator) -> None:
+    place.get_by_role("button", name=re.compile(r"^Run (?!all)")).click()
+    page.wait_for_function(_ENDED, arg=place.element_handle(), timeout=PATIENCE_MS)
 
 
 _ENDED = "cell => cell.querySelector('.ran') && !cell.hasAttribute('aria-busy')"
@@ -140,8 +178,8 @@ def shown(place: Locator) -> list[str]:
     return [*meaningful(place.locator(".ran pre").text_content() or ""), *([PICTURE] if pictures else [])]
 
 
-def compared(cell: Recorded, lines: list[str]) -> str:
-    """How the lines differ from the recorded ones; "" if they do not."""
+def compared(cell: Recorded, lines: list[str]) -> tuple[str, ...]:
+    """How the lines differ from the recorded ones, a note for each kind of line; none if they do not."""
     here = [shape(line) for line in lines]
     missing = sorted(cell.kinds - set(here))
     if cell.error and cell.error != "CellFailed" and not any(line.startswith(cell.error) for line in lines):
@@ -152,7 +190,7 @@ def compared(cell: Recorded, lines: list[str]) -> str:
     if values:
         pairs = zip(lines, cell.lines, strict=False)
         notes += [f"got {mine!r}, expected {theirs!r}" for mine, theirs in pairs if mine != theirs][:3] or ["order"]
-    return "; ".join(notes)
+    return tuple(notes)
 
 
 def _exact(cell: Recorded) -> bool:
@@ -160,25 +198,53 @@ def _exact(cell: Recorded) -> bool:
     return not re.search(r"^%", cell.source, re.MULTILINE) or cell.source.startswith("%ros2 interface")
 
 
-def main(site: Path, notebooks: list[Path]) -> int:
-    """Run the chapters' pages and print the differences."""
+def read_results(file: Path) -> dict[str, Result]:
+    """The last result of each cell."""
+    rows = map(json.loads, file.read_text(encoding="utf-8").splitlines()) if file.exists() else ()
+    return {
+        row["cell"]: Result(**{**row, "differs": tuple(row["differs"]), "shown": tuple(row["shown"])}) for row in rows
+    }
+
+
+def go_on(site: Path, notebook: Path, file: Path, seconds: float) -> None:
+    """Run the cells that have no result yet, for so long, from the last place at which a run can begin."""
     sys.path.insert(0, str(Path(__file__).parents[1]))
     from browser import chromium, opened
     from small_course import served
 
-    count = 0
-    with served(site) as address, chromium() as browser:
-        for notebook in notebooks:
-            cells = recorded(notebook)
-            with opened(browser, f"{address}/chapters/{notebook.stem}.html") as page:
-                found = run_chapter(page.page, cells)
-                print(f"{notebook.stem}: {len(cells) - len(found)} of {len(cells)} cells as recorded")
-                for name, words in found.items():
-                    print(f"  {name}: {words}")
-                print("\n".join(page.faults))
-            count += len(found)
-    return 1 if count else 0
+    cells, known = recorded(notebook), read_results(file)
+    done = next((at for at, cell in enumerate(cells) if cell.id not in known), len(cells))
+    first = max(at for at in beginnings(cells) if at <= done)
+    end = time.monotonic() + seconds
+    with (
+        served(site) as address,
+        chromium() as browser,
+        opened(browser, f"{address}/chapters/{notebook.stem}.html") as page,
+        file.open("a", encoding="utf-8") as results,
+    ):
+        for result in run_chapter(page.page, cells, first) if done < len(cells) else ():
+            print(json.dumps(asdict(result), ensure_ascii=False), file=results, flush=True)
+            if time.monotonic() > end:
+                break
+        print("\n".join(page.faults))
+
+
+def main() -> int:
+    """Read the arguments, run, and print the differences."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("site", type=Path)
+    parser.add_argument("notebook", type=Path)
+    parser.add_argument("results", type=Path)
+    parser.add_argument("--seconds", type=float, default=float("inf"))
+    given = parser.parse_args()
+    go_on(given.site, given.notebook, given.results, given.seconds)
+    cells, found = recorded(given.notebook), read_results(given.results)
+    differ = [result for result in found.values() if result.differs]
+    print(f"{len(cells)} cells, {len(found)} run, {len(found) - len(differ)} as recorded")
+    for result in differ:
+        print(f"  {result.cell}: {'; '.join(result.differs)}")
+    return 1 if differ or len(found) < len(cells) else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1]), [Path(name) for name in sys.argv[2:]]))
+    sys.exit(main())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
@@ -30,7 +31,9 @@ def address(built: SmallCourse) -> Iterator[str]:
 
 @pytest.fixture(scope="session")
 def real_course(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The build folder of the real course, built and run in a folder of its own."""
+    """The build folder of the real course, built and run in a folder of its own. SPINBOOK_BUILT names one that is."""
+    if built := os.environ.get("SPINBOOK_BUILT"):
+        return Path(built)
     folder = tmp_path_factory.mktemp("course")
     shutil.copy(ROOT / "course.toml", folder)
     for name in ("chapters", "exercises", "solutions", "interfaces"):

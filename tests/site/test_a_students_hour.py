@@ -6,6 +6,7 @@ SPINBOOK_SCREENSHOTS names a folder for pictures of each step.
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -25,9 +26,17 @@ WIDTHS = (1280, 390)
 pytestmark = [pytest.mark.soak, pytest.mark.timeout(1800)]
 
 
+def in_both_colours(page: Page) -> Iterator[str]:
+    """Show the page in the dark, then in the light."""
+    for colours in ("dark", "light"):
+        page.evaluate("colours => { document.documentElement.dataset.colours = colours; }", colours)
+        yield colours
+
+
 def picture(page: Page, name: str) -> None:
     if folder := os.environ.get("SPINBOOK_SCREENSHOTS"):
-        page.screenshot(path=Path(folder, f"{name}-{(page.viewport_size or {})['width']}.png"))
+        for colours in in_both_colours(page):
+            page.screenshot(path=Path(folder, f"{name}-{(page.viewport_size or {})['width']}-{colours}.png"))
 
 
 def press(page: Page, name: str) -> None:
@@ -53,8 +62,9 @@ def says(page: Page, name: str, text: str) -> None:
 
 
 def clean(shown: Opened) -> None:
-    found = shown.violations()
-    assert found == [], found
+    for colours in in_both_colours(shown.page):
+        found = shown.violations()
+        assert found == [], (colours, found)
     assert shown.faults == []
     assert not shown.scrolls_sideways()
 
@@ -99,10 +109,13 @@ def the_exercise(shown: Opened, downloads: Path) -> Path:
             clean(shown)
             picture(page, "3-degrees")
     check(page, SOLUTIONS / "solution.py")
-    expect(page.locator(".check-total")).to_contain_text("8 of 8 public checks", timeout=PATIENCE_MS)
+    expect(page.locator(".check-total")).to_contain_text("11 of 11 public checks, 41 of 41 points", timeout=PATIENCE_MS)
     picture(page, "4-solved")
     page.reload()
     press(page, "Edit and check the starter here")
+    draft = page.get_by_role("textbox", name="Code of joint_velocity.py")
+    expect(draft).to_contain_text((SOLUTIONS / "solution.py").read_text()[:40])
+    picture(page, "5-draft-found-again")
     with page.expect_download() as download:
         press(page, "Download your joint_velocity.py")
     file = downloads / download.value.suggested_filename

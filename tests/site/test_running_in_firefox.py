@@ -17,6 +17,7 @@ pytestmark = [
     pytest.mark.skipif(PROGRAM is None, reason="Firefox is not installed: sudo apt-get install firefox-esr"),
 ]
 
+WITHOUT_JSPI = 'user_pref("javascript.options.wasm_js_promise_integration", false);'
 LOG = ".cell-node .ran [role=log]"
 
 
@@ -63,3 +64,12 @@ def test_an_exercise_is_checked(page: Firefox, address: str) -> None:
     )
     page.click("Check joint_velocity.py")
     page.wait_for(".check-total", "11 of 11 public checks, 41 of 41 points")
+
+
+def test_a_firefox_without_promise_integration_reads_and_says_why_it_can_not_run(address: str, tmp_path: Path) -> None:
+    with firefox(tmp_path, WITHOUT_JSPI) as running:
+        running.open(f"{address}/chapters/01-talk.html")
+        assert running.evaluate("return 'Suspending' in WebAssembly") is False
+        running.click("Run talker.py")
+        running.wait_for(".cell-node .run-state", "Chrome and Edge 137 or newer and Firefox 153 or newer have it.")
+        running.wait_for("main", "A publisher sends messages.")

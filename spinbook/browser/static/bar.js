@@ -16,6 +16,8 @@ export function bar() {
   const graph = follow();
   place.append(graph.panel, element("span", { className: "running-title", textContent: "Running" }), list, graph.toggle, every);
   changes.addEventListener("change", () => fill(list, graph));
+  const measure = () => document.documentElement.style.setProperty("--running", `${place.offsetHeight}px`);
+  new ResizeObserver(measure).observe(place);
 }
 
 function fill(list, graph) {

@@ -81,6 +81,12 @@ class Cell {
     if (++this.count > LINES) this.output.firstChild.remove();
     this.output.scrollTop = this.output.scrollHeight;
     if (this.until && text.includes(this.until)) this.see();
+    this.hear?.();
+  }
+
+  // Resolves with the next line of output.
+  nextLine() {
+    return new Promise((resolve) => (this.hear = resolve));
   }
 
   fail(text) {

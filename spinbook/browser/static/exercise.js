@@ -1,7 +1,7 @@
 // The editor of an exercise's page, and Check: the public checks, in this page.
 import { download as load } from "./download.js";
 import { editing } from "./editing.js";
-import { button, element, failure, hindrance, style } from "./elements.js";
+import { announce, button, element, failure, hindrance, style } from "./elements.js";
 import { Process } from "./processes.js";
 
 const LIMIT_S = 120;
@@ -79,8 +79,9 @@ export function open(section) {
     try {
       await load(say);
       const found = await check(name, editor.text, say);
-      say(found.total ?? "");
+      say("");
       result.replaceChildren(...panel(found));
+      announce(found.problem ?? found.total);
     } catch (error) {
       say(failure(error));
     } finally {

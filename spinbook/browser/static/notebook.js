@@ -9,7 +9,11 @@ import { files, keep } from "./workspace.js";
 
 const LOOK_S = 6;
 const GRAPH_S = 2.5;
+// What is left and right of a plot (px).
+const EDGES = 32;
 const LONGEST_S = 60;
+// How long a command may take to begin.
+const START_S = 4;
 const ENDLESS = /^ros2 (topic (echo|hz|bw|delay|pub)|service echo)\b/;
 const SHOWS_ONLY = / (-s|--show-arg(ument)?s|-h|--help)( |$)/;
 const BOUNDED = / (--once|-1|--times|-t) /;
@@ -106,7 +110,7 @@ async function drawPlot(cell, process, args) {
   cell.say(`Recording for ${seconds} s …`);
   const lines = await process.call("record", { topics, seconds });
   cell.say("");
-  cell.shown?.append(plot(lines ?? [], seconds));
+  cell.shown?.append(plot(lines ?? [], seconds, cell.shown.clientWidth - EDGES));
 }
 
 async function drawGraph(cell, process, args) {
@@ -139,20 +143,29 @@ async function runCommand(cell, process, command) {
 }
 
 // Endless output is ended after a while, as in the notebook, or once it shows what the chapter waits for.
+// The seconds count from the first line, so that a slow computer shows as much as a fast one.
 async function bounded(cell, process, line) {
   const endless = ENDLESS.test(line) && !BOUNDED.test(`${line} `);
-  const seconds = endless ? (cell.about.seconds ?? LOOK_S) : LONGEST_S;
+  const seconds = cell.about.seconds ?? (endless ? LOOK_S : LONGEST_S);
   let interrupted = false;
+  let over = false;
   const interrupt = () => {
     interrupted = true;
     process.signal("SIGINT");
   };
-  const timer = setTimeout(interrupt, 1000 * seconds);
-  if (cell.until) cell.seen.then(interrupt);
+  const atMost = cell.about.seconds ? seconds + START_S : seconds;
+  let timer = setTimeout(interrupt, 1000 * atMost);
+  cell.nextLine().then(() => {
+    if (over) return;
+    clearTimeout(timer);
+    timer = setTimeout(interrupt, 1000 * seconds);
+  });
+  if (cell.until) cell.seen.then(() => over || interrupt());
   try {
     const status = await busy(cell, process, "command", { source: line, files: files() });
     if (interrupted && status !== null) cell.failed = false;
   } finally {
+    over = true;
     clearTimeout(timer);
   }
 }
