@@ -39,7 +39,11 @@ def test_reaches_the_goal(ahead: Run) -> None:
     misconception="never stops",
 )
 def test_stops_at_the_goal(ahead: Run) -> None:
-    """At the goal, the turtle stands still."""
+    """At the goal the turtle gets a command of zeros, and stands still."""
+    moment, last_command = ahead.trajectory(COMMANDS, "linear.x", "angular.z")[-1]
+    if any(last_command):
+        text = f"the last command came at {moment:.2f} s, and it is not all zeros."
+        ahead.wrong_at(None, text, "", "a Twist of zeros", "linear.x {:.3g}, angular.z {:.3g}".format(*last_command))
     ahead.must_reach(POSE, {"x": 8.5, "y": 7.0}, tolerance=0.1, within=10.0, start=0.5)
     last = [point for at, point in ahead.trajectory(POSE, "x", "y", "theta") if at >= 10.5]
     if max(math.dist(point, last[0]) for point in last) > 0.01:
@@ -59,8 +63,8 @@ def test_not_too_fast(ahead: Run, behind: Run) -> None:
             for part, axis, unit in (("linear", "x", "m/s"), ("angular", "z", "rad/s")):
                 value = command.fields[part][axis]
                 if not abs(value) <= 2.0 + 1e-6:
-                    told = f"expected {part}.{axis} between -2 and 2 {unit}, got {value:.3g} {unit}."
-                    run.wrong_at(command.at, told, "", f"at most 2 {unit}", f"{value:.3g} {unit}")
+                    text = f"expected {part}.{axis} between -2 and 2 {unit}, got {value:.3g} {unit}."
+                    run.wrong_at(command.at, text, "", f"at most 2 {unit}", f"{value:.3g} {unit}")
 
 
 @check(points=3, hint="super().__init__('go_to_goal')", depends=[test_drives])

@@ -7,6 +7,19 @@ from grader.scenario import Scenario, Turtle, World, at
 GOAL = "/goal"
 
 
+class CarriedTurtle(Turtle):
+    """A turtle that is carried to the middle of its square, 11 s after the start."""
+
+    seconds = 0.0
+
+    def step(self, seconds: float) -> None:
+        """Move on, by itself or in somebody's hand."""
+        before, self.seconds = self.seconds, self.seconds + seconds
+        super().step(seconds)
+        if before < 11.0 <= self.seconds:
+            self.x = self.y = 5.5
+
+
 def scenarios(seed: int) -> tuple[Scenario, ...]:
     """Every scenario. The first one must be passed by any node that works at all."""
     return (
@@ -28,17 +41,17 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         ),
         Scenario(
             "short_way",
-            "the shorter way to turn goes past 180 degrees",
+            "the shorter way to turn goes past 180 degrees, and the turtle is carried away from the goal at 11 s",
             (at(0.5).publish(GOAL, x=3.0, y=4.0),),
-            world=World(Turtle, period=0.016, x=8.0, y=5.5, theta=2.6),
-            duration=11.0,
+            world=World(CarriedTurtle, period=0.016, x=8.0, y=5.5, theta=2.6),
+            duration=12.5,
             rate=10.0,
         ),
         Scenario(
             "behind",
             "a goal behind the turtle, in a corner",
             (at(0.5).publish(GOAL, x=9.8, y=9.8),),
-            world=World(Turtle, period=0.016, x=5.0, y=5.0, theta=-2.0),
+            world=World(Turtle, period=0.016, x=2.5, y=2.5, theta=-2.0),
             duration=11.0,
             rate=10.0,
         ),

@@ -10,7 +10,7 @@ from turtlesim.msg import Pose
 
 FASTEST = 2.0  # m/s
 FASTEST_TURN = 2.0  # rad/s
-CLOSE_ENOUGH = 0.05  # m
+CLOSE_ENOUGH = 0.08  # m
 
 
 class GoToGoal(Node):
@@ -48,7 +48,7 @@ class GoToGoal(Node):
             self.goal = None
         else:
             turn = wrapped(math.atan2(left, ahead) - pose.theta)
-            command.linear.x = min(2.0 * distance, FASTEST) * max(math.cos(turn), 0.0)
+            command.linear.x = min(distance, FASTEST) * max(math.cos(turn), 0.0)
             command.angular.z = max(-FASTEST_TURN, min(4.0 * turn, FASTEST_TURN))
         self.publisher.publish(command)
         # END SOLUTION

@@ -107,8 +107,8 @@ def test_the_range_refuses_with_a_reason_and_follows_what_was_set(files: Path) -
 def test_of_a_burst_each_queue_keeps_as_many_as_it_is_deep(files: Path) -> None:
     with Program(files / "burst.py") as program:
         for depth in (1, 5, 20):
-            heard = program.wait_for_log(f"depth {depth} heard").partition("heard ")[2].strip()
-            assert heard == str(list(range(21 - depth, 21)))
+            received = program.wait_for_log(f"depth {depth} received").partition("received ")[2].strip()
+            assert received == str(list(range(21 - depth, 21)))
         assert ended_well(program), "".join(program.log)
 
 

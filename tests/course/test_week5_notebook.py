@@ -57,7 +57,7 @@ def test_the_plots_show_the_swings_that_the_text_names(notebook: Any) -> None:
 
 
 def test_the_queues_keep_and_age_as_the_text_says(notebook: Any) -> None:
-    assert "depth 5 heard [16, 17, 18, 19, 20]" in shown(notebook, "%%node burst")[0]
+    assert "depth 5 received [16, 17, 18, 19, 20]" in shown(notebook, "%%node burst")[0]
     deep, shallow = (
         float(re.findall(r"([\d.]+) s old", text)[-1])
         for text in (*shown(notebook, "%%node slow_balance"), *shown(notebook, "%ros2 --seconds 40"))

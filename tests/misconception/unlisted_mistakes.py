@@ -250,10 +250,10 @@ UNLISTED: dict[str, dict[str, Unlisted]] = {
         ),
     },
     "go_to_goal": {
-        "stops_at_half": Unlisted((("CLOSE_ENOUGH = 0.05", "CLOSE_ENOUGH = 0.5"),), ("stops_too_early",)),
+        "stops_at_half": Unlisted((("CLOSE_ENOUGH = 0.08", "CLOSE_ENOUGH = 0.5"),), ("stops_too_early",)),
         "three_ms": Unlisted((("FASTEST = 2.0", "FASTEST = 3.0"),), ("too_fast",)),
         "turn_4": Unlisted((("FASTEST_TURN = 2.0", "FASTEST_TURN = 4.0"),), ("turns_too_fast",)),
-        "slowest": Unlisted((("min(2.0 * distance", "min(0.1 * distance"),), ("too_slow",)),
+        "slowest": Unlisted((("min(distance", "min(0.1 * distance"),), ("too_slow",)),
         "turns_wrong_way": Unlisted((("min(4.0 * turn", "min(-4.0 * turn"),), ()),
         "swaps_xy": Unlisted(
             (("self.goal.x - pose.x, self.goal.y - pose.y", "self.goal.y - pose.x, self.goal.x - pose.y"),), ()

@@ -31,6 +31,8 @@ class GoToGoal(Node):
             turn = cmath.phase(ahead)
             command.linear.x = max(0.0, min(2.0, 1.8 * ahead.real)) if abs(turn) < 1.0 else 0.0
             command.angular.z = max(-2.0, min(2.0, 5.0 * turn))
+        else:
+            self.goal = None
         self.publisher.publish(command)
 
 

@@ -41,7 +41,14 @@ class GoToGoal(Node):
                 turn += 2 * math.pi
             command.angular.z = max(-2.0, min(2.0, 4.0 * turn))
             command.linear.x = max(0.0, min(2.0, 1.5 * rho) * math.cos(turn))
+        else:
+            self.forget(goal)
         self.publisher.publish(command)
+
+    def forget(self, goal):
+        with self.lock:
+            if self.goal is goal:  # and not a newer one
+                self.goal = None
 
 
 def main():
