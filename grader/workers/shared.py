@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from grader.scenario.scenario import Scenario
-
 
 @dataclass(frozen=True)
 class Sandbox:
@@ -80,6 +78,8 @@ def receive(content: bytes) -> None:
 
 
 def _prepare(one: Any) -> None:
+    from grader.scenario.scenario import Scenario  # here, as the owner starts sooner without it
+
     if isinstance(one, Scenario):
         from grader.runner.publishers import prepare_messages
 
