@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
-from rich.console import Console
 
-from grader.classroom.request import ClassRequest, NoCluster
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import NoExercise, find, load
-from grader.grading.grade import Grade, Options
-from grader.grading.grading import grading_of
-from grader.report.as_json import as_json
-from grader.report.terminal import show
 from grader.sandbox.isolation import Isolation
 from grader.sandbox.middleware import choose_middleware, to_be_compiled
 from grader.sandbox.program import Middleware, SandboxUnavailable
 from grader.submission.reading import NoSubmission, Submission, read
 from grader.workers.pool import HostFault, WorkerPool
+
+if TYPE_CHECKING:
+    from grader.grading.grade import Grade, Options
 
 #: Exit codes. 2 is click's own, for usage.
 FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
@@ -119,25 +117,28 @@ def grade(
       spinbook grade joint_velocity submissions/ --out results/ --regrade anna
       spinbook grade joint_velocity submissions/ --out results/ --rejudge
     """
-    options = Options(
-        isolation=Isolation(isolation) if isolation else None,
-        seed=seed,
-        pace=1.0 if real_time else None,
-        middleware=Middleware(middleware) if middleware else None,
-    )
+    wanted: dict[str, Any] = {
+        "isolation": Isolation(isolation) if isolation else None,
+        "seed": seed,
+        "pace": 1.0 if real_time else None,
+        "middleware": Middleware(middleware) if middleware else None,
+    }
     try:
-        if options.middleware is not Middleware.FASTDDS and to_be_compiled():
+        if wanted["middleware"] is not Middleware.FASTDDS and to_be_compiled():
             click.echo("Compiling the grader's middleware, once ...", err=True)
-        if warning := choose_middleware(options.middleware).warning:
+        if warning := choose_middleware(wanted["middleware"]).warning:
             click.echo(warning, err=True)
         found = load(_folder(exercise))
         if out:
-            wishes = (jobs, regrade, overrides, scheduler, rejudge, yes, publish)
-            sys.exit(_class(found, ClassRequest(Path(submission), out, options, *wishes)))
+            sys.exit(
+                _class(
+                    found, Path(submission), out, wanted, (jobs, regrade, overrides, scheduler, rejudge, yes, publish)
+                )
+            )
         if Path(submission).is_dir() or submission.endswith(".csv"):
             raise click.UsageError(f"{submission}: to grade a class, say with --out where the results go.")
         handed_in = read(submission, found)
-        result = _graded(found, handed_in, options)
+        result = _graded(found, handed_in, wanted)
     except NoSubmission as error:
         raise click.UsageError(str(error)) from None
     except ExerciseError as error:
@@ -146,30 +147,53 @@ def grade(
         _stop(str(error))
     except HostFault as error:
         _stop(f"The machine or the grader is at fault, not the submission: {error}")
-    if json_:
-        click.echo(as_json(result), nl=False)
-    else:
-        show(result, found, Console(soft_wrap=False, highlight=False), verbose)
+    _show(result, found, json_, verbose)
     _write(result, found, plot, bag)
     sys.exit(OUR_FAULT if result.outcome == "host-error" else NOT_FULL_MARKS if not result.full_marks else FULL_MARKS)
 
 
-def _class(exercise: Exercise, class_request: ClassRequest) -> int:
+def _options(wanted: dict[str, Any]) -> Options:
+    from grader.grading.grade import Options
+
+    return Options(**wanted)
+
+
+def _class(exercise: Exercise, submissions: Path, out: Path, wanted: dict[str, Any], wishes: tuple[Any, ...]) -> int:
     """Grade a class. What that needs is imported here: a single submission's grade comes sooner without."""
+    from rich.console import Console
+
     from grader.classroom.class_run import grade_class
     from grader.classroom.deadline import OverridesError
     from grader.classroom.handed_in import SubmissionsError
+    from grader.classroom.request import ClassRequest, NoCluster
     from grader.classroom.results import Busy
 
+    class_request = ClassRequest(submissions, out, _options(wanted), *wishes)
     try:
         return grade_class(exercise, class_request, Console(soft_wrap=False, highlight=False))
     except (SubmissionsError, OverridesError, Busy, NoCluster) as error:
         raise click.UsageError(str(error)) from None
 
 
-def _graded(exercise: Exercise, submission: Submission, options: Options) -> Grade:
-    with WorkerPool(options.middleware) as workers:
-        return grading_of(exercise, options, workers).grade(submission)
+def _graded(exercise: Exercise, submission: Submission, wanted: dict[str, Any]) -> Grade:
+    """Grade one submission. What that needs is imported while the worker starts, which takes longer."""
+    with WorkerPool(wanted["middleware"]) as workers:
+        from grader.grading.grading import grading_of
+
+        return grading_of(exercise, _options(wanted), workers).grade(submission)
+
+
+def _show(result: Grade, exercise: Exercise, as_json: bool, verbose: bool) -> None:
+    if as_json:
+        from grader.report import as_json as json_report
+
+        click.echo(json_report.as_json(result), nl=False)
+        return
+    from rich.console import Console
+
+    from grader.report.terminal import show
+
+    show(result, exercise, Console(soft_wrap=False, highlight=False), verbose)
 
 
 def _write(result: Grade, exercise: Exercise, plot: Path | None, bag: Path | None) -> None:

@@ -9,6 +9,7 @@ import tempfile
 import threading
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 from grader.classroom.request import Graded, host_error
@@ -41,7 +42,7 @@ class LocalBackend:
     grading: Grading
     jobs: int
 
-    @property
+    @cached_property
     def key(self) -> str:
         """See `Backend`."""
         return grade_key(self.grading)

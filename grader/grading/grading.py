@@ -119,11 +119,14 @@ def grading_of(exercise: Exercise, options: Options, workers: WorkerPool) -> Gra
         isolation = _isolation_of_ones_own(options)
         public = public_part(exercise.public(), options, isolation, workers)
         runner = ScenarioRunner(exercise.public(), public.scenarios, isolation, options, workers)
+        runner.share(public.references.values())
         return Grading(runner, public.references, public)
     solution_file(exercise)
     scenarios: tuple[Scenario, ...] = declared(exercise, options.seed)
     runner = ScenarioRunner(exercise, scenarios, choose(options.isolation), options, workers)
-    return Grading(runner, reference(runner))
+    references = reference(runner)
+    runner.share(references.values())
+    return Grading(runner, references)
 
 
 def _isolation_of_ones_own(options: Options) -> Isolation:

@@ -6,9 +6,10 @@ import contextlib
 import os
 import threading
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Options
@@ -21,6 +22,7 @@ from grader.scenario.scenario import Companion, Scenario
 from grader.submission.reading import Submission
 from grader.workers.jobs import RunJob
 from grader.workers.pool import FAST_DDS_ENVIRONMENT, PROFILE, STUDENT_ENVIRONMENT, WorkerPool
+from grader.workers.shared import Sandbox
 
 
 class TaskQueue:
@@ -161,6 +163,16 @@ class ScenarioRunner:
             finally:
                 spins.give_up()
 
+    def share(self, references: Iterable[Recording] = ()) -> None:
+        """Let the worker have what all jobs need: call it once, before the first submission."""
+        sandbox = Sandbox((), self._hidden, self.options.limits.file_bytes)
+        self.workers.share([self.exercise, *self.scenarios, *references, sandbox])
+
+    @property
+    def _hidden(self) -> tuple[Path, ...]:
+        """What no submission may see of this machine, wherever it lies."""
+        return self.exercise.folder, *([self.exercise.solution_folder] if self.exercise.solution_folder else [])
+
     def only(self, scenario: str) -> ScenarioRunner:
         """Return the same runner with a single scenario."""
         return replace(self, scenarios=tuple(s for s in self.scenarios if s.name == scenario))
@@ -178,7 +190,7 @@ class ScenarioRunner:
                 **submission.program.environment,
             },
             readonly=(*((PROFILE,) if fast_dds else ()), *submission.program.readonly),
-            hidden=(self.exercise.folder, *([self.exercise.solution_folder] if self.exercise.solution_folder else [])),
+            hidden=self._hidden,
         )
         own = {one.file: one.arguments for one in scenario.programs}
         programs = tuple(

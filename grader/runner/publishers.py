@@ -14,6 +14,19 @@ from rmw_lockstep.hub.qos import TRANSIENT_LOCAL
 OFFER = Qos(depth=1_000, durability=TRANSIENT_LOCAL)
 
 
+_prepared: dict[int, tuple[Scenario, dict[int, bytes]]] = {}
+
+
+def prepare_messages(scenario: Scenario) -> None:
+    """Serialize a scenario's messages, once for all its runs in this process and its forks. Both are kept."""
+    _prepared[id(scenario)] = scenario, _serialized(scenario)
+
+
+def _serialized(scenario: Scenario) -> dict[int, bytes]:
+    """Its messages by their identity: a stream may have one message several times."""
+    return {id(one): serialized(message_class(one.type), one.fields) for one in scenario.messages}
+
+
 class ReferencePublishers:
     """Publishes a scenario's messages, in order, when asked to.
 
@@ -27,8 +40,8 @@ class ReferencePublishers:
         self._speaking: dict[str, int] = {}
         for message in scenario.messages:
             self._add(message)
-        # Once for each that is made: a stream may have one message several times.
-        self._serialized = {id(m): serialized(message_class(m.type), m.fields) for m in scenario.messages}
+        prepared = _prepared.get(id(scenario))
+        self._serialized = prepared[1] if prepared else _serialized(scenario)
         self.sent: list[Sent] = []
         self.stages: list[int] = []
         """The number of each message among everything the hub has published."""

@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, fields
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from grader.exercise.exercise import Qos
@@ -269,7 +270,7 @@ class Scenario:
         """How much there is to do in it, in messages: to run the largest first."""
         return len(self.messages) + self.seconds * self.clock_rate
 
-    @property
+    @cached_property
     def digest(self) -> str:
         """The same for two scenarios only if everything in them is."""
         return hashlib.sha256(json.dumps(_digestible(self), sort_keys=True).encode()).hexdigest()

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from grader.sandbox.middleware import choose_middleware
 from grader.sandbox.program import Middleware
+from grader.workers.shared import SharedObjects
 
 if TYPE_CHECKING:
     from grader.workers.jobs import Job
@@ -42,9 +43,9 @@ class Worker:
     submission, not those of two.
     """
 
-    def __init__(self, process: Callable[[], Connection]) -> None:
+    def __init__(self, process: Callable[[], Connection], shared: SharedObjects) -> None:
         """`process` connects to a new process; it raises OSError where there is none to be had."""
-        self._new = process
+        self._new, self._shared, self._known = process, shared, 0
         self._process: Connection | None = None
 
     def do(self, job: Job, cancelled: threading.Event | None = None) -> Any:
@@ -65,11 +66,11 @@ class Worker:
 
     def _once(self, job: Job, cancelled: threading.Event) -> tuple[str, Any]:
         try:
-            self._process = process = self._process or self._new()
+            process = self._process or self._started()
         except OSError as error:
             return "host", f"the worker process is gone: {error}"
         try:
-            process.send(job)
+            process.send_bytes(self._shared.pickled(job, self._known))
             waited = 0.0
             while not process.poll(0.1):
                 waited += 0.1
@@ -82,6 +83,11 @@ class Worker:
             return answer
         except (EOFError, OSError):
             return "host", "the process that did the work died"
+
+    def _started(self) -> Connection:
+        self._known = self._shared.count  # what is shared later, this process does not have
+        self._process = process = self._new()
+        return process
 
     def close(self) -> None:
         """End the process, and any job in progress."""
@@ -123,7 +129,7 @@ STUDENT_ENVIRONMENT = {
 }
 
 
-PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS = b"p", b"t", b"j"
+PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, SHARE = b"p", b"t", b"j", b"s"
 
 
 class WorkerPool:
@@ -142,6 +148,8 @@ class WorkerPool:
         self._middlewares = sorted(one.value for one in chosen)
         self._lock = threading.Lock()
         self._closed = False
+        self._shared = SharedObjects()
+        self._sent: list[bytes] = []
         self._start()
 
     def _start(self) -> None:
@@ -154,6 +162,8 @@ class WorkerPool:
             env={**os.environ, **WORKER_ENVIRONMENT},
         )
         theirs.close()
+        for content in self._sent:
+            self._send_shared(content)
 
     def do(self, job: Job, cancelled: threading.Event | None = None) -> Any:
         """Return what `job` returns, done in a process of its own; see `Hand.do`."""
@@ -162,7 +172,21 @@ class WorkerPool:
 
     def hand(self) -> Worker:
         """A process that does one job after another."""
-        return Worker(self._process)
+        return Worker(self._process, self._shared)
+
+    def share(self, objects: Iterable[object]) -> None:
+        """Send what all jobs of a grading need to the worker: jobs that hold these very objects then refer to them."""
+        with self._lock:
+            self._sent.append(self._shared.add(objects))
+            with contextlib.suppress(OSError):  # a worker that died gets it when it is started again
+                self._send_shared(self._sent[-1])
+
+    def _send_shared(self, content: bytes) -> None:
+        number = os.memfd_create("shared", os.MFD_CLOEXEC)
+        with os.fdopen(number, "wb") as stream:
+            stream.write(content)
+            stream.flush()
+            socket.send_fds(self._control, [SHARE], [number])
 
     def prepare_types(self, modules: Iterable[str]) -> None:
         """Let the worker load modules of message types, such as `sensor_msgs.msg`, for all later jobs."""

@@ -22,7 +22,8 @@ from grader.sandbox import filesystem, middleware
 from grader.sandbox.fork_server import ForkServer
 from grader.sandbox.program import Middleware
 from grader.sandbox.zygote import fork
-from grader.workers.pool import PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, PROFILE
+from grader.workers.pool import PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, PROFILE, SHARE
+from grader.workers.shared import receive
 
 if TYPE_CHECKING:
     from grader.workers.jobs import Job
@@ -40,6 +41,14 @@ def preload() -> None:
 def preload_types(module: str) -> None:
     """Do the same for a module of message types, such as `sensor_msgs.msg`, and its compiled support."""
     middleware.load_type_support(module)
+    _share()
+
+
+def take_shared(descriptor: int) -> None:
+    """Take what all jobs of a grading need: see `WorkerPool.share`."""
+    with os.fdopen(descriptor, "rb") as stream:
+        stream.seek(0)
+        receive(stream.read())
     _share()
 
 
@@ -80,6 +89,8 @@ def main() -> None:
                 preload_judging()
             elif command.startswith(PREPARE_TYPES):
                 preload_types(command.removeprefix(PREPARE_TYPES).decode())
+            elif command == SHARE:
+                take_shared(descriptors[0])
             elif command == PROCESS:
                 pid = fork()
                 if pid == 0:

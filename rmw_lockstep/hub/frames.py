@@ -13,7 +13,7 @@ from typing import NamedTuple
 from rmw_lockstep.hub.limits import Violation
 from rmw_lockstep.hub.qos import Qos
 
-VERSION = 1
+VERSION = 2
 
 PUBLISHER, SUBSCRIPTION, SERVER, CLIENT = range(4)
 
@@ -27,6 +27,7 @@ _HEADER = struct.Struct("<IB")
 _HELLO = struct.Struct("<IIIB")
 _WELCOME = struct.Struct("<IIqq")
 _ID = struct.Struct("<Q")
+_PAIR = struct.Struct("<QQ")
 _LENGTH = struct.Struct("<I")
 _END_POINT = struct.Struct("<QBQ")
 _QOS = struct.Struct("<BIBBBqqq")
@@ -174,6 +175,12 @@ def identity(payload: bytes) -> int:
     return int(number)
 
 
+def replayed(payload: bytes) -> tuple[int, int]:
+    """The publisher and the subscription of a REPLAYED."""
+    publisher, subscription = _exactly(_PAIR, payload)
+    return publisher, subscription
+
+
 def data(payload: bytes) -> Data:
     """Decode a DATA."""
     return Data._make((*_first(_DATA, payload), payload[_DATA.size :]))
@@ -264,6 +271,11 @@ def to_end_point(what: EndPoint) -> bytes:
 def to_gone(kind: bytes, number: int) -> bytes:
     """Encode NODE_GONE, END_POINT_GONE or ALIVE, by its `kind`."""
     return frame(kind, _ID.pack(number))
+
+
+def to_replayed(publisher: int, subscription: int) -> bytes:
+    """REPLAYED."""
+    return frame(b"r", _PAIR.pack(publisher, subscription))
 
 
 def to_data(publisher: int, only: int, source_time: int, cdr: bytes) -> bytes:

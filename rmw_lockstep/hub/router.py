@@ -46,6 +46,7 @@ class Router:
         self._handlers: dict[int, Callable[[Link, bytes], None]] = {
             ord("I"): self._idle,
             ord("D"): self._data,
+            ord("r"): self._replayed,
             ord("J"): self._join,
             ord("N"): self._node,
             ord("n"): self._node_gone,
@@ -132,6 +133,7 @@ class Router:
             if isinstance(publisher, Publisher):
                 for source_time, cdr in publisher.history:
                     link.queue(frames.to_data(writer.id, subscription.id, source_time, cdr))
+                link.queue(frames.to_replayed(writer.id, subscription.id))
 
     def _end_point_gone(self, link: Link, payload: bytes) -> None:
         number = frames.identity(payload)
@@ -206,6 +208,14 @@ class Router:
                 subscription.take(Heard(publisher, route.node, now, stage, handled, data.thread, data.cdr))
         for other in route.links:
             self._pass_on(link, other, frames.to_data(publisher.id, data.only, data.source_time, data.cdr))
+
+    def _replayed(self, link: Link, payload: bytes) -> None:
+        """A process has sent all that its publisher had kept for a subscription that came later."""
+        number, subscription = frames.replayed(payload)
+        publisher = self._own(link, number, PUBLISHER)
+        other = self._link(subscription >> 32)
+        if other is not None and subscription in other.end_points:
+            self._pass_on(link, other, frames.to_replayed(publisher.id, subscription))
 
     def _own(self, link: Link, number: int, kind: int) -> EndPoint:
         end_point = self.graph.end_points.get(number) if number in link.end_points else None
@@ -295,6 +305,15 @@ class Router:
         self._ends[end.end_point.id] = end
         self._add(end.end_point)
         self._broadcast(frames.to_end_point(end.end_point))
+        if isinstance(end, Publisher):
+            self._replay_nothing(end.end_point)
+
+    def _replay_nothing(self, publisher: EndPoint) -> None:
+        """A new publisher has kept nothing for the subscriptions that were there before."""
+        for reader in self.graph.readers(publisher):
+            link = self._link(reader.process)
+            if link is not None and reader.qos.durability == TRANSIENT_LOCAL:
+                link.queue(frames.to_replayed(publisher.id, reader.id))
 
     def remove_end(self, end: End) -> None:
         """Remove it from the graph."""

@@ -17,7 +17,7 @@
 namespace lockstep {
 namespace {
 
-constexpr uint32_t VERSION = 1;
+constexpr uint32_t VERSION = 2;
 
 // While the process is not idle and no thread reports when it is, the keeper checks this often: at first, at most (ns).
 constexpr int64_t FIRST_LOOK = 200'000, LONGEST_LOOK = 2'000'000;

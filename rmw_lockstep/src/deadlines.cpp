@@ -57,7 +57,7 @@ void Graph::subscription_got(EndPoint & subscription, uint64_t id) {
   const EndPoint * publisher = find(id);
   auto known = subscription.publishers.find(id);
   if (!publisher || known == subscription.publishers.end()) return;
-  Alive & alive = known->second;
+  Matched & alive = known->second;
   if (by_hand(*publisher)) alive.until = after(publisher->qos.liveliness_lease_duration);
   if (nanoseconds(subscription.qos.deadline) != FOREVER && (publisher->asserted || !by_hand(*publisher)))
     subscription.next_deadline = after(subscription.qos.deadline);
@@ -70,7 +70,7 @@ void Graph::subscription_got(EndPoint & subscription, uint64_t id) {
   subscription.events.raise(RMW_EVENT_LIVELINESS_CHANGED);
 }
 
-void Graph::lose_publisher(EndPoint & subscription, Alive & publisher) {
+void Graph::lose_publisher(EndPoint & subscription, Matched & publisher) {
   publisher.alive = false;
   publisher.until = FOREVER;
   auto & status = subscription.events.liveliness_changed;

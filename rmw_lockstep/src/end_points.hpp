@@ -51,8 +51,9 @@ struct Events {
   void raise(rmw_event_type_t type);
 };
 
-// A publisher as one subscription sees it: whether it is alive, by hand, and since when (steady time, ns).
-struct Alive { bool asserted = false, alive = false; int64_t until = INT64_MAX; };
+// A publisher as one subscription sees it: whether it is alive, by hand, and since when (steady time, ns); and whether
+// what it has kept for late joiners is still on its way, and with it all that it publishes meanwhile.
+struct Matched { bool asserted = false, alive = false; int64_t until = INT64_MAX; bool replays = false; };
 
 struct EndPoint {
   uint64_t id = 0;
@@ -72,7 +73,7 @@ struct EndPoint {
   std::deque<Message> history;   // what a transient-local publisher keeps for late joiners
   Listener listener;             // of data
   Events events;
-  std::map<uint64_t, Alive> publishers;  // that match this subscription
+  std::map<uint64_t, Matched> publishers;  // of this subscription
   int64_t next_deadline = INT64_MAX;     // by which the next message is due (steady time, ns)
   int64_t alive_until = INT64_MAX;       // of a publisher whose liveliness is asserted by hand
   bool asserted = false;

@@ -84,6 +84,11 @@ void handle_data(Reader & reader) {
   graph().deliver(*from, message, only);
 }
 
+void handle_replayed(Reader & reader) {
+  const auto publisher = reader.get<uint64_t>(), subscription = reader.get<uint64_t>();
+  if (reader.ok()) graph().replayed(publisher, subscription);
+}
+
 // To a server: its identity, the client's, the number. To a client: its identity and the number.
 void handle_call(Reader & reader, Kind kind) {
   EndPoint * receiver = graph().find(reader.get<uint64_t>());
@@ -130,6 +135,10 @@ void send_data(uint64_t publisher, uint64_t only, const Message & message) {
   lockstep_sent_output();
 }
 
+void send_replayed(uint64_t publisher, uint64_t subscription) {
+  send('r', [&](Writer & writer) { writer.put<uint64_t>(publisher).put<uint64_t>(subscription); });
+}
+
 namespace {
 
 void send_call(char kind, const Message & message) {
@@ -160,6 +169,7 @@ void Graph::handle(const uint8_t * frame, size_t size) {
     case 'e': remove(reader.get<uint64_t>()); break;
     case 'g': complete_ = 1; break;
     case 'D': handle_data(reader); break;
+    case 'r': handle_replayed(reader); break;
     case 'Q': handle_call(reader, Kind::server); break;
     case 'R': handle_call(reader, Kind::client); break;
     case 'L': publisher_is_alive(reader.get<uint64_t>()); break;

@@ -15,6 +15,7 @@ void send_end_point(const EndPoint & end_point);
 void send_gone(char kind, uint64_t id);
 void send_alive(uint64_t publisher);
 void send_data(uint64_t publisher, uint64_t only, const Message & message);
+void send_replayed(uint64_t publisher, uint64_t subscription);
 void send_request(const Message & message);
 void send_response(const Message & message);
 

@@ -10,6 +10,10 @@ namespace {
 
 int64_t time_of(const rmw_time_t & time) { return nanoseconds(time); }
 
+bool is_transient_local(const EndPoint & end_point) {
+  return end_point.qos.durability == RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL;
+}
+
 bool has_times(const EndPoint & end_point) {
   return time_of(end_point.qos.deadline) != FOREVER || time_of(end_point.qos.liveliness_lease_duration) != FOREVER;
 }
@@ -132,7 +136,8 @@ void Graph::match(EndPoint & one, EndPoint & other) {
   matched_changed(publisher, 1);
   matched_changed(subscription, 1);
   if (subscription.local) {
-    subscription.publishers[publisher.id] = {};
+    Matched & matched = subscription.publishers[publisher.id] = {};
+    matched.replays = subscription.announced && !publisher.local && is_transient_local(subscription);
     if (publisher.qos.liveliness != RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC || publisher.asserted)
       subscription_got(subscription, publisher.id);
   }
@@ -174,12 +179,20 @@ void Graph::incompatible(EndPoint & end_point, rmw_qos_policy_kind_t policy) {
 
 // What a transient-local publisher has kept is sent to a transient-local subscription that joins late.
 void Graph::replay(EndPoint & publisher, const EndPoint & subscription) {
-  if (subscription.qos.durability != RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL) return;
+  if (!is_transient_local(subscription)) return;
   for (const Message & message : publisher.history) {
     if (message.expires <= lockstep_now()) continue;
     if (subscription.local) deliver(publisher, message, subscription.id);
     else if (publisher.announced) frames::send_data(publisher.id, subscription.id, message);
   }
+  if (!subscription.local && publisher.announced) frames::send_replayed(publisher.id, subscription.id);
+}
+
+void Graph::replayed(uint64_t publisher, uint64_t subscription) {
+  EndPoint * end_point = find(subscription);
+  if (!end_point) return;
+  auto found = end_point->publishers.find(publisher);
+  if (found != end_point->publishers.end()) found->second.replays = false;
 }
 
 size_t Graph::matched(const EndPoint & end_point) const {

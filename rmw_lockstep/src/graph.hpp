@@ -68,6 +68,7 @@ public:
   void deliver(const EndPoint & publisher, const Message & message, uint64_t only = 0);
   void request(EndPoint & client, Bytes bytes);
   void respond(uint64_t client, int64_t number, Bytes bytes);
+  void replayed(uint64_t publisher, uint64_t subscription);  // what comes from it now is new
   void enqueue(EndPoint & receiver, Message message);
   bool take(EndPoint & receiver, Message & message);
 
@@ -97,7 +98,7 @@ private:
   void replay(EndPoint & publisher, const EndPoint & subscription);
   bool heard_elsewhere(const EndPoint & publisher) const;
   void subscription_got(EndPoint & subscription, uint64_t publisher);
-  void lose_publisher(EndPoint & subscription, Alive & publisher);
+  void lose_publisher(EndPoint & subscription, Matched & publisher);
 
   std::map<uint64_t, std::unique_ptr<Node>> nodes_;
   std::map<uint64_t, std::unique_ptr<EndPoint>> end_points_;

@@ -25,6 +25,12 @@ bool accepts(const EndPoint & subscription, const EndPoint & publisher, uint64_t
          compatible(publisher.qos, subscription.qos);
 }
 
+// Whether a message is part of the replay that is on its way: taken now, it would come twice, and before older ones.
+bool comes_later(const EndPoint & subscription, const EndPoint & publisher, uint64_t only) {
+  const auto found = subscription.publishers.find(publisher.id);
+  return !only && found != subscription.publishers.end() && found->second.replays;
+}
+
 }  // namespace
 
 void Graph::publish(EndPoint & publisher, Bytes bytes) {
@@ -44,7 +50,7 @@ void Graph::publish(EndPoint & publisher, Bytes bytes) {
 
 void Graph::deliver(const EndPoint & publisher, const Message & message, uint64_t only) {
   for (EndPoint * other : named(publisher.name)) {
-    if (!accepts(*other, publisher, only)) continue;
+    if (!accepts(*other, publisher, only) || comes_later(*other, publisher, only)) continue;
     subscription_got(*other, publisher.id);
     Message copy = message;
     copy.expires = expiry(publisher);

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from rclpy.serialization import deserialize_message
+from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import String
 
 from rmw_lockstep.hub import BEGIN, Hub, Qos
@@ -45,6 +45,11 @@ def text(cdr: bytes) -> str:
     """Return the text of a serialized std_msgs/msg/String."""
     message: Any = deserialize_message(cdr, String)
     return str(message.data)
+
+
+def serialized(text: str) -> bytes:
+    """The same text as a serialized std_msgs/msg/String."""
+    return bytes(serialize_message(String(data=text)))
 
 
 class Program:

@@ -91,7 +91,7 @@ def test_a_frame_that_breaks_a_rule_ends_it(hub: Hub, raw: Raw, sent: bytes) -> 
     assert reason(hub)[0] == "protocol"
 
 
-@pytest.mark.parametrize("sent", [frame(b"J"), idle(0), hello(version=2), frame(b"H", b"\0")])
+@pytest.mark.parametrize("sent", [frame(b"J"), idle(0), hello(version=1), frame(b"H", b"\0")])
 def test_the_first_frame_has_to_be_a_hello_of_this_version(hub: Hub, raw: Raw, sent: bytes) -> None:
     raw.send(sent)
     assert reason(hub)[0] == "protocol"

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from programs import Watch
+from programs import Watch, serialized
+
+from rmw_lockstep.hub import Qos
+from rmw_lockstep.hub.qos import TRANSIENT_LOCAL
 
 
 def test_a_missed_deadline_is_told_to_both_ends_at_the_time_at_which_it_is_missed(watch: Watch) -> None:
@@ -111,3 +114,75 @@ def test_a_queue_keeps_the_newest_messages_as_deep_as_it_is(watch: Watch) -> Non
     """)
     watch.go_on(0)
     assert [said for _, said in watch.said()] == ["7", "8", "9"]
+
+
+LASTING = Qos(depth=10, durability=TRANSIENT_LOCAL)
+
+
+def test_a_late_subscription_gets_what_is_on_its_way_once_and_in_order(watch: Watch) -> None:
+    lasting = watch.node.publisher("/lasting", "std_msgs/msg/String", LASTING)
+    begin = watch.node.publisher("/begin", "std_msgs/msg/String", Qos())
+    watch.start("""
+        qos = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        heard = lambda message: say(message.data)
+        def subscribe(message): node.create_subscription(String, '/lasting', heard, qos)
+        node.create_subscription(String, '/begin', subscribe, 10)
+        node.create_subscription(String, '/lasting', lambda message: None, 10)
+        rclpy.spin(node)
+    """)
+    watch.go_on(0)
+    lasting.publish(serialized("before"))
+    watch.hub.wait_until_idle()
+    begin.publish(serialized(""))
+    watch.hub.barrier()
+    lasting.publish(serialized("on its way"))
+    watch.go_on(0)
+    lasting.publish(serialized("after"))
+    watch.go_on(0)
+    assert [said for _, said in watch.said()] == ["before", "on its way", "after"]
+
+
+def test_a_late_subscription_of_another_process_gets_each_message_once_and_in_order(watch: Watch) -> None:
+    begin = watch.node.publisher("/begin", "std_msgs/msg/String", Qos())
+    qos = "qos = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)"
+    watch.start(f"""
+        {qos}
+        lasting = node.create_publisher(String, '/lasting', qos)
+        lasting.publish(String(data='before'))
+        node.create_subscription(String, '/begin', lambda message: lasting.publish(String(data='meanwhile')), 10)
+        rclpy.spin(node)
+    """)
+    watch.go_on(0.1)
+    watch.start(f"""
+        {qos}
+        def subscribe(message):
+            if message.data == 'late': node.create_subscription(String, '/lasting', lambda m: say(m.data), qos)
+        node.create_subscription(String, '/begin', subscribe, 10)
+        node.create_subscription(String, '/lasting', lambda message: None, 10)
+        rclpy.spin(node)
+    """)
+    watch.go_until(lambda: len(begin.matched) == 2)
+    begin.publish(serialized("late"))
+    watch.go_on(0)
+    begin.publish(serialized("again"))
+    watch.go_on(0)
+    assert [said for _, said in watch.said()] == ["before", "meanwhile", "meanwhile"]
+
+
+def test_a_subscription_gets_what_a_later_publisher_has_to_say(watch: Watch) -> None:
+    watch.start("""
+        qos = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        node.create_subscription(String, '/lasting', lambda message: say(message.data), qos)
+        rclpy.spin(node)
+    """)
+    watch.go_on(0)
+    lasting = watch.node.publisher("/lasting", "std_msgs/msg/String", LASTING)
+    lasting.publish(serialized("one"))
+    watch.start("""
+        qos = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        lasting = node.create_publisher(String, '/lasting', qos)
+        lasting.publish(String(data='two'))
+        rclpy.spin(node)
+    """)
+    watch.go_until(lambda: len(watch.said()) > 1)
+    assert [said for _, said in watch.said()] == ["one", "two"]

@@ -14,6 +14,7 @@ from grader.scenario.scenario import SECOND
 TIMES = [i / 10 for i in range(1, 51)]
 VALUES = [float(i * i) for i in range(1, 51)]
 RIGHT = published(TIMES, VALUES)
+TIMES_OF_4_HZ = [i / 4 for i in range(21)]
 SILENT = published([], [])
 
 
@@ -59,6 +60,23 @@ def test_a_node_that_never_publishes() -> None:
 def test_another_rate(period: float, told: str) -> None:
     times = [period * i for i in range(20)]
     assert told in says(lambda: run(published(times, times), RIGHT).must_keep_rate(10.0))
+
+
+def test_the_first_gap_of_a_timer_that_was_created_before_the_clock_started_does_not_count() -> None:
+    """A timer of 0.252 s fires when the clock starts at 100 s, and then at the multiples of its period."""
+    period = 0.252
+    times = [0.0, *(period * i - 100 for i in range(397, 420))]
+    told = says(lambda: run(published(times, times), RIGHT).must_keep_rate(10.0))
+    assert "expected 10 messages per second on /out, got 3.968." in told
+    run(published(times, times)).must_keep_rate(1 / period, tolerance=0.001)
+
+
+def test_a_message_too_many_at_the_start_counts() -> None:
+    assert "got 4.2." in says(lambda: run(published([0.0, *TIMES_OF_4_HZ], [0.0] * 22), RIGHT).must_keep_rate(4.0))
+
+
+def test_the_rate_of_two_messages_is_told_by_the_gap_between_them() -> None:
+    assert "got 2." in says(lambda: run(published([0.1, 0.6], [1.0, 2.0]), RIGHT).must_keep_rate(10.0))
 
 
 def test_a_publisher_that_stops() -> None:

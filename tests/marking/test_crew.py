@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import signal
 
 import psutil
@@ -12,6 +13,7 @@ from small_class import ROOT, wait_until
 from grader.exercise import load
 from grader.workers import HostFault, WorkerPool
 from grader.workers.jobs import ListJob
+from grader.workers.shared import SharedObjects, receive
 
 EXERCISE = ROOT / "exercises" / "joint_velocity"
 
@@ -30,6 +32,29 @@ def test_a_pool_whose_worker_was_killed_gets_another(monkeypatch: pytest.MonkeyP
         os.kill(worker.pid, signal.SIGKILL)
         wait_until(lambda: worker.status() == psutil.STATUS_ZOMBIE)
         assert workers.do(job) == before
+
+
+def test_a_worker_has_what_jobs_share_also_after_it_was_started_again() -> None:
+    exercise = load(EXERCISE)
+    job = ListJob(exercise)
+    others = {process.pid for process in worker_processes()}
+    with WorkerPool() as workers:
+        before = workers.do(job)
+        workers.share([exercise])
+        assert workers.do(job) == before
+        [worker] = [process for process in worker_processes() if process.pid not in others]
+        os.kill(worker.pid, signal.SIGKILL)
+        wait_until(lambda: worker.status() == psutil.STATUS_ZOMBIE)
+        assert workers.do(job) == before
+
+
+def test_a_job_refers_to_what_its_process_has_and_carries_the_rest() -> None:
+    exercise = load(EXERCISE)
+    job, shared = ListJob(exercise), SharedObjects()
+    receive(shared.add([exercise]))
+    carried, referred = shared.pickled(job, known=0), shared.pickled(job, known=shared.count)
+    assert len(referred) < len(carried) / 4
+    assert pickle.loads(carried) == pickle.loads(referred) == job
 
 
 def hands(worker: psutil.Process) -> list[psutil.Process]:
