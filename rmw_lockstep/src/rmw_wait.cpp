@@ -14,26 +14,15 @@ namespace {
 constexpr int64_t POLL = 10'000'000;
 constexpr int QUIET_POLLS = 2;
 
-// One that also sleeps a little each time, as an asyncio loop does, keeps its own pace for so long (ns). After that each
-// poll takes a thousandth of the time in which nothing has happened, so that what it does by its own clock is that late.
-constexpr int64_t LONG_QUIET = 1'000'000'000, SHARE = 1'000;
-
-// How often this thread has polled in a row without anything happening in between, and since when (steady time, ns).
+// How often this thread has polled in a row without anything happening in between.
 struct Polls {
   uint64_t activity = 0, rests = 0;
   int quiet = 0;
-  int64_t quiet_since = 0;
   void count() {
     const uint64_t now = graph().activity, rested = lockstep_rests();
-    if (activity != now) quiet_since = lockstep_now();
     quiet = activity == now && rests == rested ? quiet + 1 : 0;
     activity = now;
     rests = rested;
-  }
-  int64_t takes() const {
-    const int64_t nothing_for = lockstep_now() - quiet_since;
-    if (quiet >= QUIET_POLLS) return POLL;
-    return nothing_for < LONG_QUIET ? 0 : std::min(POLL, nothing_for / SHARE);
   }
 };
 thread_local Polls polls;
@@ -49,9 +38,8 @@ bool wait_as_poll(Waiter & waiter) {
   // rclpy's spin_once(timeout_sec=0) triggers a guard condition of its own each time, which does not count as activity.
   if (!lockstep_virtual() || waiter.ready(false)) return false;
   polls.count();
-  const int64_t takes = polls.takes();
-  if (!takes) return false;
-  lockstep_wait(&waiter.thread, lockstep_now() + takes);
+  if (polls.quiet < QUIET_POLLS) return false;
+  lockstep_wait(&waiter.thread, lockstep_now() + POLL);
   polls.rests = lockstep_rests();
   return true;
 }
