@@ -8,13 +8,14 @@ import pytest
 from runner_programs import ANSWER, RunProgram, numbers, program
 
 from rmw_lockstep.hub import Limits
+from rmw_lockstep.hub.frames import VERSION
 
 #: The process's own connection, and how to make another one.
 TOOLS = """
 import array, os, socket, struct, threading, time
 frame = lambda kind, payload=b'': struct.pack('<IB', len(payload) + 1, kind[0]) + payload
 text = lambda value: struct.pack('<I', len(value)) + value
-hello = frame(b'H', struct.pack('<IIIB', 1, os.getpid(), 1, 1))
+hello = frame(b'H', struct.pack('<IIIB', VERSION, os.getpid(), 1, 1))
 idle = lambda handled: frame(b'I', struct.pack('<QqqIIIBQH', handled, 0, -1, 1, 0, 0, 0, 0, 0))
 def own():
     for number in range(3, 100):
@@ -27,7 +28,7 @@ def another():
     connection = socket.socket(socket.AF_UNIX)
     connection.connect(os.environ['RMW_LOCKSTEP_SOCKET'])
     return connection
-"""
+""".replace("VERSION", str(VERSION))
 
 
 def attack(code: str) -> str:
