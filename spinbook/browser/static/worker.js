@@ -82,7 +82,13 @@ const does = {
   program: async ({ source, file, args, environment, files }) => {
     const { py, process } = await ready;
     await put(py, files);
-    return await process.run_program.callPromising(source, file, py.toPy(args), py.toPy(environment));
+    try {
+      return await process.run_program.callPromising(source, file, py.toPy(args), py.toPy(environment));
+    } catch (error) {
+      // `os._exit` ends Python itself, with a status.
+      if (Number.isInteger(error?.status)) return error.status;
+      throw error;
+    }
   },
   environment: async ({ environment }) => (await cells()).set_environment((await ready).py.toPy(environment)),
   python: async ({ source }) => (await cells()).run_python.callPromising(source),
