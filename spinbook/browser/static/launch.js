@@ -57,6 +57,7 @@ class Launch {
   async stop() {
     if (!this.running) return;
     this.interrupted = true;
+    this.status = 0; // as in a terminal: what died before doesn't count then
     this.print("[WARNING] [launch]: user interrupted with ctrl-c (SIGINT)");
     await Promise.all(this.parts.map((part) => part.running && part.stop()));
     await this.over;
