@@ -107,13 +107,14 @@ def record(topics: Sequence[str], seconds: float) -> list[dict[str, Any]]:
             waiting = [pair for pair in waiting if not _subscribed(node, *pair, began)]
             executor.spin_once(timeout_sec=0.05)
     finally:
+        node.destroy_node()
         rclpy.shutdown(context=context)
     return lines
 
 
 def _subscribed(node: Any, path: str, line: dict[str, Any], began: float) -> bool:
     """Subscribe to the topic that the path begins with. Return whether there is one."""
-    from grader.runner.message import message_class
+    from spinbook.ros2.interfaces import message_class
 
     for topic, kinds in node.get_topic_names_and_types():
         if path.startswith(topic) and path[len(topic) : len(topic) + 1] in ("/", "[", "."):
