@@ -28,7 +28,7 @@ course: setup   ## Build, run and package the real course, make its site, and gr
 	$(BIN)/spinbook package
 	$(BIN)/python benchmarks/class/grade_course.py --count 12 --seed 7 --out build/class
 	@echo
-	@echo "The course lies in build/notebooks, as it ran here in build/executed, its package in humanoid_ws."
+	@echo "The course is in build/notebooks, as it ran here in build/executed, its package in humanoid_ws."
 	@echo "Its site is build/site/index.html: open it in any browser."
 	@echo "How the class did is build/class/results/index.html; each exercise's and each student's page is a click away."
 	@echo "Open a notebook in any editor, with $(BIN)/python as its Python."

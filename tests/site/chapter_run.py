@@ -27,7 +27,7 @@ _NOT_IN_A_PAGE = ("spinbook-setup", "exercise-")
 _ENDLESS = re.compile(
     r"^%%node|^%ros2 .*(topic (echo|hz|bw|delay|pub)|run) |^%log|^%plot|^%turtle|^%graph|^%nodes", re.MULTILINE
 )
-_NUMBER = re.compile(r"\b([0-9a-f]{2}\.){8,}[0-9a-f]{2}\b|-?(?<![\w.])\d+(\.\d+)?(e[+-]?\d+)?")
+_NUMBER = re.compile(r"\b([0-9a-f]{2}\.){8,}[0-9a-f]{2}\b|\b[0-9a-f]{32}\b|-?(?<![\w.])\d+(\.\d+)?(e[+-]?\d+)?")
 _FILE = re.compile(r'File "[^"]*?([^/"<>]+|<[^>]*>)"')
 _OF_THE_NOTEBOOK = re.compile(
     r"^— .* —$|^\(restarting .*\)$|^env: |^\.\.\. \(\d+ lines|^~?\^+~?$"
