@@ -13,6 +13,7 @@
 #include "bytes.hpp"
 #include "core.hpp"
 #include "real.hpp"
+#include "signals.hpp"
 
 namespace lockstep {
 namespace {
@@ -20,7 +21,7 @@ namespace {
 constexpr uint32_t VERSION = 2;
 
 // While the process is not idle and no thread reports when it is, the keeper checks this often: at first, at most (ns).
-constexpr int64_t FIRST_LOOK = 200'000, LONGEST_LOOK = 2'000'000;
+constexpr int64_t FIRST_LOOK = 500'000, LONGEST_LOOK = 2'000'000;
 
 int open_socket(const std::string & path) {
   sockaddr_un address{};
@@ -123,13 +124,11 @@ void Core::poke() {
 void Core::receive() {
   if (in_at_ == in_.size()) { in_.clear(); in_at_ = 0; }
   else if (in_at_ > 1 << 20) { in_.erase(in_.begin(), in_.begin() + static_cast<long>(in_at_)); in_at_ = 0; }
-  constexpr size_t PIECE = 65536;
-  const size_t had = in_.size();
-  in_.resize(had + PIECE);
+  static uint8_t piece[65536];
   ssize_t got;
-  do got = recv(socket_, in_.data() + had, PIECE, 0); while (got < 0 && errno == EINTR);
-  in_.resize(had + static_cast<size_t>(std::max<ssize_t>(got, 0)));
-  if (got <= 0) lost();
+  do got = recv(socket_, piece, sizeof piece, 0); while (got < 0 && errno == EINTR);
+  if (got > 0) in_.insert(in_.end(), piece, piece + got);
+  else lost();
 }
 
 // The hub is gone: nothing will arrive any more, nothing waits for this process, and time is the computer's own.
@@ -138,6 +137,7 @@ void Core::lost() {
   virtual_ = false;
   if (socket_ >= 0) shutdown(socket_, SHUT_RDWR);
   for (Sleeper * sleeper : sleepers_) wake(*sleeper, false);
+  signals().give_up();
 }
 
 const uint8_t * Core::front(uint32_t & size) const {

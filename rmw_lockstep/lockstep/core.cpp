@@ -9,11 +9,14 @@
 
 #include "bytes.hpp"
 #include "real.hpp"
+#include "signals.hpp"
 
 namespace lockstep {
 
 thread_local uint64_t rests = 0;
 thread_local bool reads_clock_freely = false;
+
+namespace { thread_local Sleeper * own_sleeper = nullptr; }
 
 Core & core() {
   static Core * const only = new Core;
@@ -64,6 +67,10 @@ void Core::call_later(void (*function)(const void *, size_t), const void * data,
 // The thread that reports may fall asleep unseen by this library, so the keeper has to check.
 void Core::tell(const uint8_t * frame, size_t size) {
   send(frame, size);
+  check_again();
+}
+
+void Core::check_again() {
   changed_ = true;
   poke();
 }
@@ -76,6 +83,7 @@ void Core::fall_asleep(Sleeper & sleeper) {
   ++rests;
   sleeper.thread = thread_number();
   sleepers_.push_back(&sleeper);
+  own_sleeper = &sleeper;
   changed_ = true;
   if (!connected_) return;
   step();
@@ -88,6 +96,7 @@ void Core::fall_asleep(Sleeper & sleeper) {
 }
 
 void Core::wake_up(Sleeper & sleeper) {
+  own_sleeper = nullptr;
   sleepers_.erase(std::find(sleepers_.begin(), sleepers_.end(), &sleeper));
   changed_ = true;
 }
@@ -97,6 +106,18 @@ void Core::wake(Sleeper & sleeper, bool due) {
   sleeper.due = due;
   sleeper.awake.store(1);
   nudge(sleeper);
+}
+
+// The thread may be on its way into a call that no signal interrupts any more: the library's own thread sees to that.
+void Core::interrupt() {
+  if (!own_sleeper || !connected_) return;
+  const int fault = errno;
+  own_sleeper->interrupted = true;
+  own_sleeper->awake = 1;
+  disturbed_ = true;
+  const uint64_t one = 1;
+  (void)!write(poke_, &one, sizeof one);
+  errno = fault;
 }
 
 // Wakes a thread that has been told to wake up, in the way in which it sleeps. False: it may have been too early.
@@ -140,6 +161,7 @@ Core::Idle Core::idle() {
 
 void Core::step() {
   restless_ = false;
+  if (disturbed_.exchange(false)) changed_ = true;
   while (connected_) {
     uint32_t size = 0;
     const uint8_t * frame = front(size);
@@ -157,11 +179,10 @@ void Core::step() {
       continue;
     }
     if (!frame && !time_runs_ && !changed_) return;
-    if (idle() != Idle::yes) { restless_ = true; return; }
+    if (idle() != Idle::yes || signals().give_up()) { restless_ = true; return; }
+    if (kind == 'T' && !time_runs_) begin_time(frame, size);
     if (time_runs_) {
-      if (go_on()) continue;
-    } else if (kind == 'T') {
-      begin_time(frame, size);
+      go_on();
     } else if (kind == '|') {
       pop();
     } else {
@@ -178,8 +199,8 @@ void Core::begin_time(const uint8_t * frame, uint32_t size) {
   sent_output_ = false;
 }
 
-// Called when the process is idle. Wakes the next thread in turn; true: check again whether the process is idle.
-bool Core::go_on() {
+// Called when the process is idle. Wakes the next thread in turn, or ends the time.
+void Core::go_on() {
   if (!(stop_at_output_ && sent_output_)) {
     Sleeper * next = nullptr;
     for (Sleeper * sleeper : sleepers_) {
@@ -191,18 +212,17 @@ bool Core::go_on() {
     if (own <= until_ && (!next || own <= next->deadline)) {
       now_ = std::max(now(), own);
       participant_->due(now());
-      return true;
+      return;
     }
     if (next) {
       now_ = std::max(now(), next->deadline);
       wake(*next, true);
-      return true;
+      return;
     }
     now_ = until_;
   }
   time_runs_ = false;
   pop();
-  return true;
 }
 
 void Core::announce() {
@@ -250,6 +270,7 @@ void Core::reset_in_child(bool connect_again) {
   children_.clear();
   later_.clear();
   threads_.forget();
+  signals().forget();
   for (const int file : {socket_, poke_}) if (file >= 0) close(file);
   socket_ = poke_ = -1;
   in_.clear();

@@ -24,6 +24,7 @@ struct Sleeper {
   pid_t thread = 0;
   std::atomic<uint32_t> awake{0};    // what the thread sleeps on; not 0 once it has been told to wake up
   bool due = false;                  // woken because its deadline has passed
+  std::atomic<bool> interrupted{false};  // woken by a signal, which may have come just before it slept
   // How it sleeps, if it can be woken by more than this library:
   std::atomic<uint32_t> * semaphore = nullptr;  // the value of a POSIX semaphore
   bool semaphore_shared = false;
@@ -65,7 +66,11 @@ public:
   void wake_up(Sleeper & sleeper);
   void wake(Sleeper & sleeper, bool due);
 
+  // Wake the calling thread's own sleeper, if there is one: for signal handlers.
+  void interrupt();
+
   void poke();                     // the library's own thread is to look again
+  void check_again();              // and is to check whether the process is idle, whatever has changed
 
   // Threads of Python that wait for its global lock are about to run.
   std::atomic<int> contending{0};
@@ -90,7 +95,7 @@ private:
   const uint8_t * front(uint32_t & size) const;
   void pop();
   void begin_time(const uint8_t * frame, uint32_t size);
-  bool go_on();                    // one step of time; false when it is over
+  void go_on();                    // one step of time
   Idle idle();
   bool nudge(const Sleeper & sleeper);
   void announce();
@@ -118,6 +123,7 @@ private:
   size_t in_at_ = 0;
   uint64_t handled_ = 0;
   bool changed_ = false;           // since the process reported to be idle
+  std::atomic<bool> disturbed_{false};  // by a signal
   bool asked_ = false;             // by the hub, whether it still is idle
   bool time_runs_ = false, stop_at_output_ = false, sent_output_ = false;
   int64_t until_ = 0;

@@ -44,7 +44,7 @@ int poll_until(const pollfd * files, nfds_t count, int64_t deadline, const sigse
   }
   if (sleeper.awake) event.clear();
   if (found < 0) errno = fault;
-  if (found > 0 && out.back().revents) --found;
+  if (found > 0 && out.back().revents && --found == 0 && sleeper.interrupted) { errno = EINTR; found = -1; }
   out.pop_back();
   return found;
 }

@@ -68,6 +68,10 @@ LOCKSTEP_API void lockstep_wake(lockstep_waiter * waiter);
 /// the hub has sent end meanwhile: what the thread waits for may be behind them.
 LOCKSTEP_API void lockstep_block_until(const volatile int * done);
 
+/// Wait until rclpy's thread for signals has done what the signals so far ask for: at once, if there were none. Called
+/// without the lock.
+LOCKSTEP_API void lockstep_settle_signals(void);
+
 /// How often the calling thread has waited for anything so far: two equal answers mean that it never waited in between.
 LOCKSTEP_API uint64_t lockstep_rests(void);
 

@@ -1,4 +1,4 @@
-// POSIX semaphores, which Python's locks are made of. glibc posts them; here they are waited for.
+// POSIX semaphores, which Python's locks are made of. glibc posts them; here they are waited for, and rclpy's is counted.
 //
 // The value of a sem_t is its first 32 bits, the number of waiting threads the next 32, and whether it is shared between
 // processes the 32 after (glibc, sysdeps/nptl/internaltypes.h, `struct new_sem`, since 2.21 on 64-bit machines).
@@ -6,6 +6,7 @@
 #include <semaphore.h>
 
 #include "real.hpp"
+#include "signals.hpp"
 #include "sleeping.hpp"
 
 namespace lockstep {
@@ -73,7 +74,15 @@ using namespace lockstep;
 extern "C" {
 
 LOCKSTEP_API int sem_wait(sem_t * semaphore) {
-  return here() ? answer(wait_for(semaphore, NEVER)) : real::sem_wait()(semaphore);
+  signals().waits(semaphore, __builtin_return_address(0));
+  const int result = here() ? answer(wait_for(semaphore, NEVER)) : real::sem_wait()(semaphore);
+  if (result == 0) signals().got(semaphore);
+  return result;
+}
+
+LOCKSTEP_API int sem_post(sem_t * semaphore) {
+  signals().posts(semaphore);
+  return real::sem_post()(semaphore);
 }
 
 LOCKSTEP_API int sem_timedwait(sem_t * semaphore, const timespec * until) {

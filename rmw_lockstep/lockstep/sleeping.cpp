@@ -23,7 +23,7 @@ int sleep_until(int64_t deadline, bool holds_interpreter) {
   Asleep asleep(sleeper);
   while (!sleeper.awake)
     if (futex_wait(sleeper.awake, 0) == EINTR && !sleeper.awake) return EINTR;
-  return 0;
+  return sleeper.interrupted ? EINTR : 0;
 }
 
 }  // namespace lockstep

@@ -10,10 +10,6 @@ namespace {
 
 int64_t time_of(const rmw_time_t & time) { return nanoseconds(time); }
 
-bool is_transient_local(const EndPoint & end_point) {
-  return end_point.qos.durability == RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL;
-}
-
 bool has_times(const EndPoint & end_point) {
   return time_of(end_point.qos.deadline) != FOREVER || time_of(end_point.qos.liveliness_lease_duration) != FOREVER;
 }
@@ -137,7 +133,7 @@ void Graph::match(EndPoint & one, EndPoint & other) {
   matched_changed(subscription, 1);
   if (subscription.local) {
     Matched & matched = subscription.publishers[publisher.id] = {};
-    matched.replays = subscription.announced && !publisher.local && is_transient_local(subscription);
+    matched.replays = subscription.announced && !publisher.local && is_transient_local(subscription.qos);
     if (publisher.qos.liveliness != RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC || publisher.asserted)
       subscription_got(subscription, publisher.id);
   }
@@ -179,7 +175,7 @@ void Graph::incompatible(EndPoint & end_point, rmw_qos_policy_kind_t policy) {
 
 // What a transient-local publisher has kept is sent to a transient-local subscription that joins late.
 void Graph::replay(EndPoint & publisher, const EndPoint & subscription) {
-  if (!is_transient_local(subscription)) return;
+  if (!is_transient_local(subscription.qos)) return;
   for (const Message & message : publisher.history) {
     if (message.expires <= lockstep_now()) continue;
     if (subscription.local) deliver(publisher, message, subscription.id);

@@ -36,7 +36,7 @@ bool comes_later(const EndPoint & subscription, const EndPoint & publisher, uint
 void Graph::publish(EndPoint & publisher, Bytes bytes) {
   ++activity;
   Message message{std::move(bytes), publisher.id, ++publisher.last_number, lockstep_calendar(), 0, expiry(publisher)};
-  if (publisher.qos.durability == RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL) {
+  if (is_transient_local(publisher.qos)) {
     publisher.history.push_back(message);
     keep_last(publisher.history, publisher);
   }

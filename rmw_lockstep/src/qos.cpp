@@ -21,10 +21,6 @@ bool reliable(const rmw_qos_profile_t & profile) {
   return profile.reliability == RMW_QOS_POLICY_RELIABILITY_RELIABLE;
 }
 
-bool lasting(const rmw_qos_profile_t & profile) {
-  return profile.durability == RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL;
-}
-
 void settle_time(rmw_time_t & time) {
   const rmw_time_t infinite = RMW_DURATION_INFINITE;
   if (nanoseconds(time) == FOREVER) time = infinite;
@@ -40,7 +36,7 @@ int64_t nanoseconds(const rmw_time_t & time) {
 
 std::vector<rmw_qos_policy_kind_t> mismatches(const rmw_qos_profile_t & offered, const rmw_qos_profile_t & requested) {
   std::vector<rmw_qos_policy_kind_t> found;
-  if (lasting(requested) && !lasting(offered)) found.push_back(RMW_QOS_POLICY_DURABILITY);
+  if (is_transient_local(requested) && !is_transient_local(offered)) found.push_back(RMW_QOS_POLICY_DURABILITY);
   if (nanoseconds(offered.deadline) > nanoseconds(requested.deadline)) found.push_back(RMW_QOS_POLICY_DEADLINE);
   const bool by_hand = requested.liveliness == RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC;
   if ((by_hand && offered.liveliness != requested.liveliness) ||
@@ -61,7 +57,7 @@ void settle(rmw_qos_profile_t & profile, bool of_subscription, const std::vector
   if (profile.durability == RMW_QOS_POLICY_DURABILITY_SYSTEM_DEFAULT)
     profile.durability = RMW_QOS_POLICY_DURABILITY_VOLATILE;
   if (profile.durability == RMW_QOS_POLICY_DURABILITY_BEST_AVAILABLE)
-    profile.durability = of_subscription && !every(peers, lasting) ? RMW_QOS_POLICY_DURABILITY_VOLATILE
+    profile.durability = of_subscription && !every(peers, is_transient_local) ? RMW_QOS_POLICY_DURABILITY_VOLATILE
                                                                    : RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL;
   if (profile.liveliness != RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC)
     profile.liveliness = RMW_QOS_POLICY_LIVELINESS_AUTOMATIC;
@@ -93,8 +89,8 @@ std::vector<rmw_qos_policy_kind_t> settle_undecided(rmw_qos_profile_t & offered,
   std::vector<rmw_qos_policy_kind_t> found;
   const bool reliability = (undecided(offered.reliability) && reliable(requested)) ||
                            (undecided(requested.reliability) && !reliable(offered));
-  const bool durability = (undecided(offered.durability) && lasting(requested)) ||
-                          (undecided(requested.durability) && !lasting(offered));
+  const bool durability = (undecided(offered.durability) && is_transient_local(requested)) ||
+                          (undecided(requested.durability) && !is_transient_local(offered));
   if (durability) found.push_back(RMW_QOS_POLICY_DURABILITY);
   if (reliability) found.push_back(RMW_QOS_POLICY_RELIABILITY);
   if (undecided(offered.reliability)) offered.reliability = RMW_QOS_POLICY_RELIABILITY_RELIABLE;

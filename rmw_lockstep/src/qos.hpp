@@ -16,6 +16,10 @@ int64_t nanoseconds(const rmw_time_t & time);
 // The policies in which a subscription requests more than a publisher offers, the first one first; empty: they match.
 std::vector<rmw_qos_policy_kind_t> mismatches(const rmw_qos_profile_t & offered, const rmw_qos_profile_t & requested);
 
+inline bool is_transient_local(const rmw_qos_profile_t & profile) {
+  return profile.durability == RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL;
+}
+
 inline bool compatible(const rmw_qos_profile_t & offered, const rmw_qos_profile_t & requested) {
   return mismatches(offered, requested).empty();
 }

@@ -1,16 +1,9 @@
 // Service servers and clients; actions are made of them.
-#include "checks.hpp"
-#include "graph.hpp"
-#include "names.hpp"
-#include "qos.hpp"
-#include "rmw/rmw.h"
+#include "handles.hpp"
 
 using namespace rmw_lockstep;
 
 namespace {
-
-EndPoint & of(const rmw_client_t * handle) { return *static_cast<EndPoint *>(handle->data); }
-EndPoint & of(const rmw_service_t * handle) { return *static_cast<EndPoint *>(handle->data); }
 
 // Null, with rmw's error set, if something is missing or wrong.
 std::unique_ptr<EndPoint> end_point_of(
@@ -22,37 +15,25 @@ std::unique_ptr<EndPoint> end_point_of(
   REQUIRE_OR_NULL(qos);
   ServiceType type;
   if (!is_ours(node->implementation_identifier) || !valid_name("service", name, *qos) || !find_type(support, type)) return nullptr;
-  auto made = std::make_unique<EndPoint>();
-  made->kind = kind;
-  made->local = true;
-  made->node = static_cast<Node *>(node->data)->id;
-  made->name = name;
-  made->type = type.name;
-  made->hash = type.hash;
+  auto made = local_end_point(kind, node, type, name, *qos);
   made->callbacks = type.request;
   made->answer_callbacks = type.response;
-  made->qos = *qos;
   settle(made->qos, false, {});
   return made;
 }
 
-EndPoint & add(std::unique_ptr<EndPoint> made) {
+// Null, with rmw's error set, if something is missing or wrong.
+template<typename Handle>
+Handle * create(
+    Kind kind, Handle * (*allocate)(), const rmw_node_t * node, const rosidl_service_type_support_t * support,
+    const char * name, const rmw_qos_profile_t * qos) {
+  auto made = end_point_of(kind, node, support, name, qos);
+  if (!made) return nullptr;
+  Handle * handle = named(allocate(), name);
   Lock lock;
   made->id = graph().new_id();
-  return graph().add(std::move(made));
-}
-
-template<typename Handle>
-rmw_ret_t destroy(const rmw_node_t * node, Handle * handle, void (*free)(Handle *)) {
-  REQUIRE_OURS(node);
-  REQUIRE_OURS(handle);
-  {
-    Lock lock;
-    graph().remove(of(handle).id);
-  }
-  free_text(handle->service_name);
-  free(handle);
-  return RMW_RET_OK;
+  handle->data = &graph().add(std::move(made));
+  return handle;
 }
 
 rmw_ret_t take_call(EndPoint & end_point, Callbacks callbacks, rmw_service_info_t * info, void * out, bool * taken) {
@@ -74,22 +55,6 @@ rmw_ret_t take_call(EndPoint & end_point, Callbacks callbacks, rmw_service_info_
   return RMW_RET_ERROR;
 }
 
-template<typename Handle>
-rmw_ret_t actual_qos(const Handle * handle, rmw_qos_profile_t * qos) {
-  REQUIRE_OURS(handle);
-  REQUIRE(qos);
-  *qos = of(handle).qos;
-  return RMW_RET_OK;
-}
-
-template<typename Handle>
-rmw_ret_t set_listener(Handle * handle, rmw_event_callback_t callback, const void * data) {
-  REQUIRE_OURS(handle);
-  Lock lock;
-  of(handle).listener.set(callback, data);
-  return RMW_RET_OK;
-}
-
 }  // namespace
 
 // ---- clients
@@ -97,13 +62,7 @@ rmw_ret_t set_listener(Handle * handle, rmw_event_callback_t callback, const voi
 RMW_LOCKSTEP_API rmw_client_t * rmw_create_client(
     const rmw_node_t * node, const rosidl_service_type_support_t * support, const char * name,
     const rmw_qos_profile_t * qos) {
-  auto made = end_point_of(Kind::client, node, support, name, qos);
-  if (!made) return nullptr;
-  rmw_client_t * handle = rmw_client_allocate();
-  handle->implementation_identifier = IDENTIFIER;
-  handle->service_name = copy_text(name);
-  handle->data = &add(std::move(made));
-  return handle;
+  return create(Kind::client, rmw_client_allocate, node, support, name, qos);
 }
 
 RMW_LOCKSTEP_API rmw_ret_t rmw_destroy_client(rmw_node_t * node, rmw_client_t * handle) {
@@ -139,11 +98,7 @@ RMW_LOCKSTEP_API rmw_ret_t rmw_service_server_is_available(
 }
 
 RMW_LOCKSTEP_API rmw_ret_t rmw_get_gid_for_client(const rmw_client_t * handle, rmw_gid_t * gid) {
-  REQUIRE_OURS(handle);
-  REQUIRE(gid);
-  gid->implementation_identifier = IDENTIFIER;
-  write_gid(of(handle).id, gid->data);
-  return RMW_RET_OK;
+  return gid_of(handle, gid);
 }
 
 RMW_LOCKSTEP_API rmw_ret_t rmw_client_set_on_new_response_callback(
@@ -165,13 +120,7 @@ RMW_LOCKSTEP_API rmw_ret_t rmw_client_response_subscription_get_actual_qos(
 RMW_LOCKSTEP_API rmw_service_t * rmw_create_service(
     const rmw_node_t * node, const rosidl_service_type_support_t * support, const char * name,
     const rmw_qos_profile_t * qos) {
-  auto made = end_point_of(Kind::server, node, support, name, qos);
-  if (!made) return nullptr;
-  rmw_service_t * handle = rmw_service_allocate();
-  handle->implementation_identifier = IDENTIFIER;
-  handle->service_name = copy_text(name);
-  handle->data = &add(std::move(made));
-  return handle;
+  return create(Kind::server, rmw_service_allocate, node, support, name, qos);
 }
 
 RMW_LOCKSTEP_API rmw_ret_t rmw_destroy_service(rmw_node_t * node, rmw_service_t * handle) {

@@ -1,11 +1,7 @@
 // Publishers and subscriptions.
-#include "checks.hpp"
-#include "graph.hpp"
-#include "names.hpp"
-#include "qos.hpp"
+#include "handles.hpp"
 #include "rmw/dynamic_message_type_support.h"
 #include "rmw/get_network_flow_endpoints.h"
-#include "rmw/rmw.h"
 
 using namespace rmw_lockstep;
 
@@ -13,37 +9,43 @@ namespace {
 
 std::unique_ptr<EndPoint> end_point_of(
     Kind kind, const rmw_node_t * node, const MessageType & type, const char * topic, const rmw_qos_profile_t & qos) {
-  auto made = std::make_unique<EndPoint>();
   std::vector<rmw_qos_profile_t> peers;
   for (const EndPoint * other : graph().named(topic))
     if (other->is_topic() && other->kind != kind) peers.push_back(other->qos);
+  auto made = local_end_point(kind, node, type, topic, qos);
   made->id = graph().new_id();
-  made->kind = kind;
-  made->local = true;
-  made->node = static_cast<Node *>(node->data)->id;
-  made->name = topic;
-  made->type = type.name;
-  made->hash = type.hash;
   made->callbacks = type.callbacks;
-  made->qos = qos;
   settle(made->qos, kind == Kind::subscription, peers);
   return made;
 }
 
-EndPoint & of(const rmw_publisher_t * handle) { return *static_cast<EndPoint *>(handle->data); }
-EndPoint & of(const rmw_subscription_t * handle) { return *static_cast<EndPoint *>(handle->data); }
+bool ignores_local(const rmw_publisher_options_t &) { return false; }
+bool ignores_local(const rmw_subscription_options_t & options) { return options.ignore_local_publications; }
 
-template<typename Handle>
-rmw_ret_t destroy(const rmw_node_t * node, Handle * handle, void (*free)(Handle *)) {
-  REQUIRE_OURS(node);
-  REQUIRE_OURS(handle);
-  {
-    Lock lock;
-    graph().remove(of(handle).id);
+// Null, with rmw's error set, if something is missing or wrong.
+template<typename Handle, typename Options>
+Handle * create(
+    Kind kind, Handle * (*allocate)(), const rmw_node_t * node, const rosidl_message_type_support_t * support,
+    const char * topic, const rmw_qos_profile_t * qos, const Options * options) {
+  REQUIRE_OR_NULL(node);
+  REQUIRE_OR_NULL(support);
+  REQUIRE_OR_NULL(topic);
+  REQUIRE_OR_NULL(qos);
+  REQUIRE_OR_NULL(options);
+  MessageType type;
+  if (!is_ours(node->implementation_identifier) || !valid_name("topic", topic, *qos) || !find_type(support, type)) return nullptr;
+  if (options->require_unique_network_flow_endpoints == RMW_UNIQUE_NETWORK_FLOW_ENDPOINTS_STRICTLY_REQUIRED) {
+    RMW_SET_ERROR_MSG("rmw_lockstep_cpp uses no network, so it has no network flow endpoints");
+    return nullptr;
   }
-  free_text(handle->topic_name);
-  free(handle);
-  return RMW_RET_OK;
+  Handle * handle = named(allocate(), topic);
+  handle->options = *options;
+  handle->can_loan_messages = false;
+  Lock lock;
+  auto made = end_point_of(kind, node, type, topic, *qos);
+  made->ignores_local = ignores_local(*options);
+  handle->data = &graph().add(std::move(made));
+  return handle;
 }
 
 template<typename Handle>
@@ -52,14 +54,6 @@ rmw_ret_t count_matched(const Handle * handle, size_t * count) {
   REQUIRE(count);
   Lock lock;
   *count = graph().matched(of(handle));
-  return RMW_RET_OK;
-}
-
-template<typename Handle>
-rmw_ret_t actual_qos(const Handle * handle, rmw_qos_profile_t * qos) {
-  REQUIRE_OURS(handle);
-  REQUIRE(qos);
-  *qos = of(handle).qos;
   return RMW_RET_OK;
 }
 
@@ -96,25 +90,7 @@ rmw_ret_t copy_bytes(const Bytes & bytes, rmw_serialized_message_t * out) {
 RMW_LOCKSTEP_API rmw_publisher_t * rmw_create_publisher(
     const rmw_node_t * node, const rosidl_message_type_support_t * support, const char * topic,
     const rmw_qos_profile_t * qos, const rmw_publisher_options_t * options) {
-  REQUIRE_OR_NULL(node);
-  REQUIRE_OR_NULL(support);
-  REQUIRE_OR_NULL(topic);
-  REQUIRE_OR_NULL(qos);
-  REQUIRE_OR_NULL(options);
-  MessageType type;
-  if (!is_ours(node->implementation_identifier) || !valid_name("topic", topic, *qos) || !find_type(support, type)) return nullptr;
-  if (options->require_unique_network_flow_endpoints == RMW_UNIQUE_NETWORK_FLOW_ENDPOINTS_STRICTLY_REQUIRED) {
-    RMW_SET_ERROR_MSG("rmw_lockstep_cpp uses no network, so it has no network flow endpoints");
-    return nullptr;
-  }
-  rmw_publisher_t * handle = rmw_publisher_allocate();
-  handle->implementation_identifier = IDENTIFIER;
-  handle->topic_name = copy_text(topic);
-  handle->options = *options;
-  handle->can_loan_messages = false;
-  Lock lock;
-  handle->data = &graph().add(end_point_of(Kind::publisher, node, type, topic, *qos));
-  return handle;
+  return create(Kind::publisher, rmw_publisher_allocate, node, support, topic, qos, options);
 }
 
 RMW_LOCKSTEP_API rmw_ret_t rmw_destroy_publisher(rmw_node_t * node, rmw_publisher_t * handle) {
@@ -163,11 +139,7 @@ RMW_LOCKSTEP_API rmw_ret_t rmw_publisher_wait_for_all_acked(const rmw_publisher_
 }
 
 RMW_LOCKSTEP_API rmw_ret_t rmw_get_gid_for_publisher(const rmw_publisher_t * handle, rmw_gid_t * gid) {
-  REQUIRE_OURS(handle);
-  REQUIRE(gid);
-  gid->implementation_identifier = IDENTIFIER;
-  write_gid(of(handle).id, gid->data);
-  return RMW_RET_OK;
+  return gid_of(handle, gid);
 }
 
 // ---- subscriptions
@@ -175,27 +147,8 @@ RMW_LOCKSTEP_API rmw_ret_t rmw_get_gid_for_publisher(const rmw_publisher_t * han
 RMW_LOCKSTEP_API rmw_subscription_t * rmw_create_subscription(
     const rmw_node_t * node, const rosidl_message_type_support_t * support, const char * topic,
     const rmw_qos_profile_t * qos, const rmw_subscription_options_t * options) {
-  REQUIRE_OR_NULL(node);
-  REQUIRE_OR_NULL(support);
-  REQUIRE_OR_NULL(topic);
-  REQUIRE_OR_NULL(qos);
-  REQUIRE_OR_NULL(options);
-  MessageType type;
-  if (!is_ours(node->implementation_identifier) || !valid_name("topic", topic, *qos) || !find_type(support, type)) return nullptr;
-  if (options->require_unique_network_flow_endpoints == RMW_UNIQUE_NETWORK_FLOW_ENDPOINTS_STRICTLY_REQUIRED) {
-    RMW_SET_ERROR_MSG("rmw_lockstep_cpp uses no network, so it has no network flow endpoints");
-    return nullptr;
-  }
-  rmw_subscription_t * handle = rmw_subscription_allocate();
-  handle->implementation_identifier = IDENTIFIER;
-  handle->topic_name = copy_text(topic);
-  handle->options = *options;
-  handle->can_loan_messages = false;
-  handle->is_cft_enabled = false;
-  Lock lock;
-  auto made = end_point_of(Kind::subscription, node, type, topic, *qos);
-  made->ignores_local = options->ignore_local_publications;
-  handle->data = &graph().add(std::move(made));
+  auto handle = create(Kind::subscription, rmw_subscription_allocate, node, support, topic, qos, options);
+  if (handle) handle->is_cft_enabled = false;
   return handle;
 }
 
@@ -267,10 +220,7 @@ RMW_LOCKSTEP_API rmw_ret_t rmw_take_serialized_message(
 
 RMW_LOCKSTEP_API rmw_ret_t rmw_subscription_set_on_new_message_callback(
     rmw_subscription_t * handle, rmw_event_callback_t callback, const void * data) {
-  REQUIRE_OURS(handle);
-  Lock lock;
-  of(handle).listener.set(callback, data);
-  return RMW_RET_OK;
+  return set_listener(handle, callback, data);
 }
 
 // ---- serialization

@@ -75,6 +75,20 @@ void keep_what_is_ready(Waiter & waiter) {
         if (!static_cast<EndPoint *>(event->data)->events.pending[event->event_type]) events->events[i] = nullptr;
 }
 
+// Whether anything is ready.
+bool wait_for(Waiter & waiter, const rmw_time_t * timeout) {
+  Lock lock;
+  auto & waiters = graph().waiters;
+  waiters.push_back(&waiter);
+  const int64_t deadline = deadline_of(timeout);
+  if (deadline > lockstep_now()) wait_until(waiter, deadline);
+  else wait_as_poll(waiter);
+  waiters.erase(std::find(waiters.begin(), waiters.end(), &waiter));
+  const bool ready = waiter.ready();
+  keep_what_is_ready(waiter);
+  return ready;
+}
+
 }  // namespace
 
 RMW_LOCKSTEP_API rmw_wait_set_t * rmw_create_wait_set(rmw_context_t * context, size_t) {
@@ -97,15 +111,8 @@ RMW_LOCKSTEP_API rmw_ret_t rmw_wait(
     rmw_subscriptions_t * subscriptions, rmw_guard_conditions_t * guards, rmw_services_t * services,
     rmw_clients_t * clients, rmw_events_t * events, rmw_wait_set_t * handle, const rmw_time_t * timeout) {
   REQUIRE_OURS(handle);
-  Lock lock;
   Waiter waiter{subscriptions, guards, services, clients, events, {}};
-  auto & waiters = graph().waiters;
-  waiters.push_back(&waiter);
-  const int64_t deadline = deadline_of(timeout);
-  if (deadline > lockstep_now()) wait_until(waiter, deadline);
-  else wait_as_poll(waiter);
-  waiters.erase(std::find(waiters.begin(), waiters.end(), &waiter));
-  const bool ready = waiter.ready();
-  keep_what_is_ready(waiter);
+  const bool ready = wait_for(waiter, timeout);
+  lockstep_settle_signals();  // rclpy's thread may still read its list of guard conditions
   return ready ? RMW_RET_OK : RMW_RET_TIMEOUT;
 }

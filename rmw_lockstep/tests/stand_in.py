@@ -61,13 +61,13 @@ def idle(handled: int, now: int = 0, next_: int = -1, flags: int = 0, children: 
 
 
 class Waits:
-    """Ends a test that would wait for ever."""
+    """Ends a test that would wait forever."""
 
     def __init__(self) -> None:
         self._deadline = time.monotonic() + 60
 
     def __call__(self) -> None:
-        assert time.monotonic() < self._deadline, "the hub waits for ever"
+        assert time.monotonic() < self._deadline, "the hub waits forever"
 
 
 class Raw:

@@ -146,7 +146,7 @@ def test_connections_are_counted(hub: Hub) -> None:
 
 def test_for_a_process_that_never_reads_not_everything_is_kept(folder: Path) -> None:
     with Hub(folder, Limits(unread_bytes=1_000_000), Waits()) as hub:
-        topic = hub.node("rig").publisher("/topic", STRING, Qos())
+        topic = hub.node("runner").publisher("/topic", STRING, Qos())
         raw = Raw(hub.path)
         welcomed(raw, hub).send(frame(b"J"), node(NODE), end_point(SUB, SUBSCRIPTION, NODE))
         hub.pause()
@@ -172,7 +172,7 @@ def test_an_idle_that_is_followed_by_another_frame_is_not_believed(hub: Hub, raw
 
 
 def test_times_neither_go_back_nor_beyond_what_was_granted(hub: Hub, raw: Raw) -> None:
-    said = hub.node("rig").subscription("/topic", STRING, Qos())
+    said = hub.node("runner").subscription("/topic", STRING, Qos())
     begin(raw, hub)
     hub.advance(BEGIN + 1_000)
     raw.send(*(data(PUB, handled=9, now=BEGIN + after) for after in (500, 100, 2**40, -(2**40))))

@@ -38,7 +38,7 @@ def node_and_end(number: int, end: int, kind: int) -> bytes:
 
 
 def test_the_hub_calls_a_process(hub: Hub, process: Make) -> None:
-    client = hub.node("rig").client("/trigger", TRIGGER)
+    client = hub.node("runner").client("/trigger", TRIGGER)
     assert client.call(b"nobody serves it yet") is None
     serving(process()).start()
     hub.wait_until_idle()
@@ -49,7 +49,7 @@ def test_the_hub_calls_a_process(hub: Hub, process: Make) -> None:
 
 
 def test_a_process_calls_the_hub(hub: Hub, process: Make) -> None:
-    hub.node("rig").server("/trigger", TRIGGER, lambda asked: asked * 2)
+    hub.node("runner").server("/trigger", TRIGGER, lambda asked: asked * 2)
     got: list[bytes] = []
 
     def begin(process: Process, payload: bytes) -> None:

@@ -191,3 +191,24 @@ def test_a_callback_that_sleeps_in_a_group_of_its_own_does_not_keep_the_others(w
     watch.go_on(0.25)
     assert [at for at, said in watch.said() if said == "slow"] == [130, 230]
     assert [at for at, said in watch.said() if said == "quick"] == list(range(20, 250, 20))
+
+
+def test_a_program_is_not_idle_before_a_thread_has_done_what_a_condition_variable_wakes_it_for(watch: Watch) -> None:
+    watch.start("""
+        import ctypes
+        c = ctypes.CDLL(None)
+        mutex, condition = ctypes.create_string_buffer(64), ctypes.create_string_buffer(64)
+        far = (ctypes.c_long * 2)(4_000_000_000, 0)
+        def work():
+            c.pthread_mutex_lock(mutex)
+            for _ in range(3):
+                c.pthread_cond_timedwait(condition, mutex, far)
+                sum(range(3_000_000))
+                say('worked')
+        threading.Thread(target=work, daemon=True).start()
+        node.create_timer(0.1, lambda: c.pthread_cond_signal(condition))
+        rclpy.spin(node)
+    """)
+    watch.go_on(0)
+    watch.go_on(0.35)
+    assert watch.said() == [(100, "worked"), (200, "worked"), (300, "worked")]
