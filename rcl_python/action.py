@@ -5,7 +5,7 @@ The names and rules are those of rcl_action and https://design.ros2.org/articles
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from rcl_python.clock import Clock, Timer
 from rcl_python.endpoints import Client, Publisher, Service, Subscription
@@ -39,11 +39,26 @@ def _parts(name: str) -> dict[str, str]:
     return {part: f"{name}/_action/{part}" for part in parts}
 
 
-class _Action(Destroyable):
-    """What a server and a client have in common."""
+_Call = TypeVar("_Call", Client, Service)
+_Topic = TypeVar("_Topic", Subscription, Publisher)
 
-    def _hold(self, *ends: Any) -> None:
-        self._ends: tuple[Any, ...] = ends
+
+class _Action(Destroyable, Generic[_Call, _Topic]):
+    """What a server and a client have in common. `profiles` are for goal, result, cancel, feedback and status."""
+
+    def _create(
+        self, side: str, call: type[_Call], topic: type[_Topic], node: Node, kinds: Any, name: str,
+        profiles: tuple[Profile, ...],
+    ) -> None:  # fmt: skip
+        self._destroyed = True
+        names = _named(name, side)
+        goal, result, cancel, feedback, status = profiles
+        self.goal: _Call = _made(side, name, call, node, kinds.SendGoalService, names["send_goal"], goal)
+        self.cancel: _Call = call(node, kinds.CancelGoalService, names["cancel_goal"], cancel)
+        self.result: _Call = call(node, kinds.GetResultService, names["get_result"], result)
+        self.feedback: _Topic = topic(node, kinds.FeedbackMessage, names["feedback"], feedback)
+        self.status: _Topic = topic(node, kinds.GoalStatusMessage, names["status"], status)
+        self._ends: tuple[Any, ...] = (self.goal, self.cancel, self.result, self.feedback, self.status)
 
     def _destroy(self) -> None:
         for end in self._ends:
@@ -57,28 +72,11 @@ class _Action(Destroyable):
         raise NotImplementedError
 
 
-class ActionClient(_Action):
+class ActionClient(_Action[Client, Subscription]):
     """The client end of an action: it sends goals."""
 
-    def __init__(
-        self,
-        node: Node,
-        action_class: Any,
-        name: str,
-        goal_qos: Profile,
-        result_qos: Profile,
-        cancel_qos: Profile,
-        feedback_qos: Profile,
-        status_qos: Profile,
-    ) -> None:
-        self._destroyed = True
-        names, kinds = _named(name, "client"), action_class.Impl
-        self.goal = _made("client", name, Client, node, kinds.SendGoalService, names["send_goal"], goal_qos)
-        self.cancel = Client(node, kinds.CancelGoalService, names["cancel_goal"], cancel_qos)
-        self.result = Client(node, kinds.GetResultService, names["get_result"], result_qos)
-        self.feedback = Subscription(node, kinds.FeedbackMessage, names["feedback"], feedback_qos)
-        self.status = Subscription(node, kinds.GoalStatusMessage, names["status"], status_qos)
-        self._hold(self.goal, self.cancel, self.result, self.feedback, self.status)
+    def __init__(self, node: Node, action_class: Any, name: str, *profiles: Profile) -> None:
+        self._create("client", Client, Subscription, node, action_class.Impl, name, profiles)
         super().__init__()
 
     def _waited(self) -> tuple[Any, ...]:
@@ -157,32 +155,16 @@ def _message(subscription: Subscription, message_class: Any) -> Any:
     return taken[0] if taken else None
 
 
-class ActionServer(_Action):
-    """The server end of an action. `result_timeout` (s) is how long a result is kept; negative means for ever."""
+class ActionServer(_Action[Service, Publisher]):
+    """The server end of an action. The last of `settings`, after the profiles, is how long a result is kept (s);
+    negative means for ever."""
 
-    def __init__(
-        self,
-        node: Node,
-        clock: Clock,
-        action_class: Any,
-        name: str,
-        goal_qos: Profile,
-        result_qos: Profile,
-        cancel_qos: Profile,
-        feedback_qos: Profile,
-        status_qos: Profile,
-        result_timeout: float,
-    ) -> None:
-        self._destroyed = True
-        names, kinds = _named(name, "server"), action_class.Impl
-        self.goal = _made("server", name, Service, node, kinds.SendGoalService, names["send_goal"], goal_qos)
-        self.cancel = Service(node, kinds.CancelGoalService, names["cancel_goal"], cancel_qos)
-        self.result = Service(node, kinds.GetResultService, names["get_result"], result_qos)
-        self.feedback = Publisher(node, kinds.FeedbackMessage, names["feedback"], feedback_qos)
-        self.status = Publisher(node, kinds.GoalStatusMessage, names["status"], status_qos)
+    def __init__(self, node: Node, clock: Clock, action_class: Any, name: str, *settings: Any) -> None:
+        *profiles, result_timeout = settings
+        self._create("server", Service, Publisher, node, action_class.Impl, name, tuple(profiles))
         self.expiry = Timer(clock, node.context, 0, autostart=False)
-        self._hold(self.goal, self.cancel, self.result, self.feedback, self.status, self.expiry)
-        self._clock, self._kinds = clock, kinds
+        self._ends += (self.expiry,)
+        self._clock, self._kinds = clock, action_class.Impl
         self._timeout = int(result_timeout * 10**9)
         self.goals: list[ActionGoalHandle] = []
         super().__init__()

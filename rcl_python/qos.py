@@ -146,7 +146,7 @@ def _best_times(given: Profile, others: list[Profile], *, publishes: bool) -> Pr
 
 
 def _span(time: int) -> int:
-    """Return a time in ns, with "not given" as for ever."""
+    """Return a time in ns, with "not given" as forever."""
     return time or RMW_DURATION_INFINITE
 
 
