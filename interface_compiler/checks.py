@@ -66,12 +66,12 @@ def _own(definitions: Sequence[Definition]) -> dict[str, frozenset[str]]:
 def _names(definition: Definition) -> Iterator[Fault]:
     if not _PACKAGE.fullmatch(definition.package):
         fix = "Use lower-case letters, digits and single underscores, a letter first: my_robot_interfaces."
-        yield Fault(definition.file, None, f"`{definition.package}` can't be a package's name.", fix)
+        yield Fault(definition.file, definition.title_line, f"`{definition.package}` can't be a package's name.", fix)
     if not _NAME.fullmatch(definition.name):
         words = re.findall(r"[A-Za-z0-9]+", definition.name)
         better = "".join(word[:1].upper() + word[1:] for word in words) or "JointLimits"
         fix = f"Begin with a capital letter, then letters and digits: {better}.{definition.kind}"
-        yield Fault(definition.file, None, f"`{definition.name}` can't be an interface's name.", fix)
+        yield Fault(definition.file, definition.title_line, f"`{definition.name}` can't be an interface's name.", fix)
 
 
 def _unknown(reference: Reference, definition: Definition, known: Known) -> Iterator[Fault]:
@@ -80,9 +80,8 @@ def _unknown(reference: Reference, definition: Definition, known: Known) -> Iter
         return
     place = (definition.file, reference.line)
     if package not in known:
-        if package in shipped.optional():
-            found = f"`{reference.written}` needs the package {package}, which is not installed."
-            yield Fault(*place, found, f"Compile it, once: spinbook interfaces add {package}")
+        if remedy := shipped.how_to_add(package):
+            yield Fault(*place, f"`{reference.written}` needs the package {package}, which is not installed.", remedy)
             return
         having = [owner for owner, names in known.items() if f"msg/{name}" in names]
         close = difflib.get_close_matches(package, having, n=1)
@@ -123,11 +122,13 @@ def _circles(readings: Mapping[Definition, Reading]) -> Iterator[Fault]:
     """Find messages that contain themselves."""
     messages = {f"{item.package}/{item.name}": item for item in readings if item.kind == "msg"}
     graph = {name: {ref.type for ref in readings[item].references} & messages.keys() for name, item in messages.items()}
-    if cycle := _cycle(graph):
+    while cycle := _cycle(graph):
         item = messages[cycle[0]]
         line = next(ref.line for ref in readings[item].references if ref.type == cycle[1])
         found = f"`{cycle[0]}` contains itself: {' -> '.join(cycle)}."
         yield Fault(item.file, line, found, "A message can't contain itself: remove one of these fields.")
+        # Without that field, to find the next circle.
+        graph[cycle[0]] = graph[cycle[0]] - {cycle[1]}
 
 
 def _package_circles(definitions: Sequence[Definition], readings: Mapping[Definition, Reading]) -> Iterator[Fault]:

@@ -44,8 +44,6 @@ _CONVERTING = ("-include", str(_LIMITED_API), "-Werror=implicit-function-declara
 _TYPE_NAME = re.compile(r'strcmp\(field->ob_type->tp_name, ("[\w.]+")\) == 0')
 _TYPE_IS_NAMED = "assert(field->ob_type->tp_name != NULL);"
 _SYMBOL = re.compile(r"STRINGIFY\(ROSIDL_TYPESUPPORT_INTERFACE__(MESSAGE|SERVICE)_SYMBOL_NAME\((\w+), ([^)]*)\)\)")
-#: The file with the compiler's output if it fails.
-LOG = "compiler.log"
 
 
 @dataclass(frozen=True)

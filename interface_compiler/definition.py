@@ -31,6 +31,11 @@ class Definition:
         return f"{self.package}/{self.kind}/{self.name}"
 
     @property
+    def title_line(self) -> int | None:
+        """The line with a fence's title, which names it; None for a file of its own."""
+        return self.line - 1 or None
+
+    @property
     def path(self) -> str:
         """Where its package keeps it, such as `msg/String.msg`."""
         return f"{self.kind}/{self.name}.{self.kind}"

@@ -7,7 +7,9 @@ decides whether a value fits its type.
 
 from __future__ import annotations
 
+import difflib
 import keyword
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -125,7 +127,7 @@ class _LineReader:
             return
         commented, self._commented, self._at_top = self._commented or bool(hash_sign), False, False
         if text.strip("-") == "" and len(text) > 1:
-            fix = "A separator is exactly three dashes at the left margin, with no space behind."
+            fix = "A separator is exactly three dashes at the left margin, with no space after them."
             self._fault(f"`{text}` is not a separator.", fix)
             return
         written, _, rest = text.partition(" ")
@@ -146,8 +148,11 @@ class _LineReader:
             found = f"the constant `{name}` has the type `{written}`."
             self._fault(found, f"A constant is one of {', '.join(PRIMITIVES)}; arrays and messages can't be constants.")
         elif not _CONSTANT_NAME.fullmatch(name):
-            fix = f"Use capital letters, digits and single underscores: {_as_constant(name)}. A field has no `=`."
+            fix = f"Use capital letters, digits and single underscores: {_as_constant(name)}."
+            fix += f" For a field with a default, leave out the `=`: {written} {_as_field(name)} {value}"
             self._fault(f"`{name}` can't be a constant's name.", fix)
+        elif not value:
+            self._fault(f"the constant `{name}` has no value.", f"Write it behind the `=`, such as: {written} {name}=1")
         elif self._is_new(name):
             self._value(written, name, value, "value")
 
@@ -156,13 +161,15 @@ class _LineReader:
         written, name, value = constant
         if (written, name, value) in self._bare:
             found = f"`{name}={value}` is in line {self._bare[written, name, value]} too, and ROS 2 mixes the two up."
-            self._fault(found, "Write a comment behind one of them: then they differ.")
+            self._fault(found, "Write a comment after one of them, so that they differ.")
         self._bare_here[written, name, value] = self._line
 
     def _field(self, raw: str, written: str, name: str, default: str) -> None:
         known = self._type(written)
         if not _FIELD_NAME.fullmatch(name):
             fix = f"Use lower-case letters, digits and single underscores, a letter first: {_as_field(name)}"
+            if default and _CONSTANT_NAME.fullmatch(name):
+                fix = f"For a constant, write a `=`: {written} {name}={default}. For a field: {_as_field(name)}"
             self._fault(f"`{name}` can't be a field's name.", fix)
         elif name in _C_WORDS or keyword.iskeyword(name):
             language = "C or C++" if name in _C_WORDS else "Python"
@@ -197,11 +204,15 @@ class _LineReader:
         from rosidl_adapter.parser import Type, parse_value_string
 
         try:
-            parse_value_string(Type(written), value)
+            parsed = parse_value_string(Type(written), value)
         except Exception as error:  # the parser lets all kinds of exceptions through
             reason = str(error).partition(": ")[2] or _expectation(written)
             found = f"the {what} of `{name}` is `{value}`, which is not a valid {written}."
             self._fault(found, f"{reason[:1].upper()}{reason[1:]}." if reason else "Write another one.")
+            return
+        if not all(math.isfinite(each) for each in _elements(parsed) if isinstance(each, float)):
+            found = f"the {what} of `{name}` is `{value}`, and ROS 2 accepts only finite numbers in a definition."
+            self._fault(found, "Leave it out, and let the nodes set such a value.")
 
     def _type(self, written: str) -> bool:
         """Check a field's type, and note the message it refers to. Return whether the type is valid."""
@@ -221,8 +232,12 @@ class _LineReader:
         parts = base.split("/")
         if len(parts) == 3 and parts[1] == "msg":
             return self._no_type(written, f"Write {parts[0]}/{parts[2]}: fields name their types without /msg/.")
+        if len(parts) == 3 and parts[1] in KINDS:
+            return self._no_type(written, "A field can't be a service or an action: make a message of what it holds.")
         if base in _USUAL_MISTAKES and base[0].islower():
             return self._no_type(written, f"ROS 2 calls it {_USUAL_MISTAKES[base]}.")
+        if base[0].islower() and (close := difflib.get_close_matches(base, PRIMITIVES, n=1, cutoff=0.75)):
+            return self._no_type(written, f"Did you mean {close[0]}?")
         if len(parts) > 2 or not re.fullmatch(r"[A-Z][A-Za-z0-9]*", parts[-1]):
             fix = "A message's name begins with a capital letter and has letters and digits: geometry_msgs/Pose."
             return self._no_type(written, fix)
@@ -246,6 +261,10 @@ def _base(written: str) -> str:
 
 def _expectation(written: str) -> str:
     return f"expected a {written}"
+
+
+def _elements(value: object) -> list[object]:
+    return value if isinstance(value, list) else [value]
 
 
 def _as_constant(name: str) -> str:

@@ -22,6 +22,13 @@ def optional() -> tuple[str, ...]:
     return _packages("optional")
 
 
+def how_to_add(package: str) -> str | None:
+    """Return how to get one of these packages where it is not installed; None for any other package."""
+    if package in (*standard(), *optional()):
+        return f"Compile it, once: spinbook interfaces add {package}"
+    return None
+
+
 def definitions(package: str) -> list[Definition]:
     """Return the definitions of one of these packages. Raises KeyError for any other."""
     for group in ("standard", "optional"):

@@ -9,18 +9,19 @@ import base64
 import csv
 import hashlib
 import io
+import stat
 import subprocess
 import sys
 import sysconfig
 import tempfile
-from collections.abc import Iterator, Sequence
+import zipfile
+from collections.abc import Iterator, Mapping, Sequence
 from importlib import metadata
 from pathlib import Path
 
 from interface_compiler import shipped, store
-from interface_compiler.archive import zipped
 from interface_compiler.checks import dependencies
-from interface_compiler.definition import CompileError, Definition
+from interface_compiler.definition import CompileError
 from interface_compiler.prefixes import PYTHON, RESOURCES
 
 _VERSION = "0.1.0"
@@ -71,7 +72,7 @@ def install(package: str) -> bool:
     Raises KeyError for any other package, and CompileError if it can't be compiled or installed.
     """
     definitions = shipped.definitions(package)
-    if _is_current(package, definitions):
+    if is_current(package):
         return False
     with tempfile.TemporaryDirectory(prefix="spinbook-") as temporary:
         compiled = store.ensure(definitions, Path(temporary))
@@ -91,8 +92,9 @@ def needed(package: str) -> list[str]:
     return found
 
 
-def _is_current(package: str, definitions: Sequence[Definition]) -> bool:
+def is_current(package: str) -> bool:
     """Return whether this environment has the wheel of exactly these definitions, made by exactly this compiler."""
+    definitions = shipped.definitions(package)
     try:
         version = metadata.version(_project(package))
     except metadata.PackageNotFoundError:
@@ -125,3 +127,20 @@ def _pip_install(files: Sequence[Path]) -> None:
     if done.returncode:
         said = (done.stderr.strip().splitlines() or [f"pip ended with exit code {done.returncode}"])[-1]
         raise CompileError(f"The compiled package could not be installed with pip: {said}")
+
+
+#: The earliest moment that a zip can contain.
+_DATE = (1980, 1, 1, 0, 0, 0)
+
+
+def zipped(files: Mapping[str, bytes], last: str = "") -> bytes:
+    """Return an archive of `files`, sorted by name; `last` names one that goes to the end."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as archive:
+        for name in sorted(files, key=lambda name: (name == last, name)):
+            entry = zipfile.ZipInfo(name, _DATE)
+            entry.create_system = 3
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.external_attr = (stat.S_IFREG | 0o644) << 16
+            archive.writestr(entry, files[name])
+    return out.getvalue()

@@ -6,12 +6,17 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 from course_folder import CourseFolder
 
 from grader.exercise.exercise import ExerciseError
 from grader.exercise.loading import load
+from interface_compiler import prefixes, shipped
+from interface_compiler.store import ensure
 from interface_compiler.wheel import wheel
-from spinbook.handout.wheels import requirement
+from spinbook.course.course import find_course
+from spinbook.handout.wheels import interface_wheels, package_of, requirement
+from spinbook.interfaces import command
 
 CHAPTER = """# Limits
 
@@ -153,6 +158,21 @@ def test_a_wheel_for_students_is_the_same_bytes_each_time(built: CourseFolder) -
     assert str(built.root).encode() not in content
 
 
+def test_a_handout_brings_a_package_that_only_the_courses_definitions_need(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    added = ensure(shipped.definitions("tf2_msgs"), tmp_path / "store").prefix
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(added))
+    CourseFolder(tmp_path).write(one="# One\n")
+    folder = tmp_path / "interfaces" / "robot_interfaces" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Lost.msg").write_text("tf2_msgs/TF2Error error\n")
+
+    names = interface_wheels(find_course(tmp_path), [b"Nothing about it."], environment=added)
+
+    assert {package_of(name) for name in names} == {"tf2_msgs", "robot_interfaces"}
+
+
 def test_faults_name_the_chapter_and_its_line(tmp_path: Path) -> None:
     wrong = '# One\n\n```text title="msg/Limits.msg"\nstring name\nfloat lower\n```\n'
     course = CourseFolder(tmp_path).write(one=wrong)
@@ -206,6 +226,20 @@ def test_a_package_that_can_be_added_is_named(tmp_path: Path) -> None:
     unknown = course.spinbook("interfaces", "add", "nopkg_msgs")
     assert unknown.returncode == 1
     assert unknown.stderr.startswith("There is no package 'nopkg_msgs' to add.")
+
+
+def test_adding_a_package_says_what_it_does_before_it_takes_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(command, "is_current", lambda package: package == "turtlesim")
+    monkeypatch.setattr(command, "install", lambda package: print(f"(gcc works on {package})"))
+
+    said = CliRunner().invoke(command.interfaces, ["add", "turtlesim", "tf2_msgs"])
+
+    assert said.output.splitlines() == [
+        "turtlesim: is installed",
+        "tf2_msgs: compiling 4 interfaces",
+        "(gcc works on tf2_msgs)",
+        "tf2_msgs: compiled and installed",
+    ]
 
 
 EXERCISE = {
@@ -279,6 +313,30 @@ def test_an_exercise_on_a_message_that_was_not_compiled_says_what_to_do(tmp_path
 
     assert "the package robot_interfaces is not installed here" in said.stderr
     assert "spinbook build" in said.stderr
+
+
+def test_lint_compiles_what_an_exercise_needs_to_be_read(tmp_path: Path) -> None:
+    definition = '# One\n\n```text title="msg/Limits.msg"\nstring name\nfloat64 lower\n```\n'
+    course = CourseFolder(tmp_path).write(one=definition)
+    assert course.spinbook("lint").returncode == 0
+    assert not (tmp_path / "build").exists()
+    for name, text in EXERCISE.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+
+    said = course.spinbook("lint")
+
+    assert said.stdout.splitlines()[-1] == "0 errors, 0 warnings", said.stdout + said.stderr
+
+
+@pytest.mark.skipif(prefixes.prefix_of("control_msgs", prefixes.installed()) is not None, reason="it is installed here")
+def test_an_exercise_on_a_package_that_can_be_added_says_how(tmp_path: Path) -> None:
+    for name, text in EXERCISE.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text.replace("robot_interfaces/msg/Limits", "control_msgs/msg/JointTolerance"))
+
+    with pytest.raises(ExerciseError, match="Compile it, once: spinbook interfaces add control_msgs"):
+        load(tmp_path / "exercises" / "width")
 
 
 def test_a_student_without_a_package_is_told_to_install_what_came_with_the_handout(tmp_path: Path) -> None:

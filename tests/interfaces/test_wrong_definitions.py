@@ -22,6 +22,14 @@ def faults(*definitions: Definition) -> list[Fault]:
     ("line", "found", "fix"),
     [
         ("float x", "`float` is not a type.", "ROS 2 calls it float32."),
+        ("flaot64 x", "`flaot64` is not a type.", "Did you mean float64?"),
+        ("turtlesim/srv/Spawn s", "is not a type", "A field can't be a service or an action"),
+        ("int32 MAX 3", "`MAX` can't be a field's name.", "For a constant, write a `=`: int32 MAX=3."),
+        ("int32 MIN=", "the constant `MIN` has no value.", "int32 MIN=1"),
+        ("float32 x nan", "`nan`, and ROS 2 accepts only finite numbers", "let the nodes set"),
+        ("float64 x 1e400", "`1e400`, and ROS 2 accepts only finite numbers", "Leave it out"),
+        ("float64[] x [1.0, inf]", "only finite numbers", "Leave it out"),
+        ("float64 LIMIT=inf", "the value of `LIMIT` is `inf`, and ROS 2 accepts only finite numbers", "Leave it out"),
         ("Header header", "there is no message `robot_interfaces/Header`.", "Write std_msgs/Header."),
         ("geometry_msgs/msg/Pose pose", "is not a type", "Write geometry_msgs/Pose"),
         ("geometry_msgs/Pos pose", "there is no message `geometry_msgs/Pos`.", "Did you mean Pose?"),
@@ -34,7 +42,7 @@ def faults(*definitions: Definition) -> list[Fault]:
         ("float64 1st", "`1st` can't be a field's name.", "st"),
         ("float64 class", "reserved word of C or C++", "class_value"),
         ("float64 lambda", "reserved word of Python", "lambda_value"),
-        ("int32 limit=3", "`limit` can't be a constant's name.", "LIMIT"),
+        ("int32 limit=3", "`limit` can't be a constant's name.", "leave out the `=`: int32 limit 3"),
         ("geometry_msgs/Pose HOME=3", "has the type `geometry_msgs/Pose`", "can't be constants"),
         ("int32 x abc", "`abc`, which is not a valid int32", "-2147483648"),
         ("uint8 x 256", "`256`, which is not a valid uint8", "<= 255"),
@@ -101,6 +109,15 @@ def test_a_bad_name_comes_with_a_good_one() -> None:
     (fault,) = faults(definition("msg/joint_limits.msg", "int32 a\n"))
 
     assert "JointLimits.msg" in fault.fix
+    assert fault.line is None
+
+
+def test_a_bad_name_in_a_chapter_is_on_the_line_with_the_fences_title() -> None:
+    fence = Definition("robot_interfaces", "msg", "joint_limits", "int32 x\n", Path("chapters/04.md"), line=40)
+
+    (fault,) = faults(fence)
+
+    assert str(fault).startswith("chapters/04.md:39: `joint_limits` can't be an interface's name.")
 
 
 def test_a_message_that_contains_itself_is_told_with_the_circle() -> None:
@@ -108,6 +125,23 @@ def test_a_message_that_contains_itself_is_told_with_the_circle() -> None:
 
     assert fault.line in (1, 2)
     assert "contains itself: robot_interfaces/" in fault.found
+
+
+def test_each_circle_is_told() -> None:
+    found = faults(
+        definition("msg/A.msg", "B b\n"), definition("msg/B.msg", "A[] a\n"), definition("msg/C.msg", "C[] parts\n")
+    )
+
+    assert [fault.found for fault in found] == [
+        "`robot_interfaces/A` contains itself: robot_interfaces/A -> robot_interfaces/B -> robot_interfaces/A.",
+        "`robot_interfaces/C` contains itself: robot_interfaces/C -> robot_interfaces/C.",
+    ]
+
+
+def test_a_message_named_like_a_number_is_one() -> None:
+    own = definition("msg/Float64.msg", "float64 data\n")
+
+    assert faults(own, definition("msg/Pair.msg", "Float64 first\nFloat64 second\n")) == []
 
 
 def test_packages_that_need_one_another_are_told() -> None:
