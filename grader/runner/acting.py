@@ -97,7 +97,7 @@ class ScriptedActionServer:
     def _goal(self, asked: Asked, now: int) -> None:
         request = deserialized(asked.cdr, self._kind.Impl.SendGoalService.Request)
         number = len(self._goals) + 1
-        script = self._declared.goals[min(number, len(self._declared.goals)) - 1]
+        script = self._declared.scripts[min(number, len(self._declared.scripts)) - 1]
         goal_id = bytes(request.goal_id.uuid)
         goal = Running(number, goal_id, self._ends.at(asked.moment), script, asked, to_fields(request.goal))
         self._goals.append(goal)

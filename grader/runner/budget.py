@@ -9,8 +9,7 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 
-from grader.runner.stopped import Stopped
-from grader.runner.student import Student
+from grader.runner.student import Stopped, Student
 
 #: The longest time between two looks that counts (s): a grader that did not run itself saw nothing.
 LONGEST_LOOK_S = 0.025

@@ -8,7 +8,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 
 from grader.recording.recording import Fields
 from grader.runner.message import filled, to_fields
-from grader.runner.stopped import Stopped
+from grader.runner.student import Stopped
 
 
 def serialized(kind: Any, fields: Fields) -> bytes:

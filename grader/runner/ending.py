@@ -1,10 +1,123 @@
-"""How a student's program ends by itself."""
+"""How a student's program ends, by itself, on Ctrl-C or by the hub, and what the student reads about it."""
 
 from __future__ import annotations
 
+import contextlib
+import re
+import time
+from dataclasses import dataclass
+
 from grader.recording.recording import Ending
-from grader.runner.story import of_exit
-from grader.runner.student import Student
+from grader.runner.budget import Allowance, Budget, Gone
+from grader.runner.student import Exit, Stopped, Student
+from grader.scenario.scenario import SECOND
+from rmw_lockstep.hub import TICK_S, Hub, Violation
+
+FRAME = re.compile(r'^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)', re.MULTILINE)
+TRACEBACK = "Traceback (most recent call last):"
+LIMITS = {
+    "cpu": "it used more computing time than a node may",
+    "memory": "it used more memory than a node may",
+    "processes": "it started more processes than a node may",
+    "file-size": "it wrote more to disk than a node may",
+    "output": "it printed more than a node may",
+    "wall": "it ran longer than a node may",
+}
+
+
+#: What ROS 2's C code prints before it aborts a program that gave it an object of another class (rosidl_generator_py).
+OTHER_CLASS = re.compile(r'__convert_from_py: Assertion .strncmp\("(?:\w+\.)+(?P<expected>\w+)"')
+
+_RESULT = "An action's execute callback has to return a Result, such as `return {action}.Result()`."
+
+#: The beginning of an error's last line -> what to do about it.
+_PARAMETERS = {
+    "rclpy.exceptions.ParameterNotDeclaredException": "Declare it first, in __init__: self.declare_parameter(…).",
+    "rclpy.exceptions.InvalidParameterTypeException": (
+        "A parameter has the type of its default: 1 declares an integer, 1.0 a double."
+    ),
+}
+
+
+@dataclass(frozen=True)
+class LastError:
+    """The error that ended a program: its last line, such as `ZeroDivisionError: float division by zero`, and the line
+    of the student's file that raised it, if there is one."""
+
+    error: str
+    line: int | None
+    text: str = ""
+
+
+def last_error(log: str, file_name: str, source: str = "") -> LastError | None:
+    """Return the last error in `log`, or None if there is none."""
+    start = log.rfind(TRACEBACK)
+    if start < 0:
+        start = log.rfind('  File "')
+        if start < 0:
+            return None
+    block = log[start:]
+    error = ""
+    for row in block.splitlines()[1:]:
+        if row and not row[0].isspace() and re.match(r"[A-Za-z_][\w.]*(:|$)", row):
+            error = row.strip()
+            break
+    lines = [int(m["line"]) for m in FRAME.finditer(block) if m["file"].rpartition("/")[2] == file_name]
+    line = lines[-1] if lines else None
+    rows = source.splitlines()
+    return LastError(error, line, rows[line - 1].strip() if line and line <= len(rows) else "")
+
+
+def is_rclpys_own(log: str, file_name: str, source: str) -> bool:
+    """Return whether the last error in `log` is a race in rclpy, and so not the fault of a correct program.
+
+    On Ctrl-C a thread of rclpy shuts ROS 2 down. If it does so between the `ok()` and the `shutdown()` of a program
+    that checks first, as `rclpy.try_shutdown()` does, the program's call fails (rclpy 7.1, `Context.try_shutdown`).
+    """
+    last = last_error(log, file_name, source)
+    if last is None or "rcl_shutdown already called" not in last.error:
+        return False
+    if ", in try_shutdown" in log[log.rfind(TRACEBACK) :]:
+        return True
+    rows = source.splitlines()[: last.line or 0]
+    return any("ok()" in row for row in rows[-2:])
+
+
+def _advice(error: str, block: str) -> str:
+    """Return advice about an error that rclpy raises far from the student's line which caused it (rclpy 7.1)."""
+    if error.startswith("TypeError") and ", in send_response" in block:
+        return ". A service's callback has to return the response: end each way through it with `return response`."
+    if ", in _execute_goal" in block or ", in _send_result_response" in block:
+        return f". {_RESULT.format(action='Fibonacci')}"
+    if "await_or_execute(srv.callback" in block:
+        return ". An exception in a callback ends the whole node: say in the response what is wrong, and return it."
+    return next((f". {advice}" for name, advice in _PARAMETERS.items() if error.startswith(name)), "")
+
+
+def _of_signal(signal: int, log: str) -> str:
+    if other := OTHER_CLASS.search(log):
+        text = f"it gave ROS 2 an object of another class than {other['expected']}."
+        action, _, kind = other["expected"].rpartition("_")
+        return f"{text} {_RESULT.format(action=action)}" if kind == "Result" else text
+    return f"it was killed by signal {signal}."
+
+
+def of_exit(exit_: Exit, log: str, file_name: str, source: str) -> tuple[str, int | None]:
+    """Return why a program ended, as a clause that follows "Your program ended: ", and the line to blame."""
+    if exit_.limit:
+        return f"{LIMITS.get(exit_.limit, exit_.limit)}.", None
+    last = last_error(log, file_name, source)
+    if last and last.error:
+        advice = _advice(last.error, log[log.rfind(TRACEBACK) :])
+        place = f" in line {last.line}" if last.line else ""
+        text = f": {last.text}" if last.text else ""
+        return f"{last.error}{place}{text}{advice}", last.line
+    if exit_.signal:
+        return _of_signal(exit_.signal, log), None
+    if exit_.code == 0:
+        return "it came to its end by itself, before it was asked to.", None
+    return f"it gave up with exit code {exit_.code}.", None
+
 
 #: How long a node may take to end after Ctrl-C: CPU time and blocked time together.
 MAY_TAKE_S = 2.0
@@ -22,3 +135,56 @@ def cut_short(student: Student, file_name: str, source: str, met: bool, when: st
             why = "it came to its end and created no node that spins. Is main() called, and does it call rclpy.spin()?"
         return Ending("did-not-start", f"Your program did not start: {why}", line)
     return Ending("crashed", f"Your program ended {when}: {why}", line)
+
+
+_ALLOWANCE = Allowance("", "", MAY_TAKE_S, MAY_TAKE_S)
+
+
+def interrupted(hub: Hub, budget: Budget, student: Student, file_name: str, source: str) -> Ending:
+    """Return how the program ends. It has 2 s, of CPU time and blocked time together.
+
+    There is no way to know when the signal has reached the program. So from here on the computer's clock runs as fast
+    as a real one, and a program that waits for a time waits as long as it would in real life.
+    """
+    before = student.output().text.count(TRACEBACK)
+    student.interrupt()
+    budget.begin(_ALLOWANCE)
+    if not _ends(hub, budget):
+        return Ending("completed", interrupted=True, ended_in_time=False)
+    log = student.output().text
+    broke = log.count(TRACEBACK) > before and not is_rclpys_own(log, file_name, source)
+    last = last_error(log, "") if broke else None
+    return Ending("completed", interrupted=True, traceback=last.error if last else "")
+
+
+def _ends(hub: Hub, budget: Budget) -> bool:
+    granted = time.monotonic()
+    with contextlib.suppress(Gone):
+        with contextlib.suppress(Stopped):
+            while budget.used < MAY_TAKE_S:
+                hub.pause()
+                if time.monotonic() - granted >= TICK_S and hub.is_idle():
+                    granted = time.monotonic()
+                    hub.advance(hub.now + round(TICK_S * SECOND))
+        return False
+    return True
+
+
+_MESSAGES = {
+    "message": "Your node published a message of {found:,} bytes. At most {limit:,} are allowed.",
+    "bytes": "Your node published more than {limit:,} bytes in one scenario.",
+    "messages": "Your node sent more than {limit:,} messages in one scenario.",
+    "nodes": "Your program created more than {limit:,} nodes.",
+    "end points": "Your program created more than {limit:,} publishers, subscriptions, clients and services.",
+    "connections": "Your program started more than {limit:,} processes.",
+    "unread": "Your program does not take the messages that are sent to it: {found:,} bytes are waiting for it.",
+    "wake-ups": "Your program woke up more than {limit:,} times in one scenario. Does a loop wait for no time at all?",
+    "frames": "Your program changed the ROS graph, or fell asleep, more than {limit:,} times in one scenario.",
+    "protocol": "Your program disturbed the connection between ROS 2 and the grader: {text}.",
+}
+
+
+def message_of_violation(violation: Violation) -> str:
+    """Return one sentence for the student."""
+    message = _MESSAGES[violation.reason]
+    return message.format(found=violation.found, limit=violation.limit, text=violation.text)

@@ -1,19 +1,86 @@
-"""What the grader's side of a scripted scenario needs from a run, and the schedule of what is still to do."""
+"""What the grader's side of a run works with: the two clocks, the hub and its node, and the schedule of what is to do.
+
+Simulated time is what ROS 2 shows, the computer's time what Python shows. The grader is a simulator that runs at 80 %
+of real time, as simulators do. So a program that measures time with the computer's clock is off by the factor 1.25,
+visibly and in every run; and a program that is fast enough in real life is fast enough here.
+"""
 
 from __future__ import annotations
 
 import heapq
+import struct
+from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import count
 
 from grader.exercise.exercise import Qos
-from grader.runner.clocks import Clocks
-from grader.scenario.scenario import SECOND, START
+from grader.scenario.scenario import SECOND, START, ComputerTime
 from rmw_lockstep.hub import Hub, HubNode
 from rmw_lockstep.hub import Qos as HubQos
 from rmw_lockstep.hub.ends import Moment
 from rmw_lockstep.hub.qos import BEST_EFFORT, RELIABLE, TRANSIENT_LOCAL, VOLATILE
+
+#: How much of the computer's time passes per unit of simulated time, by a scenario's `computer_time`.
+PACES: dict[ComputerTime, tuple[int, int]] = {"apart": (5, 4), "simulated": (1, 1)}
+
+#: The least time on the computer's clock between two messages (ns), however close they are in simulated time: a
+#: simulator slows down when much happens, and so does not run ahead of a node that looks for one message every few
+#: milliseconds. Besides, no two messages then have the same time.
+BETWEEN_MESSAGES = 10_000_000
+
+_CLOCK = struct.Struct("<4siI")
+
+
+class Clocks:
+    """Maps each moment of simulated time to the computer's time, and back (ns).
+
+    `set` records that simulated time was set, or a message published: at the simulated time `at`, with the computer's
+    clock at `now`, as number `stage` of everything the hub has published.
+    """
+
+    def __init__(self, computer_time: ComputerTime) -> None:
+        self._computer, self._simulated = PACES[computer_time]
+        self._stages: list[int] = []
+        self._moments: list[tuple[int, int]] = []
+        self._earliest = 0
+
+    def set(self, at: int, now: int, stage: int, *, message: bool = False) -> None:
+        """Continue both clocks from here, from number `stage` on, which may be a message."""
+        self._stages.append(stage)
+        self._moments.append((at, now))
+        self._earliest = now + BETWEEN_MESSAGES if message else max(now, self._earliest)
+
+    @property
+    def at(self) -> int:
+        """The simulated time that was set most recently."""
+        return self._moments[-1][0]
+
+    def computer(self, at: int) -> int:
+        """Return the computer's time at the simulated time `at`; rounded up, so `simulated` returns exactly `at` again.
+
+        It is later than the last message was published, even if `at` is not.
+        """
+        begun_at, began = self._moments[0]
+        now = began - (begun_at - at) * self._computer // self._simulated
+        return max(now, self._earliest)
+
+    def simulated(self, now: int, stage: int) -> int:
+        """Return the simulated time when the computer's clock shows `now` and number `stage` has arrived last.
+
+        Before it was set for the first time it is 0, as in ROS 2.
+        """
+        found = bisect_right(self._stages, stage)
+        if not found:
+            return 0
+        at, began = self._moments[found - 1]
+        then = at + (now - began) * self._simulated // self._computer
+        return min(then, self._moments[found][0]) if found < len(self._moments) else then
+
+
+def clock_message(at: int) -> bytes:
+    """Return `at` as a serialized rosgraph_msgs/msg/Clock: a header for little-endian, seconds, nanoseconds."""
+    return _CLOCK.pack(b"\0\1\0\0", *divmod(at, SECOND))
 
 
 @dataclass(frozen=True)

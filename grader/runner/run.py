@@ -17,22 +17,16 @@ from typing import Any
 
 from grader.recording.recording import Ending, EndPoint, Received, Recording
 from grader.runner.budget import Allowance, Budget, Gone
-from grader.runner.clocks import Clocks, clock_message
-from grader.runner.ending import cut_short
-from grader.runner.ends import Ends, nanoseconds
+from grader.runner.ending import cut_short, interrupted, message_of_violation
+from grader.runner.ends import Clocks, Ends, clock_message, nanoseconds
 from grader.runner.graph import end_points, nodes
-from grader.runner.interrupting import interrupted
-from grader.runner.parameters import Parameters
 from grader.runner.publishers import OFFER, ReferencePublishers
 from grader.runner.recorder import Recorder, recorded_topics
 from grader.runner.script import Script
 from grader.runner.starting import START as STARTING
-from grader.runner.starting import wait_until_up
-from grader.runner.stopped import Stopped
-from grader.runner.student import Student
-from grader.runner.task import Task
+from grader.runner.starting import Parameters, wait_until_up
+from grader.runner.student import Stopped, Student, Task
 from grader.runner.team import Start, Team
-from grader.runner.violations import story_of
 from grader.scenario.scenario import SECOND, START, Content, Message
 from rmw_lockstep.hub import Hub, Limits, Violation
 
@@ -42,9 +36,9 @@ AFTERWARDS = SECOND // 2
 #: A program that waits for less than this is considered about to go on (ns of the computer's time).
 SOON = 3 * SECOND
 
-ENDLESS = "Your node used {0:g} s of computing time on one message without an end. Is there an endless loop?"
+ENDLESS = "Your node used {0:g} s of computing time on one message and did not finish. Is there an endless loop?"
 OUTSIDE = (
-    "Your program did not go on for {0:g} s: it waits for something outside of it, such as another program that sleeps."
+    "Your program did not go on for {0:g} s: it waits for something outside it, such as another program that sleeps."
 )
 DEAF = (
     "Your node started but never responds. Does your program call rclpy.spin(node), and does no callback wait or sleep?"
@@ -92,14 +86,14 @@ class Run:
 
     def __init__(self, task: Task, student: Student, hub: Hub) -> None:
         self._task, self._student, self._hub = task, student, hub
-        rig = hub.node("rig")
-        self._clock = rig.publisher("/clock", "rosgraph_msgs/msg/Clock", OFFER)
+        runner = hub.node("runner")
+        self._clock = runner.publisher("/clock", "rosgraph_msgs/msg/Clock", OFFER)
         self._team = student if isinstance(student, Team) else None
         earliest = 0 if task.scenario.is_filter else START
-        self._recorder = Recorder(rig, recorded_topics(task), earliest, self._is_ours)
+        self._recorder = Recorder(runner, recorded_topics(task), earliest, self._is_ours)
         reference = hub.node(task.exercise.reference_node)
         self._publishers = ReferencePublishers(reference, task.scenario)
-        self._parameters = Parameters(hub, rig)
+        self._parameters = Parameters(hub, runner)
         self._budget = Budget(student, self._pids, STARTING)
         self._clocks = Clocks(task.scenario.computer_time)
         self._script: Script | None = None
@@ -144,7 +138,7 @@ class Run:
             received=received,
             nodes=self._nodes,
             end_points=self._end_points,
-            hold="lockstep" if self._is_up else "none",
+            synchronization="lockstep" if self._is_up else "none",
             uses_sim_time=self._sim_time,
             ending=ending,
             log=self._student.output().text,
@@ -179,9 +173,9 @@ class Run:
                 return interrupted(self._hub, self._budget, self._student, *program)
             return Ending("completed")
         except Stopped as stopped:
-            return Ending(stopped.outcome, stopped.story)
+            return Ending(stopped.outcome, stopped.message)
         except Violation as violation:
-            return Ending("over-limit", story_of(violation))
+            return Ending("over-limit", message_of_violation(violation))
         except Gone:
             self._see_that_it_was_the_program()
             if self._team and self._team.ended:
@@ -205,13 +199,13 @@ class Run:
         try:
             self._hub.drain()
         except Violation as violation:
-            ending = _first(ending, Ending("over-limit", story_of(violation)))
+            ending = _first(ending, Ending("over-limit", message_of_violation(violation)))
         except Stopped as stopped:
-            ending = _first(ending, Ending(stopped.outcome, stopped.story))
+            ending = _first(ending, Ending(stopped.outcome, stopped.message))
         try:
             received = self._recorder.received(self._clocks, self._publishers.stages)
         except Stopped as stopped:
-            return _first(ending, Ending(stopped.outcome, stopped.story)), ()
+            return _first(ending, Ending(stopped.outcome, stopped.message)), ()
         return ending, received
 
     def _begin(self) -> None:

@@ -14,7 +14,7 @@ from grader.runner.playing import RunningWorld
 from grader.runner.publishers import ReferencePublishers
 from grader.runner.recorder import Recorder
 from grader.runner.serving import AuthorFault, ServiceServer, unserved
-from grader.runner.task import Task
+from grader.runner.student import Task
 from grader.runner.team import Team
 from grader.scenario.scenario import (
     START,
@@ -120,7 +120,7 @@ class Script:
         except AuthorFault as error:
             scenario = self._task.scenario
             found = f"in the scenario {scenario.name}, {error}"
-            fix = "Fix it; it runs inside the grader."
+            fix = "Fix it: it runs inside the grader, and a student's node may send it anything that the type allows."
             raise ExerciseError(self._task.exercise.scenarios_file, found, fix, scenario.line or None) from None
 
     # --- outcomes

@@ -95,10 +95,13 @@ class ServiceServer:
             if reply.fields is not None:
                 check_fields(self._kind.Response, reply.fields, f"{self._declared.type}_Response")
         except Invalid as error:
-            raise AuthorFault(f"{answer.__name__}() for {self.name}: {error.found}. {error.fix}") from None
+            raise AuthorFault(f"{self._place(answer, request)}: {error.found}. {error.fix}") from None
         except Exception as error:
-            raise AuthorFault(f"{answer.__name__}() for {self.name}: {type(error).__name__}: {error}") from None
+            raise AuthorFault(f"{self._place(answer, request)}: {type(error).__name__}: {error}") from None
         return reply
+
+    def _place(self, answer: Any, request: Any) -> str:
+        return f"{answer.__name__}() for {self.name}, with the request {to_fields(request)}"
 
     def calls(self) -> tuple[Call, ...]:
         """Return every request that arrived, and its answer."""

@@ -1,13 +1,18 @@
-"""Waits until a program is ready: it has created its nodes and begins to spin them."""
+"""Waits until a program is ready: it has created its nodes, begins to spin them, and answers calls."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import GetParameters, SetParameters
+from rclpy.serialization import serialize_message
+
 from grader.runner.budget import BLOCKED_S, Allowance
-from grader.runner.stopped import Stopped
+from grader.runner.graph import deaf_to_the_clock
+from grader.runner.student import Stopped
 from grader.scenario.scenario import SECOND
-from rmw_lockstep.hub import Hub
+from rmw_lockstep.hub import SERVER, Hub, HubNode
 
 #: Importing large libraries takes CPU time; nothing that a node needs takes this much. A student with an endless loop
 #: waits this long for the check to say so.
@@ -44,7 +49,7 @@ def wait_until_up(hub: Hub, connected: Callable[[], bool], has_nodes: Callable[[
     try:
         _wait_until_up(hub, connected, has_nodes)
     except Stopped as stopped:
-        if stopped.story == NO_NODE_BUSY and has_nodes():
+        if stopped.message == NO_NODE_BUSY and has_nodes():
             raise Stopped(stopped.outcome, NOT_SPUN_BUSY) from None
         raise
 
@@ -61,3 +66,43 @@ def _wait_until_up(hub: Hub, connected: Callable[[], bool], has_nodes: Callable[
         hub.wait_until_idle()
     if not has_nodes():
         raise Stopped("did-not-start" if hub.next is None else "timed-out", NO_NODE_BLOCKED)
+
+
+class Parameters:
+    """Calls made through one of the hub's nodes."""
+
+    def __init__(self, hub: Hub, node: HubNode) -> None:
+        self._hub, self._node = hub, node
+
+    def call(self, service: str, type_name: str, request: bytes, until: int) -> bool:
+        """Call a service, and let time pass up to `until` for the answer (ns). Return whether one arrived."""
+        client = self._node.client(service, type_name)
+        try:
+            if client.call(request) is None:
+                return False
+            self._hub.wait_until_idle()
+            while not client.answers:
+                wakes = self._hub.next
+                if wakes is None or wakes > until:
+                    return False
+                self._hub.advance(wakes)
+                self._hub.wait_until_idle()
+            return True
+        finally:
+            client.close()
+
+    def use_sim_time(self, until: int) -> bool:
+        """Make every node take its time from /clock that doesn't yet. Return whether all do then."""
+        value = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=True)
+        request = SetParameters.Request(parameters=[Parameter(name="use_sim_time", value=value)])
+        for node in deaf_to_the_clock(self._hub):
+            service = f"{node}/set_parameters"
+            self.call(service, "rcl_interfaces/srv/SetParameters", serialize_message(request), until)
+        return not deaf_to_the_clock(self._hub)
+
+    def answers(self, node: str, until: int) -> bool:
+        """Return whether a node answers a call; one without parameter services is assumed to."""
+        if not self._hub.graph.of_program(f"{node}/get_parameters", SERVER):
+            return True
+        request = serialize_message(GetParameters.Request(names=["use_sim_time"]))
+        return self.call(f"{node}/get_parameters", "rcl_interfaces/srv/GetParameters", request, until)

@@ -1,9 +1,14 @@
-"""What a runner needs to know about a student's running program, whatever starts it."""
+"""What a runner is given to run, what it needs to know about the student's program, and why it can't go on."""
 
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import dataclass
 from typing import Protocol
+
+from grader.exercise.exercise import Exercise
+from grader.recording.recording import RunOutcome
+from grader.scenario.scenario import Scenario
 
 
 class Exit(Protocol):
@@ -39,3 +44,28 @@ class Student(Protocol):
     def cpu_seconds(self) -> float: ...
     def at_limit(self) -> bool: ...
     def kill(self) -> Exit: ...
+
+
+@dataclass(frozen=True)
+class Task:
+    """One program, to be run through one scenario.
+
+    `file_name` and `source` are the student's, to name lines in messages. `pace` is 1.0 for real time, and None for as
+    fast as possible. `domain` is the ROS domain, for Fast DDS only.
+    """
+
+    exercise: Exercise
+    scenario: Scenario
+    file_name: str
+    source: str
+    pace: float | None = None
+    domain: int = 0
+
+
+class Stopped(Exception):
+    """Raised inside a runner when the student's program can't be run any further; `message` is for the student."""
+
+    def __init__(self, outcome: RunOutcome, message: str) -> None:
+        super().__init__(message)
+        self.outcome = outcome
+        self.message = message

@@ -6,13 +6,12 @@ with server.start(Program("node.py", {"node.py": source}, hub=socket), isolation
     ...
 """
 
-from grader.sandbox.fork_server import ForkServer
+from grader.sandbox.fork_server import ForkServer, Student
 from grader.sandbox.isolation import Isolation, available, choose
 from grader.sandbox.middleware import Choice, MiddlewareUnavailable, choose_middleware, to_be_compiled
 from grader.sandbox.monitor import Exit, Output
-from grader.sandbox.network import enter
+from grader.sandbox.namespaces import enter
 from grader.sandbox.program import Limits, Middleware, Program, SandboxError, SandboxUnavailable
-from grader.sandbox.student import Student
 
 __all__ = [
     "Choice",

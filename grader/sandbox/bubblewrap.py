@@ -11,13 +11,13 @@ import json
 import os
 import resource
 import shutil
-import subprocess
-from collections.abc import Iterator, Sequence
+import signal
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from grader.sandbox import seccomp, syscalls
 from grader.sandbox.filesystem import Mount
-from grader.sandbox.namespaces import Namespaces
+from grader.sandbox.namespaces import Builder, Namespaces
 
 _HOLDER_BYTES = 64 * 1024 * 1024
 
@@ -43,38 +43,54 @@ def build(plan: Sequence[Mount], user_namespace: int, *, network: bool) -> Names
     # Not on the command line, which the student can read and which would show what is hidden.
     arguments = _memory_file(b"".join(os.fsencode(option) + b"\0" for option in _options(plan, texts)))
     information, information_end = os.pipe()
-    process = subprocess.Popen(
-        [
-            *(program, "--userns", str(user_namespace), "--unshare-pid", "--unshare-ipc", "--unshare-uts"),
-            *("--hostname", "student", "--cap-drop", "ALL", "--die-with-parent", "--info-fd", str(information_end)),
-            *(option for number in filters for option in ("--seccomp", str(number))),
-            *("--args", str(arguments), "--", "cat"),
-        ],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        pass_fds=[user_namespace, information_end, arguments, *texts.values(), *filters],
-        env={"PATH": "/usr/bin:/bin"},
-        bufsize=0,
-    )
-    assert process.stdin is not None
-    assert process.stdout is not None
-    assert process.stderr is not None
+    command = [
+        *(program, "--userns", str(user_namespace), "--unshare-pid", "--unshare-ipc", "--unshare-uts"),
+        *("--hostname", "student", "--cap-drop", "ALL", "--die-with-parent", "--info-fd", str(information_end)),
+        *(option for number in filters for option in ("--seccomp", str(number))),
+        *("--args", str(arguments), "--", "cat"),
+    ]
+    passed = (user_namespace, information_end, arguments, *texts.values(), *filters)
+    builder = _start(command, passed)
     os.close(information_end)
     with contextlib.suppress(BrokenPipeError):
-        process.stdin.write(b"!")
-    if process.stdout.read(1) != b"!":
-        said = process.stderr.read().decode(errors="replace").strip()
-        raise OSError(f"bubblewrap ended with {process.wait()}: {said}")
-    with os.fdopen(information) as stream:
-        init = int(json.load(stream)["child-pid"])
-    holders = frozenset(map(int, Path(f"/proc/{init}/task/{init}/children").read_text().split()))
-    for holder in (init, *holders):
+        os.write(builder.input, b"!")
+    if os.read(builder.output, 1) != b"!":
+        with os.fdopen(os.dup(builder.errors), "rb") as stream:
+            said = stream.read().decode(errors="replace").strip()
+        raise OSError(f"bubblewrap ended with {builder.wait()}: {said}")
+    with os.fdopen(information) as text:
+        init = int(json.load(text)["child-pid"])
+    own_processes = frozenset(map(int, Path(f"/proc/{init}/task/{init}/children").read_text().split()))
+    for holder in (init, *own_processes):
         _starve(holder)
     _join(init, user_namespace)
     if not network:
         syscalls.unshare(syscalls.CLONE_NEWNET)  # not by bubblewrap, which brings loopback up
-    return Namespaces(init, holders, builder=process)
+    return Namespaces(init, own_processes, builder)
+
+
+def _start(command: list[str], passed: Iterable[int]) -> Builder:
+    """Run bubblewrap with pipes to it, and with the descriptors `passed`.
+
+    By posix_spawn, which does not copy this process's memory as a fork does. Every other descriptor has to be one that
+    no program inherits; Python's own are.
+    """
+    input_at, input_to = os.pipe()
+    output_at, output_to = os.pipe()
+    errors_at, errors_to = os.pipe()
+    for number in passed:
+        os.set_inheritable(number, True)
+    ends = (input_at, output_to, errors_to)
+    pid = os.posix_spawn(
+        command[0],
+        command,
+        {"PATH": "/usr/bin:/bin"},
+        file_actions=[(os.POSIX_SPAWN_DUP2, end, number) for number, end in enumerate(ends)],
+        setsigdef=(signal.SIGPIPE, signal.SIGXFSZ),  # which Python ignores
+    )
+    for end in ends:
+        os.close(end)
+    return Builder(pid, input_to, output_at, errors_at)
 
 
 def _options(plan: Sequence[Mount], texts: dict[str, int]) -> Iterator[str]:

@@ -36,7 +36,7 @@ class Start:
 
 def confine(
     start: Start,
-    place: Paths,
+    paths: Paths,
     processes_beside: int,
     output: int,
     *,
@@ -46,7 +46,7 @@ def confine(
 
     Args:
         start: the program, how far to confine it, and the resources it may use.
-        place: its folders.
+        paths: its folders.
         processes_beside: see `limits.apply`.
         output: becomes its standard output and error; every other descriptor but `keep_open` is closed.
         keep_open: a descriptor that the caller still needs.
@@ -60,13 +60,13 @@ def confine(
     apply_limits(start.limits, processes_beside=processes_beside)
     if start.core is not None:
         os.sched_setaffinity(0, {start.core})
-    os.chdir(place.home)
+    os.chdir(paths.home)
     isolation = start.isolation
     if isolation is Isolation.NONE:
         return
     network = start.program.hub is None
     filters = seccomp.program(network=network, no_signals=_signals_leave(isolation)) if seccomp.supported() else None
-    user = USER_ID if isolation is not Isolation.LANDLOCK else Path(place.home).stat().st_uid
+    user = USER_ID if isolation is not Isolation.LANDLOCK else Path(paths.home).stat().st_uid
     syscalls.drop_bounding_capabilities()
     if os.geteuid() != user:
         os.setresgid(user, user, user)
@@ -76,7 +76,7 @@ def confine(
     syscalls.prctl(syscalls.PR_SET_DUMPABLE, 1)  # lost with the change of user; without it /proc/self is closed
     if isolation is Isolation.LANDLOCK:
         hidden = (*filesystem.own_packages(), *start.program.hidden)
-        landlock.restrict(place, start.program.readonly, hidden, processes=not network)
+        landlock.restrict(paths, start.program.readonly, hidden, processes=not network)
     if filters is not None:
         seccomp.install(filters)
 

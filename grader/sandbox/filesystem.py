@@ -68,7 +68,7 @@ def mounts(readonly: tuple[Path, ...], hidden: tuple[Path, ...], scratch_bytes: 
     Args:
         readonly: what is shown besides Python and ROS 2.
         hidden: what is not shown, although it is inside something that is.
-        scratch_bytes: the size of each writable place.
+        scratch_bytes: the size of each writable paths.
     """
     shown = list(_without_nested([*interpreter(), *readonly]))
     plan = _MountPlan()
@@ -133,18 +133,18 @@ class _MountPlan:
         self.steps.append(Mount(action, path, content, size))
 
 
-def environment(program: Program, place: Paths) -> dict[str, str]:
+def environment(program: Program, paths: Paths) -> dict[str, str]:
     """Return a program's whole environment: what Python and ROS 2 need, its private folders, and what it was given."""
     needed = {name: os.environ[name] for name in (*RUNTIME_VARIABLES, "LD_PRELOAD") if name in os.environ}
-    hub = {"RMW_LOCKSTEP_SOCKET": place.hub} if place.hub else {}
+    hub = {"RMW_LOCKSTEP_SOCKET": paths.hub} if paths.hub else {}
     return {
         **needed,
         **hub,
         "PATH": f"{sys.prefix}/bin:/usr/local/bin:/usr/bin:/bin",
-        "HOME": place.home,
-        "TMPDIR": place.temporary,
+        "HOME": paths.home,
+        "TMPDIR": paths.temporary,
         "PYTHONUNBUFFERED": "1",
-        "ROS_LOG_DIR": f"{place.home}/log",
+        "ROS_LOG_DIR": f"{paths.home}/log",
         "USER": "student",
         "LOGNAME": "student",
         **program.environment,

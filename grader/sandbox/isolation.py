@@ -86,7 +86,7 @@ def choose(wanted: Isolation | None = None) -> Isolation:
 
 
 def _reason_against(level: Isolation) -> str | None:
-    """None where the level works, or has worked under the same circumstances; else the reason in words."""
+    """None if the level works, or has worked under the same circumstances; otherwise the reason in words."""
     if has_worked(level):
         return None
     reason = _tried(level)

@@ -60,17 +60,17 @@ def student_user() -> int:
         return os.geteuid()
     for folder in sorted({folder for path in filesystem.interpreter() for folder in path.resolve().parents}):
         if not folder.stat().st_mode & stat.S_IXOTH:
-            raise OSError(f"as root it needs a Python that other users can read, and this one lies in {folder}")
+            raise OSError(f"as root it needs a Python that other users can read, and this one is in {folder}")
     return dedicated_user()
 
 
-def restrict(place: Paths, readonly: Sequence[Path], hidden: Sequence[Path], *, processes: bool) -> None:
+def restrict(paths: Paths, readonly: Sequence[Path], hidden: Sequence[Path], *, processes: bool) -> None:
     """Confine this process, and everything it starts, to reading Python and ROS 2 and writing its own folders.
 
     Needs no_new_privs.
 
     Args:
-        place: its own folders.
+        paths: its own folders.
         readonly: what else it may read.
         hidden: what it may not read, although it is inside something that it may; it sees the names in there.
         processes: whether it may read /proc, in which its processes check whether they are idle. It then sees others'
@@ -91,13 +91,13 @@ def restrict(place: Paths, readonly: Sequence[Path], hidden: Sequence[Path], *, 
     ruleset = syscalls.system_call(
         _CREATE_RULESET, handled, ctypes.c_size_t(size), ctypes.c_uint32(0), what="landlock_create_ruleset"
     )
-    for path in (*filesystem.system(), *filesystem.interpreter(), *readonly, Path(place.folder)):
+    for path in (*filesystem.system(), *filesystem.interpreter(), *readonly, Path(paths.folder)):
         _allow_reading(ruleset, path, [path.resolve() for path in hidden])
     if processes:
         _allow(ruleset, Path("/proc"), _READ_FILE | _READ_FOLDER)
     for path in map(Path, ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")):
         _allow(ruleset, path, (_READ_FILE | _WRITE_FILE) & files)
-    for path in (Path(place.home), Path(place.temporary)):
+    for path in (Path(paths.home), Path(paths.temporary)):
         _allow(ruleset, path, files)
     syscalls.system_call(_RESTRICT_SELF, ctypes.c_int(ruleset), ctypes.c_uint32(0), what="landlock_restrict_self")
     os.close(ruleset)

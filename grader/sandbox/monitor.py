@@ -100,7 +100,7 @@ class Monitor:
     """A thread in the runner for one student."""
 
     def __init__(
-        self, control: socket.socket, output: int, limits: Limits, pid: int, init: int, holders: frozenset[int]
+        self, control: socket.socket, output: int, limits: Limits, pid: int, init: int, own_processes: frozenset[int]
     ) -> None:
         """Begin to watch.
 
@@ -110,7 +110,7 @@ class Monitor:
             limits: what kills the program.
             pid: the program's first process.
             init: the process that adopts its orphans.
-            holders: children of `init` that are not the program's.
+            own_processes: children of `init` that are not the program's.
         """
         self.ended = threading.Event()
         """Set when the first process has ended."""
@@ -120,7 +120,7 @@ class Monitor:
         self.others: frozenset[int] = frozenset()
         """The other processes, as last seen."""
         self._control, self._pipe, self._limits = control, output, limits
-        self._pid, self._init, self._holders = pid, init, holders
+        self._pid, self._init, self._own_processes = pid, init, own_processes
         self._buffer = OutputBuffer()
         self._lock = threading.Lock()
         self._limit: str | None = None
@@ -139,7 +139,7 @@ class Monitor:
         if self.dead.is_set():
             return set()
         found = processes.descendants(self._init) | processes.descendants(self._pid)
-        return (found | ({self._pid} if self.exit is None else set())) - self._holders
+        return (found | ({self._pid} if self.exit is None else set())) - self._own_processes
 
     def cpu_seconds(self) -> float:
         """Return the CPU seconds of all processes, including those that have ended."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
-import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +12,22 @@ from typing import NoReturn
 
 from grader.sandbox import seccomp, syscalls
 from grader.sandbox.filesystem import USER_ID, Mount, dedicated_user
-from grader.sandbox.program import SUBMISSION
+from grader.sandbox.isolation import Isolation
+from grader.sandbox.program import SUBMISSION, SandboxError
+
+
+@dataclass(frozen=True)
+class Builder:
+    """A process that holds namespaces open until its input is closed, and the ends of the pipes to it."""
+
+    pid: int
+    input: int
+    output: int
+    errors: int
+
+    def wait(self) -> int:
+        """Wait for its end; return its exit code, or the negative number of the signal that ended it."""
+        return os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
 
 
 @dataclass(frozen=True)
@@ -22,13 +36,13 @@ class Namespaces:
 
     Attributes:
         init: the first process of the pid namespace; when it dies, the kernel kills all others.
-        holders: processes of ours inside, which are not the student's.
+        own_processes: processes of ours inside, which are not the student's.
         builder: the bubblewrap process outside, parent of `init`; None if `init` is this process's own child.
     """
 
     init: int
-    holders: frozenset[int] = frozenset()
-    builder: subprocess.Popen[bytes] | None = None
+    own_processes: frozenset[int] = frozenset()
+    builder: Builder | None = None
 
     def kill(self) -> None:
         """Kill everything inside. It is dead when `reap` returns."""
@@ -50,10 +64,8 @@ class Namespaces:
     def forget(self) -> None:
         """Close, in a fork of the process that made the namespaces, what keeps them open."""
         if self.builder is not None:
-            for stream in (self.builder.stdin, self.builder.stdout, self.builder.stderr):
-                if stream is not None:
-                    stream.close()
-            self.builder.returncode = 0  # not this process's child
+            for number in (self.builder.input, self.builder.output, self.builder.errors):
+                os.close(number)
 
 
 def write_files(files: Mapping[str, bytes]) -> None:
@@ -249,3 +261,58 @@ def create_user_namespace() -> int:
         os.close(told_at)
         os.close(ended_to)
         os.waitpid(child, 0)
+
+
+def enter(isolation: Isolation) -> None:
+    """Move this process into namespaces of its own: a network with nothing but loopback, /dev/shm, and System V IPC.
+
+    Only for students without a hub, which talk to their runner over Fast DDS. Those with a hub have no network.
+
+    Call it in a freshly forked process with a single thread, before rclpy is initialised. Its students join the same
+    network, so that runner and student can reach each other and nothing else. At the levels without namespaces only
+    orphans are caught (see PR_SET_CHILD_SUBREAPER in prctl(2)); there a ROS domain of its own separates the runner.
+
+    Called again by the same thread, before its next student, it moves into another new network: in the old one the
+    kernel may still reserve a port for a connection of the previous student.
+
+    Raises:
+        OSError: if this machine allows no such namespaces.
+    """
+    syscalls.prctl(syscalls.PR_SET_CHILD_SUBREAPER, 1)
+    if isolation not in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
+        return
+    if _made:
+        syscalls.unshare(syscalls.CLONE_NEWNET)
+        syscalls.bring_loopback_up()
+        return
+    flags = syscalls.CLONE_NEWNET | syscalls.CLONE_NEWNS | syscalls.CLONE_NEWIPC
+    user, group = os.geteuid(), os.getegid()
+    try:
+        syscalls.unshare(flags if user == 0 else flags | syscalls.CLONE_NEWUSER)
+    except OSError as fault:
+        which = "network or mount" if user == 0 else "user"
+        raise OSError(f"this machine allows no {which} namespaces: {fault}") from fault
+    if user != 0:
+        Path("/proc/self/setgroups").write_text("deny")
+        Path("/proc/self/uid_map").write_text(f"{user} {user} 1\n")
+        Path("/proc/self/gid_map").write_text(f"{group} {group} 1\n")
+    syscalls.mount("", "/", flags=syscalls.MS_REC | syscalls.MS_PRIVATE)
+    if Path("/dev/shm").is_dir():
+        syscalls.mount("tmpfs", "/dev/shm", "tmpfs", syscalls.MS_NOSUID | syscalls.MS_NODEV, "mode=1777,size=64m")
+    syscalls.bring_loopback_up()
+    _made.append(create_user_namespace())
+
+
+# The descriptor of the students' user namespace, once this process is a runner.
+_made: list[int] = []
+
+
+def students_users() -> int:
+    """Return the user namespace that this runner's students run in, in turn: a descriptor.
+
+    Raises:
+        SandboxError: if this process has not entered namespaces of its own.
+    """
+    if not _made:
+        raise SandboxError("call grader.sandbox.enter(isolation) in the runner's process before it starts a student")
+    return _made[-1]

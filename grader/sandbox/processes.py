@@ -117,7 +117,7 @@ class ProcessTree:
 
     folder: Path
     init: int = field(default_factory=os.getpid)
-    holders: frozenset[int] = frozenset()
+    own_processes: frozenset[int] = frozenset()
 
     def kill(self) -> None:
         """Kill what the student has started. What it starts meanwhile is found by `reap`."""

@@ -57,7 +57,7 @@ class Program:
         hub: the socket of the hub that each of its processes connects to, over rmw_lockstep; alone in a folder that
             belongs to the caller. The program then has no network at all. None: it uses Fast DDS, in the network of the
             calling process.
-        warm: run in a fork of the fork server, in which rclpy has been imported already. Otherwise in a new Python
+        preloaded: run in a fork of the fork server, in which rclpy has been imported already. Otherwise in a new Python
         process.
     """
 
@@ -67,7 +67,7 @@ class Program:
     environment: Mapping[str, str] = field(default_factory=dict)
     readonly: tuple[Path, ...] = ()
     hidden: tuple[Path, ...] = ()
-    warm: bool = True
+    preloaded: bool = True
     hub: Path | None = None
 
     def __post_init__(self) -> None:
@@ -83,7 +83,7 @@ class Program:
         if not absolute and self.main not in self.files:
             raise ValueError(f"the main file {self.main!r} is not among the files: {', '.join(self.files) or 'none'}")
         if absolute and not any(Path(self.main).is_relative_to(shown) for shown in self.readonly):
-            raise ValueError(f"the main file {self.main} lies in none of the readonly folders")
+            raise ValueError(f"the main file {self.main} is in none of the readonly folders")
 
     @property
     def middleware(self) -> Middleware:

@@ -24,17 +24,17 @@ class Request:
     """What a freshly made student process has to run."""
 
     program: Program
-    place: Paths
+    paths: Paths
 
 
-def supervise(start: Start, control: int, output: int, rig_namespaces: Sequence[int]) -> Request:
+def supervise(start: Start, control: int, output: int, runner_namespaces: Sequence[int]) -> Request:
     """Start a student and stay with it until it is dead. Returns only in the student itself; the supervisor exits.
 
     Args:
         start: what to start.
         control: the socket to the runner.
         output: where the student's standard output and error go.
-        rig_namespaces: the user namespace that the runner made for its students, and for those without a hub its own
+        runner_namespaces: the user namespace that the runner made for its students, and for those without a hub its own
         user and network namespace; empty for the levels without.
     """
     reported = False
@@ -43,20 +43,20 @@ def supervise(start: Start, control: int, output: int, rig_namespaces: Sequence[
         syscalls.prctl(syscalls.PR_SET_CHILD_SUBREAPER, 1)  # orphans of the student or bubblewrap are reaped here
         os.chdir("/")
         beside = _tasks_beside(start)
-        users, *rig = rig_namespaces or (-1,)
-        for namespace in rig:
+        users, *runner = runner_namespaces or (-1,)
+        for namespace in runner:
             _join(namespace)
         if start.program.hub:
             _admit_student_alone(start.program.hub, _owner(start.isolation))
-        house, place = _build(start, users)
-        child = _fork_student(start, place, house, beside, output)
+        sandbox, paths = _build(start, users)
+        child = _fork_student(start, paths, sandbox, beside, output)
         if isinstance(child, Request):
             return child
         os.close(output)
-        started = {"event": "started", "pid": child, "folder": place.folder}
-        _tell(control, started | {"init": house.init, "holders": sorted(house.holders)})
+        started = {"event": "started", "pid": child, "folder": paths.folder}
+        _tell(control, started | {"init": sandbox.init, "own_processes": sorted(sandbox.own_processes)})
         reported = True
-        _watch(control, child, house)
+        _watch(control, child, sandbox)
         _tell(control, {"event": "dead"})
     except BaseException as fault:
         if not reported:
@@ -75,12 +75,12 @@ def _build(start: Start, users: int) -> tuple[namespaces.Namespaces | processes.
     program = start.program
     if start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
         builder = bubblewrap if start.isolation is Isolation.BUBBLEWRAP else namespaces
-        house = builder.build(start.plan, users, network=not program.hub)
+        sandbox = builder.build(start.plan, users, network=not program.hub)
         namespaces.write_files(program.files)
-        return house, Paths(SUBMISSION, filesystem.HOME, "/tmp", HUB if program.hub else None)
+        return sandbox, Paths(SUBMISSION, filesystem.HOME, "/tmp", HUB if program.hub else None)
     owner = _owner(start.isolation)
-    place = processes.make_paths(program.files, owner, program.hub)
-    return processes.ProcessTree(Path(place.folder).parent), place
+    paths = processes.make_paths(program.files, owner, program.hub)
+    return processes.ProcessTree(Path(paths.folder).parent), paths
 
 
 def _admit_student_alone(hub: Path, owner: int | None) -> None:
@@ -96,33 +96,33 @@ def _admit_student_alone(hub: Path, owner: int | None) -> None:
 
 
 def _fork_student(
-    start: Start, place: Paths, house: namespaces.Namespaces | processes.ProcessTree, beside: int, output: int
+    start: Start, paths: Paths, sandbox: namespaces.Namespaces | processes.ProcessTree, beside: int, output: int
 ) -> int | Request:
     """Fork the student. Returns its pid in the parent, and what to run in the child, once it has been confined."""
     fault_at, fault_to = os.pipe()
     child = os.fork()
     if child == 0:
         try:
-            if isinstance(house, namespaces.Namespaces):
-                house.forget()
-            confine(start, place, beside, output, keep_open=fault_to)
+            if isinstance(sandbox, namespaces.Namespaces):
+                sandbox.forget()
+            confine(start, paths, beside, output, keep_open=fault_to)
         except BaseException as fault:
             os.write(fault_to, str(fault).encode() or repr(fault).encode())
             os._exit(1)
         os.close(fault_to)
-        return Request(start.program, place)
+        return Request(start.program, paths)
     os.close(fault_to)
     with os.fdopen(fault_at, "rb") as stream:
         fault_told = stream.read()
     if fault_told:
-        house.kill()
+        sandbox.kill()
         os.waitpid(child, 0)
-        house.reap()
+        sandbox.reap()
         raise OSError(fault_told.decode(errors="replace"))
     return child
 
 
-def _watch(control: int, child: int, house: namespaces.Namespaces | processes.ProcessTree) -> None:
+def _watch(control: int, child: int, sandbox: namespaces.Namespaces | processes.ProcessTree) -> None:
     """Pass on interrupts and report the end of the student's first process, until the order to kill."""
     ended = os.pidfd_open(child)
     poll = select.poll()
@@ -141,10 +141,10 @@ def _watch(control: int, child: int, house: namespaces.Namespaces | processes.Pr
                 if alive:
                     os.kill(child, signal.SIGINT)
                 continue
-            house.kill()
+            sandbox.kill()
             if alive:
                 _report_end(control, child)
-            house.reap()
+            sandbox.reap()
             return
 
 

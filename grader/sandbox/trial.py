@@ -10,7 +10,7 @@ import sys
 from grader.sandbox import landlock
 from grader.sandbox.fork_server import ForkServer
 from grader.sandbox.isolation import Isolation
-from grader.sandbox.network import enter
+from grader.sandbox.namespaces import enter
 from grader.sandbox.program import Program, SandboxError
 
 _WORD = "works"
@@ -23,8 +23,8 @@ def main(level: Isolation) -> str | None:
         return "the kernel has no Landlock (Linux 5.13 and newer have it, unless it is switched off)"
     try:
         enter(level)
-        # Not warm: this also shows that Python itself can be started in there.
-        program = Program("trial.py", {"trial.py": _PROGRAM.encode()}, warm=False)
+        # Not preloaded: this also shows that Python itself can be started in there.
+        program = Program("trial.py", {"trial.py": _PROGRAM.encode()}, preloaded=False)
         with ForkServer(preload=()) as fork_server, fork_server.start(program, level) as student:
             end = student.wait(20.0)
             said = student.output().text.strip()

@@ -9,6 +9,7 @@ import gc
 import importlib
 import importlib.machinery
 import io
+import itertools
 import linecache
 import os
 import pickle
@@ -43,7 +44,7 @@ def fork() -> int:
 CORES_SHOWN = 4
 
 
-def run_program(program: Program, place: Paths) -> None:
+def run_program(program: Program, paths: Paths) -> None:
     """Run a program as `__main__` in this process; return or raise SystemExit as the program does.
 
     It first connects to the hub, if there is one. So a program that ended without a connection has run none of the
@@ -52,14 +53,14 @@ def run_program(program: Program, place: Paths) -> None:
     An uncaught exception prints its traceback, beginning with the student's own lines, and exits with 1; an uncaught
     KeyboardInterrupt ends the process by SIGINT. Threads, atexit and the rest of the end are the interpreter's own.
     """
-    path = str(Path(place.folder, program.main))
-    variables = filesystem.environment(program, place)
+    path = str(Path(paths.folder, program.main))
+    variables = filesystem.environment(program, paths)
     os.environ.clear()
     os.environ.update(variables)
-    if not program.warm:
+    if not program.preloaded:
         os.execv(sys.executable, [sys.executable, path, *program.arguments])
-    if place.hub:
-        middleware.connect(place.hub)
+    if paths.hub:
+        middleware.connect(paths.hub)
     module = _prepare_main(path, program.arguments)
     os.sched_getaffinity = lambda pid: set(range(CORES_SHOWN))
     try:
@@ -94,9 +95,29 @@ def _prepare_main(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
     atexit.register(_die_of_interrupt)  # the first to be registered is the last to be called
     _ours.append(sys.modules["__main__"])
     sys.modules["__main__"] = module
-    for name in [name for name in sys.modules if name.partition(".")[0] in ("grader", "rmw_lockstep")]:
+    for name in (*_own_modules, *filter(_is_own, _modules_of_this_fork())):
         _ours.append(sys.modules.pop(name))
     return module
+
+
+# The names of Spinbook's modules, and the number of all, before the first fork. Each name that a fork looks at is
+# copied from the fork server's memory.
+_own_modules: list[str] = []
+_count_of_modules: list[int] = []
+
+
+def _note_modules() -> None:
+    _own_modules.extend(filter(_is_own, sys.modules))
+    _count_of_modules.append(len(sys.modules))
+
+
+def _is_own(module: str) -> bool:
+    return module.partition(".")[0] in ("grader", "rmw_lockstep")
+
+
+def _modules_of_this_fork() -> list[str]:
+    """Return the names of the modules that were imported after the fork: the last ones in `sys.modules`."""
+    return list(itertools.islice(reversed(sys.modules), len(sys.modules) - _count_of_modules[0]))
 
 
 # The modules whose code is still running below the student's: without a reference they would be torn down.
@@ -133,6 +154,7 @@ _USED_BY_MOST_NODES = (
     "std_msgs",
     "geometry_msgs",
     "sensor_msgs",
+    "type_description_interfaces",
 )
 
 
@@ -148,7 +170,7 @@ def main(arguments: list[str]) -> None:
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # supervisors need no reaping
     job = serve(requests, fault)
     if job is not None:
-        run_program(job.program, job.place)
+        run_program(job.program, job.paths)
 
 
 def _prepare_for_forks() -> None:
@@ -162,6 +184,8 @@ def _prepare_for_forks() -> None:
         # The logger reads the file of every module when it is first asked for a caller: half a step's time each.
         importlib.import_module("rclpy.impl.rcutils_logger").CallerId()
     linecache.cache.pop(__file__, None)
+    sys.path_importer_cache.clear()  # emptied here, it need not be copied to be emptied in each fork
+    _note_modules()
 
 
 def serve(requests: int, fault: str | None) -> Request | None:
@@ -177,6 +201,8 @@ def serve(requests: int, fault: str | None) -> Request | None:
         if fork() == 0:
             listening.detach()
             os.close(requests)
+            for number in passed:  # no program may inherit what was received
+                os.set_inheritable(number, False)
             request, control, output, *namespaces = passed
             with os.fdopen(request, "rb") as stream:
                 start = pickle.load(stream)

@@ -11,19 +11,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from grader.exercise.exercise import Exercise
-from grader.locks import claim_number
+from grader.files import claim_number
 from grader.recording.recording import Recording
-from grader.runner.task import Task
+from grader.runner.student import Task
 from grader.sandbox.isolation import Isolation
-from grader.sandbox.network import enter
+from grader.sandbox.namespaces import enter
 from grader.sandbox.program import Limits, Middleware, Program
 from grader.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
-    from grader.sandbox.fork_server import ForkServer  # the worker hands it in
-    from grader.sandbox.student import Student
+    from grader.sandbox.fork_server import (
+        ForkServer,  # the worker hands it in
+        Student,
+    )
 
-#: Inside network namespaces of its own a rig is alone in every domain.
+#: Inside network namespaces of its own a runner is alone in every domain.
 ALONE = 42
 
 #: Domains whose UDP ports are above those that Linux gives to programs which request no particular one

@@ -38,7 +38,7 @@ class HostFault(Exception):
 class Worker:
     """One process of a worker pool, created when it is first needed; use it as a context manager, from one thread.
 
-    What the process has prepared for one job is ready for the next: a rig its namespaces, and all memory that is
+    What the process has prepared for one job is ready for the next: a runner its namespaces, and all memory that is
     copied from the worker when it is first touched. So it is for jobs that may share a process: the runs of one
     submission, not those of two.
     """
@@ -113,7 +113,7 @@ FAST_DDS_ENVIRONMENT = {
     "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
 }
 
-#: For the worker and its rigs. A second RMW or the user's ROS_STATIC_PEERS would separate rig and student.
+#: For the worker and its runners. A second RMW or the user's ROS_STATIC_PEERS would separate runner and student.
 WORKER_ENVIRONMENT = {
     **FAST_DDS_ENVIRONMENT,
     "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp",
@@ -135,7 +135,7 @@ PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, SHARE = b"p", b"t", b"j", b"s"
 class WorkerPool:
     """A worker process that forks the processes which do jobs, and is restarted if it dies.
 
-    Any thread may call `do` and `hand`; use it as a context manager.
+    Any thread may call `do` and `reserve`; use it as a context manager.
     """
 
     def __init__(self, *middlewares: Middleware | None) -> None:
@@ -167,10 +167,10 @@ class WorkerPool:
 
     def do(self, job: Job, cancelled: threading.Event | None = None) -> Any:
         """Return what `job` returns, done in a process of its own; see `Hand.do`."""
-        with self.hand() as hand:
-            return hand.do(job, cancelled)
+        with self.reserve() as worker:
+            return worker.do(job, cancelled)
 
-    def hand(self) -> Worker:
+    def reserve(self) -> Worker:
         """A process that does one job after another."""
         return Worker(self._process, self._shared)
 

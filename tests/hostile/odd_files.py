@@ -71,7 +71,7 @@ def _device(folder: Path) -> Path:
 
 
 def _pipe(folder: Path) -> Path:
-    """Make a pipe without a writer: opening it blocks for ever."""
+    """Make a pipe without a writer: opening it blocks forever."""
     path = folder / "joint_velocity.py"
     os.mkfifo(path)
     return path

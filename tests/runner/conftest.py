@@ -11,7 +11,7 @@ from runner_programs import EXERCISE, RunProgram, numbers
 from grader.grading.running import ARGUMENTS
 from grader.recording import Recording
 from grader.runner.run import run
-from grader.runner.task import Task
+from grader.runner.student import Task
 from grader.sandbox import ForkServer, Limits, Middleware, Program, Student, choose
 from grader.scenario import Scenario
 from grader.workers.pool import STUDENT_ENVIRONMENT

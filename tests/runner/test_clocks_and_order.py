@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.runner.budget import Allowance, Budget, HostStalled
-from grader.runner.clocks import BETWEEN_MESSAGES, Clocks
-from grader.runner.recorder import in_canonical_order
+from grader.runner.ends import BETWEEN_MESSAGES, Clocks
+from grader.runner.recorder import by_several_threads, in_canonical_order, without_order
 from grader.scenario.scenario import SECOND, START
 from rmw_lockstep.hub import EndPoint, Heard, Qos
 
@@ -59,6 +59,17 @@ def test_what_one_thread_publishes_stays_in_its_order() -> None:
 def test_what_several_threads_publish_at_one_moment_is_in_the_order_of_its_bytes() -> None:
     first = [heard(b"b", 1), heard(b"a", 2), heard(b"c", 1, now=4)]
     assert order(first) == order([first[1], first[0], first[2]]) == [b"c", b"a", b"b"]
+
+
+def test_what_only_one_thread_of_a_node_publishes_has_an_order() -> None:
+    assert by_several_threads([heard(b"b", 1), heard(b"a", 1)]) == set()
+    assert by_several_threads([heard(b"b", 1), heard(b"a", 2, now=9)]) == {(0, "/node")}
+    assert by_several_threads([heard(b"b", 1, node="/a"), heard(b"a", 2, process=2, node="/b")]) == set()
+
+
+def test_only_messages_of_one_moment_can_be_without_an_order() -> None:
+    assert without_order([heard(b"a", 1), heard(b"b", 2, now=9)]) == set()
+    assert len(without_order([heard(b"a", 1), heard(b"b", 2), heard(b"c", 1, now=9)])) == 1
 
 
 def test_of_several_processes_the_node_decides() -> None:

@@ -8,7 +8,7 @@ import pytest
 from runner_programs import ANSWER, HARD, RunProgram, numbers, program
 
 from grader.recording import Recording
-from grader.recording.store import to_json
+from grader.recording.recording import to_json
 from grader.scenario.scenario import SECOND, START
 
 MS = 1_000_000
@@ -31,8 +31,8 @@ def delays(recording: Recording) -> list[float]:
 @pytest.mark.parametrize("name", HARD)
 def test_a_hard_program_is_recorded_the_same_each_time(run_program: RunProgram, name: str) -> None:
     first, second = run_program(HARD[name]), run_program(HARD[name])
-    assert first.ending.outcome == "completed", first.ending.story + first.log
-    assert first.hold == "lockstep"
+    assert first.ending.outcome == "completed", first.ending.message + first.log
+    assert first.synchronization == "lockstep"
     assert first.uses_sim_time
     assert seen(first) == seen(second)
     if name not in ("a thread of its own", "a timer by the computer's clock"):
@@ -77,7 +77,7 @@ def test_what_was_published_before_simulated_time_began_has_no_time(run_program:
 def test_what_was_published_before_a_crash_is_kept(run_program: RunProgram, last: str) -> None:
     recording = run_program(program(body=f"{ANSWER}\nif message.data == 3.0:\n    {last}"))
     assert recording.ending.outcome == "crashed"
-    assert "message 3" in recording.ending.story
+    assert "message 3" in recording.ending.message
     assert answers(recording) == [2, 4, 6]
     assert {end_point.topic for end_point in recording.end_points} >= {"/in", "/out"}
 

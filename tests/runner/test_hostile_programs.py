@@ -44,7 +44,7 @@ def attack(code: str) -> str:
         ("own().sendall(frame(b'T', b'\\0' * 9))", "over-limit", "disturbed the connection"),
         ("own().sendall(frame(b'N', struct.pack('<Q', 1 << 32 | 99) + text(b'a\\0b') + text(b'/')))",
          "over-limit", "not valid as a node's name"),
-        ("own().sendall(frame(b'N', struct.pack('<Q', 7) + text(b'rig') + text(b'/')))",
+        ("own().sendall(frame(b'N', struct.pack('<Q', 7) + text(b'runner') + text(b'/')))",
          "over-limit", "not the process's own"),
         ("own().sendall(struct.pack('<IB', 2_000_000_000, 68))", "over-limit", "message of 2,000,000,000 bytes"),
         ("for i in range(100_000): self.answer(1.0)", "over-limit", "more than 5,000 messages"),
@@ -60,7 +60,7 @@ def test_an_attack_ends_the_run_with_a_true_message(
     run_program: RunProgram, code: str, outcome: str, told: str
 ) -> None:
     recording = run_program(attack(code), limits=Limits(frames=20_000, end_points=400, connections=16))
-    assert (recording.ending.outcome, told in recording.ending.story) == (outcome, True), recording.ending
+    assert (recording.ending.outcome, told in recording.ending.message) == (outcome, True), recording.ending
     assert [received.fields["data"] for received in recording.received][:2] == [2, 4]
 
 
@@ -78,7 +78,7 @@ def test_an_attack_ends_the_run_with_a_true_message(
 def test_a_program_that_goes_silent_is_waited_for_three_seconds(run_program: RunProgram, code: str) -> None:
     recording = run_program(attack(code))
     assert recording.ending.outcome in ("timed-out", "crashed"), recording.ending
-    assert recording.ending.story
+    assert recording.ending.message
 
 
 def test_a_lie_about_being_idle_harms_only_the_liar(run_program: RunProgram) -> None:
@@ -112,7 +112,7 @@ def test_a_program_that_does_not_go_on_is_told_why(
     run_program: RunProgram, source: str, outcome: str, told: str
 ) -> None:
     ending = run_program(source).ending
-    assert (ending.outcome, told in ending.story) == (outcome, True), ending
+    assert (ending.outcome, told in ending.message) == (outcome, True), ending
 
 
 def test_a_program_that_sleeps_two_seconds_before_it_makes_a_node_is_not_too_late(run_program: RunProgram) -> None:
@@ -123,5 +123,5 @@ def test_a_program_that_sleeps_two_seconds_before_it_makes_a_node_is_not_too_lat
 def test_how_much_it_publishes_is_bounded_in_bytes_before_it_takes_any_memory(run_program: RunProgram) -> None:
     recording = run_program(program(body=f"for i in range(100): {ANSWER}"), numbers(20), Limits(data_bytes=10_000))
     assert recording.ending.outcome == "over-limit"
-    assert "more than 10,000 bytes" in recording.ending.story
+    assert "more than 10,000 bytes" in recording.ending.message
     assert recording.received, "what came before is kept"

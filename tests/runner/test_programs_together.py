@@ -15,7 +15,7 @@ from grader.exercise.exercise import ProgramFile
 from grader.grading.running import arguments
 from grader.recording import Recording
 from grader.runner.run import run
-from grader.runner.task import Task
+from grader.runner.student import Task
 from grader.sandbox import ForkServer, Limits, Student, choose
 from grader.sandbox import Program as Sandboxed
 from grader.scenario import Program, Scenario, at
@@ -86,7 +86,7 @@ def test_which_program_crashed_is_told(together: Together) -> None:
     crashes = TALKER.replace("lambda: self.talk.publish(Float64(data=1.0))", "lambda: 1 / 0")
     ending = together(Scenario("s", "t", duration=0.5), crashes).ending
     assert ending.outcome == "crashed"
-    assert "0.00 s after the start: ZeroDivisionError" in ending.story
+    assert "0.00 s after the start: ZeroDivisionError" in ending.message
 
 
 def test_the_authors_own_program_is_heard_and_not_recorded_as_the_students(together: Together) -> None:

@@ -26,7 +26,7 @@ from scripted_programs import (
 from grader.grading.running import arguments
 from grader.recording import Recording
 from grader.runner.run import run
-from grader.runner.task import Task
+from grader.runner.student import Task
 from grader.sandbox import ForkServer, Limits, Program, Student, choose
 from grader.scenario import ActionServer, Scenario, Server, Turtle, World, at, no_reply, reply, succeeds
 from grader.workers.pool import STUDENT_ENVIRONMENT
@@ -64,7 +64,9 @@ CASES = {
 
 @pytest.fixture
 def busy_loops() -> Iterator[None]:
-    loops = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(LOOPS)]
+    # Each in a session of its own, for Linux shares its cores by session.
+    command = [sys.executable, "-c", "while True: pass"]
+    loops = [subprocess.Popen(command, start_new_session=True) for _ in range(LOOPS)]
     yield
     for loop in loops:
         loop.kill()

@@ -28,7 +28,7 @@ from grader.exercise import ExerciseError
 from grader.grading.running import arguments
 from grader.recording import Call, Recording
 from grader.runner.run import run
-from grader.runner.task import Task
+from grader.runner.student import Task
 from grader.sandbox import ForkServer, Limits, Program, Student, choose
 from grader.scenario import (
     ActionServer,
@@ -72,7 +72,7 @@ def scripted(fork_server: ForkServer) -> Scripted:
             return fork_server.start(given, level, Limits())
 
         found = run(Task(EXERCISE, complete, "node.py", source), start)
-        assert found.ending.outcome == "completed", found.ending.story + found.log
+        assert found.ending.outcome == "completed", found.ending.message + found.log
         return found
 
     return run_it
@@ -314,6 +314,17 @@ def test_joints_go_to_where_they_are_told_no_faster_than_they_can() -> None:
         chain.step(0.1)
         positions.append(chain.state()["/joint_states"]["position"])
     assert positions == [[0.2, 1.0], [pytest.approx(0.3), 1.0], [pytest.approx(0.3), 1.0]]
+
+
+def too_many(request: object) -> dict[str, object]:
+    return {"success": 2**70 if request.data else False}  # type: ignore[attr-defined]
+
+
+def test_an_authors_function_that_breaks_is_named_with_the_request(scripted: Scripted) -> None:
+    told = r"too_many\(\) for /lamp, with the request \{'data': True\}: .* is given for success"
+    with pytest.raises(ExerciseError, match=told) as caught:
+        scripted(program(SERVICE_CLIENT), Scenario("s", "t", servers=Server("/lamp", replies=too_many), duration=1.0))
+    assert "a student's node may send it anything" in str(caught.value)
 
 
 class Sour:

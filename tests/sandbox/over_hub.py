@@ -1,4 +1,4 @@
-"""Runs programs in a sandbox over the grader's own middleware, with a real hub in the rig's process."""
+"""Runs programs in a sandbox over the grader's own middleware, with a real hub in the runner's process."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
-from sandbox_rig import Rig
+from sandbox_runner import Runner
 
 from grader.sandbox import Exit, ForkServer, Isolation, Limits, Middleware, Program, choose_middleware
 from rmw_lockstep.hub import Hub
@@ -34,18 +34,18 @@ class _Over(Exception):
 
 
 def run_over_hub(
-    rig: Rig, source: str, *, warm: bool = True, limits: Limits | None = None, timeout_s: float = 60.0
+    runner: Runner, source: str, *, preloaded: bool = True, limits: Limits | None = None, timeout_s: float = 60.0
 ) -> HubRun:
     """Run a program until its first process ends; its time advances by a second whenever it is idle."""
-    program = Program("student.py", {"student.py": source.encode()}, ("--ros-args",), warm=warm)
-    run: HubRun = rig.do(in_the_rig, program, limits, timeout_s)
+    program = Program("student.py", {"student.py": source.encode()}, ("--ros-args",), preloaded=preloaded)
+    run: HubRun = runner.do(in_the_runner, program, limits, timeout_s)
     return run
 
 
-def in_the_rig(
+def in_the_runner(
     fork_server: ForkServer, level: Isolation, program: Program, limits: Limits | None, timeout_s: float
 ) -> HubRun:
-    """Do the same, in the rig's process."""
+    """Do the same, in the runner's process."""
     folder = Path(tempfile.mkdtemp(prefix="spinbook-hub-"))
     deadline = time.monotonic() + timeout_s
     try:

@@ -1,4 +1,4 @@
-"""Every hostile submission, run against a real publisher in its sandbox: none escapes, and the rig is unharmed.
+"""Every hostile submission, run against a real publisher in its sandbox: none escapes, and the runner is unharmed.
 
 What the grader makes of them is tested in tests/hostile; this file only tests the sandbox.
 """
@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 import psutil
 import pytest
-from sandbox_rig import Rig
+from sandbox_runner import Runner
 
 from grader.sandbox import Exit, ForkServer, Isolation, Limits, Program
 
@@ -54,7 +54,7 @@ def size(names: Iterable[str], always: set[str]) -> list[Any]:
 
 @dataclass(frozen=True)
 class Spun:
-    """What a submission did: how it ended, what it printed, how many answers the rig received, what it left."""
+    """What a submission did: how it ended, what it printed, how many answers the runner received, what it left."""
 
     exit: Exit | None
     text: str
@@ -70,7 +70,7 @@ DEADLINE_S = 60.0
 
 
 def spin(fork_server: ForkServer, level: Isolation, source: bytes, domain: int, until: Until) -> Spun:
-    """In the rig: publish joint commands to a submission, receive its answers, interrupt and kill it."""
+    """In the runner: publish joint commands to a submission, receive its answers, interrupt and kill it."""
     import os
 
     import rclpy
@@ -87,7 +87,7 @@ def spin(fork_server: ForkServer, level: Isolation, source: bytes, domain: int, 
     os.environ.update(ros)
     context = Context()
     rclpy.init(context=context, domain_id=domain)
-    node = rclpy.create_node("rig", context=context)
+    node = rclpy.create_node("runner", context=context)
     executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)
     answers: list[JointState] = []
@@ -136,7 +136,7 @@ def over_limit(name: str) -> bool:
     return expected
 
 
-def spin_and_look(rig: Rig, name: str, domain: int) -> Spun:
+def spin_and_look(runner: Runner, name: str, domain: int) -> Spun:
     """Run a submission, and check what is true for each of them."""
     before = files()
     until: Until = "a while has passed"
@@ -144,7 +144,7 @@ def spin_and_look(rig: Rig, name: str, domain: int) -> Spun:
         until = "it ends"
     elif EXPECTED[name]["score"] == "full":
         until = "it answers"
-    spun: Spun = rig.do(spin, (HOSTILE / "submissions" / f"{name}.py").read_bytes(), domain, until)
+    spun: Spun = runner.do(spin, (HOSTILE / "submissions" / f"{name}.py").read_bytes(), domain, until)
 
     for word in EXPECTED[name].get("never", ()):
         assert word not in spun.text
@@ -152,14 +152,14 @@ def spin_and_look(rig: Rig, name: str, domain: int) -> Spun:
     assert left == []
     assert spun.left_running == 0
     assert spun.exit is not None
-    honest: Spun = rig.do(spin, HONEST.read_bytes(), domain, "it answers")
+    honest: Spun = runner.do(spin, HONEST.read_bytes(), domain, "it answers")
     assert honest.answers > 0
     return spun
 
 
 @pytest.mark.parametrize("name", size(EXPECTED, ALWAYS))
-def test_a_hostile_submission_is_contained(strongest_rig: Rig, name: str, ros_domain: int) -> None:
-    spun = spin_and_look(strongest_rig, name, ros_domain)
+def test_a_hostile_submission_is_contained(strongest_runner: Runner, name: str, ros_domain: int) -> None:
+    spun = spin_and_look(strongest_runner, name, ros_domain)
 
     if over_limit(name):
         assert spun.exit is not None
@@ -169,5 +169,7 @@ def test_a_hostile_submission_is_contained(strongest_rig: Rig, name: str, ros_do
 
 
 @pytest.mark.parametrize("name", size(EVERYWHERE, ALWAYS_EVERYWHERE))
-def test_an_attack_on_the_machine_is_contained_at_every_level(confined_rig: Rig, name: str, ros_domain: int) -> None:
-    spin_and_look(confined_rig, name, ros_domain)
+def test_an_attack_on_the_machine_is_contained_at_every_level(
+    confined_runner: Runner, name: str, ros_domain: int
+) -> None:
+    spin_and_look(confined_runner, name, ros_domain)

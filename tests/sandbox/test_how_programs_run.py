@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 
 import pytest
-from sandbox_rig import Rig
+from sandbox_runner import Runner
 
 from grader.runner.fastdds.idle import Threads
 from grader.sandbox import Exit, ForkServer, Isolation, Program
@@ -33,25 +33,25 @@ PROGRAMS = {
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_a_warm_start_behaves_as_a_new_python(either_rig: Rig, name: str) -> None:
-    warm = either_rig.run(PROGRAMS[name])
-    cold = either_rig.run(PROGRAMS[name], warm=False)
+def test_a_warm_start_behaves_as_a_new_python(either_runner: Runner, name: str) -> None:
+    preloaded = either_runner.run(PROGRAMS[name])
+    cold = either_runner.run(PROGRAMS[name], preloaded=False)
 
-    if either_rig.level in (Isolation.LANDLOCK, Isolation.NONE):  # a folder with a random name
-        assert warm.exit == cold.exit
-        assert len(warm.text.splitlines()) == len(cold.text.splitlines())
+    if either_runner.level in (Isolation.LANDLOCK, Isolation.NONE):  # a folder with a random name
+        assert preloaded.exit == cold.exit
+        assert len(preloaded.text.splitlines()) == len(cold.text.splitlines())
     else:
-        assert (warm.exit, warm.text) == (cold.exit, cold.text)
+        assert (preloaded.exit, preloaded.text) == (cold.exit, cold.text)
 
 
-def test_the_source_may_declare_its_encoding(either_rig: Rig) -> None:
-    run = either_rig.run("# -*- coding: latin-1 -*-\nprint('größer')".encode("latin-1"))
+def test_the_source_may_declare_its_encoding(either_runner: Runner) -> None:
+    run = either_runner.run("# -*- coding: latin-1 -*-\nprint('größer')".encode("latin-1"))
 
     assert run.text == "größer\n"
 
 
-def test_source_that_is_not_utf8_is_a_syntax_error_of_the_student(either_rig: Rig) -> None:
-    run = either_rig.run("print('größer')".encode("latin-1"))
+def test_source_that_is_not_utf8_is_a_syntax_error_of_the_student(either_runner: Runner) -> None:
+    run = either_runner.run("print('größer')".encode("latin-1"))
 
     assert run.exit == Exit(1, None, None)
     assert "SyntaxError" in run.text
@@ -59,8 +59,8 @@ def test_source_that_is_not_utf8_is_a_syntax_error_of_the_student(either_rig: Ri
 
 
 @pytest.mark.parametrize("name", ["a file.py", "größe.py", "-c.py", "'; rm -rf ~ #.py", "\n.py", "a" * 200 + ".py"])
-def test_odd_file_names_are_run(either_rig: Rig, name: str) -> None:
-    run = either_rig.run("print('ran')", name=name)
+def test_odd_file_names_are_run(either_runner: Runner, name: str) -> None:
+    run = either_runner.run("print('ran')", name=name)
 
     assert run.text == "ran\n"
 
@@ -71,19 +71,19 @@ def test_a_file_name_that_leaves_the_folder_is_refused(name: str) -> None:
         Program("main.py", {"main.py": b"", name: b""})
 
 
-def test_only_the_environment_that_was_passed_arrives(any_rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_the_environment_that_was_passed_arrives(any_runner: Runner, monkeypatch: pytest.MonkeyPatch) -> None:
     code = "import os\nprint(sorted(os.environ))\nprint(os.environ['GIVEN'])"
 
-    names, given = any_rig.run(code, environment={"GIVEN": "this"}).text.splitlines()
+    names, given = any_runner.run(code, environment={"GIVEN": "this"}).text.splitlines()
 
     assert given == "this"
     assert not {"PYTEST_CURRENT_TEST", "SSH_AUTH_SOCK", "PIP_CERT", "TERM", "SHELL", "PWD"} & set(eval(names))
 
 
-def test_the_fork_server_is_not_to_be_seen_in_the_program(either_rig: Rig) -> None:
+def test_the_fork_server_is_not_to_be_seen_in_the_program(either_runner: Runner) -> None:
     code = "import sys\nprint([name for name in sys.modules if name.split('.')[0] in ('grader', 'spinbook')])"
 
-    assert either_rig.run(code).text == "[]\n"
+    assert either_runner.run(code).text == "[]\n"
 
 
 def interrupt_a_spinning_node(fork_server: ForkServer, level: Isolation) -> tuple[Exit | None, str]:
@@ -95,8 +95,8 @@ def interrupt_a_spinning_node(fork_server: ForkServer, level: Isolation) -> tupl
         return student.wait(30.0), student.output().text
 
 
-def test_an_interrupt_is_what_ctrl_c_is(any_rig: Rig) -> None:
-    end, text = any_rig.do(interrupt_a_spinning_node)
+def test_an_interrupt_is_what_ctrl_c_is(any_runner: Runner) -> None:
+    end, text = any_runner.do(interrupt_a_spinning_node)
 
     assert end == Exit(None, signal.SIGINT, None)
     assert "finally" in text
@@ -114,8 +114,8 @@ def watch_cpu(fork_server: ForkServer, level: Isolation) -> tuple[bool, float, i
         return runs, student.cpu_seconds(), student.processes(), student.pid
 
 
-def test_the_rig_sees_what_the_program_uses(any_rig: Rig) -> None:
-    runs, cpu_s, processes, pid = any_rig.do(watch_cpu)
+def test_the_rig_sees_what_the_program_uses(any_runner: Runner) -> None:
+    runs, cpu_s, processes, pid = any_runner.do(watch_cpu)
 
     assert runs
     assert cpu_s >= 0.3
@@ -123,8 +123,8 @@ def test_the_rig_sees_what_the_program_uses(any_rig: Rig) -> None:
     assert pid > 1
 
 
-def test_a_program_stays_on_its_core(confined_rig: Rig) -> None:
-    assert confined_rig.do(escape_the_core) == "1\n"
+def test_a_program_stays_on_its_core(confined_runner: Runner) -> None:
+    assert confined_runner.do(escape_the_core) == "1\n"
 
 
 def escape_the_core(fork_server: ForkServer, level: Isolation) -> str:

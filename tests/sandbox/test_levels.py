@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from sandbox_rig import reason_against
+from sandbox_runner import reason_against
 
 from grader.sandbox import (
     ForkServer,
@@ -143,7 +143,7 @@ def test_where_a_machine_refuses_user_namespaces_landlock_is_what_is_left() -> N
 import os, sys
 sys.path[:0] = {[str(Path(__file__).parent), str(Path(__file__).parents[2])]!r}
 from grader.sandbox import SandboxUnavailable, available, choose, seccomp, syscalls
-from sandbox_rig import become_nobody
+from sandbox_runner import become_nobody
 if os.geteuid() == 0:
     become_nobody()
 # What containers do by default: unshare(2) is refused, and nothing else that matters here.

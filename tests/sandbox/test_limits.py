@@ -6,7 +6,7 @@ import dataclasses
 from typing import Any
 
 import pytest
-from sandbox_rig import Rig
+from sandbox_runner import Runner
 
 from grader.sandbox import Isolation, Limits
 from grader.sandbox.monitor import OutputBuffer
@@ -37,39 +37,39 @@ CUNNING = [
 ]
 
 
-def ends_at(rig: Rig, limit: str, code: str) -> None:
+def ends_at(runner: Runner, limit: str, code: str) -> None:
     """Run a program and check that this limit ends it, and no other program."""
-    if limit == "processes" and rig.level is Isolation.NONE and not rig.rootless:
+    if limit == "processes" and runner.level is Isolation.NONE and not runner.rootless:
         pytest.skip("the kernel does not limit root's processes, and this level leaves the program to root")
     short: dict[str, Any] = {"cpu": {"cpu_s": 1.0}, "wall": {"wall_s": 0.5}, "processes": {"processes": 32}}
     limits = dataclasses.replace(SMALL, **short.get(limit, {}))
 
-    run = rig.run(code, limits=limits, timeout_s=280.0)
+    run = runner.run(code, limits=limits, timeout_s=280.0)
 
     assert run.exit is not None
     assert run.exit.limit == limit
     assert run.exit.code != 0
-    assert rig.run("print('well')").text == "well\n"
+    assert runner.run("print('well')").text == "well\n"
 
 
 @pytest.mark.parametrize(("limit", "code"), PLAIN)
-def test_a_limit_ends_the_program_and_is_told(any_rig: Rig, limit: str, code: str) -> None:
-    ends_at(any_rig, limit, code)
+def test_a_limit_ends_the_program_and_is_told(any_runner: Runner, limit: str, code: str) -> None:
+    ends_at(any_runner, limit, code)
 
 
 @pytest.mark.parametrize(("limit", "code"), CUNNING)
-def test_cunning_gets_round_no_limit(strongest_rig: Rig, limit: str, code: str) -> None:
-    ends_at(strongest_rig, limit, code)
+def test_cunning_gets_round_no_limit(strongest_runner: Runner, limit: str, code: str) -> None:
+    ends_at(strongest_runner, limit, code)
 
 
 @pytest.mark.soak
 @pytest.mark.parametrize(("limit", "code"), CUNNING)
-def test_cunning_gets_round_no_limit_at_any_level(any_rig: Rig, limit: str, code: str) -> None:
-    ends_at(any_rig, limit, code)
+def test_cunning_gets_round_no_limit_at_any_level(any_runner: Runner, limit: str, code: str) -> None:
+    ends_at(any_runner, limit, code)
 
 
 @pytest.mark.parametrize("place", ["HOME", "TMPDIR", "/dev/shm"])
-def test_many_small_files_fill_nothing_but_their_own_place(apart_rig: Rig, place: str) -> None:
+def test_many_small_files_fill_nothing_but_their_own_place(apart_runner: Runner, place: str) -> None:
     code = f"""
 import os
 place = os.environ.get({place!r}, {place!r})
@@ -81,20 +81,20 @@ try:
 finally:
     print(written, flush=True)
 """
-    run = apart_rig.run(code, limits=SMALL)
+    run = apart_runner.run(code, limits=SMALL)
 
     assert int(run.text.splitlines()[0]) <= SMALL.file_bytes
     assert run.exit is not None
     assert run.exit.limit == "file-size"
 
 
-def test_no_core_file_is_written(confined_rig: Rig) -> None:
+def test_no_core_file_is_written(confined_runner: Runner) -> None:
     code = "import os, resource\nprint(resource.getrlimit(resource.RLIMIT_CORE))"
 
-    assert confined_rig.run(code).text == "(0, 0)\n"
+    assert confined_runner.run(code).text == "(0, 0)\n"
 
 
-def test_a_program_cannot_raise_its_limits(confined_rig: Rig) -> None:
+def test_a_program_cannot_raise_its_limits(confined_runner: Runner) -> None:
     code = """
 import resource
 for which in (resource.RLIMIT_AS, resource.RLIMIT_NPROC, resource.RLIMIT_FSIZE, resource.RLIMIT_NOFILE):
@@ -104,7 +104,7 @@ for which in (resource.RLIMIT_AS, resource.RLIMIT_NPROC, resource.RLIMIT_FSIZE, 
     except ValueError:
         pass
 """
-    assert confined_rig.run(code).text == ""
+    assert confined_runner.run(code).text == ""
 
 
 @pytest.mark.parametrize("values", [{"memory_bytes": 100 * MIB}, {"processes": 12}])
@@ -113,10 +113,10 @@ def test_limits_in_which_rclpy_hangs_are_refused(values: dict[str, int]) -> None
         dataclasses.replace(Limits(), **values)
 
 
-def test_the_first_and_the_last_part_of_much_output_is_kept(any_rig: Rig) -> None:
+def test_the_first_and_the_last_part_of_much_output_is_kept(any_runner: Runner) -> None:
     code = "print('first')\nfor n in range(40000): print('line', n)\nprint('last')"
 
-    text = any_rig.run(code).text
+    text = any_runner.run(code).text
 
     assert text.startswith("first\nline 0\n")
     assert text.endswith("line 39999\nlast\n")
@@ -137,9 +137,9 @@ def test_all_output_is_counted_whatever_the_pieces() -> None:
     assert output.dropped == len(whole) - len(output.data)
 
 
-def test_a_student_whose_output_nobody_wants_is_not_held_up(any_rig: Rig) -> None:
+def test_a_student_whose_output_nobody_wants_is_not_held_up(any_runner: Runner) -> None:
     # 8 MiB go through a pipe that holds 64 KiB, and the program ends by itself.
-    run = any_rig.run("import os\nfor _ in range(128): os.write(1, bytes(65536))\nos._exit(4)")
+    run = any_runner.run("import os\nfor _ in range(128): os.write(1, bytes(65536))\nos._exit(4)")
 
     assert run.exit is not None
     assert (run.exit.code, run.exit.limit) == (4, None)

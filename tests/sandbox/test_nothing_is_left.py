@@ -1,14 +1,15 @@
-"""When a student's program is killed, or its rig dies, all of its processes and files are gone."""
+"""When a student's program is killed, or its runner dies, all of its processes and files are gone."""
 
 from __future__ import annotations
 
+import os
 import time
 import uuid
 from pathlib import Path
 
 import psutil
 import pytest
-from sandbox_rig import Rig, reason_against
+from sandbox_runner import Runner, reason_against
 
 from grader.sandbox import Exit, ForkServer, Isolation, Program, enter
 
@@ -48,10 +49,10 @@ def start_daemons(fork_server: ForkServer, level: Isolation, name: str, end: str
 
 
 @pytest.mark.parametrize("end", ["signal.pause()", "os._exit(0)"])
-def test_daemons_do_not_outlive_a_killed_program(any_rig: Rig, end: str) -> None:
+def test_daemons_do_not_outlive_a_killed_program(any_runner: Runner, end: str) -> None:
     name = f"d{uuid.uuid4().hex[:12]}"
 
-    ended, before, after = any_rig.do(start_daemons, name, end)
+    ended, before, after = any_runner.do(start_daemons, name, end)
 
     assert before >= 3
     assert after == 0
@@ -59,7 +60,7 @@ def test_daemons_do_not_outlive_a_killed_program(any_rig: Rig, end: str) -> None
     assert ended == (Exit(0, None, None) if "exit" in end else Exit(None, 9, None))
 
 
-def test_a_program_that_kills_all_that_it_can_see_kills_only_itself(confined_rig: Rig) -> None:
+def test_a_program_that_kills_all_that_it_can_see_kills_only_itself(confined_runner: Runner) -> None:
     code = """
 import os, signal
 for target in (-1, 0, os.getppid(), 1, *range(2, 40000)):
@@ -71,13 +72,13 @@ for target in (-1, 0, os.getppid(), 1, *range(2, 40000)):
         pass
 print('survived')
 """
-    confined_rig.run(code)
+    confined_runner.run(code)
 
-    assert confined_rig.run("print('the rig lives')").text == "the rig lives\n"
+    assert confined_runner.run("print('the runner lives')").text == "the runner lives\n"
 
 
 def start_and_stay(fork_server: ForkServer, level: Isolation, name: str) -> None:
-    """Leave a program with daemons running in the rig."""
+    """Leave a program with daemons running in the runner."""
     student = fork_server.start(
         Program("d.py", {"d.py": (DAEMON.format(name=name) + "signal.pause()").encode()}), level
     )
@@ -92,16 +93,16 @@ _kept: list[object] = []
 @pytest.mark.parametrize("level", list(Isolation))
 def test_when_the_rig_is_killed_its_student_dies_with_it(level: Isolation, any_level_works: None) -> None:
     name = f"r{uuid.uuid4().hex[:12]}"
-    rig = Rig(level, rootless=False)
+    runner = Runner(level, rootless=False)
     try:
-        rig.do(start_and_stay, name)
+        runner.do(start_and_stay, name)
         assert alive(name) >= 3
     finally:
-        rig.kill()
+        runner.kill()
 
     deadline = time.monotonic() + 60
     while alive(name):
-        assert time.monotonic() < deadline, "the student outlives its rig"
+        assert time.monotonic() < deadline, "the student outlives its runner"
         time.sleep(0.01)
 
 
@@ -113,11 +114,11 @@ def any_level_works(level: Isolation) -> None:
         pytest.skip(f"{level}: {reason}")
 
 
-def test_no_temporary_folder_is_left(any_rig: Rig) -> None:
+def test_no_temporary_folder_is_left(any_runner: Runner) -> None:
     def folders() -> set[str]:
         return {path.name for path in Path("/tmp").glob("spinbook-student-*")}
 
-    told = any_rig.run("import os\nprint(os.path.dirname(os.path.dirname(__file__)))").text.strip()
+    told = any_runner.run("import os\nprint(os.path.dirname(os.path.dirname(__file__)))").text.strip()
 
     assert Path(told).name not in folders() or told == "/"
 
@@ -135,30 +136,30 @@ print("nobody was here before", flush=True)
 """
 
 
-def test_no_connection_tells_a_program_that_it_ran_before(apart_rig: Rig) -> None:
-    assert apart_rig.run(NOTE).text == "nobody was here before\n"
-    assert "Address already in use" in apart_rig.run(NOTE).text
+def test_no_connection_tells_a_program_that_it_ran_before(apart_runner: Runner) -> None:
+    assert apart_runner.run(NOTE).text == "nobody was here before\n"
+    assert "Address already in use" in apart_runner.run(NOTE).text
 
-    apart_rig.do(enter_again)
+    apart_runner.do(enter_again)
 
-    assert apart_rig.run(NOTE).text == "nobody was here before\n"
+    assert apart_runner.run(NOTE).text == "nobody was here before\n"
 
 
 def enter_again(fork_server: ForkServer, level: Isolation) -> None:
-    """Prepare the rig for the next program."""
+    """Prepare the runner for the next program."""
     enter(level)
 
 
 @pytest.mark.parametrize("times", [10, pytest.param(200, marks=pytest.mark.soak)])
-def test_many_programs_leave_nothing(any_rig: Rig, times: int) -> None:
+def test_many_programs_leave_nothing(any_runner: Runner, times: int) -> None:
     name = f"m{uuid.uuid4().hex[:12]}"
-    before = any_rig.do(resources)
+    before = any_runner.do(resources)
     for _ in range(times):
-        any_rig.do(start_and_kill, name)
+        any_runner.do(start_and_kill, name)
 
     # A thread that has been joined is listed until the kernel has removed it; a leak stays.
     deadline = time.monotonic() + 60
-    while (after := any_rig.do(resources)) != before and time.monotonic() < deadline:
+    while (after := any_runner.do(resources)) != before and time.monotonic() < deadline:
         time.sleep(0.01)
     assert after == before
     assert alive(name) == 0
@@ -170,6 +171,24 @@ def start_and_kill(fork_server: ForkServer, level: Isolation, name: str) -> None
 
 
 def resources(fork_server: ForkServer, level: Isolation) -> tuple[int, int, int]:
-    """Return open files, threads and mounts of the rig."""
+    """Return open files, threads and mounts of the runner."""
     me = psutil.Process()
     return me.num_fds(), me.num_threads(), len(Path("/proc/self/mounts").read_text().splitlines())
+
+
+def sockets_of_helpers(fork_server: ForkServer, level: Isolation) -> tuple[int, list[str]]:
+    """Count the processes that keep a program's sandbox open, and return the sockets that these have."""
+    with fork_server.start(Program("p.py", {"p.py": b"import signal; signal.pause()"}), level) as student:
+        program = psutil.Process(student.pid)
+        supervisor = program.parent()
+        assert supervisor is not None
+        helpers = [process for process in supervisor.children(recursive=True) if process != program]
+        files = [file for helper in helpers for file in Path(f"/proc/{helper.pid}/fd").iterdir()]
+        return len(helpers), [target for file in files if (target := str(file.readlink())).startswith("socket:")]
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root sees what files the processes of a sandbox have open")
+def test_what_keeps_a_sandbox_open_holds_no_socket_of_the_grader(strongest_runner: Runner) -> None:
+    _, sockets = strongest_runner.do(sockets_of_helpers)
+
+    assert sockets == []

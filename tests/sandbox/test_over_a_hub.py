@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 from over_hub import needs_lockstep, run_over_hub
-from sandbox_rig import Rig
+from sandbox_runner import Runner
 
 from grader.sandbox import ForkServer, Isolation, Middleware, Program, SandboxError, fork_server
 
@@ -19,40 +19,40 @@ pytestmark = needs_lockstep
 NAME_IT = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
 
 
-def answer(rig: Rig, code: str) -> Any:
+def answer(runner: Runner, code: str) -> Any:
     """Return what a program prints as JSON."""
-    run = run_over_hub(rig, "import json, os, socket, subprocess, sys\n" + code)
+    run = run_over_hub(runner, "import json, os, socket, subprocess, sys\n" + code)
     try:
         return json.loads(run.text)
     except ValueError:
         raise AssertionError(f"{run.exit}: {run.text}") from None
 
 
-@pytest.mark.parametrize("warm", [True, False], ids=["forked", "a new Python"])
-def test_a_node_runs_over_it_at_each_level(any_rig: Rig, warm: bool) -> None:
+@pytest.mark.parametrize("preloaded", [True, False], ids=["forked", "a new Python"])
+def test_a_node_runs_over_it_at_each_level(any_runner: Runner, preloaded: bool) -> None:
     code = f"{NAME_IT}\nrclpy.init()\nnode = rclpy.create_node('here')\nprint(node.get_node_names())"
 
-    run = run_over_hub(any_rig, code, warm=warm)
+    run = run_over_hub(any_runner, code, preloaded=preloaded)
 
     assert run.text == "rmw_lockstep_cpp\n['here']\n"
     assert run.exit
     assert run.exit.code == 0
 
 
-def test_a_sleep_takes_no_time(either_rig: Rig) -> None:
+def test_a_sleep_takes_no_time(either_runner: Runner) -> None:
     code = "import time\nbegan = time.time()\ntime.sleep(3600)\nprint(time.time() - began)"
 
-    assert run_over_hub(either_rig, code).text == "3600.0\n"
+    assert run_over_hub(either_runner, code).text == "3600.0\n"
 
 
-def test_a_program_that_it_starts_itself_lives_in_the_time_of_the_hub_too(confined_rig: Rig) -> None:
+def test_a_program_that_it_starts_itself_lives_in_the_time_of_the_hub_too(confined_runner: Runner) -> None:
     child = f"{NAME_IT}; import time; began = time.time(); time.sleep(60); print(time.time() - began)"
     code = f"import subprocess, sys\nsubprocess.run([sys.executable, '-c', {child!r}], check=True)"
 
-    assert run_over_hub(confined_rig, code).text == "rmw_lockstep_cpp\n60.0\n"
+    assert run_over_hub(confined_runner, code).text == "rmw_lockstep_cpp\n60.0\n"
 
 
-def test_it_has_unix_sockets_and_no_others(confined_rig: Rig) -> None:
+def test_it_has_unix_sockets_and_no_others(confined_runner: Runner) -> None:
     code = """
 made = set()
 for family in range(1, 64):
@@ -64,26 +64,26 @@ for family in range(1, 64):
             pass
 print(json.dumps(sorted(made)))"""
 
-    assert answer(confined_rig, code) == [socket.AF_UNIX]
+    assert answer(confined_runner, code) == [socket.AF_UNIX]
 
 
-def test_a_program_that_it_starts_itself_has_no_others_either(confined_rig: Rig) -> None:
+def test_a_program_that_it_starts_itself_has_no_others_either(confined_runner: Runner) -> None:
     code = """
 child = [sys.executable, '-c', "import socket; socket.create_connection(('127.0.0.1', 80))"]
 print(json.dumps(subprocess.run(child, capture_output=True, text=True).stderr))"""
 
-    assert "Address family not supported" in answer(confined_rig, code)
+    assert "Address family not supported" in answer(confined_runner, code)
 
 
-def test_its_network_has_not_even_loopback(apart_rig: Rig) -> None:
-    lines = answer(apart_rig, "print(json.dumps(open('/proc/net/dev').read().splitlines()[2:]))")
-    addresses = answer(apart_rig, "print(json.dumps(open('/proc/net/fib_trie').read()))")
+def test_its_network_has_not_even_loopback(apart_runner: Runner) -> None:
+    lines = answer(apart_runner, "print(json.dumps(open('/proc/net/dev').read().splitlines()[2:]))")
+    addresses = answer(apart_runner, "print(json.dumps(open('/proc/net/fib_trie').read()))")
 
     assert [line.split(":")[0].strip() for line in lines] == ["lo"]
     assert addresses == ""
 
 
-def test_a_socket_without_a_path_is_not_reached(apart_rig: Rig) -> None:
+def test_a_socket_without_a_path_is_not_reached(apart_runner: Runner) -> None:
     name = f"\0spinbook-test-{os.getpid()}"
     with socket.socket(socket.AF_UNIX) as server:
         server.bind(name)
@@ -95,16 +95,16 @@ try:
 except OSError as error:
     print(json.dumps('refused'))"""
 
-        assert answer(apart_rig, code) == "refused"
+        assert answer(apart_runner, code) == "refused"
 
 
-def test_of_the_hub_it_sees_the_socket_alone_always_in_the_same_place(apart_rig: Rig) -> None:
+def test_of_the_hub_it_sees_the_socket_alone_always_in_the_same_place(apart_runner: Runner) -> None:
     code = "print(json.dumps([os.environ['RMW_LOCKSTEP_SOCKET'], os.listdir('/run'), os.listdir('/run/lockstep')]))"
 
-    assert answer(apart_rig, code) == ["/run/lockstep/hub", ["lockstep"], ["hub"]]
+    assert answer(apart_runner, code) == ["/run/lockstep/hub", ["lockstep"], ["hub"]]
 
 
-def test_it_can_neither_replace_nor_remove_the_socket(confined_rig: Rig) -> None:
+def test_it_can_neither_replace_nor_remove_the_socket(confined_runner: Runner) -> None:
     code = """
 hub, done = os.environ['RMW_LOCKSTEP_SOCKET'], []
 for attempt in (os.unlink, lambda path: os.chmod(path, 0), lambda path: os.rename(path, path + '2')):
@@ -116,13 +116,13 @@ for attempt in (os.unlink, lambda path: os.chmod(path, 0), lambda path: os.renam
 print(json.dumps(done))"""
 
     # With Landlock and without root the program has its user's rights to change a mode.
-    assert answer(confined_rig, code) == ([True] if confined_rig.level is Isolation.LANDLOCK else [])
+    assert answer(confined_runner, code) == ([True] if confined_runner.level is Isolation.LANDLOCK else [])
 
 
-def test_no_other_user_of_the_machine_reaches_the_hub(any_rig: Rig) -> None:
-    folder, hub = any_rig.do(modes_while_it_runs)
+def test_no_other_user_of_the_machine_reaches_the_hub(any_runner: Runner) -> None:
+    folder, hub = any_runner.do(modes_while_it_runs)
 
-    other_user = any_rig.level is Isolation.LANDLOCK and not any_rig.rootless and os.geteuid() == 0
+    other_user = any_runner.level is Isolation.LANDLOCK and not any_runner.rootless and os.geteuid() == 0
     assert folder == (0o711 if other_user else 0o700)
     assert hub == (0o600 if other_user else 0o666)
 
@@ -139,7 +139,7 @@ def modes_while_it_runs(rig_fork_server: ForkServer, level: Isolation) -> tuple[
             return hub.path.parent.stat().st_mode & 0o777, hub.path.stat().st_mode & 0o777
 
 
-def test_the_middleware_is_hidden_from_it(strongest_rig: Rig) -> None:
+def test_the_middleware_is_hidden_from_it(strongest_runner: Runner) -> None:
     code = """
 try:
     import rmw_lockstep.hub
@@ -147,17 +147,17 @@ try:
 except ImportError:
     print(json.dumps('hidden'))"""
 
-    assert answer(strongest_rig, code) == "hidden"
+    assert answer(strongest_runner, code) == "hidden"
 
 
-def test_fast_dds_never_takes_its_place_unnoticed(either_rig: Rig) -> None:
-    fault = either_rig.do(start_with_the_wrong_middleware)
+def test_fast_dds_never_takes_its_place_unnoticed(either_runner: Runner) -> None:
+    fault = either_runner.do(start_with_the_wrong_middleware)
 
     assert "has loaded the middleware rmw_fastrtps_cpp, not lockstep" in fault
 
 
 def start_with_the_wrong_middleware(rig_fork_server: ForkServer, level: Isolation) -> str:
-    """Return the rig's answer when the library that should be first is not found."""
+    """Return the runner's answer when the library that should be first is not found."""
     found = fork_server.variables
     fork_server.variables = lambda middleware, of: {"RMW_IMPLEMENTATION": "rmw_lockstep_cpp"}  # type: ignore[assignment]
     try:
@@ -170,7 +170,7 @@ def start_with_the_wrong_middleware(rig_fork_server: ForkServer, level: Isolatio
     return "it was started"
 
 
-def test_the_rest_of_the_machine_is_as_closed_as_without_a_hub(confined_rig: Rig) -> None:
+def test_the_rest_of_the_machine_is_as_closed_as_without_a_hub(confined_runner: Runner) -> None:
     code = f"""
 read = []
 for path in ({__file__!r}, '/etc/shadow', {str(Path.home() / ".bashrc")!r}):
@@ -180,4 +180,4 @@ for path in ({__file__!r}, '/etc/shadow', {str(Path.home() / ".bashrc")!r}):
         pass
 print(json.dumps(read))"""
 
-    assert answer(confined_rig, code) == []
+    assert answer(confined_runner, code) == []

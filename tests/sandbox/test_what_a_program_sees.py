@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from sandbox_rig import Rig
+from sandbox_runner import Runner
 
 from grader.sandbox import ForkServer, Isolation, Program
 
@@ -31,16 +31,16 @@ def secret_file() -> Iterator[Path]:
     path.unlink()
 
 
-def answer(rig: Rig, code: str, **arguments: Any) -> Any:
+def answer(runner: Runner, code: str, **arguments: Any) -> Any:
     """Return what a program prints as JSON."""
-    run = rig.run("import json, os, sys\n" + code, **arguments)
+    run = runner.run("import json, os, sys\n" + code, **arguments)
     try:
         return json.loads(run.text)
     except ValueError:
         raise AssertionError(f"{run.exit}: {run.text}") from None
 
 
-def test_no_file_of_this_machine_can_be_read(confined_rig: Rig, secret_file: Path) -> None:
+def test_no_file_of_this_machine_can_be_read(confined_runner: Runner, secret_file: Path) -> None:
     paths = [str(secret_file), "/etc/shadow", "/etc/hostname", f"{Path.home()}/.bashrc", str(ROOT / "pyproject.toml")]
     paths += [str(ROOT / "exercises/joint_velocity/hidden_checks.py"), str(ROOT / "solutions"), __file__]
     code = f"""
@@ -52,11 +52,11 @@ for path in {paths!r}:
         pass
 print(json.dumps(read))"""
 
-    assert answer(confined_rig, code) == []
+    assert answer(confined_runner, code) == []
 
 
-def test_only_known_folders_are_there(apart_rig: Rig) -> None:
-    seen = set(answer(apart_rig, "print(json.dumps(os.listdir('/')))"))
+def test_only_known_folders_are_there(apart_runner: Runner) -> None:
+    seen = set(answer(apart_runner, "print(json.dumps(os.listdir('/')))"))
 
     always = {"bin", "dev", "etc", "home", "lib", "lib64", "proc", "sbin", "submission", "tmp", "usr"}
     elsewhere = {"lib32", "libx32", "opt"}
@@ -70,9 +70,9 @@ def way_to_python() -> set[str]:
     return {place.parts[2] for place in shown if place.parts[:2] == ("/", "tmp")}
 
 
-def test_the_program_finds_itself_in_an_empty_home(confined_rig: Rig) -> None:
+def test_the_program_finds_itself_in_an_empty_home(confined_runner: Runner) -> None:
     home, files, temporary = answer(
-        confined_rig,
+        confined_runner,
         "print(json.dumps([os.listdir(os.environ['HOME']), os.listdir(os.path.dirname(__file__)),"
         " os.listdir(os.environ['TMPDIR'])]))",
     )
@@ -82,7 +82,7 @@ def test_the_program_finds_itself_in_an_empty_home(confined_rig: Rig) -> None:
     assert set(temporary) <= way_to_python()
 
 
-def test_nothing_can_be_written_but_in_its_own_places(confined_rig: Rig) -> None:
+def test_nothing_can_be_written_but_in_its_own_places(confined_runner: Runner) -> None:
     places = ["/", "/etc", "/usr/lib", "/home", "/dev", "/submission", sys.prefix, sysconfig.get_path("purelib")]
     places += [str(ROOT), str(ROOT / "grader"), "/var/tmp", "/run", "/proc/self", "/sys/fs/cgroup"]
     code = f"""
@@ -104,16 +104,18 @@ print(json.dumps(written))"""
 
     # Below /tmp, which is the program's own, the folders on the way to Python are its own too; Python is not.
     on_the_way = {str(ROOT), sys.prefix} if way_to_python() else set()
-    assert set(answer(confined_rig, code)) <= on_the_way
+    assert set(answer(confined_runner, code)) <= on_the_way
     assert not [place for place in places if Path(place, "written-by-student").exists()]
 
 
-def test_what_one_start_writes_is_gone_in_the_next(confined_rig: Rig) -> None:
-    confined_rig.run("import os\nfor v in ('HOME', 'TMPDIR'): open(os.path.join(os.environ[v], 'note'), 'w').close()")
+def test_what_one_start_writes_is_gone_in_the_next(confined_runner: Runner) -> None:
+    confined_runner.run(
+        "import os\nfor v in ('HOME', 'TMPDIR'): open(os.path.join(os.environ[v], 'note'), 'w').close()"
+    )
     places = "[os.environ['HOME'], os.environ['TMPDIR'], '/tmp', '/dev/shm']"
 
     names = answer(
-        confined_rig,
+        confined_runner,
         f"found = []\nfor place in {places}:\n    try: found += os.listdir(place)\n    except OSError: pass\n"
         "print(json.dumps(found))",
     )
@@ -121,33 +123,33 @@ def test_what_one_start_writes_is_gone_in_the_next(confined_rig: Rig) -> None:
     assert "note" not in names
 
 
-def test_only_its_own_processes_are_there(apart_rig: Rig) -> None:
-    processes = answer(apart_rig, "print(json.dumps([n for n in os.listdir('/proc') if n.isdigit()]))")
+def test_only_its_own_processes_are_there(apart_runner: Runner) -> None:
+    processes = answer(apart_runner, "print(json.dumps([n for n in os.listdir('/proc') if n.isdigit()]))")
 
     assert len(processes) <= 3  # the process that holds the namespace open, and the program itself
 
 
-def test_no_process_outside_can_be_looked_into_or_signalled(confined_rig: Rig) -> None:
+def test_no_process_outside_can_be_looked_into_or_signalled(confined_runner: Runner) -> None:
     code = f"""
 done = []
 for what in ('environ', 'mem', 'maps', 'cwd', 'root', 'fd', 'cmdline'):
-    path = f'/proc/{confined_rig.pid}/{{what}}'
+    path = f'/proc/{confined_runner.pid}/{{what}}'
     try:
         done.append(os.listdir(path) if what in ('cwd', 'root', 'fd') else open(path, 'rb').read(1).hex())
     except OSError:
         pass
 for number in (0, 15, 9):
     try:
-        os.kill({confined_rig.pid}, number)
+        os.kill({confined_runner.pid}, number)
         done.append(number)
     except OSError:
         pass
 print(json.dumps(done))"""
 
-    assert answer(confined_rig, code) == []
+    assert answer(confined_runner, code) == []
 
 
-def test_what_holds_its_namespace_open_is_no_use_to_it(apart_rig: Rig) -> None:
+def test_what_holds_its_namespace_open_is_no_use_to_it(apart_runner: Runner) -> None:
     code = """
 told = []
 for process in [n for n in os.listdir('/proc') if n.isdigit() and int(n) != os.getpid()]:
@@ -159,13 +161,13 @@ except PermissionError:
     pass
 print(json.dumps(told))
 """
-    told = answer(apart_rig, code)
+    told = answer(apart_runner, code)
 
     assert told
     assert all(one == [0, 0, 1, 2] for one in told)
 
 
-def test_it_has_no_capability_and_gains_none(confined_rig: Rig) -> None:
+def test_it_has_no_capability_and_gains_none(confined_runner: Runner) -> None:
     code = """
 import ctypes
 libc = ctypes.CDLL(None, use_errno=True)
@@ -186,24 +188,24 @@ tried = {
 }
 print(json.dumps([list(data), libc.prctl(39, 0, 0, 0, 0), tried]))"""
 
-    capabilities, no_new_privileges, tried = answer(confined_rig, code)
+    capabilities, no_new_privileges, tried = answer(confined_runner, code)
 
     assert capabilities == [0] * 6
     assert no_new_privileges == 1
     assert set(tried.values()) == {-1}
 
 
-def test_setuid_programs_give_nothing(apart_rig: Rig) -> None:
+def test_setuid_programs_give_nothing(apart_runner: Runner) -> None:
     code = """
 import glob, subprocess
 found = [p for p in ('/usr/bin/su', '/usr/bin/mount', '/usr/bin/passwd') if os.path.exists(p)]
 print(json.dumps([subprocess.run([p, '--version'], capture_output=True).returncode >= 0 for p in found] and
     [os.statvfs(p).f_flag & os.ST_NOSUID for p in found]))"""
 
-    assert 0 not in answer(apart_rig, code)
+    assert 0 not in answer(apart_runner, code)
 
 
-def test_there_is_no_network_but_loopback(apart_rig: Rig) -> None:
+def test_there_is_no_network_but_loopback(apart_runner: Runner) -> None:
     code = """
 import socket
 reached = []
@@ -216,10 +218,10 @@ for target in (('1.1.1.1', 53), ('192.0.2.1', 80), ('169.254.169.254', 80)):
         pass
 print(json.dumps([reached, [name for _, name in socket.if_nameindex()]]))"""
 
-    assert answer(apart_rig, code) == [[], ["lo"]]
+    assert answer(apart_runner, code) == [[], ["lo"]]
 
 
-def test_a_server_of_this_machine_is_not_reached(apart_rig: Rig) -> None:
+def test_a_server_of_this_machine_is_not_reached(apart_runner: Runner) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
         code = f"""
@@ -230,11 +232,11 @@ try:
 except OSError:
     print(json.dumps('refused'))"""
 
-        assert answer(apart_rig, code) == "refused"
+        assert answer(apart_runner, code) == "refused"
 
 
 @pytest.mark.parametrize("family", ["AF_VSOCK", "AF_PACKET", "AF_ALG", "AF_BLUETOOTH", "AF_CAN"])
-def test_no_other_kind_of_socket_exists(confined_rig: Rig, family: str) -> None:
+def test_no_other_kind_of_socket_exists(confined_runner: Runner, family: str) -> None:
     code = f"""
 import socket
 try:
@@ -243,15 +245,15 @@ try:
 except (OSError, AttributeError) as error:
     print(json.dumps('refused'))"""
 
-    assert answer(confined_rig, code) == "refused"
+    assert answer(confined_runner, code) == "refused"
 
 
-def test_shared_memory_is_its_own(apart_rig: Rig) -> None:
+def test_shared_memory_is_its_own(apart_runner: Runner) -> None:
     mark = Path("/dev/shm", f"spinbook-test-{os.getpid()}")
     mark.write_text("x")
     try:
-        assert answer(apart_rig, "print(json.dumps(os.listdir('/dev/shm')))") == []
-        apart_rig.run("open('/dev/shm/student-was-here', 'w').close()")
+        assert answer(apart_runner, "print(json.dumps(os.listdir('/dev/shm')))") == []
+        apart_runner.run("open('/dev/shm/student-was-here', 'w').close()")
         assert not Path("/dev/shm/student-was-here").exists()
     finally:
         mark.unlink()
@@ -276,7 +278,7 @@ print(json.dumps([read(path) or None for path in {paths!r}]))"""
     return told
 
 
-def test_a_folder_that_is_shown_is_seen_without_what_is_hidden_in_it(confined_rig: Rig, tmp_path: Path) -> None:
+def test_a_folder_that_is_shown_is_seen_without_what_is_hidden_in_it(confined_runner: Runner, tmp_path: Path) -> None:
     course = Path("/tmp", f"course-{os.getpid()}-{tmp_path.name}")
     (course / "secret").mkdir(parents=True)
     try:
@@ -284,7 +286,7 @@ def test_a_folder_that_is_shown_is_seen_without_what_is_hidden_in_it(confined_ri
             (course / name).write_text(name)
         paths = [str(course / name) for name in ("open.txt", "secret/checks.py", "one_secret.py")]
 
-        seen = confined_rig.do(look, paths, [str(course)], [str(course / "secret"), str(course / "one_secret.py")])
+        seen = confined_runner.do(look, paths, [str(course)], [str(course / "secret"), str(course / "one_secret.py")])
 
         assert seen == ["open.txt", None, None]
     finally:
@@ -293,11 +295,11 @@ def test_a_folder_that_is_shown_is_seen_without_what_is_hidden_in_it(confined_ri
         course.rmdir()
 
 
-def test_what_is_hidden_in_the_python_installation_is_not_seen(confined_rig: Rig) -> None:
+def test_what_is_hidden_in_the_python_installation_is_not_seen(confined_runner: Runner) -> None:
     libraries = Path(sysconfig.get_path("purelib"))
     click, rich = libraries / "click/__init__.py", libraries / "rich/__init__.py"
 
-    seen = confined_rig.do(look, [str(click), str(rich)], [], [str(click.parent)])
+    seen = confined_runner.do(look, [str(click), str(rich)], [], [str(click.parent)])
 
     assert seen[0] is None
     assert seen[1] is not None

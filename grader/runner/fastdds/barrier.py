@@ -20,11 +20,11 @@ from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters
 from type_description_interfaces.srv import GetTypeDescription
 
-from grader.runner.fastdds.budget import IdleTime, TimeBudget, Watch
 from grader.runner.fastdds.graph import Caller, Calls, Graph
-from grader.runner.stopped import Stopped
+from grader.runner.fastdds.idle import IdleTime, TimeBudget, Watch
+from grader.runner.student import Stopped
 
-Hold = Literal["parameters", "type description", "quiet"]
+Synchronization = Literal["parameters", "type description", "idle"]
 
 AFTER_CLOCK = 3
 AFTER_MESSAGES = 2
@@ -32,10 +32,10 @@ AFTER_MESSAGES = 2
 #: A node without a synchronization method counts as idle when none of its threads ran for this long.
 STILL_S = 0.004
 
-#: A node that is never idle is given this long, so often, before the rig relies on its answers alone.
+#: A node that is never idle is given this long, so often, before the runner relies on its answers alone.
 RESTLESS_S, RESTLESS_TIMES = 0.25, 3
 
-ENDLESS = "Your node used {0:g} s of computing time on one message without an end. Is there an endless loop?"
+ENDLESS = "Your node used {0:g} s of computing time on one message and did not finish. Is there an endless loop?"
 DEAF = (
     "Your node started but never responds. Does your program call rclpy.spin(node), and does no callback wait or sleep?"
 )
@@ -60,7 +60,7 @@ class Gone(Exception):
 
 
 class Barrier:
-    """Holds the rig until the student's nodes have handled what was published.
+    """Holds the runner until the student's nodes have handled what was published.
 
     `hear` takes what they publish; it is called repeatedly, and may raise an exception that ends the run.
     """
@@ -71,7 +71,7 @@ class Barrier:
         self._blocked = 0.0
         self._restless = 0
         self._wakes_itself = False
-        self.hold: Hold = "quiet"
+        self.synchronization: Synchronization = "idle"
 
     def alive(self) -> None:
         """Raise `Gone` when the student's program has ended."""
@@ -80,7 +80,7 @@ class Barrier:
 
     def choose_method(self, graph: Graph, nodes: list[str], no_more_to_come: Callable[[], bool]) -> None:
         """Find a service of each node to call; create these clients last, as their answers prove that all earlier end
-        points of the rig are known to the node. `no_more_to_come` returns whether the graph must be complete."""
+        points of the runner are known to the node. `no_more_to_come` returns whether the graph must be complete."""
         found: dict[str, tuple[str, Any, Any]] = {}
         while True:
             for node in nodes:
@@ -99,7 +99,7 @@ class Barrier:
         self._calls = Calls(self._node.context, calls)
         if found:
             parameters = all(kind is GetParameters for _, kind, _ in found.values())
-            self.hold = "parameters" if parameters else "type description"
+            self.synchronization = "parameters" if parameters else "type description"
             self._watch.threads.with_middleware = False
         self._wait_for(self._calls.ready, lambda: time.sleep(LOOK_S), 10.0)
 
@@ -148,7 +148,7 @@ class Barrier:
     def _rest(self) -> None:
         """Wait until none of the program's threads is at work: a node may use threads of its own."""
         self.alive()
-        if self.hold == "quiet":
+        if self.synchronization == "idle":
             self._rest_without_answers()
         elif self._restless < RESTLESS_TIMES and not self._watch.threads.wait_until_idle(0.0, RESTLESS_S):
             self._restless += 1

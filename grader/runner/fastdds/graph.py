@@ -21,17 +21,17 @@ OWN_TO_ROS = ("/rosout", "/parameter_events")
 
 
 class Graph:
-    """Sees the graph through `node`, and separates the student's part of it from the rig's."""
+    """Sees the graph through `node`, and separates the student's part of it from the runner's."""
 
     def __init__(self, node: Any, own_nodes: list[str]) -> None:
         self._node = node
         self._own_nodes = Counter(own_nodes)
-        # On a topic with an unpredictable name, the only publisher is the rig's own.
+        # On a topic with an unpredictable name, the only publisher is the runner's own.
         topic = f"/rig_{secrets.token_hex(16)}"
         publisher = node.create_publisher(Empty, topic, 1)
         mine = node.get_publishers_info_by_topic(topic)
         node.destroy_publisher(publisher)
-        assert len(mine) == 1, "the rig does not find its own publisher"
+        assert len(mine) == 1, "the runner does not find its own publisher"
         self._participant = bytes(mine[0].endpoint_gid[:PARTICIPANT])
 
     def nodes(self) -> list[str]:
@@ -106,7 +106,7 @@ class Caller:
         self._unanswered.add(self._client.handle.send_request(request))
 
     def call_again(self, request: Any) -> None:
-        """Send a request in place of all that have had no answer; their answers no longer count."""
+        """Send a request that replaces all unanswered ones; their answers no longer count."""
         times, self._unanswered = len(self._unanswered), set()
         for _ in range(times):
             self.call(request)

@@ -17,7 +17,7 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 from grader.exercise.exercise import Topic
 from grader.recording.recording import Received, Sent
 from grader.runner.message import message_class, to_fields, to_message
-from grader.runner.stopped import Stopped
+from grader.runner.student import Stopped
 from grader.scenario.scenario import SECOND, Message, Scenario
 
 # The grader's end has no executor. It publishes, calls services (see `call`) and takes what has arrived (see
@@ -50,7 +50,7 @@ ACCEPT_ANY = QoSProfile(
 
 
 class Ros:
-    """The rig's participant in one ROS domain. Use it as a context manager."""
+    """The runner's participant in one ROS domain. Use it as a context manager."""
 
     def __init__(self, domain: int | None = None) -> None:
         self.context = Context()
@@ -59,7 +59,7 @@ class Ros:
         self._nodes: list[Any] = []
 
     def node(self, name: str) -> Any:
-        """Return a new node of the rig's, as light as a node can be."""
+        """Return a new node of the runner's, as light as a node can be."""
         node = Node(
             name,
             context=self.context,
@@ -102,7 +102,7 @@ class Clock:
 
 
 class ReferencePublishers:
-    """Publishes a scenario's messages, in order, when the rig says so.
+    """Publishes a scenario's messages, in order, when the runner says so.
 
     All publishers exist from the beginning, so that the student's node knows each of them before it publishes;
     one that is replaced by another is destroyed when the other begins.
@@ -159,7 +159,7 @@ class Recorder:
         self._subscriptions = {topic.name: self._subscription(topic, ACCEPT) for topic in topics}
 
     def _subscription(self, topic: Topic, quality: Any) -> Any:
-        # Never called back: what has arrived is taken when the rig says so.
+        # Never called back: what has arrived is taken when the runner says so.
         return self._node.create_subscription(
             message_class(topic.type), topic.name, lambda data: None, quality, raw=True
         )

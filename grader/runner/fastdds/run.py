@@ -5,18 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
+from grader.exercise.exercise import Topic
 from grader.recording.recording import Ending, EndPoint, Recording
-from grader.runner.ending import MAY_TAKE_S, cut_short
-from grader.runner.fastdds.barrier import AFTER_CLOCK, AFTER_MESSAGES, Barrier, Gone
-from grader.runner.fastdds.budget import TimeBudget, Watch
-from grader.runner.fastdds.discovery import Discovery, wait_for_nodes, wait_for_publisher, wait_until_connected
+from grader.runner.ending import MAY_TAKE_S, TRACEBACK, cut_short, is_rclpys_own, last_error
+from grader.runner.fastdds.barrier import AFTER_CLOCK, AFTER_MESSAGES, CHECK_S, LOOK_S, Barrier, Gone
 from grader.runner.fastdds.graph import Graph
-from grader.runner.fastdds.idle import Receivers, Threads
+from grader.runner.fastdds.idle import IdleTime, Receivers, Threads, TimeBudget, Watch
 from grader.runner.fastdds.ros import Clock, Recorder, ReferencePublishers, Ros
-from grader.runner.stopped import Stopped
-from grader.runner.story import TRACEBACK, is_rclpys_own, last_words
-from grader.runner.student import Student
-from grader.runner.task import Task
+from grader.runner.student import Stopped, Student, Task
 from grader.scenario.scenario import SECOND, START
 
 
@@ -32,8 +28,8 @@ def interrupted(watch: Watch, file_name: str, source: str) -> Ending:
             return Ending("completed", interrupted=True, ended_in_time=False)
     log = student.output().text
     broke = log.count(TRACEBACK) > before and not is_rclpys_own(log, file_name, source)
-    words = last_words(log, "") if broke else None
-    return Ending("completed", interrupted=True, traceback=words.error if words else "")
+    last = last_error(log, "") if broke else None
+    return Ending("completed", interrupted=True, traceback=last.error if last else "")
 
 
 #: How long simulated time continues after the last message, for what a node does by timer.
@@ -55,11 +51,11 @@ def run(task: Task, start: Callable[[], Student]) -> Recording:
 
 
 class Run:
-    """One run: the rig's ends of the graph around one student."""
+    """One run: the runner's ends of the graph around one student."""
 
     def __init__(self, ros: Ros, task: Task, student: Student) -> None:
         self._task, self._student = task, student
-        node = ros.node("rig")
+        node = ros.node("runner")
         self._clock = Clock(node)
         self._publishers = ReferencePublishers(ros.node(task.exercise.reference_node), task.scenario)
         self._recorder = Recorder(node, task.exercise.outputs, self._moment)
@@ -83,7 +79,7 @@ class Run:
             self._lockstep()
             ending = interrupted(self._watch, *program) if self._task.scenario.interrupt else Ending("completed")
         except Stopped as stopped:
-            ending = Ending(stopped.outcome, stopped.story)
+            ending = Ending(stopped.outcome, stopped.message)
         except Gone:
             ending = cut_short(self._student, *program, self._met, f"at message {len(self._publishers.sent)}")
         end_points = self._end_points or self._graph.end_points()
@@ -97,7 +93,7 @@ class Run:
             received=tuple(self._recorder.received),
             nodes=tuple(self._nodes),
             end_points=end_points,
-            hold=self._barrier.hold if self._met else "none",
+            synchronization=self._barrier.synchronization if self._met else "none",
             uses_sim_time=self._sim_time,
             ending=ending,
             log=self._student.output().text,
@@ -110,7 +106,7 @@ class Run:
         discovery = Discovery(self._watch)
         self._barrier.choose_method(self._graph, self._nodes, discovery.ended)
         self._barrier.wait(1)
-        if self._barrier.hold == "parameters":
+        if self._barrier.synchronization == "parameters":
             self._sim_time = all(self._barrier.use_sim_time(node) for node in self._nodes)
         wait_until_connected(discovery, self._barrier, self._clock, self._publishers, self._recorder)
         if self._recorder.hears:
@@ -162,3 +158,95 @@ class Run:
             self._wait_for_late_publishers(before)
             if len(self._recorder.received) == before:
                 return
+
+
+#: Importing large libraries takes CPU time; nothing that a node needs takes this much.
+START_CPU_S, START_BLOCKED_S = 20.0, 3.0
+
+#: How often to look for a node; its name mostly takes a tenth of a second from one program to another.
+NODE_LOOK_S = 0.005
+
+NO_NODE_BUSY = f"Your program computed for {START_CPU_S:g} s and created no node. Is there an endless loop before it?"
+NO_NODE_BLOCKED = (
+    "Your program waits and creates no node. Does something wait or sleep before the node is created, and is main() "
+    "called?"
+)
+
+
+def wait_for_nodes(graph: Graph, barrier: Barrier, watch: Watch) -> list[str]:
+    """Return the student's nodes, once there is one. Raises `Stopped` if none appears, `Gone` if the program ends."""
+    budget, idle_time = TimeBudget(watch), IdleTime(watch)
+    due = time.monotonic() + CHECK_S
+    while not (nodes := graph.nodes()):
+        barrier.alive()
+        time.sleep(NODE_LOOK_S)
+        if time.monotonic() < due:
+            continue
+        if budget.cpu >= START_CPU_S and not watch.student.at_limit():
+            raise Stopped("timed-out", NO_NODE_BUSY)
+        if idle_time.look() >= START_BLOCKED_S:
+            raise Stopped("timed-out", NO_NODE_BLOCKED)
+        due = time.monotonic() + CHECK_S
+    return nodes
+
+
+#: Graph data that got lost on its way is sent again once a second (Fast DDS 2.14, `edp_heartbeat_period`).
+TOLD_AGAIN_S = 1.5
+
+#: A program that computes for this long (s) is not about to change the graph.
+BUSY_S = 5.0
+
+
+class Discovery:
+    """Ends after `idle_s` idle seconds: by then the runner must have all graph data that exists or is in transit."""
+
+    def __init__(self, watch: Watch, idle_s: float = TOLD_AGAIN_S) -> None:
+        self._idle_s = idle_s
+        self._idle_time = IdleTime(watch)
+        self._budget = TimeBudget(watch)
+        self._due = time.monotonic()
+
+    def ended(self) -> bool:
+        """Return whether it has ended; to be called repeatedly. It looks as often as needed, and no more."""
+        if time.monotonic() < self._due:
+            return False
+        self._due = time.monotonic() + CHECK_S
+        return self._idle_time.look() >= self._idle_s or self._budget.cpu >= BUSY_S
+
+
+def wait_until_connected(
+    discovery: Discovery, barrier: Barrier, clock: Clock, publishers: ReferencePublishers, recorder: Recorder
+) -> None:
+    """Wait until every topic has found its other end, or until it is clear that some never will.
+
+    A topic with another name or type never does; the checks see that in the graph.
+    """
+    while not (publishers.heard and recorder.hears and clock.heard):
+        barrier.alive()
+        if discovery.ended():
+            return
+        time.sleep(LOOK_S)
+        recorder.adapt()
+
+
+#: What was published before its two ends knew each other is sent again within this much idle time.
+SENT_AGAIN_S = 0.4
+
+
+def wait_for_publisher(watch: Watch, barrier: Barrier, recorder: Recorder, topic: Topic, came: int) -> None:
+    """Wait until a publisher of `topic`, which the student's node has only just created, has found the recorder, if it
+    ever will, and has sent again what it has already published: something other than the first `came` messages."""
+
+    def found() -> bool:
+        return recorder.hears_all(topic)
+
+    def sent_again() -> bool:
+        return recorder.since(came, topic)
+
+    for done in (found, sent_again):
+        discovery = Discovery(watch, SENT_AGAIN_S)
+        while not done() and not discovery.ended():
+            barrier.alive()
+            time.sleep(LOOK_S)
+            recorder.adapt()
+            recorder.hear()

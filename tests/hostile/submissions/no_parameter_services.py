@@ -1,4 +1,4 @@
-"""Is right, without the services that the rig would ask."""
+"""Is right, without the services that the runner would ask."""
 
 import math
 

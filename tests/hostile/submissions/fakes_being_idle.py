@@ -1,4 +1,4 @@
-"""Answers its own parameter service from another thread at once, so that the rig believes it has finished."""
+"""Answers its own parameter service from another thread at once, so that the runner believes it has finished."""
 
 import math
 import threading

@@ -1,6 +1,6 @@
-"""A rig in a process of its own, for tests: it enters its namespaces once, then runs what a test passes to it.
+"""A runner in a process of its own, for tests: it enters its namespaces once, then runs what a test passes to it.
 
-Also as a user who is not root, when the tests are run as root: the rig's process then first changes its user.
+Also as a user who is not root, when the tests are run as root: the runner's process then first changes its user.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ class Run:
     text: str
 
 
-class Rig:
-    """A rig's process as a test sees it: functions of a test module are run in there."""
+class Runner:
+    """A runner's process as a test sees it: functions of a test module are run in there."""
 
     def __init__(self, level: Isolation, *, rootless: bool) -> None:
         """Start it."""
@@ -44,11 +44,11 @@ class Rig:
         theirs.close()
 
     def do(self, function: Callable[..., Any], *arguments: object) -> Any:
-        """Call `function(fork server, level, *arguments)` in the rig and return what it returns."""
+        """Call `function(fork server, level, *arguments)` in the runner and return what it returns."""
         self._connection.send((function, arguments))
         fault, result = self._connection.recv()
         if fault is not None:
-            raise AssertionError(f"in the rig's process: {fault}")
+            raise AssertionError(f"in the runner's process: {fault}")
         return result
 
     def run(
@@ -56,30 +56,30 @@ class Rig:
         source: str | bytes,
         *,
         limits: Limits | None = None,
-        warm: bool = True,
+        preloaded: bool = True,
         name: str = "student.py",
         environment: Mapping[str, str] | None = None,
         timeout_s: float = 60.0,
     ) -> Run:
         """Run a program in a sandbox until its first process ends, and kill the rest."""
         content = source if isinstance(source, bytes) else source.encode()
-        program = Program(name, {name: content}, ("--ros-args",), environment=environment or {}, warm=warm)
+        program = Program(name, {name: content}, ("--ros-args",), environment=environment or {}, preloaded=preloaded)
         run: Run = self.do(run_to_end, program, limits, timeout_s)
         return run
 
     @property
     def pid(self) -> int:
-        """The id of the rig's process."""
+        """The id of the runner's process."""
         assert self._process.pid is not None
         return self._process.pid
 
     def kill(self) -> None:
-        """Kill the rig's process as the kernel would for lack of memory."""
+        """Kill the runner's process as the kernel would for lack of memory."""
         self._process.kill()
         self._process.join()
 
     def close(self) -> None:
-        """End the rig."""
+        """End the runner."""
         self._connection.close()
         self._process.join(20)
         self._process.kill()
@@ -88,7 +88,7 @@ class Rig:
 def run_to_end(
     fork_server: ForkServer, level: Isolation, program: Program, limits: Limits | None, timeout_s: float
 ) -> Run:
-    """Run a program to its end, in the rig."""
+    """Run a program to its end, in the runner."""
     with fork_server.start(program, level, limits) as student:
         end = student.wait(timeout_s)
     return Run(end, student.output().text)
@@ -143,7 +143,7 @@ def reason_against(level: Isolation, rootless: bool) -> str | None:
         return "the tests are not run as root: what is tested without root is the same as the case above"
     code = (
         f"import sys; sys.path[:0] = [{str(Path(__file__).parent)!r}, {str(Path(__file__).parents[2])!r}]\n"
-        "from sandbox_rig import become_nobody\n"
+        "from sandbox_runner import become_nobody\n"
         "become_nobody()\n"
         "from grader.sandbox import Isolation, available, choose\n"
         f"print(available()[Isolation({level.value!r})] or '')"

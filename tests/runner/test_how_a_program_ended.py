@@ -1,0 +1,66 @@
+"""How a program's end is reported, if ROS 2 itself says little about the line that is to blame."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.runner.ending import of_exit
+from grader.sandbox.monitor import Exit
+
+SOURCE = "import rclpy\nrclpy.spin(node)\n"
+
+#: As rclpy 7.1.6 wrote them, shortened.
+NO_RESPONSE = """\
+Traceback (most recent call last):
+  File "turnstile.py", line 2, in <module>
+    rclpy.spin(node)
+  File "rclpy/executors.py", line 472, in _execute_service
+    srv.send_response(response, header)
+  File "rclpy/service.py", line 75, in send_response
+    raise TypeError()
+TypeError
+"""
+RAISES = """\
+Traceback (most recent call last):
+  File "turnstile.py", line 2, in <module>
+    rclpy.spin(node)
+  File "rclpy/executors.py", line 456, in _execute
+    response = await await_or_execute(srv.callback, request, srv.srv_type.Response())
+  File "turnstile.py", line 3, in on_push
+ValueError: no coins
+"""
+UNDECLARED = """\
+Traceback (most recent call last):
+  File "rclpy/node.py", line 678, in get_parameter
+    raise ParameterNotDeclaredException(name)
+rclpy.exceptions.ParameterNotDeclaredException: Invalid access to undeclared parameter(s): gain
+"""
+OF_ANOTHER_TYPE = """\
+Traceback (most recent call last):
+  File "rclpy/node.py", line 575, in declare_parameters
+    raise InvalidParameterTypeException(name, value.type_)
+rclpy.exceptions.InvalidParameterTypeException: Trying to set parameter 'gain' to a DOUBLE, its type is INTEGER
+"""
+NO_RESULT = (
+    "python: ./action/_rotate_absolute_s.c:145: turtlesim__action__rotate_absolute__result__convert_from_py: Assertion "
+    '`strncmp("turtlesim.action._rotate_absolute.RotateAbsolute_Result", full_classname_dest, 55) == 0\' failed.\n'
+)
+
+
+@pytest.mark.parametrize(
+    ("log", "exit_", "told"),
+    [
+        (NO_RESPONSE, Exit(1, None, None), "end each way through it with `return response`"),
+        (
+            NO_RESULT,
+            Exit(None, 6, None),
+            "has to return a Result, such as `return RotateAbsolute.Result()`",
+        ),
+        (RAISES, Exit(1, None, None), "coins in line 3. An exception in a callback ends the whole node: say in the"),
+        (UNDECLARED, Exit(1, None, None), "(s): gain. Declare it first, in __init__: self.declare_parameter(…)."),
+        (OF_ANOTHER_TYPE, Exit(1, None, None), "type is INTEGER. A parameter has the type of its default: 1 declares"),
+        ("", Exit(None, 6, None), "killed by signal 6"),
+    ],
+)
+def test_an_end_far_from_its_cause_says_what_to_do(log: str, exit_: Exit, told: str) -> None:
+    assert told in of_exit(exit_, log, "turnstile.py", SOURCE)[0]
