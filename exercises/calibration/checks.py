@@ -12,7 +12,7 @@ OFFSETS, PENDING = "/joint_offsets", "/calibrations_pending"
 
 @check(points=8, hint="call_async() in the callback of /calibrate, with the joint's name in the request.")
 def test_asks(one: Run) -> None:
-    """It calls /calibrate_joint with the name of the joint that it heard on /calibrate."""
+    """It calls /calibrate_joint with the name of the joint that it received on /calibrate."""
     one.must_have_interface()
     one.must_match_requests("joint")
 
@@ -40,7 +40,7 @@ def test_publishes_the_name(one: Run) -> None:
     misconception="waits for the answer",
 )
 def test_ten_times_a_second(one: Run) -> None:
-    """It publishes on /calibrations_pending ten times a second, also while it waits for an answer."""
+    """It publishes on /calibrations_pending ten times per second, also while it waits for an answer."""
     one.must_keep_rate(10.0, PENDING)
     one.must_have_no_gap(0.15, PENDING)
 

@@ -15,8 +15,8 @@ def must_ask_in_time(run: Run, within: float, seconds: dict[str, float]) -> None
         joint = call.request["joint"]
         late = (call.at - 100_000_000_000) / 1_000_000_000 - seconds[joint]
         if late > within + 1e-9:
-            told = f"the request for {joint} was expected within {within:g} s, got it {late:.2f} s later."
-            run.wrong_at(call.at, told, "", f"within {within:g} s", f"after {late:.2f} s")
+            text = f"the request for {joint} was expected within {within:g} s, got it {late:.2f} s later."
+            run.wrong_at(call.at, text, "", f"within {within:g} s", f"after {late:.2f} s")
 
 
 @check(
@@ -27,7 +27,7 @@ def must_ask_in_time(run: Run, within: float, seconds: dict[str, float]) -> None
     rule="Never stop, whatever the service does.",
 )
 def test_never_silent(absent: Run, never: Run) -> None:
-    """/calibrations_pending goes on when the service is not there, and when it never answers."""
+    """/calibrations_pending continues when the service is not there, and when it never answers."""
     for run in (absent, never):
         run.must_have_no_gap(0.15, PENDING)
 
@@ -72,9 +72,9 @@ def test_failed_calibration(failing: Run) -> None:
 
 @check(
     points=4,
-    hint="An answer is an answer, also when it says no.",
+    hint="A response with success false is an answer, too.",
     depends=COUNT,
-    rule="A joint that failed or was given up is not waiting any more.",
+    rule="A joint that failed or timed out is no longer waiting.",
 )
 def test_failed_is_not_pending(failing: Run) -> None:
     """A joint whose calibration failed is not pending any more."""
@@ -83,7 +83,7 @@ def test_failed_is_not_pending(failing: Run) -> None:
 
 @check(
     points=4,
-    hint="math.isfinite(offset) tells.",
+    hint="Use math.isfinite(offset).",
     depends=["test_publishes_the_name"],
     rule="An offset that is not a number or infinite counts as no success.",
 )
@@ -119,7 +119,7 @@ def test_pending_without_a_service(absent: Run) -> None:
     points=5,
     hint="Remember when each request went out, and look at it in the timer.",
     depends=COUNT,
-    misconception="waits for ever",
+    misconception="waits forever",
     rule="No answer 5 s after the request: give up.",
 )
 def test_gives_up(never: Run) -> None:

@@ -15,8 +15,8 @@ def must_be_regular(run: Run) -> None:
     for number, (before, beat) in enumerate(itertools.pairwise(run.messages_on()), start=2):
         gap = (beat.at - before.at) / 1_000_000_000
         if abs(gap - 0.25) > 0.011:
-            told = f"expected it 0.25 s after the beat before, got {gap:.3f} s."
-            run.wrong_at(beat.at, told, f"beat {number}", "0.25 s", f"{gap:.3f} s")
+            text = f"expected it 0.25 s after the beat before, got {gap:.3f} s."
+            run.wrong_at(beat.at, text, f"beat {number}", "0.25 s", f"{gap:.3f} s")
 
 
 @check(points=5, hint="Create the publisher and the timer in __init__, and call publish() in beat().")
@@ -33,7 +33,7 @@ def test_publishes_beats(start: Run) -> None:
     misconception="rate and period mixed up",
 )
 def test_four_beats_a_second(start: Run) -> None:
-    """It beats four times a second."""
+    """It beats four times per second."""
     start.must_keep_rate(4.0)
 
 
@@ -49,7 +49,7 @@ def test_each_beat_comes_in_time(start: Run) -> None:
 
 @check(
     points=10,
-    hint="Ask the node's clock, anew for each beat.",
+    hint="Ask the node's clock again for each beat.",
     depends=[test_publishes_beats],
     misconception="another time in the stamp",
 )

@@ -9,12 +9,12 @@ PUBLISHES = ["test_publishes_beats"]
 
 @check(
     points=4,
-    hint="The timer goes on for as long as the node lives.",
+    hint="The timer must run for as long as the node runs.",
     depends=PUBLISHES,
     rule="It never stops and never drifts.",
 )
 def test_goes_on_for_a_minute(minute: Run) -> None:
-    """It beats on for a whole minute."""
+    """It beats for a whole minute."""
     minute.must_have_no_gap(longest=5.0, end=60.1)
 
 
@@ -30,8 +30,8 @@ def test_does_not_drift(minute: Run) -> None:
     for number, beat in enumerate(beats):
         got, expected = (beat.at - beats[0].at) / 1_000_000_000, number * 0.25
         if abs(got - expected) > 0.011:
-            told = f"expected it {expected:.2f} s after the first beat, got {got:.3f} s."
-            minute.wrong_at(beat.at, told, f"beat {number + 1}", f"{expected:.2f} s", f"{got:.3f} s")
+            text = f"expected it {expected:.2f} s after the first beat, got {got:.3f} s."
+            minute.wrong_at(beat.at, text, f"beat {number + 1}", f"{expected:.2f} s", f"{got:.3f} s")
 
 
 @check(

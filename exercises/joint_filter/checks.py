@@ -10,7 +10,7 @@ from grader.checking import Run, check, fail
 
 @check(points=8, hint="Create the subscription and the publisher in __init__, and call publish() in the callback.")
 def test_answers_each_message(default: Run) -> None:
-    """It hears /joint_commands, and publishes one message on /joint_filtered for each."""
+    """It subscribes to /joint_commands, and publishes one message on /joint_filtered for each."""
     default.must_have_interface()
     default.must_publish()
     default.must_answer()

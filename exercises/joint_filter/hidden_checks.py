@@ -15,7 +15,7 @@ FILTERS, GAIN = ["test_filters_with_the_default"], ["test_gain_of_the_start", NA
     rule="Refused: a gain of 0.0 or less, above 1.0, not a number, or of another type",
 )
 def test_gain_of_one(after_refusal: Run) -> None:
-    """A gain of exactly 1.0 is taken."""
+    """A gain of exactly 1.0 is accepted."""
     after_refusal.must_take("gain", 1.0)
 
 
@@ -38,7 +38,7 @@ def test_gain_can_be_read(default: Run) -> None:
     rule="Refused: a gain of 0.0 or less, above 1.0, not a number, or of another type",
 )
 def test_refuses_what_is_not_allowed(refused: Run) -> None:
-    """It refuses gains that are not more than 0.0 and at most 1.0."""
+    """It refuses a gain of 0.0 or less, above 1.0, or not a number."""
     refused.must_refuse("gain")
 
 
@@ -49,7 +49,7 @@ def test_refuses_what_is_not_allowed(refused: Run) -> None:
     rule="The gain stays as it was.",
 )
 def test_goes_on_after_a_refusal(refused: Run) -> None:
-    """After a refusal, the gain is what it was."""
+    """After a refusal, the gain is unchanged."""
     refused.must_have_parameter("gain")
     refused.must_match("position", per="name")
 
@@ -94,10 +94,10 @@ def test_joints_in_another_order(reordered: Run) -> None:
     points=5,
     hint="Keep the smooth position of each joint, also when it is missing.",
     depends=FILTERS,
-    rule="A joint that was missing from some messages goes on from its last smooth position.",
+    rule="A joint that was missing from some messages continues from its last smooth position.",
 )
 def test_missing_joint(missing_joint: Run) -> None:
-    """A joint that was missing goes on from its last smooth position."""
+    """A joint that was missing continues from its last smooth position."""
     missing_joint.must_match("position", per="name")
 
 

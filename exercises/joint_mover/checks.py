@@ -17,7 +17,7 @@ def test_accepts_a_goal(up: Run) -> None:
 
 @check(
     points=10,
-    hint="At the goal, the goal handle has to be told that it has succeeded.",
+    hint="At the goal, mark the goal handle as succeeded.",
     depends=[test_accepts_a_goal],
     misconception="forgets succeed()",
 )

@@ -108,7 +108,7 @@ def test_goal_after_a_cancel(after_cancel: Run) -> None:
     rule="The old one ends as aborted within 0.1 s, without another step of its own",
 )
 def test_second_goal_aborts_the_first(replaced: Run) -> None:
-    """A second goal aborts the one that runs, within 0.1 s."""
+    """A second goal aborts the running goal within 0.1 s."""
     replaced.must_accept(2)
     replaced.must_end("aborted", goal=1, within=0.7)
 
@@ -129,10 +129,10 @@ def test_result_of_a_replaced_goal(replaced: Run) -> None:
     points=5,
     hint="Only the newest goal may move the joint.",
     depends=["test_second_goal_aborts_the_first", *STEPS],
-    rule="The new one goes on from there. Only one goal moves the joint.",
+    rule="The new one starts from there. Only one goal moves the joint.",
 )
 def test_second_goal_goes_on_from_there(replaced: Run, replaced_upwards: Run) -> None:
-    """The second goal goes on from where the first one stopped."""
+    """The second goal starts where the first one stopped."""
     for run in (replaced, replaced_upwards):
         run.must_match_feedback("position", goal=2, time=0.05)
         run.must_match_feedback("position", goal=1)
@@ -142,9 +142,9 @@ def test_second_goal_goes_on_from_there(replaced: Run, replaced_upwards: Run) ->
     points=3,
     hint="Look at goal_handle before you change anything: execute runs for accepted goals only.",
     depends=[*SUCCEEDS, "test_out_of_reach_is_rejected"],
-    rule="Rejected goals change nothing: the goal that runs goes on.",
+    rule="Rejected goals change nothing: the running goal continues.",
 )
 def test_rejected_goal_changes_nothing(rejected_meanwhile: Run) -> None:
-    """A goal that is rejected leaves the one that runs alone."""
+    """A rejected goal does not affect the running goal."""
     rejected_meanwhile.must_reject(2)
     rejected_meanwhile.must_end("succeeded", goal=1, within=1.0)

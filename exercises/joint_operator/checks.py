@@ -14,7 +14,7 @@ OUTCOMES, PROGRESS = "/outcomes", "/progress"
 
 @check(points=10, hint="send_goal_async() in the callback of /targets, with the target as the goal's position.")
 def test_sends_a_goal(succeeds: Run) -> None:
-    """It sends a goal for /move_joint with the position that it heard on /targets."""
+    """It sends a goal for /move_joint with the position that it received on /targets."""
     succeeds.must_have_interface()
     succeeds.must_match_goals("position")
 
@@ -62,9 +62,9 @@ def test_one_goal_at_a_time(several: Run) -> None:
     for before, goal in itertools.pairwise(goals):
         wait = (goal.at - (before.finished or goal.at + 1)) / 1_000_000_000
         if not 0.0 <= wait <= 0.25:
-            told = f"goal {goal.number} was expected when goal {before.number} had ended, "
-            told += "got it before that." if wait < 0 else f"got it {wait:.2f} s later."
-            several.wrong_at(goal.at, told, "", "one goal at a time", "before the end" if wait < 0 else f"{wait:.2f} s")
+            text = f"goal {goal.number} was expected when goal {before.number} had ended, "
+            text += "got it before that." if wait < 0 else f"got it {wait:.2f} s later."
+            several.wrong_at(goal.at, text, "", "one goal at a time", "before the end" if wait < 0 else f"{wait:.2f} s")
 
 
 @check(points=3, hint="super().__init__('joint_operator')", depends=[test_sends_a_goal])

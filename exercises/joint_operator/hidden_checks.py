@@ -17,19 +17,19 @@ def must_not_cancel(run: Run) -> None:
     """No goal of the student's may be canceled."""
     for goal in run.goals(by="node"):
         for cancel in goal.cancels:
-            told = "the goal had time left, but your node asked to cancel it."
-            run.wrong_at(cancel.at, told, f"goal {goal.number}", "no request to cancel", "one")
+            text = "the goal had time left, but your node asked to cancel it."
+            run.wrong_at(cancel.at, text, f"goal {goal.number}", "no request to cancel", "one")
 
 
 @check(
     points=8,
-    hint="Look at goal_handle.accepted before you ask for a result. Then go on with the next target.",
+    hint="Look at goal_handle.accepted before you ask for a result. Then continue with the next target.",
     depends=ORDER,
     misconception="ignores accepted",
     rule="or rejected if the server did not accept it.",
 )
 def test_rejected(rejects: Run) -> None:
-    """When the server rejects a goal, it publishes rejected, and goes on with the next."""
+    """When the server rejects a goal, it publishes rejected, and continues with the next."""
     outcomes(rejects)
 
 
@@ -41,7 +41,7 @@ def test_rejected(rejects: Run) -> None:
     rule="What counts is the status that comes with the result, not what you asked for.",
 )
 def test_aborted(aborts: Run) -> None:
-    """When the server aborts a goal, it publishes aborted, and goes on with the next."""
+    """When the server aborts a goal, it publishes aborted, and continues with the next."""
     outcomes(aborts)
 
 
@@ -52,7 +52,7 @@ def test_aborted(aborts: Run) -> None:
     rule="is published on /outcomes when its goal has ended",
 )
 def test_server_that_answers_late(answers_late: Run) -> None:
-    """When the server takes long to accept, it waits for the result all the same."""
+    """When the server takes long to accept, it still waits for the result."""
     outcomes(answers_late)
 
 
@@ -69,37 +69,37 @@ def test_server_appears_late(appears: Run) -> None:
     first = appears.goals(by="node")[0]
     late = (first.at - 102_020_000_000) / 1_000_000_000
     if late > 0.25:
-        told = f"the first goal was expected within 0.25 s after the server appeared, got it after {late:.2f} s."
-        appears.wrong_at(first.at, told, "", "within 0.25 s", f"{late:.2f} s")
+        text = f"the first goal was expected within 0.25 s after the server appeared, got it after {late:.2f} s."
+        appears.wrong_at(first.at, text, "", "within 0.25 s", f"{late:.2f} s")
 
 
 @check(
     points=7,
     hint="Remember when the goal was accepted, and look at it in the timer.",
     depends=OUTCOME,
-    misconception="waits for ever",
+    misconception="waits forever",
     rule="If a goal has not ended 5 s after it was accepted, ask the server to cancel it, once, within 0.25 s.",
 )
 def test_asks_to_cancel(never_ends: Run) -> None:
     """It asks to cancel a goal that takes longer than 5 s, once."""
     first = never_ends.goals(by="node")[0]
     if len(first.cancels) != 1:
-        told = f"expected one request to cancel the goal that never ends, got {len(first.cancels)}."
-        never_ends.wrong_at(first.at, told, "", "one request", len(first.cancels))
+        text = f"expected one request to cancel the goal that never ends, got {len(first.cancels)}."
+        never_ends.wrong_at(first.at, text, "", "one request", len(first.cancels))
     after = (first.cancels[0].at - (first.answered or first.at)) / 1_000_000_000
     if not 5.0 <= after <= 5.25:
-        told = f"expected a request to cancel 5 s after the goal was accepted, got it after {after:.2f} s."
-        never_ends.wrong_at(first.cancels[0].at, told, "", "5 s to 5.25 s", f"{after:.2f} s")
+        text = f"expected a request to cancel 5 s after the goal was accepted, got it after {after:.2f} s."
+        never_ends.wrong_at(first.cancels[0].at, text, "", "5 s to 5.25 s", f"{after:.2f} s")
 
 
 @check(
     points=5,
     hint="The result of a canceled goal comes, too, with the status for it.",
     depends=["test_asks_to_cancel", *ORDER],
-    rule="Then go on waiting for its result",
+    rule="Then continue to wait for its result",
 )
 def test_canceled(never_ends: Run) -> None:
-    """When the goal was canceled, it publishes canceled, and goes on with the next."""
+    """When the goal was canceled, it publishes canceled, and continues with the next."""
     outcomes(never_ends)
 
 

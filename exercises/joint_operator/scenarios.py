@@ -49,7 +49,7 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
             {},
         ),
         "ignores_the_cancel": (
-            "accepts to cancel, and succeeds all the same",
+            "accepts the cancel request, but succeeds anyway",
             9.0,
             three[:2],
             (moves(6.0, 0.2, cancel="ignore"), good),

@@ -10,14 +10,14 @@ from grader.checking import Run, check
 
 @check(points=3, hint="Create the subscription and the publisher in __init__, and call publish() in the callback.")
 def test_publishes_velocities(chapter: Run) -> None:
-    """It hears /joint_commands and publishes JointState messages on /joint_velocities."""
+    """It subscribes to /joint_commands and publishes JointState messages on /joint_velocities."""
     chapter.must_have_interface()
     chapter.must_publish()
 
 
 @check(
     points=2,
-    hint="Compute the velocity anew for each message: zeros and constants are no velocities.",
+    hint="Compute the velocity again for each message: zeros and constants are not velocities.",
     depends=[test_publishes_velocities],
     misconception="publishes zeros or a constant",
 )

@@ -25,8 +25,8 @@ def test_speed_that_never_changes(steady: Run) -> None:
         for answer in exchange.answers:
             for joint, velocity in answer.by("name", "velocity").items():
                 if abs(velocity - speeds.get(joint, 0.0)) > 1e-6:
-                    told = f"expected velocity {speeds.get(joint, 0.0):g} rad/s, got {velocity:.6g} rad/s."
-                    steady.wrong(exchange, told, joint, f"{speeds.get(joint, 0.0):g}", f"{velocity:.6g}")
+                    text = f"expected velocity {speeds.get(joint, 0.0):g} rad/s, got {velocity:.6g} rad/s."
+                    steady.wrong(exchange, text, joint, f"{speeds.get(joint, 0.0):g}", f"{velocity:.6g}")
     steady.must_match("velocity", per="name")
 
 
@@ -79,8 +79,8 @@ def test_same_messages_same_answers(irregular: Run, irregular_again: Run) -> Non
             for joint, velocity in first.by("name", "velocity").items():
                 other = second.by("name", "velocity").get(joint)
                 if other is not None and velocity != other and not (velocity != velocity and other != other):
-                    told = "the same messages got a different velocity when they were sent a second time."
-                    irregular.wrong(once, told, joint, "the same velocity twice", "two velocities")
+                    text = "the same messages got a different velocity when they were sent a second time."
+                    irregular.wrong(once, text, joint, "the same velocity twice", "two velocities")
 
 
 @check(
@@ -102,7 +102,7 @@ def test_lost_messages(lossy: Run) -> None:
     rule="The order of the joints may change from message to message.",
 )
 def test_joints_in_another_order(reordered: Run) -> None:
-    """Velocities are right when the joints stand in another order in each message."""
+    """Velocities are right when the joints are in another order in each message."""
     reordered.must_match("velocity", per="name")
 
 
@@ -149,7 +149,7 @@ def test_joint_that_comes_back(missing_joint: Run) -> None:
     rule="The stamp is the same as before, or earlier. Then dt is zero or negative. Publish nothing.",
 )
 def test_repeated_stamp(repeated_stamp: Run) -> None:
-    """Nothing is published when the stamp is the one before; then it goes on as usual."""
+    """Nothing is published when the stamp is the one before; then it continues as usual."""
     _silent_and_right(repeated_stamp)
 
 
@@ -161,7 +161,7 @@ def test_repeated_stamp(repeated_stamp: Run) -> None:
     rule="The stamp is the same as before, or earlier. Then dt is zero or negative. Publish nothing.",
 )
 def test_backward_stamp(backward_stamp: Run) -> None:
-    """Nothing is published when the stamp goes back; then it goes on as usual."""
+    """Nothing is published when the stamp goes back; then it continues as usual."""
     _silent_and_right(backward_stamp)
 
 
@@ -178,12 +178,12 @@ def test_long_gap(gap: Run) -> None:
 
 @check(
     points=3,
-    hint="math.isfinite(position) tells. Leave such a joint out, now and the next time.",
+    hint="Use math.isfinite(position). Leave such a joint out, now and the next time.",
     depends=VELOCITY,
-    rule="This counts as if the joint were missing from that message. All other joints go on as usual.",
+    rule="This counts as if the joint were missing from that message. All other joints are handled as usual.",
 )
 def test_not_finite(not_finite: Run) -> None:
-    """A joint whose position is not a number or infinite is left out; the others go on."""
+    """A joint whose position is not a number or infinite is left out; the others are not."""
     not_finite.must_match("velocity", per="name")
 
 
@@ -205,7 +205,7 @@ def test_empty_message(empty: Run) -> None:
     rule="Names without a position count as missing from that message.",
 )
 def test_fewer_positions_than_names(short: Run) -> None:
-    """Joints without a position are left out; the others go on."""
+    """Joints without a position are left out; the others are not."""
     short.must_match("velocity", per="name")
 
 

@@ -21,8 +21,8 @@ def test_refuses_in_an_emergency(emergency: Run) -> None:
     calls = [call for call in run.calls() if call.request["data"]]
     for call in calls[1:]:
         if call.response is None or call.response["success"]:
-            told = "the emergency stop is pressed: expected success false."
-            run.wrong_at(call.at, told, "request to switch on", "false", "true" if call.response else "no response")
+            text = "the emergency stop is pressed: expected success false."
+            run.wrong_at(call.at, text, "request to switch on", "false", "true" if call.response else "no response")
 
 
 @check(
@@ -46,9 +46,9 @@ def test_off_is_always_allowed(emergency: Run) -> None:
     """A request to switch off succeeds, also in an emergency."""
     for call in emergency.calls():
         if not call.request["data"] and not (call.response and call.response["success"]):
-            told = "off is always allowed: expected success true."
+            text = "off is always allowed: expected success true."
             got = "false" if call.response else "no response"
-            emergency.wrong_at(call.at, told, "request to switch off", "true", got)
+            emergency.wrong_at(call.at, text, "request to switch off", "true", got)
 
 
 @check(
@@ -82,7 +82,7 @@ def test_released(released: Run) -> None:
     rule="nothing when a request or an emergency changes nothing.",
 )
 def test_pressed_while_off(pressed_while_off: Run) -> None:
-    """An emergency stop while the motors are off publishes nothing, and forbids to switch on."""
+    """An emergency stop while the motors are off publishes nothing, and prevents switching them on."""
     pressed_while_off.must_match_series("data", MOTORS, time=0.06)
     pressed_while_off.must_match_responses("success")
 

@@ -22,7 +22,7 @@ def test_publishes_the_description(late: Run) -> None:
     misconception="volatile",
 )
 def test_late_subscriber(late: Run) -> None:
-    """Who subscribes late gets the description, too."""
+    """Late subscribers get the description, too."""
     late.must_match_series(subscriber="late at 1 s")
     late.must_match_series(subscriber="late at 2 s")
 

@@ -24,10 +24,10 @@ def test_description_that_changes(changed: Run) -> None:
     points=3,
     hint="The depth is how many messages the publisher keeps for late subscribers.",
     depends=["test_late_subscriber", "test_description_that_changes"],
-    rule="Whoever subscribes late gets the newest description, once, and no older one.",
+    rule="A late subscriber gets the newest description, once, and no older one.",
 )
 def test_late_subscriber_gets_the_newest(changed: Run) -> None:
-    """Who subscribes late gets the newest description, and no older one."""
+    """Late subscribers get the newest description, and no older one."""
     changed.must_match_series(subscriber="late at 1.6 s")
 
 
@@ -85,5 +85,5 @@ def test_publishes_nothing_refused(refused: Run) -> None:
     rule="It goes on, and takes the next good one.",
 )
 def test_goes_on_after_a_bad_text(after_refusal: Run) -> None:
-    """After a bad text it takes the next good one."""
+    """After a bad text it accepts the next good one."""
     after_refusal.must_take("robot_description", after_refusal.recording.parameters[1].value)

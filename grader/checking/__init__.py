@@ -1,6 +1,5 @@
-"""What the author of checks uses: `check` to mark one, `fail` to end one, and the runs that fixtures give.
-
-A page for authors is in docs/writing-checks.md.
+"""The names for authors of checks: `check` marks a check, `fail` ends it, and fixtures give it runs. See
+docs/writing-checks.md.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -14,7 +13,7 @@ __all__ = ["Exchange", "Message", "Run", "Wrong", "check", "fail"]
 
 
 def __getattr__(name: str) -> Any:
-    """Import runs only for those who use them: a command that shows a grade needs verdicts alone."""
+    """Import runs only when they are used: a command that shows a grade needs only verdicts."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from grader.checking import run

@@ -1,33 +1,40 @@
 """Helpers for actions: what the student's server does with goals, and which goals the student's client sends.
 
-Everything is judged by the raw status and feedback topics and the responses, never by an ActionClient's callbacks.
+They judge the raw status and feedback topics and the responses, never an ActionClient's callbacks.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
-from grader.checking.comparator import TOLERANCE
+from grader.checking.comparator import TOLERANCE, shown
 from grader.checking.recorded import Recorded
-from grader.checking.shown import shown
 from grader.recording.events import By, Cancel, Goal
 from grader.scenario.times import SECOND
 
 _FORGOT = (
-    "The result is filled in, but the goal was aborted: a server that is done has to call goal_handle.succeed(), "
-    "and not abort()."
+    "The result is filled in, but the goal was aborted: a server that is done must call goal_handle.succeed(), "
+    "not abort()."
 )
-_ABORTED = "Does execute raise, return without goal_handle.succeed(), or call canceled() when nobody asked for it?"
-_DISREGARDED = "Your node accepted the request to cancel, and then called succeed() all the same."
-_REFUSED = "Your node rejected the request to cancel: without a cancel callback a server rejects each of them."
+_ABORTED = "Does execute raise, return without goal_handle.succeed(), or call canceled() without a request to cancel?"
+_DISREGARDED = "Your node accepted the request to cancel, and then called succeed() anyway."
+_REFUSED = "Your node rejected the request to cancel: without a cancel callback, a server rejects every cancel request."
 _WENT_ON = (
-    "Your node accepted the request to cancel, and went on: execute has to look at goal_handle.is_cancel_requested."
+    "Your node accepted the request to cancel, but continued: execute must check goal_handle.is_cancel_requested."
 )
-_NO_ANSWER = "Your node never answered the request to cancel: execute keeps the executor from doing it."
-_OVER = "The goal was over before the request to cancel came."
-_TOO_LATE = "The request to cancel was answered only when the goal was over: execute keeps the executor from doing it."
+_NO_ANSWER = "Your node never answered the request to cancel: execute blocks the executor."
+_OVER = "The goal had ended before the request to cancel arrived."
+_TOO_LATE = "Your node answered the request to cancel only after the goal had ended: execute blocks the executor."
 _NEVER = "The goal never ended."
+_STUCK = (
+    "Your node did nothing after it began to execute the goal. Does execute wait by the node's clock, with one thread? "
+    "That thread then reads no clock: run the node in a MultiThreadedExecutor."
+)
+_UNASKED = "canceled() is only for a goal that somebody asked to cancel; call abort() to give up any other."
+#: What rclpy logs.
+_RAISED = re.compile(r"Error raised in execute callback: (.*?)(?:, at \S+:\d+)?$", re.MULTILINE)
 
 
 class ActionChecks(Recorded):
@@ -39,7 +46,7 @@ class ActionChecks(Recorded):
         return tuple(goal for goal in self.recording.goals if goal.action == name and goal.by == by)
 
     def goal(self, number: int) -> Goal:
-        """The scenario's goal of this number. Raises ValueError where it sends none with it."""
+        """The scenario's goal with this number. Raises ValueError if it sends no such goal."""
         for goal in self.recording.goals:
             if goal.number == number and goal.by == "grader":
                 return goal
@@ -54,9 +61,8 @@ class ActionChecks(Recorded):
         self._must_answer(self.goal(goal), accepted=False)
 
     def must_go_through(self, *states: str, goal: int = 1) -> None:
-        """The goal must go through these states, such as "accepted", "executing", "succeeded", and through no other.
-
-        Without states they are those of the solution's goal.
+        """The goal must go through exactly these states, such as "accepted", "executing", "succeeded"; by default,
+        through those of the solution's goal.
         """
         one = self.goal(goal)
         wanted = states or tuple(state.state for state in self._solutions(goal).states)
@@ -68,7 +74,7 @@ class ActionChecks(Recorded):
             self.wrong_at(at, text, _part(one), " → ".join(wanted), " → ".join(got), self._why(one, wanted[-1]))
 
     def must_end(self, status: str, goal: int = 1, within: float | None = None) -> None:
-        """The goal must end as "succeeded", "canceled" or "aborted", within so many seconds after it was sent."""
+        """The goal must end as "succeeded", "canceled" or "aborted", within this many seconds after it was sent."""
         one = self.goal(goal)
         self._must_answer(one, accepted=True)
         if (got := _ended_as(one)) != status:
@@ -82,7 +88,7 @@ class ActionChecks(Recorded):
     def must_cancel(self, goal: int = 1, within: float = 1.0) -> None:
         """The node must accept the scenario's first request to cancel this goal, and end it as "canceled".
 
-        Both within so many seconds of simulated time; and it must send no feedback after that.
+        Both must happen within this many seconds of simulated time, and it must send no feedback after that.
         """
         one = self.goal(goal)
         self._must_answer(one, accepted=True)
@@ -98,7 +104,7 @@ class ActionChecks(Recorded):
             text = f"it was expected to end within {within:g} s of the request to cancel, got {late:.2f} s."
             self.wrong_at(cancel.at, text, _part(one), f"{within:g} s", f"{late:.2f} s")
         if after := [feedback for feedback in one.feedback if feedback.at > ended]:
-            text = "no feedback was expected after the goal was canceled, but your node goes on with it."
+            text = "no feedback was expected after the goal was canceled, but your node continues to send it."
             self.wrong_at(after[0].at, text, _part(one), "no feedback", f"{len(after)} messages")
 
     def must_match_results(self, field: str = "", action: str = "", tolerance: float = TOLERANCE) -> None:
@@ -109,12 +115,14 @@ class ActionChecks(Recorded):
 
         for one, reference in self._match(action, "grader", field, tolerance, result, "result"):
             if reference.finished is not None and one.finished is None:
+                self._must_answer(one, accepted=True)
                 self.wrong_at(one.at, "a result was expected, got none.", _part(one), "a result", "none", _NEVER)
 
     def must_match_feedback(
         self, field: str = "", goal: int = 1, tolerance: float = TOLERANCE, time: float | None = None
     ) -> None:
-        """The goal's feedback must be the solution's, message by message; with `time`, within so many seconds of it."""
+        """The goal's feedback must match the solution's, message by message; with `time`, within this many seconds of
+        it."""
         one, reference = self.goal(goal), self._solutions(goal)
         self._must_answer(one, accepted=True)
         pairs = list(zip(reference.feedback, one.feedback, strict=False))
@@ -134,14 +142,15 @@ class ActionChecks(Recorded):
     ) -> None:
         """The node, a client, must send as many goals as the solution, with the same `field`.
 
-        With `time`, each within so many seconds of the solution's.
+        With `time`, each within this many seconds of the solution's.
         """
         name = action or self.only("action_client")
         got, wanted = len(self.goals(name, by="node")), len(self._reference_goals(name, "node"))
         if got != wanted:
             clients = sorted({end.topic for end in self.recording.end_points if end.kind == "action client"})
-            never = "" if got or name in clients else f"Your node has no action client of {name}."
-            self.wrong_at(None, f"expected {wanted} goals for {name}, got {got}.", "", f"{wanted} goals", got, never)
+            never = "" if got or name in clients else f"Your node has no action client for {name}."
+            text = f"expected {wanted} goals for {name}, got {got}."
+            self.wrong_at(None, text, "", f"{wanted} goals", got, never or self.waits())
 
         def sent(goal: Goal) -> dict[str, Any] | None:
             return goal.goal
@@ -153,7 +162,7 @@ class ActionChecks(Recorded):
         """The node, a client, must not ask for the result of a goal that was rejected."""
         for one in self.goals(action, by="node"):
             if one.accepted is False and one.asked_result is not None:
-                text = "it was rejected, and your node asked for its result all the same. Look at goal_handle.accepted."
+                text = "it was rejected, but your node asked for its result. Check goal_handle.accepted."
                 self.wrong_at(one.asked_result, text, _part(one), "no request for the result", "one")
 
     def _match(
@@ -172,7 +181,9 @@ class ActionChecks(Recorded):
             expected, got = part_of(reference), part_of(one)
             if expected is not None and got is not None:
                 at = one.at if what == "goal" else one.finished
-                self.compare_at(at, f"{_part(one)}, its {what}", field, got, expected, tolerance, name, pairs)
+                raised = self._raised() if what == "result" and one.status == "aborted" and not _is_filled(got) else ""
+                part = f"{_part(one)}, its {what}"
+                self.compare_at(at, part, field, got, expected, tolerance, name, pairs, raised)
         return both
 
     def _must_answer(self, goal: Goal, accepted: bool) -> None:
@@ -190,13 +201,31 @@ class ActionChecks(Recorded):
             self.wrong_at(goal.at, f"it must be {wanted}, but your node {got} it.", _part(goal), wanted, got)
 
     def _why(self, goal: Goal, wanted: str) -> str:
-        """The usual mistake behind an end that is another than the wanted one; empty where none is known."""
+        """The common mistake behind a wrong end of a goal; empty if none is known."""
         got, cancel = _ended_as(goal), goal.cancels[0] if goal.cancels else None
         if wanted == "canceled" and cancel:
             return _why_not_canceled(goal, cancel, got)
         if wanted == "succeeded" and got == "aborted":
-            return _FORGOT if goal.result and _is_filled(goal.result) else _ABORTED
-        return _NEVER if _ended_at(goal) is None else ""
+            return _FORGOT if goal.result and _is_filled(goal.result) else self._raised() or _ABORTED
+        if _ended_at(goal) is not None:
+            return ""
+        return f"{_NEVER} {_STUCK}" if self._does_nothing_after(goal) else _NEVER
+
+    def _raised(self) -> str:
+        """What execute raised first in this scenario, by rclpy's log; empty if it did not."""
+        found = _RAISED.search(self.recording.log)
+        if not found:
+            return ""
+        text = f"Your execute callback raised an exception: {found[1].strip()}."
+        return f"{text} {_UNASKED}" if "event CANCELED" in found[1] else text
+
+    def _does_nothing_after(self, goal: Goal) -> bool:
+        """Whether the goal is executed, with no sign of life from the node after that."""
+        begun = next((state.at for state in goal.states if state.state == "executing"), None)
+        if begun is None or goal.feedback:
+            return False
+        answers = [one.at for one in self.recording.goals if one.accepted is not None and one.at > begun]
+        return not answers and not any(one.at > begun for one in self.recording.received)
 
     def _solutions(self, number: int) -> Goal:
         return next(goal for goal in self._reference.goals if goal.number == number and goal.by == "grader")
@@ -233,7 +262,7 @@ def _ended_at(goal: Goal) -> int | None:
 
 
 def _is_filled(result: Any) -> bool:
-    """Whether anything in a result is not what an empty one has."""
+    """Whether a result differs from an empty one."""
     if isinstance(result, dict):
         return any(_is_filled(part) for part in result.values())
     return bool(result)

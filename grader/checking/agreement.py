@@ -10,9 +10,9 @@ from typing import Any
 from grader.checking.created import Created, created, texts
 from grader.exercise.declaring import line_of
 from grader.exercise.exercise import Exercise, ExerciseError, Qos
-from grader.exercise.starter import BEGIN, END
+from grader.exercise.starter import hidden_blocks
 
-#: What each kind is called in a sentence.
+#: The name of each kind in a sentence.
 _WORDS = {
     "publish": "a publisher on",
     "subscribe": "a subscription to",
@@ -23,7 +23,7 @@ _WORDS = {
     "parameter": "the parameter",
 }
 
-_FIX = "Make the two agree: students are told what exercise.toml says, and the checks go by it."
+_FIX = "Make the two agree: students see exercise.toml, and the checks use it."
 
 #: What rclpy or a library creates without a call in the program.
 _OF_LIBRARIES = frozenset(("/clock", "/parameter_events", "/rosout", "/tf", "/tf_static"))
@@ -42,20 +42,21 @@ class _Declared:
 
 
 def disagreements(exercise: Exercise) -> Iterator[ExerciseError]:
-    """Each difference between solution.py and exercise.toml, as far as the source says literally what it creates.
-
-    A line outside the markers is the starter's, too. Nothing is said of a solution that can't be read.
+    """Each difference between solution.py and exercise.toml, as far as the source literally says what it creates. A
+    line outside the markers is also in the starter. It reports nothing for a solution that can't be read.
     """
     file = exercise.solution_file
     if file is None or not file.exists():
         return
     source = file.read_text(encoding="utf-8", errors="replace")
+    hidden = {number for block in hidden_blocks(source) for number, _ in block}
     declared, made = tuple(_declared(exercise)), created(source, exercise.node_name)
     for one in made:
         if one.name is not None:
             found = _difference(one, declared, exercise)
             if found:
-                yield ExerciseError(file, f"{_whose(source, one.line)} {found}", _FIX, one.line)
+                whose = "the solution" if one.line in hidden else "the starter"
+                yield ExerciseError(file, f"{whose} {found}", _FIX, one.line)
     yield from _missing(exercise, file, source, declared, made)
 
 
@@ -72,21 +73,13 @@ def _declared(exercise: Exercise) -> Iterator[_Declared]:
         yield _Declared("parameter", number, parameter.name, parameter.type, default=parameter.default)
 
 
-def _whose(source: str, line: int) -> str:
-    """Whether a line is the solution's alone, or the starter's, too."""
-    hidden = False
-    for text in source.splitlines()[:line]:
-        hidden = bool(BEGIN.match(text)) or (hidden and not END.match(text))
-    return "the solution" if hidden else "the starter"
-
-
 def _difference(one: Created, declared: tuple[_Declared, ...], exercise: Exercise) -> str:
-    """In what it is not as declared, after the words "the solution"; empty if it is."""
+    """How it differs from the declaration, to follow the words "the solution"; empty if it does not."""
     verb = "declares" if one.kind == "parameter" else "creates"
     what = f"{verb} {_WORDS[one.kind]} {one.name}"
     same = [other for other in declared if (other.kind, other.name) == (one.kind, one.name)]
     if not same:
-        # One of several programs may hear what another one publishes, which is declared once.
+        # One of several programs may subscribe to what another one publishes, which is declared once.
         of_topic = exercise.programs and one.kind in ("publish", "subscribe")
         same = [other for other in declared if other.name == one.name] if of_topic else []
         if not same:
@@ -95,7 +88,7 @@ def _difference(one: Created, declared: tuple[_Declared, ...], exercise: Exercis
 
 
 def _other_value(one: Created, other: _Declared, what: str) -> str:
-    """The first of type, QoS and default that is another than declared."""
+    """The first of type, QoS and default that differs from the declaration."""
     pairs = [("type", one.type, other.type), ("default", one.default, other.default)]
     if one.kind == other.kind and one.qos and other.qos:
         pairs += [(name, getattr(one.qos, name), getattr(other.qos, name)) for name in vars(other.qos)]
@@ -113,7 +106,7 @@ def _shown(value: Any) -> str:
 def _missing(
     exercise: Exercise, file: Path, source: str, declared: tuple[_Declared, ...], made: tuple[Created, ...]
 ) -> Iterator[ExerciseError]:
-    """What is declared, and neither created nor named anywhere in the solution."""
+    """What is declared, but neither created nor named anywhere in the solution."""
     toml, said = exercise.folder / "exercise.toml", texts(source)
     computed = {one.kind for one in made if one.name is None}
     for one in declared:

@@ -1,7 +1,7 @@
 """What a program creates, read from its source: publishers, subscriptions, services, actions, parameters.
 
-Only what stands there literally is read: `"/full"`, a name that is given its value once, `QoSProfile(depth=1)`. What is
-computed is None, and nothing can be said of it.
+It reads only literal values: `"/full"`, a name that gets its value once, `QoSProfile(depth=1)`. A computed value is
+None, and nothing can be said about it.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ from typing import Any, cast
 
 from grader.exercise.exercise import Durability, Qos, Reliability
 
-#: For each call that creates something: what, and the places and keywords of type, name, and QoS or default.
+#: For each call that creates something: what it creates, and the positions and keywords of type, name, and QoS or
+#: default.
 _CALLS: dict[str, tuple[str, tuple[tuple[int, str] | None, ...]]] = {
     "create_publisher": ("publish", ((0, "msg_type"), (1, "topic"), (2, "qos_profile"))),
     "create_subscription": ("subscribe", ((0, "msg_type"), (1, "topic"), (3, "qos_profile"))),
@@ -38,7 +39,7 @@ class Created:
 
     `kind` is "publish", "subscribe", "service", "client", "action", "action_client" or "parameter". `name` is the full
     name of a topic, such as `/full`, or a parameter's. `type` is written `package/msg/Name`, and for a parameter as
-    exercise.toml writes it. Whatever the source does not say literally is None; `default` is a parameter's.
+    exercise.toml writes it. Anything that the source does not say literally is None; `default` is a parameter's.
     """
 
     kind: str
@@ -54,26 +55,27 @@ def created(source: str, node: str) -> tuple[Created, ...]:
 
     A source that is not valid Python creates nothing.
     """
-    try:
-        tree = ast.parse(source)
-    except (SyntaxError, ValueError):
-        return ()
-    return _Source(tree, node).created()
+    return _Source(_parsed(source), node).created()
 
 
 def texts(source: str) -> frozenset[str]:
     """Every string in a program, except docstrings; empty for what is not valid Python."""
-    try:
-        tree = ast.parse(source)
-    except (SyntaxError, ValueError):
-        return frozenset()
+    tree = _parsed(source)
     alone = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
     constants = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and id(node) not in alone]
     return frozenset(node.value for node in constants if isinstance(node.value, str))
 
 
+def _parsed(source: str) -> ast.Module:
+    """A program; one that is not valid Python is as an empty one."""
+    try:
+        return ast.parse(source)
+    except (SyntaxError, ValueError):
+        return ast.Module(body=[], type_ignores=[])
+
+
 class _Source:
-    """A parsed program, with what its names stand for."""
+    """A parsed program, with the meanings of its names."""
 
     def __init__(self, tree: ast.Module, node: str) -> None:
         self.tree = tree
@@ -97,7 +99,7 @@ class _Source:
         return Created(kind, call.lineno, self._full_name(name), self._type(type_), self._qos(last))
 
     def _argument(self, call: ast.Call, place: tuple[int, str] | None) -> ast.expr | None:
-        """What a call is given there; a name that has one value only is that value."""
+        """The argument of a call in this place; a name that has only one value is that value."""
         if place is None or any(isinstance(given, ast.Starred) for given in call.args):
             return None
         index, keyword = place
@@ -112,7 +114,7 @@ class _Source:
         return Created("parameter", line, text if isinstance(text, str) else None, type_, default=value)
 
     def _full_name(self, given: ast.expr | None) -> str | None:
-        """A topic's name from the root; None where it is not known, or where a namespace comes before it."""
+        """A topic's full name; None if it is not known, or if a namespace comes before it."""
         name = _literal(given)
         if not isinstance(name, str) or name.startswith("/"):
             return name if isinstance(name, str) else None
@@ -139,7 +141,7 @@ class _Source:
 
 
 def _profile(given: dict[str, ast.expr]) -> Qos | None:
-    """The QoS of a profile that says its depth and nothing that a task can't ask for."""
+    """The QoS of a profile that has a depth and only settings that a task can ask for."""
     depth = _literal(given.get("depth"))
     reliability = _policy(given.get("reliability"), "RELIABLE", _RELIABILITIES)
     durability = _policy(given.get("durability"), "VOLATILE", _DURABILITIES)
@@ -151,17 +153,17 @@ def _profile(given: dict[str, ast.expr]) -> Qos | None:
 
 
 def _policy(given: ast.expr | None, usual: str, words: dict[str, str]) -> str | None:
-    """The policy in the words of exercise.toml; None where it is none of these."""
+    """The policy in the words of exercise.toml; None if it is none of these."""
     return words.get(_dotted(given).rpartition(".")[2] if given is not None else usual)
 
 
 def _called(call: ast.Call) -> str:
-    """The last name of what a call calls: `create_publisher` for `self.create_publisher(…)`."""
+    """The last name of a call's function: `create_publisher` for `self.create_publisher(…)`."""
     return _dotted(call.func).rpartition(".")[2]
 
 
 def _dotted(node: ast.expr) -> str:
-    """`a.b.c` as text; only its end, after a dot, where it begins with something else than a name."""
+    """`a.b.c` as text; only its end, after a dot, if it does not begin with a name."""
     if isinstance(node, ast.Attribute):
         return f"{_dotted(node.value)}.{node.attr}"
     return node.id if isinstance(node, ast.Name) else ""
@@ -187,7 +189,7 @@ def _parameter_type(default: ast.expr | None, value: Any) -> str | None:
 
 
 def _imports(tree: ast.Module) -> Iterator[tuple[str, str]]:
-    """What each imported name stands for, dotted: Bool -> std_msgs.msg.Bool."""
+    """The meaning of each imported name, dotted: Bool -> std_msgs.msg.Bool."""
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom):
             yield from ((one.asname or one.name, f"{node.module}.{one.name}") for one in node.names)

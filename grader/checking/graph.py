@@ -1,4 +1,4 @@
-"""Helpers for what a program is in the ROS graph: its nodes, its end points and their QoS, and how it ends."""
+"""Helpers for a program's part of the ROS graph: its nodes, its end points and their QoS, and how it ends."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from grader.recording.recording import EndPoint
 
 Kind = Literal["publisher", "subscription", "server", "client", "action server", "action client"]
 
-#: Kind of end point -> what a node does with it, and with which others of the kind it is compared.
+#: Kind of end point -> what a node does with it, and the words that list others of this kind.
 _WORDS = {
     "publisher": ("publish on", "It publishes on"),
     "subscription": ("subscribe to", "It subscribes to"),
@@ -20,7 +20,7 @@ _WORDS = {
     "action client": ("have an action client of", "It has action clients of"),
 }
 
-#: What a node has that takes its time from the grader.
+#: The subscription of a node that uses the grader's time.
 OF_EVERY_NODE = ("/clock", "/rosout", "/parameter_events")
 
 #: And the ends of these that it has: whoever publishes on /clock has made that publisher.
@@ -48,10 +48,16 @@ class GraphChecks(Recorded):
         """The student's end points of a kind, such as "publisher" or "action server"; with `name`, of that topic."""
         return [end for end in self.recording.end_points if end.kind == kind and name in ("", end.topic)]
 
+    def must_be_as_declared(self) -> None:
+        """The program must have the nodes and the interface of exercise.toml, with its QoS, and nothing else."""
+        self.must_have_interface(only=True)
+        self.must_have_nodes()
+        self.must_have_qos()
+
     def must_have_interface(self, only: bool = False) -> None:
         """The node must have every topic, service and action of exercise.toml, each with its type.
 
-        With `only`, it must have no others, and one end point of each.
+        With `only`, it must have no others, and one end point of each; of several programs, each node at most one.
         """
         declared = [(_KINDS[topic.direction], topic.name, topic.type) for topic in self.exercise.topics]
         declared += [(_KINDS[one.role], one.name, one.type) for one in self.exercise.endpoints]
@@ -67,7 +73,8 @@ class GraphChecks(Recorded):
             self._has_no_others([(kind, name) for kind, name, _ in declared])
 
     def must_have_qos(self, topic: str = "") -> None:
-        """The node's end points must have the reliability and durability of exercise.toml: of `topic`, or of all."""
+        """The node's end points on `topic`, or on all topics, must have the reliability and durability of
+        exercise.toml."""
         for declared in self.exercise.topics:
             if topic not in ("", declared.name):
                 continue
@@ -93,7 +100,7 @@ class GraphChecks(Recorded):
     def must_end_on_ctrl_c(self) -> None:
         """On Ctrl-C the program must end within 2 s, with no traceback. The scenario needs `interrupt=True`."""
         if not self.ending.interrupted:
-            raise ValueError(f"the scenario {self.scenario} has no interrupt=True: Ctrl-C never comes.")
+            raise ValueError(f"the scenario {self.scenario} sends no Ctrl-C. Add interrupt=True to it.")
         if not self.ending.ended_in_time:
             text = "your program was still running 2 s after Ctrl-C. Expected an end within 2 s."
             _wrong(text, "an end within 2 s", "none")
@@ -102,11 +109,11 @@ class GraphChecks(Recorded):
             _wrong(text, "no traceback", self.ending.traceback)
 
     def must_survive(self, program: str = "") -> None:
-        """No program of a submission of several may end by itself; with `program` (its file), not that one."""
+        """No program of the submission may end by itself; with `program` (its file), only this one is checked."""
         for exit_ in self.recording.exits:
             if exit_.by == "itself" and program in ("", exit_.program):
                 how = f"with code {exit_.code}" if exit_.signal is None else f"by signal {exit_.signal}"
-                text = f"{exit_.program} ended by itself, {how}, but must go on."
+                text = f"{exit_.program} ended by itself, {how}, but must continue."
                 self.wrong_at(exit_.at, text, "", "to go on", f"an end {how}")
 
     def _has_no_others(self, declared: list[tuple[Kind, str]]) -> None:
@@ -114,7 +121,9 @@ class GraphChecks(Recorded):
             if (end.kind, end.topic) not in declared and (end.kind, end.topic) not in _OWN:
                 _wrong(f"your node has a {end.kind} on {end.topic}, which is not in the task.", "none", end.topic)
         for kind, name in declared:
-            if (count := len(self.end_points(kind, name))) > 1:
+            ends = self.end_points(kind, name)
+            nodes = [end.node for end in ends] if self.exercise.programs else ["" for _ in ends]
+            if (count := max(map(nodes.count, nodes), default=0)) > 1:
                 _wrong(f"your node has {count} {kind}s on {name}. Expected 1.", "1", str(count))
 
     def _lacks(self, kind: Kind, name: str) -> NoReturn:
@@ -131,7 +140,7 @@ def _wrong(text: str, expected: str, got: str, at_all: str = "") -> NoReturn:
 
 def _of_qos(end: EndPoint, durability: str) -> str:
     if durability == "transient_local" and end.kind == "publisher":
-        return "Whoever subscribes later gets nothing that it published before."
+        return "A late subscriber gets nothing that it published before."
     if durability == "volatile" and end.durability == "transient_local" and end.kind == "subscription":
         return "A transient local subscription gets nothing from a volatile publisher."
     return ""

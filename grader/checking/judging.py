@@ -25,10 +25,10 @@ from grader.recording.recording import Recording
 def judge(
     exercise: Exercise, recordings: dict[str, Recording], references: dict[str, Recording], titles: dict[str, str]
 ) -> tuple[Verdict, ...]:
-    """The verdict of every check, in the order in which they stand.
+    """The verdict of every check, in the order of the files.
 
-    `recordings` are the student's and `references` the solution's, by scenario. Raises `ExerciseError` where the
-    files of checks are unusable. Runs pytest in this process, with none of the plugins installed on this machine.
+    `recordings` are the student's and `references` the solution's, by scenario. Raises `ExerciseError` if the files of
+    checks are unusable. Runs pytest in this process, without the plugins that are installed on this machine.
     """
     runs = {name: Run(exercise, recordings[name], references[name], titles.get(name, "")) for name in recordings}
     checks = Checks()
@@ -39,16 +39,16 @@ def judge(
 
 
 def load_pytest() -> None:
-    """Have pytest import all that it is made of, by a session without a test: it does that as it starts, once in a
-    process. One that is forked from this one has it, and judges in two thirds of the time."""
+    """Make pytest import all its modules, with a session without a test: it imports them once per process. A process
+    that is forked from this one has them, and judges in two thirds of the time."""
     with contextlib.suppress(OSError), tempfile.TemporaryDirectory() as empty:  # without a folder, it goes without
         _session(Path(empty), "--capture=no", empty)
 
 
 def run_pytest(exercise: Exercise, runs: Mapping[str, Run | None], checks: Checks) -> None:
-    """Run the exercise's checks on `runs` with pytest in this process; `checks` keeps what comes of them.
+    """Run the exercise's checks on `runs` with pytest in this process; `checks` collects the results.
 
-    Raises `ExerciseError` where the files of checks are unusable.
+    Raises `ExerciseError` if the files of checks are unusable.
     """
     if not exercise.check_files:
         raise ExerciseError(exercise.folder / "checks.py", "there is no such file", "Write at least one check.")
@@ -69,12 +69,12 @@ def run_pytest(exercise: Exercise, runs: Mapping[str, Run | None], checks: Check
 def _session(folder: Path, *arguments: str, plugins: Sequence[object] = ()) -> int:
     """Run pytest so that it changes no module, reads no settings, prints nothing and leaves out what is not needed.
 
-    It reads no conftest.py above `folder`, and doesn't look at what else lies there: that may be anybody's.
+    It reads no conftest.py above `folder`, and doesn't look at other files there, because they may belong to anybody.
     """
     alone = (
         *("--assert=plain", "-c", os.devnull, "--rootdir", str(folder), "--confcutdir", str(folder)),
         *("-p", "no:cacheprovider", "-p", "no:terminal"),
-        *("-p", "no:unraisableexception"),  # which looks for garbage at the end, for longer than the checks take
+        *("-p", "no:unraisableexception"),  # it collects garbage at the end, which takes longer than the checks
     )
     with _nothing_from_outside(), contextlib.redirect_stdout(io.StringIO()):
         return pytest.main([*alone, *arguments], plugins=plugins)
@@ -96,7 +96,7 @@ def _nothing_from_outside():  # type: ignore[no-untyped-def]  # noqa: ANN202
 
 @dataclass(frozen=True)
 class Listed:
-    """One check. `fixtures` are the names that it asks for, also by another fixture; scenarios are among them."""
+    """One check. `fixtures` are the names that it uses, directly or by another fixture; they include scenarios."""
 
     name: str
     points: float
@@ -107,7 +107,7 @@ class Listed:
 def listed(exercise: Exercise, scenarios: tuple[str, ...] = ()) -> tuple[Listed, ...]:
     """Every check of the exercise, in the order in which they stand.
 
-    With names of `scenarios`, a check that asks for another one is a fault. Raises `ExerciseError` where the files of
+    With names of `scenarios`, a check that uses another one is an error. Raises `ExerciseError` if the files of
     checks are unusable. Imports them: call it in a process of its own.
     """
     checks = Checks(run=False)
@@ -120,14 +120,13 @@ def listed(exercise: Exercise, scenarios: tuple[str, ...] = ()) -> tuple[Listed,
 
 TOPIC = re.compile(r"(?<![\w/])/\w[\w/]*")
 
-#: How alike two names have to be, as difflib counts: /joint_comands and /joint_commands are 0.97.
+#: How similar two names must be, by difflib's measure: /joint_comands and /joint_commands are 0.97.
 ALIKE = 0.8
 
 
 def with_spelling(verdict: Verdict, topics: Collection[str], node: str) -> Verdict:
-    """Add to a finding about topics which of the exercise's `topics` a name in it is probably meant to be.
-
-    The name of its `node` may be like that of a topic, and is no slip.
+    """Add to a finding about topics the name of the exercise's `topics` that was probably meant. The name of its `node`
+    may be similar to a topic's, and is not a misspelling.
     """
     finding = verdict.finding
     if finding is None or finding.message is not None:

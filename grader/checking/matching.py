@@ -1,4 +1,4 @@
-"""Compares a node's answers with the solution's, and recognises what is wrong throughout: a factor, a sign, a delay."""
+"""Compares a node's answers with the solution's, and recognises systematic errors: a factor, a sign, a delay."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from grader.checking.comparator import difference, equal
-from grader.checking.shown import shown
+from grader.checking.comparator import difference, equal, shown
 from grader.scenario.times import SECOND
 
 if TYPE_CHECKING:
@@ -15,13 +14,13 @@ if TYPE_CHECKING:
     from grader.recording.recording import Received
 
 
-#: Which fields say when a message was sent, and nothing of what it says.
+#: Fields that say when a message was sent, and nothing about its content.
 _STAMPS = ("header", "stamp")
 
-#: So many answers have to have something in common before anything is said about all of them.
+#: This many answers must have something in common before a finding says something about all of them.
 
 
-#: What is answered within this time (s) is answered at once: an asyncio loop may look for messages every millisecond.
+#: An answer within this time (s) counts as immediate: an asyncio loop may look for messages every millisecond.
 AT_ONCE = 0.01
 
 _NEXT_MESSAGE = " Your node answers each message only when the next one arrives: every answer is one message late."
@@ -54,7 +53,7 @@ def delay(run: Run, exchange: Exchange, answer: Message) -> str:
 
 
 def in_general(run: Run) -> str:
-    """What all answers have in common that are late, as sentences that begin with a space; empty where nothing."""
+    """What all late answers have in common, as sentences that begin with a space; empty if nothing."""
     pairs = [(exchange, answer) for exchange in run.exchanges for answer in exchange.answers if exchange.expected]
     late = [(exchange, answer) for exchange, answer in pairs if is_late(exchange, answer, AT_ONCE)]
     if len(late) < FEWEST or len(late) < len(pairs):
@@ -68,7 +67,7 @@ def in_general(run: Run) -> str:
         return f" Every answer comes {_shown(max(seconds))} after its message."
     return (
         f" Your node's answers come {_shown(min(seconds))} to {_shown(max(seconds))} after their messages, as from a "
-        "timer, or a thread that looks for work from time to time."
+        "timer, or from a thread that polls."
     )
 
 
@@ -117,16 +116,16 @@ def is_one_late(run: Run) -> bool:
     return len(telling) >= FEWEST and all(same(got, former) for former, got in telling)
 
 
-#: What a speed is multiplied with when its time is measured with the computer's clock: see `grader.runner.clocks`.
+#: What a speed is multiplied with when its time is measured with the computer's clock: see `grader.runner.ends`.
 COMPUTER_CLOCK = 0.8
 
-#: A value this near to 0 tells nothing about a ratio.
+#: A value this close to 0 says nothing about a ratio.
 SMALLEST = 1e-3
 
-#: So many values have to have something in common before anything is said about all of them.
+#: This many values must have something in common before a finding says something about all of them.
 FEWEST = 3
 
-#: Units that are mistaken for each other: the unit that is asked for, the one that was given, and the factor between.
+#: Units that are often confused: the expected unit, the unit that was sent, and the factor between them.
 UNITS = (
     ("rad", "degrees", 180 / math.pi),
     ("deg", "radians", math.pi / 180),
@@ -140,12 +139,12 @@ UNITS = (
 
 
 def pattern(run: Run, field: str, per: str = "", unit: str = "") -> str:
-    """A sentence about what all values of `field` have in common, beginning with a space; empty where nothing.
+    """A sentence about what all values of `field` have in common, beginning with a space; empty if nothing.
 
     `per` names the list of names that `field` goes with; without it, `field` is one number.
     """
     if is_one_late(run):
-        return " Every answer is one message late: it is the right one to the message before."
+        return " Every answer is one message late: it is the right answer to the message before."
     if copied := _copied(run, field, per):
         return f" Every {field} is the {copied} of the message that arrived, unchanged."
     pairs: list[tuple[float, float]] = []
@@ -157,7 +156,7 @@ def pattern(run: Run, field: str, per: str = "", unit: str = "") -> str:
             elapsed += [_elapsed(before, exchange) for name in expected if name in got]
     if text := _fixed_step(pairs, elapsed, field, unit):
         return text
-    return common(pairs, field, unit, clock=run.recording.hold == "lockstep")
+    return common(pairs, field, unit, clock=run.recording.synchronization == "lockstep")
 
 
 def _elapsed(before: Exchange | None, exchange: Exchange) -> float:
@@ -190,7 +189,7 @@ def _fixed_step(pairs: list[tuple[float, float]], elapsed: list[float], field: s
 def common(pairs: Sequence[tuple[float, float]], field: str, unit: str = "", clock: bool = False) -> str:
     """What all pairs of an expected value and a value that was got have in common, as `pattern` says it.
 
-    `unit` is the unit that is asked for. With `clock`, a factor of 0.8 or 1.25 is put down to the computer's clock.
+    `unit` is the unit that is asked for. With `clock`, a factor of 0.8 or 1.25 is attributed to the computer's clock.
     """
     telling = [(e, g) for e, g in pairs if abs(e) > SMALLEST and math.isfinite(e) and math.isfinite(g)]
     if len(telling) < FEWEST:
@@ -216,7 +215,7 @@ def _ratio(ratio: float, field: str, unit: str, clock: bool) -> str:
             return f" Every {field} is in {given}."
     text = f" Every {field} is {ratio:.4g} times what it should be"
     if clock and any(math.isclose(ratio, factor, rel_tol=1e-3) for factor in (COMPUTER_CLOCK, 1 / COMPUTER_CLOCK)):
-        return f"{text}: your node measures time with the computer's clock, which goes at another speed here."
+        return f"{text}: your node measures time with the computer's clock, which runs at another speed here."
     return f"{text}."
 
 
@@ -336,9 +335,25 @@ def _answer(run: Run, exchange: Exchange) -> Message:
         text = f"an answer was expected at once; it arrived {late}." if late else "an answer was expected, got none."
         text += general or _never(run)
         if not exchange.sent.heard and run.subscriptions(exchange.sent.topic):
-            text += f" Your node did not subscribe to {exchange.sent.topic} yet: create the subscription in __init__."
+            text += _unmatched(run, exchange.sent.topic) or (
+                f" Your node did not subscribe to {exchange.sent.topic} yet: create the subscription in __init__."
+            )
         run.wrong(exchange, text, "", "a message", late or "nothing")
     return exchange.answers[0]
+
+
+def _unmatched(run: Run, topic: str) -> str:
+    """Say so if no message arrived because a subscription asks for more than the topic's publisher offers."""
+    declared = next((one for one in run.exercise.inputs if one.name == topic), None)
+    if declared is None or any(sent.heard for sent in run.sent if sent.topic == topic):
+        return ""
+    for end in run.subscriptions(topic):
+        for more, name in (("transient_local", "durability"), ("reliable", "reliability")):
+            asked, offered = getattr(end, name), getattr(declared, name)
+            if asked == more != offered:
+                text = f" Your subscription on {topic} is {asked}, but the publisher is {offered}"
+                return f"{text}: the two do not match, and no message arrives."
+    return ""
 
 
 def _never(run: Run) -> str:

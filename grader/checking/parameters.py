@@ -1,12 +1,11 @@
-"""Helpers for parameters: which values a node takes, refuses and shows."""
+"""Helpers for parameters: which values a node accepts, refuses and returns."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from grader.checking.comparator import TOLERANCE, equal
+from grader.checking.comparator import TOLERANCE, equal, shown
 from grader.checking.recorded import Recorded
-from grader.checking.shown import shown
 from grader.recording.events import ParameterChange, ParameterReading
 
 #: Any value at all.
@@ -14,7 +13,7 @@ ANY: Any = object()
 
 
 def typed(value: Any) -> str:
-    """A value of which one sees its type: the double 2 is shown as `2.0`."""
+    """A value in a form that shows its type: the double 2 is shown as `2.0`."""
     return f"{shown(value)}.0" if isinstance(value, float) and value.is_integer() else shown(value)
 
 
@@ -25,26 +24,26 @@ def kind_of(value: Any) -> str:
 
 
 class ParameterChecks(Recorded):
-    """Parameters that the scenario set and asked for while the node ran."""
+    """Parameters that the scenario set and read while the node ran."""
 
     def must_take(self, name: str, value: Any = ANY) -> None:
-        """The node must take each `value` that the scenario sets for this parameter."""
+        """The node must accept each `value` that the scenario sets for this parameter."""
         for change in self._changes(name, value):
             self._see(change, taken=True)
 
     def must_refuse(self, name: str, value: Any = ANY) -> None:
-        """The node must refuse each `value` that the scenario sets for this parameter, and run on."""
+        """The node must refuse each `value` that the scenario sets for this parameter, and continue to run."""
         for change in self._changes(name, value):
             self._see(change, taken=False)
 
     def must_take_and_refuse_as_the_solution(self) -> None:
-        """The node must take each value that the solution takes, and refuse each one that it refuses."""
+        """The node must accept each value that the solution accepts, and refuse each one that the solution refuses."""
         for change, reference in zip(self.recording.parameters, self._reference.parameters, strict=False):
             if reference.taken is not None:
                 self._see(change, taken=reference.taken)
 
     def must_have_parameter(self, name: str, value: Any = ANY, tolerance: float = TOLERANCE) -> None:
-        """Each time that the scenario asks for this parameter, it must have this value; by default the solution's."""
+        """Each time that the scenario reads this parameter, it must have this value; by default the solution's."""
         readings = self._readings(self.recording.readings, name)
         for reading, reference in zip(readings, self._readings(self._reference.readings, name), strict=False):
             wanted = reference.value if value is ANY else value
@@ -101,5 +100,5 @@ class ParameterChecks(Recorded):
         if answered:
             text = "your node does not have it. Declare it in __init__, with declare_parameter."
             self.wrong_at(at, text, f"parameter {name}", "a value", "not declared")
-        text = "your node gave no answer about it. Does a callback block the node, or has it another name?"
+        text = "your node did not answer. Does a callback block the node, or does the node have another name?"
         self.wrong_at(at, text, f"parameter {name}", "an answer", "none")

@@ -28,30 +28,29 @@ def _giving(run: Run | None) -> Any:
     def scenario() -> Run:
         assert run, "checks that are only listed are not run"
         if run.ending.outcome != "completed":
-            raise Wrong(Finding(f"{run.ending.story} ({run.title})", run.scenario))
+            raise Wrong(Finding(f"{run.ending.message} ({run.title})", run.scenario))
         return run
 
     return scenario
 
 
 class Checks:
-    """Collects an exercise's checks and keeps their verdicts. With `run` False none is run: each counts as blocked.
-
-    `fixtures` are the names that each check asks for, also by way of another fixture.
+    """Collects an exercise's checks and keeps their verdicts. If `run` is False, none is run and each counts as
+    blocked. `fixtures` are the names that each check uses, directly or by another fixture.
     """
 
     def __init__(self, run: bool = True) -> None:
         self._run = run
         self.fixtures: dict[str, tuple[str, ...]] = {}
         self.scenarios: tuple[str, ...] = ()
-        """The scenarios that there are; empty where that does not matter."""
+        """The known scenarios; empty if they do not matter."""
         self._marks: dict[str, CheckOptions] = {}
         self.verdicts: dict[str, Verdict] = {}
         self.problem: ExerciseError | None = None
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        """Read every mark, and see that the checks can be run in the order in which they stand."""
+        """Read every mark, and make sure that the checks can run in their order."""
         for item in items:
             try:
                 self._marks[item.name] = self._mark(item)
@@ -66,7 +65,7 @@ class Checks:
         line = inspect.unwrap(function).__code__.co_firstlineno if function else None
         mark = check_options(function)
         if not mark:
-            found, fix = f"{item.name} is no check", "Put @check(points=…, hint=…) above it."
+            found, fix = f"{item.name} is not a check", "Put @check(points=…, hint=…) above it."
         elif item.name in self._marks:
             found, fix = f"there are two checks called {item.name}", "Give each a name of its own."
         elif not inspect.getdoc(function):
@@ -90,7 +89,7 @@ class Checks:
         return next((name for name in info.names_closure if name not in known), "") if self.scenarios else ""
 
     def pytest_exception_interact(self, node: Any, call: pytest.CallInfo[Any], report: object) -> None:
-        """A file of checks that can't be imported is its author's to fix."""
+        """The author must fix a file of checks that can't be imported."""
         if isinstance(report, pytest.CollectReport) and call.excinfo and not self.problem:
             error = call.excinfo.value.__cause__ or call.excinfo.value
             text = (str(error).strip().splitlines() or [""])[0]
@@ -107,7 +106,7 @@ class Checks:
             pytest.skip("blocked by " + ", ".join(blocking))
 
     def _blocking(self, name: str) -> tuple[str, ...]:
-        """The checks that have to pass first, and did not: those that failed, not those that are blocked themselves."""
+        """The checks that must pass first and failed, without those that are blocked themselves."""
         found: dict[str, None] = {}
         for other in self._marks[name].depends:
             if self.verdicts[other].status != "passed":

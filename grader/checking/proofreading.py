@@ -1,4 +1,4 @@
-"""Reads an exercise as its author would have it read: everything that is wrong in its files, before anything is run.
+"""Proofreads an exercise for its author: finds everything that is wrong in its files, before anything runs.
 
 `problems_of` does so in a process of its own, as scenarios.py and the files of checks are imported for it.
 """
@@ -22,12 +22,13 @@ from grader.exercise.starter import MarkerError, starter
 from grader.problem import Problem
 from grader.scenario.declared import declared
 
-#: Seconds after which files that are only imported must have been read.
+#: The time limit (s) for importing an exercise's files.
 TIME_LIMIT_S = 60
 
 
 def problems_of(folder: Path) -> tuple[Problem, ...]:
-    """Everything that is wrong in the files of the exercise in `folder`, as far as it shows without running a node."""
+    """Everything that is wrong in the files of the exercise in `folder`, as far as can be seen without running a
+    node."""
     command = [sys.executable, "-m", "grader.checking.proofreading", str(folder)]
     try:
         run = run_program(command, TIME_LIMIT_S)
@@ -68,32 +69,32 @@ def faults(folder: Path) -> Iterator[ExerciseError]:
 
 
 def same_name_twice(file: Path) -> Iterator[ExerciseError]:
-    """Two checks of one name in a file: Python keeps the last and forgets the others without a word."""
+    """Checks with the same name in a file: Python silently keeps only the last."""
     first: dict[str, int] = {}
     for node in _parsed(file).body:
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.name.startswith("test"):
             if node.name in first:
                 found = f"there are two checks called {node.name}; the other is in line {first[node.name]}"
-                yield ExerciseError(file, found, "Give each a name of its own: Python forgets the first.", node.lineno)
+                yield ExerciseError(file, found, "Give each its own name: Python keeps only the last one.", node.lineno)
             first.setdefault(node.name, node.lineno)
 
 
 def rules_that_the_task_lacks(task: str, check_files: Iterable[Path]) -> Iterator[ExerciseError]:
-    """Checks whose `rule` is no sentence of `task`, the text of task.md."""
+    """Checks whose `rule` is not a sentence of `task`, the text of task.md."""
     for file in check_files:
         for line, rule in _rules(file):
             yield from rule_that_the_task_lacks(task, rule, file, line)
 
 
 def rule_that_the_task_lacks(task: str, rule: str, file: Path, line: int) -> Iterator[ExerciseError]:
-    """The error of a check in this line of `file` whose `rule` is no sentence of `task`; none if it is one."""
+    """The error for a check in this line of `file` whose `rule` is not a sentence of `task`; none if it is."""
     if _without_marks(rule) not in _without_marks(task):
         found = f"a check is based on a sentence that is not in task.md: “{rule}”"
-        yield ExerciseError(file, found, "Write the sentence in task.md, or name the one there is.", line)
+        yield ExerciseError(file, found, "Write the sentence in task.md, or quote a sentence that is there.", line)
 
 
 def _without_marks(text: str) -> str:
-    """A text of task.md or of a rule without Markdown's marks, and with one space wherever there is some."""
+    """A text of task.md or of a rule without Markdown markup, with whitespace reduced to single spaces."""
     return " ".join(re.sub(r"[*`]", "", text).split())
 
 
@@ -104,7 +105,7 @@ def _rules(file: Path) -> Iterator[tuple[int, str]]:
 
 
 def _parsed(file: Path) -> ast.Module:
-    """A file of checks; one that can't be read, which is a fault told elsewhere, is as an empty one."""
+    """A file of checks; one that can't be read counts as empty, because that fault is reported elsewhere."""
     try:
         return ast.parse(file.read_text(encoding="utf-8"))
     except (SyntaxError, ValueError, OSError):
@@ -124,7 +125,7 @@ def points_that_do_not_add_up(exercise: Exercise, points: list[tuple[bool, float
 
 
 def line_with(file: Path, pattern: str) -> int | None:
-    """The first line of a file that matches, counted from 1; None where none does or the file can't be read."""
+    """The first line of a file that matches, counted from 1; None if none does or the file can't be read."""
     try:
         lines = file.read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError):
@@ -157,9 +158,9 @@ def _of_mistakes(exercise: Exercise, checks: tuple[Listed, ...]) -> Iterator[Exe
             if name not in known:
                 found = f"it is to be caught by {name}, and there is no such check"
                 line = line_with(file, rf"- {name}\s*$")
-                yield ExerciseError(file, found, "Name a check of this exercise, or take the line out.", line)
+                yield ExerciseError(file, found, "Name a check of this exercise, or remove the line.", line)
         if not named:
-            found, fix = "it names no check that is to catch it", "Write “Caught by:” and “- test_…” in its docstring."
+            found, fix = "it names no check that must catch it", "Write “Caught by:” and “- test_…” in its docstring."
             yield ExerciseError(file, found, fix, 1)
 
 

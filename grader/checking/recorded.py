@@ -1,4 +1,4 @@
-"""What every check has of one scenario: the two recordings, and the words for what is wrong."""
+"""What every check gets of one scenario: the two recordings, and the functions that report what is wrong."""
 
 from __future__ import annotations
 
@@ -6,13 +6,21 @@ import math
 from collections.abc import Iterable
 from typing import Any, NoReturn
 
-from grader.checking.comparator import difference
+from grader.checking.comparator import difference, shown
 from grader.checking.matching import COMPUTER_CLOCK, common
-from grader.checking.shown import shown
 from grader.checking.verdict import Finding, Wrong
 from grader.exercise.exercise import Endpoint, Exercise, Role, Topic
 from grader.recording.recording import Ending, Received, Recording
 from grader.scenario.times import SECOND, START
+
+_WAITS = (
+    "Your node sent {what} to {name} at {at:.2f} s, and did nothing from then on. Does a callback wait for the answer, "
+    "with call(), await or spin_until_future_complete()? No other callback runs meanwhile, not even the one that takes "
+    "the answer. Don't wait: give the future a callback with add_done_callback()."
+)
+
+#: For so long (s) after its last request a node must have done nothing, and the solution something, to be called stuck.
+_STUCK = 0.2
 
 _SLEEPS = "Does your node wait by the computer's clock, such as with time.sleep? It goes at another speed here."
 
@@ -63,11 +71,12 @@ class Recorded:
         tolerance: float,
         name: str,
         pairs: Iterable[tuple[dict[str, Any], dict[str, Any]]],
+        otherwise: str = "",
     ) -> None:
-        """End the check unless `field` is the same in both messages; every field is where `field` is empty.
+        """End the check unless `field` (or, if it is empty, every field) is the same in both messages.
 
         `name` is the topic, service or action. `pairs` are all (expected, got) messages of this kind, for what they
-        have in common.
+        have in common; where that is nothing, the finding ends with `otherwise`.
         """
         found = difference(field_of(got, field), field_of(expected, field), tolerance, field)
         if not found:
@@ -76,11 +85,11 @@ class Recorded:
         wanted, came = shown(found.expected, unit), shown(found.got, unit)
         numbers = [(_number(e, found.path), _number(g, found.path)) for e, g in pairs]
         known = [(e, g) for e, g in numbers if e is not None and g is not None]
-        general = common(known, found.path, unit, clock=self.recording.hold == "lockstep")
-        self.wrong_at(at, f"expected {found.path} {wanted}, got {came}.", part, wanted, came, general)
+        general = common(known, found.path, unit, clock=self.recording.synchronization == "lockstep")
+        self.wrong_at(at, f"expected {found.path} {wanted}, got {came}.", part, wanted, came, general or otherwise)
 
     def time_at(self, at: int, expected: int, part: str, time: float | None, since: int = START) -> None:
-        """End the check where something happened more than `time` s before or after it was expected.
+        """End the check if something happened more than `time` s before or after it was expected.
 
         `since` is when the node began to wait for it.
         """
@@ -91,6 +100,18 @@ class Recorded:
             )
             text = f"it was expected at {wanted}, got it at {came}."
             self.wrong_at(at, text, part, wanted, came, _SLEEPS if by_computer else "")
+
+    def waits(self) -> str:
+        """What to tell a student whose node sent a request or a goal, and then did nothing to the end; else empty."""
+        asked = max(_requests(self.recording), default=None)
+        if asked is None:
+            return ""
+        last = max([asked[0], *(one.at for one in self.recording.received)])
+        later = [one.at for one in self._reference.received] + [at for at, _, _ in _requests(self._reference)]
+        if last > asked[0] or max(later, default=0) - last < _STUCK * SECOND:
+            return ""
+        at, name, what = asked
+        return _WAITS.format(what=what, name=name, at=seconds(at))
 
     def unit_of(self, field: str, name: str = "") -> str:
         """The unit of a field by exercise.toml: of the topic, service or action `name`, or of any."""
@@ -108,18 +129,24 @@ class Recorded:
 
     @property
     def output(self) -> Topic:
-        """The only topic that the exercise's node publishes. Raises ValueError where there are several."""
+        """The only topic that the exercise's node publishes. Raises ValueError if there are several."""
         if len(self.exercise.outputs) != 1:
             names = ", ".join(topic.name for topic in self.exercise.outputs) or "none"
             raise ValueError(f"name the topic: the topics that exercise.toml has under [[publish]] are: {names}.")
         return self.exercise.outputs[0]
 
     def only(self, role: Role) -> str:
-        """The only service or action of a kind. Raises ValueError where there are several."""
+        """The only service or action of a kind. Raises ValueError if there are several."""
         names = [one.name for one in self.exercise.endpoints if one.role == role]
         if len(names) != 1:
             raise ValueError(f"name the {role}: exercise.toml has {', '.join(names) or 'none'} under [[{role}]].")
         return names[0]
+
+
+def _requests(recording: Recording) -> list[tuple[int, str, str]]:
+    """When the node sent a request or a goal, to whom, and which of the two."""
+    calls = [(call.at, call.service, "a request") for call in recording.calls if call.by == "node"]
+    return calls + [(goal.at, goal.action, "a goal") for goal in recording.goals if goal.by == "node"]
 
 
 def seconds(at: int) -> float:
@@ -128,7 +155,8 @@ def seconds(at: int) -> float:
 
 
 def field_of(fields: dict[str, Any], name: str) -> Any:
-    """A field by its full name, such as `header.frame_id`, `twist.linear.x` or `points[0].x`; all where it is empty."""
+    """A field by its full name, such as `header.frame_id`, `twist.linear.x` or `points[0].x`; all fields if it is
+    empty."""
     value: Any = fields
     for step in name.replace("[", ".[").split(".") if name else ():
         try:

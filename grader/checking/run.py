@@ -1,4 +1,4 @@
-"""A run: one scenario as a check sees it, with what was sent, what came back, and what the solution answered."""
+"""A run: one scenario as a check sees it, with the messages sent, the messages received, and the solution's answers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from grader.checking.verdict import Finding, Wrong
 from grader.recording.recording import EndPoint, Received, Recording, Sent
 from grader.scenario.times import SECOND, START
 
-#: On which the grader tells simulated time. Whatever uses simulated time subscribes to it.
+#: The topic on which the grader publishes simulated time. Every program that uses simulated time subscribes to it.
 CLOCK = "/clock"
 
 
@@ -40,10 +40,10 @@ class Part:
 
 
 class Message(Part):
-    """A message that was sent or received: its fields by name, its `stamp` (s), its topic, and when it came (s).
-
-    Of a message sent, `heard` tells whether the student's node subscribed to its topic then. Of a message received,
-    `after` is how many messages had been sent by then. `at_ns` is its moment of simulated time in nanoseconds.
+    """A message that was sent or received: its fields by name, its `stamp` (s), its topic, and when it arrived (s). For
+    a message sent, `heard` says whether the student's node subscribed to its topic at that moment. For a message
+    received, `after` is the number of messages that had been sent by then. `at_ns` is its moment of simulated time in
+    nanoseconds.
     """
 
     def __init__(self, kept: Sent | Received) -> None:
@@ -117,7 +117,7 @@ class Run(SeriesChecks, ServiceChecks, ActionChecks, ParameterChecks, Trajectory
         return iter(self.exchanges)
 
     def on(self, topic: str) -> Run:
-        """The same run with what was published on `topic` alone, for a node that publishes on several topics."""
+        """The same run with only the messages on `topic`, for a node that publishes on several topics."""
         mine, its = (
             replace(recording, received=tuple(one for one in recording.received if one.topic == topic))
             for recording in (self.recording, self._reference)
@@ -141,11 +141,11 @@ class Run(SeriesChecks, ServiceChecks, ActionChecks, ParameterChecks, Trajectory
         return sorted({e.topic for e in self.recording.end_points if e.kind == kind} - ours)
 
     def must_match(self, field: str, per: str = "", tolerance: float = 1e-6, missing_ok: bool = False) -> None:
-        """Wherever the solution answers, the node must answer, with the same `field`.
+        """If the solution answers a message, the node must answer it, with the same `field`.
 
         `per` names the list of names that `field` goes with, so that the order does not count: `must_match("velocity",
-        per="name")`. Numbers may differ by `tolerance`, absolute or relative, whichever is larger. With `missing_ok`
-        only what came is compared, and what did not come is another check's.
+        per="name")`. Numbers may differ by `tolerance`, absolute or relative, whichever is larger. With `missing_ok`,
+        missing answers are ignored, because another check judges them.
         """
         from grader.checking.matching import must_match
 
@@ -158,16 +158,15 @@ class Run(SeriesChecks, ServiceChecks, ActionChecks, ParameterChecks, Trajectory
         must_answer(self)
 
     def must_answer_at_once(self, within: float = AT_ONCE) -> None:
-        """Each answer must come before the next message, and within so many seconds of simulated time.
-
-        Only what came is judged; what did not come is another check's.
+        """Each answer must come before the next message, and within this many seconds of simulated time. Missing
+        answers are ignored, because another check judges them.
         """
         from grader.checking.matching import must_answer_at_once
 
         must_answer_at_once(self, within)
 
     def must_vary(self, field: str, per: str = "") -> None:
-        """Where the solution's `field` changes from message to message, the node's must change, too.
+        """If the solution's `field` changes from message to message, the node's must change too.
 
         A node that publishes zeros or a constant fails, one with wrong values does not. `per` is as in `must_match`.
         """
@@ -176,21 +175,21 @@ class Run(SeriesChecks, ServiceChecks, ActionChecks, ParameterChecks, Trajectory
         must_vary(self, field, per)
 
     def must_be_silent(self) -> None:
-        """The node must leave without an answer what the solution does. The very first message does not count."""
+        """The node must not answer messages that the solution does not answer. The very first message does not
+        count."""
         from grader.checking.matching import must_be_silent
 
         must_be_silent(self.exchanges[1:], self)
 
     def must_be_silent_at_first(self) -> None:
-        """The node must leave the very first message without an answer, if the solution does."""
+        """The node must not answer the very first message, if the solution does not."""
         from grader.checking.matching import must_be_silent
 
         must_be_silent(self.exchanges[:1], self)
 
     def wrong(self, exchange: Exchange, text: str, part: str = "", expected: object = "", got: object = "") -> NoReturn:
-        """End the check: `text` tells what is wrong with the answers to this exchange's message.
-
-        `part` is what of the message is wrong, such as the joint; `expected` and `got` stand in reports on their own.
+        """End the check: `text` says what is wrong with the answers to this exchange's message. `part` is the wrong
+        part of the message, such as the joint; reports show `expected` and `got` separately.
         """
         where = f"Message {exchange.number} of {len(self.sent)} ({exchange.sent.at:.2f} s after the start"
         where += f"; {self.title})" if self.title else ")"
@@ -201,7 +200,7 @@ class Run(SeriesChecks, ServiceChecks, ActionChecks, ParameterChecks, Trajectory
 def _answers(recording: Recording) -> dict[int, list[Message]]:
     """Index of a message sent -> what was received for it.
 
-    A message is matched by its stamp where exactly one message sent has that stamp, else by when it came.
+    A message is matched by its stamp if exactly one message sent has that stamp, otherwise by when it arrived.
     """
     index: dict[int, list[int]] = {}
     for i, sent in enumerate(recording.sent):

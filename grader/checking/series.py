@@ -5,10 +5,9 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 
-from grader.checking.comparator import TOLERANCE, equal
+from grader.checking.comparator import TOLERANCE, equal, shown
 from grader.checking.matching import COMPUTER_CLOCK
 from grader.checking.recorded import Recorded, field_of, seconds
-from grader.checking.shown import shown
 from grader.recording.recording import Received
 from grader.scenario.times import SECOND, START
 
@@ -20,7 +19,7 @@ class SeriesChecks(Recorded):
     """What a node publishes, as a series of messages on one topic. Without a `topic` it is the only output."""
 
     def must_publish(self, topic: str = "", count: int | None = None) -> None:
-        """The node must publish on `topic`: `count` messages, or any number of them but none."""
+        """The node must publish on `topic`: `count` messages, or at least one."""
         name = topic or self.output.name
         got = len(self.messages_on(name))
         wanted = f"{count} messages" if count is not None else "at least one message"
@@ -40,24 +39,26 @@ class SeriesChecks(Recorded):
         """The node's first message must have the same `field` as the solution's first, and so on to the last.
 
         Without a `field`, whole messages are compared. With `time`, each must come within so many seconds of the
-        solution's. With `subscriber`, only what that subscriber of the scenario got is compared.
+        solution's. With `subscriber`, only what that subscriber of the scenario got is compared. What several threads
+        published at one moment has no order, so any order is right.
         """
         name = topic or self.output.name
-        got = self._heard(name, subscriber, reference=False)
         expected = self._heard(name, subscriber, reference=True)
+        got = _in_the_order_of(expected, self._heard(name, subscriber, reference=False), field, tolerance)
         if expected and not got:
             self._never(name, f"{len(expected)} messages", subscriber)
         pairs = list(zip(expected, got, strict=False))
+        too_early = _at_the_start(expected, got)
         for number, (wanted, came) in enumerate(pairs, start=1):
             part = f"message {number} on {name}"
             messages = [(e.fields, g.fields) for e, g in pairs]
             if not self._is_shifted(expected, got, field, tolerance):
-                self.compare_at(came.at, part, field, came.fields, wanted.fields, tolerance, name, messages)
+                self.compare_at(came.at, part, field, came.fields, wanted.fields, tolerance, name, messages, too_early)
             if time is not None and abs(came.at - wanted.at) > time * SECOND + 1:
                 self._wrong_time(part, wanted, came, pairs)
         if len(got) != len(expected):
             text = f"expected {len(expected)} messages on {name}, got {len(got)}."
-            in_all = self._shift(expected, got, field) or _stops(expected, got)
+            in_all = self._shift(expected, got, field) or too_early or f"{_stops(expected, got)} {self.waits()}"
             self.wrong_at(None, text, "", f"{len(expected)} messages", len(got), in_all)
         if shift := self._shift(expected, got, field, tolerance):
             self.wrong_at(got[0].at, "the messages are not in step.", name, "each in its turn", "one late", shift)
@@ -65,7 +66,7 @@ class SeriesChecks(Recorded):
     def must_keep_rate(self, hz: float, topic: str = "", tolerance: float = 0.02) -> None:
         """The node must publish `hz` times per second of simulated time on average, within `tolerance` (0.02: 2 %).
 
-        It must go on for as long as the solution does. A short gap before the second message does not count: a timer
+        It must continue for as long as the solution does. A short gap before the second message does not count: a timer
         that is created before the clock starts fires as soon as it does, and then at multiples of its period since 0
         (rcl_timer_call in rcl's timer.c), as with any robot's or simulator's clock.
         """
@@ -73,7 +74,8 @@ class SeriesChecks(Recorded):
         got, expected = self.messages_on(name), self.messages_on(name, reference=True)
         if len(got) < 2:
             self._never(name, f"{hz:g} messages per second") if not got else None
-            self.wrong_at(got[0].at, f"only one message was published on {name}.", "", f"{hz:g} Hz", "one message")
+            text = f"only one message was published on {name}."
+            self.wrong_at(got[0].at, text, "", f"{hz:g} Hz", "one message", self.waits())
         regular = got[1:] if _begins_with_the_clock(got) else got
         rate = (len(regular) - 1) * SECOND / max(regular[-1].at - regular[0].at, 1)
         if abs(rate / hz - 1) > tolerance:
@@ -81,8 +83,9 @@ class SeriesChecks(Recorded):
             self.wrong_at(None, text, "", f"{hz:g} Hz", f"{rate:.4g} Hz", _of_rate(rate / hz, hz, rate))
         if expected and expected[-1].at - got[-1].at > 2 * SECOND / hz:
             last = seconds(got[-1].at)
-            text = f"your node published nothing on {name} after that, but must go on."
-            self.wrong_at(got[-1].at, text, "", f"{hz:g} Hz to the end", f"the last message at {last:.2f} s")
+            text = f"your node published nothing on {name} after that, but must continue."
+            end = f"the last message at {last:.2f} s"
+            self.wrong_at(got[-1].at, text, "", f"{hz:g} Hz to the end", end, self.waits())
 
     def must_have_no_gap(self, longest: float, topic: str = "", start: float = 0.0, end: float | None = None) -> None:
         """No two messages may be more than `longest` s of simulated time apart, between `start` and `end` (s).
@@ -103,7 +106,7 @@ class SeriesChecks(Recorded):
             self._never(name, f"a message every {longest:g} s")
 
     def must_stamp(self, topic: str = "", field: str = "header.stamp", within: float = 0.001) -> None:
-        """Each message's stamp must be the node's time when it is published, within so many seconds."""
+        """Each message's stamp must be the node's time when it is published, within this many seconds."""
         name = topic or self.output.name
         messages = self.messages_on(name)
         stamps = [_nanoseconds(field_of(one.fields, field)) for one in messages]
@@ -126,10 +129,10 @@ class SeriesChecks(Recorded):
         elif subscriber and self.messages_on(topic):
             text = f"the subscriber “{subscriber}” got nothing on {topic}."
             if any(end.durability == "volatile" for end in mine):
-                text += " Your publisher is volatile: whoever joins late gets nothing that was published before."
+                text += " Your publisher is volatile: a late subscriber gets nothing that was published before."
         else:
             text = f"your node has a publisher on {topic}, but never published anything."
-        self.wrong_at(None, text, "", expected, "none")
+        self.wrong_at(None, text, "", expected, "none", self.waits() if mine else "")
 
     def _is_shifted(self, expected: Sequence[Received], got: Sequence[Received], field: str, tolerance: float) -> bool:
         return bool(self._shift(expected, got, field, tolerance))
@@ -155,8 +158,35 @@ class SeriesChecks(Recorded):
         at, general = seconds(wanted.at), ""
         if len(late) >= 3 and max(late) - min(late) < 0.02 * abs(late[0]):
             general = f"Every message comes {abs(late[0]):.2f} s too {'late' if late[0] > 0 else 'early'}."
+        general = general or _at_the_start([wanted], [came])
         text = f"it was expected at {at:.2f} s, got it at {seconds(came.at):.2f} s."
         self.wrong_at(came.at, text, part, f"{at:.2f} s", f"{seconds(came.at):.2f} s", general)
+
+
+#: The clock of a node that starts is 0, and jumps to the simulated time with the first message on /clock.
+_WITH_THE_CLOCK = (
+    "What is published at 0.00 s comes from the constructor, or from a timer that was created there: such a timer "
+    "fires as soon as simulated time begins, whatever its period."
+)
+
+
+def _at_the_start(expected: Sequence[Received], got: Sequence[Received]) -> str:
+    """Why there are more messages at the start than expected; empty if there are not."""
+    mine, its = (sum(one.at <= START for one in series) for series in (got, expected))
+    return _WITH_THE_CLOCK if mine > its else ""
+
+
+def _in_the_order_of(
+    expected: Sequence[Received], got: Sequence[Received], field: str, tolerance: float
+) -> list[Received]:
+    """`got`, with what several threads published at one moment in the order in which it was expected."""
+    left, found = list(got), []
+    for wanted in expected[: len(got)]:
+        unordered, value = left[0].unordered or wanted.unordered, field_of(wanted.fields, field)
+        at_once = [i for i, one in enumerate(left) if one.at == left[0].at] if unordered else [0]
+        same = (i for i in at_once if equal(field_of(left[i].fields, field), value, tolerance))
+        found.append(left.pop(next(same, 0)))
+    return found + left
 
 
 def _begins_with_the_clock(series: Sequence[Received]) -> bool:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from grader.checking.comparator import TOLERANCE
+from grader.checking.comparator import TOLERANCE, shown
 from grader.checking.recorded import Recorded
-from grader.checking.shown import shown
 from grader.recording.events import By, Call
 from grader.scenario.times import SECOND
 
@@ -20,7 +19,7 @@ class ServiceChecks(Recorded):
         return tuple(call for call in self.recording.calls if call.service == name and call.by == by)
 
     def must_respond(self, service: str = "", within: float | None = None) -> None:
-        """The node must respond to every request that the solution responds to, within so many seconds."""
+        """The node must respond to every request that the solution responds to, within this many seconds."""
         for number, call, reference in self._numbered(service, "grader"):
             if reference.answered is None:
                 continue
@@ -56,16 +55,16 @@ class ServiceChecks(Recorded):
             return
         text = f"expected {wanted} requests to {name}, got {len(got)}."
         clients = sorted({end.topic for end in self.recording.end_points if end.kind == "client"})
-        never = "" if got or name in clients else f"Your node has no client of {name}. Its clients are for: "
+        never = "" if got or name in clients else f"Your node has no client for {name}. Its clients are for: "
         never += (", ".join(clients) or "none") + "." if never else ""
-        self.wrong_at(None, text, "", f"{wanted} requests", len(got), never)
+        self.wrong_at(None, text, "", f"{wanted} requests", len(got), never or self.waits())
 
     def must_match_requests(
         self, field: str = "", service: str = "", tolerance: float = TOLERANCE, time: float | None = None
     ) -> None:
         """The node's first request must have the same `field` as the solution's first, and so on.
 
-        With `time`, each must come within so many seconds of the solution's.
+        With `time`, each must arrive within this many seconds of the solution's.
         """
         self.must_call(service)
         calls = self._numbered(service, "node")

@@ -12,7 +12,7 @@ Place = dict[str, float]
 
 
 class TrajectoryChecks(Recorded):
-    """The way of something that publishes where it is: the scenario's world, or the node itself."""
+    """The path of something that publishes its position: the scenario's world, or the node itself."""
 
     def trajectory(self, topic: str, *fields: str) -> list[tuple[float, tuple[float, ...]]]:
         """(seconds after the start, values of `fields`) of each message on `topic`, whoever published it."""
@@ -33,7 +33,7 @@ class TrajectoryChecks(Recorded):
         stay: bool = True,
         start: float = 0.0,
     ) -> None:
-        """What publishes its place on `topic` must be within `tolerance` of `place` by `within` s after `start`.
+        """The position published on `topic` must be within `tolerance` of `place` by `within` s after `start`.
 
         `place` has a value for each field that counts: `{"x": 9.0, "y": 2.0}`. With `overshoot` it must not go further
         beyond it than that, as seen from where it was at `start`. Unless `stay` is False it must not leave it again.
@@ -102,7 +102,7 @@ class TrajectoryChecks(Recorded):
 
 
 def _of_way(way: list[tuple[float, tuple[float, ...]]], goal: tuple[float, ...]) -> str:
-    """What is systematically wrong with a way that leads nowhere."""
+    """What is systematically wrong with a path that does not lead to the goal."""
     begin, end = way[0][1], way[-1][1]
     length = math.dist(begin, goal)
     if all(math.dist(point, begin) < 1e-6 for _, point in way):

@@ -9,7 +9,7 @@ from typing import Any, Literal, NoReturn, TypeVar
 
 @dataclass(frozen=True)
 class Finding:
-    """What is wrong, in words for the student, and in parts where it has them.
+    """What is wrong, in words for the student, and in parts if there are any.
 
     `at` is in seconds after the scenario's start, `message` counts the messages sent from 1.
     """
@@ -32,14 +32,14 @@ class Wrong(AssertionError):
 
 
 def fail(text: str, *, expected: object = "", got: object = "", at: float | None = None) -> NoReturn:
-    """End the check: the node does not pass it. `text` tells the student why; `at` is in seconds."""
+    """End the check: the node does not pass it. `text` says to the student why; `at` is in seconds."""
     message = text
     if expected != "" or got != "":
         message += f" Expected {expected}, got {got}."
     raise Wrong(Finding(message, at=at, expected=str(expected), got=str(got)))
 
 
-#: `error`: the check itself broke, which is never the student's fault.
+#: `error`: the check itself crashed, which is never the student's fault.
 Status = Literal["passed", "failed", "blocked", "error"]
 
 
@@ -48,7 +48,7 @@ class Verdict:
     """One check's verdict. `name` is its function, `title` its docstring.
 
     `finding` is there for a failed check; `blocked_by` names the checks without which a blocked one can't be judged;
-    `error` tells what broke in the check, with file and line.
+    `error` says what crashed in the check, with file and line.
     """
 
     name: str
@@ -76,7 +76,8 @@ ATTRIBUTE = "__check__"
 
 @dataclass(frozen=True)
 class CheckOptions:
-    """What `check` says about a test function. `depends` are names of other checks, `rule` is a sentence of task.md."""
+    """What the `check` decorator says about a test function. `depends` are names of other checks, `rule` is a sentence
+    of task.md."""
 
     points: float
     hint: str
@@ -95,10 +96,10 @@ def check(
 ) -> Callable[[Test], Test]:
     """Make a test function a check that gives `points`; its docstring is the check's title.
 
-    `hint` tells a student who failed it where to look. `depends` lists checks (functions of the same file, or names)
-    without which this one can't be judged: it counts as blocked, not as failed, unless all of them passed.
-    `misconception` names the usual mistake behind a failure, in two or three words. `rule` is the sentence of task.md
-    on which the check stands, word for word: `spinbook audit` wants one for each hidden check, and looks for it there.
+    `hint` says to a student who fails the check where to look. `depends` lists checks (functions of the same file, or
+    names) without which this one can't be judged: it counts as blocked, not as failed, unless all of them passed.
+    `misconception` names the common mistake behind a failure, in two or three words. `rule` is the sentence of task.md
+    that the check is based on, word for word: `spinbook audit` needs one for each hidden check, and looks for it there.
     """
     names = tuple(item if isinstance(item, str) else item.__name__ for item in depends)
 

@@ -1,4 +1,4 @@
-"""An exercise: what is asked, what the node must be called, which checks judge it."""
+"""An exercise: the task, the node's name and interface, and the checks that judge it."""
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load

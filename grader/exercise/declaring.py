@@ -1,4 +1,4 @@
-"""Reads the interface of an exercise's program out of exercise.toml, and refuses what it does not know."""
+"""Reads the interface of an exercise's program from exercise.toml, and refuses unknown keys."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from grader.exercise.exercise import (
     Role,
     Topic,
 )
-from interface_compiler import prefixes
+from interface_compiler import prefixes, shipped
 
 #: Types of parameters, as rcl_interfaces/msg/ParameterType has them.
 PARAMETER_TYPES = {
@@ -33,7 +33,7 @@ PARAMETER_TYPES = {
 #: A table that concerns classes only: grader/classroom/deadline.py reads it.
 DEADLINE = "deadline"
 
-#: The keys of exercise.toml, of its tables, and whether a table's key has to be there.
+#: The keys of exercise.toml, of its tables, and whether a table's key is required.
 KEYS: dict[str, dict[str, bool]] = {
     "": dict.fromkeys(("title", "points", "file", "class", "node", "reference_node", "advice"), False),
     **{
@@ -71,7 +71,7 @@ class Table:
         raise ExerciseError(self.file, found, fix, line_of(self.file, self.kind, self.number, key))
 
     def see_keys(self) -> None:
-        """Raise `ExerciseError` for a key that is not known, or one that is missing."""
+        """Raise `ExerciseError` for an unknown key, or for a missing one."""
         known = KEYS[self.kind]
         for key in self.entries:
             if key not in known and not (not self.kind and key in (*KEYS, DEADLINE)):
@@ -122,7 +122,7 @@ class Table:
         if not known:
             self.fault("type", f"type = {value!r}: the package {package} is not installed here", self._install(package))
         if rest not in known:
-            fix = "Look at its name. If the course has just defined it: spinbook build."
+            fix = "Check its name. If the course has just defined it, run: spinbook build"
             self.fault("type", f"type = {value!r}: the package {package} has no {rest}", fix)
         return value
 
@@ -132,7 +132,9 @@ class Table:
                 "It comes with the handout. In the handout's folder: .venv/bin/pip install -r requirements.txt. "
                 "If it is still missing then, send this message to whoever gave you the handout."
             )
-        return f"If the course defines it: spinbook build. If Spinbook brings it: spinbook interfaces add {package}."
+        if remedy := shipped.how_to_add(package):
+            return remedy
+        return "If the course defines it, compile it: spinbook build. If not, install it, or look at its name."
 
     def units(self) -> dict[str, str]:
         """Return the unit of each field."""
@@ -147,7 +149,7 @@ class Table:
 
 
 def tables(entries: dict[str, Any], kind: str, file: Path) -> list[Table]:
-    """Every `[[kind]]`, its keys seen."""
+    """Every `[[kind]]`, with its keys checked."""
     given = entries.get(kind, [])
     if not isinstance(given, list) or not all(isinstance(one, dict) for one in given):
         raise ExerciseError(file, f"{kind} is not a list of tables", f"Write [[{kind}]] above each.")
@@ -158,7 +160,7 @@ def tables(entries: dict[str, Any], kind: str, file: Path) -> list[Table]:
 
 
 def topics(entries: dict[str, Any], file: Path) -> tuple[Topic, ...]:
-    """What the program subscribes and publishes."""
+    """The topics that the program subscribes to and publishes."""
     return tuple(_topic(table) for direction in ("subscribe", "publish") for table in tables(entries, direction, file))
 
 

@@ -52,7 +52,7 @@ class Topic:
 
     @property
     def qos(self) -> Qos:
-        """What the task asks for."""
+        """The QoS that the task asks for."""
         return Qos(self.reliability, self.durability, self.depth)
 
 
@@ -89,10 +89,10 @@ class ProgramFile:
     class_name: str = ""
 
 
-#: What a student's copy of an exercise has in place of scenarios and a solution: see `grader.grading.public`.
+#: What a student's copy of an exercise has instead of scenarios and a solution: see `grader.grading.public`.
 PUBLIC_FILE = "public.json"
 
-#: What the grader's own node is called, on which the reference publishers, servers and clients are.
+#: The name of the grader's own node, which has the reference publishers, servers and clients.
 REFERENCE_NODE = "reference"
 
 
@@ -100,7 +100,7 @@ REFERENCE_NODE = "reference"
 class Exercise:
     """One folder of `exercises/`, read.
 
-    `task` is the text for the student, in Markdown. `points` is what all checks give together.
+    `task` is the text for the student, in Markdown. `points` is the sum of all checks' points.
     `solution_folder` holds the author's solution, and is None in a student's copy of the course. With `public_only` the
     hidden checks are left out, as in a student's copy. `programs` are the several programs in one submission, if it
     has any; `class_name` and `node_name` are then those of the first. `advice` maps the name of an exception, such as
@@ -126,7 +126,7 @@ class Exercise:
 
     @property
     def scenarios_file(self) -> Path:
-        """The file that declares what the node is run against."""
+        """The file that declares the scenarios."""
         return self.folder / "scenarios.py"
 
     @property
@@ -137,7 +137,7 @@ class Exercise:
 
     @property
     def public_file(self) -> Path:
-        """What the student's copy has in place of scenarios and a solution."""
+        """What the student's copy has instead of scenarios and a solution."""
         return self.folder / PUBLIC_FILE
 
     def public(self) -> Exercise:
@@ -151,7 +151,7 @@ class Exercise:
 
     @property
     def inputs(self) -> tuple[Topic, ...]:
-        """The topics that the node subscribes."""
+        """The topics that the node subscribes to."""
         return tuple(topic for topic in self.topics if topic.direction == "subscribe")
 
     @property
@@ -161,7 +161,7 @@ class Exercise:
 
     @property
     def element_name(self) -> str:
-        """What one element of the published lists is called."""
+        """The name of one element of the published lists."""
         return next((topic.elements.called for topic in self.outputs if topic.elements), "element")
 
     @property
@@ -188,8 +188,8 @@ class Exercise:
 class ExerciseError(Exception):
     """Raised before any student is graded, when an exercise can't be used as its author wrote it.
 
-    `found` says what is in the file, `fix` what was expected and what to do. `line` counts from 1, and is None if the
-    whole file is meant.
+    `found` says what is in the file, `fix` what was expected and what to do. `line` counts from 1, and is None if it is
+    about the whole file.
     """
 
     def __init__(self, file: Path, found: str, fix: str, line: int | None = None) -> None:

@@ -18,9 +18,8 @@ else:
 
 
 def load(folder: Path | str) -> Exercise:
-    """The exercise in `folder`, which lies in a course's `exercises/`.
-
-    The course's own message types, as they were compiled last, can be imported from then on, here and in the sandbox.
+    """The exercise in `folder`, which is in a course's `exercises/`. From then on, the course's own message types, as
+    compiled last, can be imported here and in the sandbox.
 
     Raises `ExerciseError` when a file is missing, can't be read or lacks an entry.
     """
@@ -55,12 +54,15 @@ def load(folder: Path | str) -> Exercise:
     )
     if not exercise.topics and not exercise.endpoints and not exercise.parameters:
         fix = "Declare each topic under [[subscribe]] or [[publish]], and services, actions and parameters likewise."
-        raise ExerciseError(file, "no topics, and nothing else of an interface", fix)
+        raise ExerciseError(file, "no topics, services, actions or parameters", fix)
     return exercise
 
 
 def _main_program(top: Table, parts: tuple[ProgramFile, ...]) -> tuple[str, str, str]:
     """The file that is handed in; class and node of the only program, or of the first of several."""
+    if parts and "file" not in top.entries:
+        fix = 'Give the name of a submission that is one file with all programs, such as file = "line.py", at the top.'
+        top.fault("", "file is missing", fix)
     file_name = _text(top, "file")
     if not re.fullmatch(r"[a-z_][a-z0-9_]*\.py", file_name):
         top.fault("file", f"file = {file_name!r}", "Give a Python file name, such as 'my_node.py'.")
@@ -85,7 +87,9 @@ def _read(file: Path) -> dict[str, Any]:
 
 
 def _text(top: Table, key: str) -> str:
-    value = top.entries.get(key)
+    if key not in top.entries:
+        top.fault("", f"{key} is missing", f'Add a line such as {key} = "…" at the top.')
+    value = top.entries[key]
     if not isinstance(value, str) or not value:
         top.fault(key, f"{key} = {value!r}", f'Give {key} as a text, such as {key} = "…".')
     return value
@@ -99,7 +103,7 @@ def _points(top: Table) -> float:
 
 
 class NoExercise(Exception):
-    """Raised when nothing is called so; says what there is."""
+    """Raised when there is no exercise of this name; lists those that exist."""
 
 
 def find(name: str, start: Path) -> Path:

@@ -1,16 +1,17 @@
-"""The starter is the solution without what stands between its marks."""
+"""The starter is the solution without the code between its markers."""
 
 from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Iterator
 
 BEGIN = re.compile(r"^(\s*)# BEGIN SOLUTION\s*$")
 END = re.compile(r"^\s*# END SOLUTION\s*$")
 
 
 class MarkerError(ValueError):
-    """Raised when the marks of a solution don't pair up; `line` counts from 1."""
+    """Raised when the markers of a solution don't pair up; `line` counts from 1."""
 
     def __init__(self, line: int, message: str) -> None:
         super().__init__(f"line {line}: {message}")
@@ -20,9 +21,9 @@ class MarkerError(ValueError):
 def starter(source: str) -> str:
     """`source` without the lines from each `# BEGIN SOLUTION` to its `# END SOLUTION`.
 
-    Everything else stays as it stands, so the author's `# TODO` comments above a mark lead the student. A body
-    that would be left empty gets a `pass`. Raises `MarkerError` when a mark lacks its partner, when there is none
-    at all, or when what is left is no Python.
+    Everything else stays, so the author's `# TODO` comments above a marker guide the student. A body that would be
+    empty gets a `pass`. Raises `MarkerError` when a marker lacks its partner, when there is none at all, or when the
+    rest is not valid Python.
     """
     kept: list[str] = []
     begun: tuple[int, str] | None = None
@@ -42,7 +43,7 @@ def starter(source: str) -> str:
     if begun:
         raise MarkerError(begun[0], "BEGIN SOLUTION without an END SOLUTION after it")
     if not marks:
-        raise MarkerError(1, "no BEGIN SOLUTION mark, so the starter would be the solution")
+        raise MarkerError(1, "no BEGIN SOLUTION marker, so the starter would be the solution")
     result = re.sub(r"\n{4,}", "\n\n\n", "\n".join(_closed(kept))) + "\n"
     try:
         ast.parse(result)
@@ -51,12 +52,27 @@ def starter(source: str) -> str:
     return result
 
 
-#: Stands in for a removed block until it is known whether its body is left empty.
+def hidden_blocks(source: str) -> Iterator[list[tuple[int, str]]]:
+    """Yield the lines of each block between markers, with their numbers, counted from 1."""
+    block: list[tuple[int, str]] | None = None
+    for number, line in enumerate(source.splitlines(), start=1):
+        if BEGIN.match(line):
+            block = []
+        elif END.match(line):
+            yield block or []
+            block = None
+        elif block is not None:
+            block.append((number, line))
+    if block:  # a marker that lacks its partner, see `starter`
+        yield block
+
+
+#: Replaces a removed block until it is known whether its body is left empty.
 _PLACE = "\0"
 
 
 def _closed(lines: list[str]) -> list[str]:
-    """`lines` with a `pass` for each removed block whose body holds no statement any more, and no place marks."""
+    """`lines` without placeholders, and with a `pass` for each removed block whose body has no statement left."""
     result: list[str] = []
     for index, line in enumerate(lines):
         if not line.startswith(_PLACE):

@@ -1,4 +1,4 @@
-"""Writes exercise.toml again, from what was read of it: without comments."""
+"""Writes exercise.toml again from an exercise, without comments."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def _program(one: ProgramFile) -> dict[str, Any]:
 
 def _topic(one: Topic) -> dict[str, Any]:
     elements = {"called": one.elements.called, "named_by": one.elements.named_by} if one.elements else {}
-    # What a queue depth alone gives need not be said.
+    # The defaults of a queue depth alone are left out.
     reliability = "" if one.reliability == "reliable" else one.reliability
     durability = "" if one.durability == "volatile" else one.durability
     qos = {"depth": one.depth, "reliability": reliability, "durability": durability}

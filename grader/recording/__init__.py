@@ -1,4 +1,4 @@
-"""What was seen while a node was run: plain data, that nothing of the student's can change."""
+"""What the grader saw while a node ran: plain data, which no student's program can change."""
 
 from grader.recording.events import (
     Call,

@@ -6,7 +6,7 @@ import importlib
 from functools import cache
 from typing import Any
 
-#: Services that every node of rclpy has by itself, under its own name.
+#: Services that every rclpy node has by default, below its own name.
 OWN_SERVICES = (
     "describe_parameters",
     "get_parameter_types",
@@ -20,6 +20,6 @@ OWN_SERVICES = (
 
 @cache
 def message_class(type_name: str) -> Any:
-    """The Python class of `package/msg/Name`. Raises ImportError or AttributeError where there is none."""
+    """The Python class of `package/msg/Name`. Raises ImportError or AttributeError if there is none."""
     package, kind, name = type_name.split("/")
     return getattr(importlib.import_module(f"{package}.{kind}"), name)

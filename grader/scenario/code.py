@@ -6,6 +6,7 @@ import hashlib
 import importlib
 import importlib.util
 import inspect
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -72,3 +73,17 @@ def _module(file: str, digest: str) -> Any:
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+#: The file in which an author declares scenarios.
+AUTHORS_FILE = "scenarios.py"
+
+
+def line_of_the_author() -> int:
+    """The line of the innermost call in a scenarios.py, or 0 outside of one."""
+    frame = sys._getframe(1)
+    while frame is not None:
+        if frame.f_code.co_filename.endswith(f"/{AUTHORS_FILE}"):
+            return frame.f_lineno
+        frame = frame.f_back  # type: ignore[assignment]  # None at the end
+    return 0

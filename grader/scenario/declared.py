@@ -19,7 +19,7 @@ from grader.scenario.scenario import Scenario
 def declared(exercise: Exercise, seed: int) -> tuple[Scenario, ...]:
     """What `scenarios(seed)` in the exercise's scenarios.py returns, with every value checked.
 
-    Raises `ExerciseError`, with the line, where it is unusable.
+    Raises `ExerciseError`, with the line, if it is unusable.
     """
     file = exercise.scenarios_file
     if not file.exists():

@@ -64,7 +64,7 @@ def lost(stream: Stream, one_in: int, seed: int) -> Stream:
 
 
 def shuffled(stream: Stream, seed: int) -> Stream:
-    """The joints stand in another order in each message."""
+    """The joints are in another order in each message."""
     chance = random.Random(f"shuffled {seed}")
     result = []
     for sample in stream:
@@ -128,7 +128,7 @@ def emptied(stream: Stream, number: int) -> Stream:
 
 
 def shortened(stream: Stream, number: int, positions: int) -> Stream:
-    """Message `number` has only so many `positions`, for all its names."""
+    """Message `number` has only this many `positions`, for all its names."""
     return changed(stream, [number], lambda sample: replace(sample, positions=sample.positions[:positions]))
 
 
@@ -138,7 +138,7 @@ def framed(stream: Stream, first: int, frame_id: str) -> Stream:
 
 
 def restarted(stream: Stream, after: int) -> Stream:
-    """After message `after` the publisher is gone; a new one starts the same movement from its beginning."""
+    """After message `after` the publisher disappears; a new one starts the same movement from its beginning."""
     rest = [
         replace(sample, names=again.names, positions=again.positions, publisher=2)
         for sample, again in zip(stream[after + 1 :], stream, strict=False)

@@ -16,9 +16,9 @@ TWIST, POSE, JOINT_STATE = "geometry_msgs/msg/Twist", "turtlesim/msg/Pose", "sen
 class Turtle:
     """A turtle of turtlesim: reads `NAME/cmd_vel`, publishes `NAME/pose`.
 
-    The arithmetic is turtlesim's: the new heading before the place, commands that hold for one second, walls that
-    clamp. It takes the course of a step in one piece, so the period of the world is turtlesim's, 16 ms, if that
-    matters. Units are turtlesim's, headings are in rad.
+    The arithmetic is turtlesim's: the new heading before the new position, commands that hold for one second, walls
+    that clamp. It computes a step at once; if exact ticks matter, choose turtlesim's period of 16 ms for the world.
+    Units are turtlesim's, headings are in rad.
     """
 
     def __init__(
@@ -76,7 +76,7 @@ class JointChain:
         self._targets: dict[str, float] = {}
         self._wanted: dict[str, float] = {}
         self._fastest = fastest
-        self._states, self._time = states, 0.0
+        self._states = states
 
     def hear(self, topic: str, message: Any) -> None:
         """Take a command."""
@@ -92,7 +92,6 @@ class JointChain:
 
     def step(self, seconds: float) -> None:
         """Move on."""
-        self._time += seconds
         for name, position in self._positions.items():
             wanted = self._wanted.get(name, 0.0)
             if name in self._targets:

@@ -23,7 +23,7 @@ Stream = tuple[Message, ...]
 def numbers(
     topic: str,
     values: Iterable[tuple[float, float]],
-    type: str = "std_msgs/msg/Float64",
+    type: str = "",
     field: str = "data",
     stamped: bool = False,
     **others: Any,
@@ -31,14 +31,15 @@ def numbers(
     """A message for each of `values`, which are pairs of an instant (s after the start) and a number.
 
     The number goes into `field`, in which dots lead inwards, such as `linear.x` of a Twist. With `stamped` each message
-    has the instant in its `header.stamp`. `others` are fields that are the same in each message.
+    has the instant in its `header.stamp`. `others` are fields that are the same in each message, such as
+    `header={"frame_id": "base"}`. Without a `type` it is the one that exercise.toml declares for the topic.
     """
     stream = []
     for t, value in values:
         at = START + round(t * SECOND)
         fields: Fields = dict(others)
         if stamped:
-            fields["header"] = {"stamp": {"sec": at // SECOND, "nanosec": at % SECOND}}
+            fields = _set(fields, "header.stamp", {"sec": at // SECOND, "nanosec": at % SECOND})
         stream.append(Message(at, topic, type, _set(fields, field, value)))
     return tuple(stream)
 
@@ -49,13 +50,19 @@ def wave(height: float, times: Iterable[float], period: float = 2 * math.pi) -> 
 
 
 def chosen(lowest: float, highest: float, times: Iterable[float], seed: int) -> list[tuple[float, float]]:
-    """Values between `lowest` and `highest` by chance, the same for each `seed`."""
+    """Random values between `lowest` and `highest`, the same for each `seed`."""
     chance = random.Random(f"chosen {lowest} {highest} {seed}")
     return [(t, chance.uniform(lowest, highest)) for t in times]
 
 
 def placed(stream: Stream, number: int, value: float, field: str = "data") -> Stream:
-    """Message `number`, counted from 0, has this value, such as `math.nan`."""
+    """Message `number`, counted from 0, has this value, such as `math.nan`, in the `field` that `numbers` filled.
+
+    Raises `ValueError` when the message has no such field.
+    """
+    if not _has(stream[number].fields, field):
+        found = f"message {number} on {stream[number].topic} has no number in its field {field!r}."
+        raise ValueError(f"{found} Name the field as in numbers(), such as placed(…, field='range').")
     return _changed(stream, [number], lambda message: replace(message, fields=_set(message.fields, field, value)))
 
 
@@ -84,7 +91,7 @@ def paused(stream: Stream, before: int, seconds: float) -> Stream:
 
 
 def restarted(stream: Stream, after: int) -> Stream:
-    """After message `after` the publisher is gone, and another one takes over."""
+    """After message `after` the publisher disappears, and another one takes over."""
     return _changed(stream, range(after + 1, len(stream)), lambda message: replace(message, publisher=2))
 
 
@@ -104,6 +111,11 @@ def _later(message: Message, wait: int) -> Message:
         moved = stamp["sec"] * SECOND + stamp["nanosec"] + wait
         fields = _set(_set(fields, "header.stamp.sec", moved // SECOND), "header.stamp.nanosec", moved % SECOND)
     return replace(message, at=message.at + wait, fields=fields)
+
+
+def _has(fields: Fields, path: str) -> bool:
+    name, _, rest = path.partition(".")
+    return name in fields and (not rest or _has(fields[name], rest))
 
 
 def _set(fields: Fields, path: str, value: Any) -> Fields:

@@ -41,7 +41,7 @@ Typed = TypeVar("Typed", Message, Request, SendGoal, Subscribe, Server, ActionSe
 def resolved(exercise: Exercise, scenario: Scenario) -> Scenario:
     """`scenario` with all types filled in, and its files read.
 
-    Raises `ExerciseError`, which names the line of scenarios.py, for whatever does not fit.
+    Raises `ExerciseError`, which names the line of scenarios.py, for everything that does not fit.
     """
     return Resolver(exercise, scenario).scenario()
 
@@ -79,7 +79,7 @@ class Resolver:
     def _timing(self) -> None:
         scenario = self._scenario
         if not scenario.messages and not scenario.steps and not scenario.duration:
-            fix = "Let something happen in it, or give it a duration, such as duration=5.0."
+            fix = "Add steps or messages, or give it a duration, such as duration=5.0."
             self._fault(0, f"the scenario {scenario.name} has no messages, no other steps and no duration", fix)
         for name in ("duration", "rate"):
             value = getattr(scenario, name)
@@ -113,7 +113,7 @@ class Resolver:
             self._fault(given.line, text + _KINDS[kind], fix)
         package, _, rest = type_name.partition("/")
         if rest not in self._interfaces_of(package):
-            fix = "Look at its name. If the course has just defined it: spinbook build."
+            fix = "Check its name. If the course has just defined it, run: spinbook build"
             self._fault(given.line, f"there is no type {type_name} here", fix)
         return replace(given, type=type_name) if not isinstance(given, (Server, ActionServer)) else given
 
@@ -223,7 +223,7 @@ class Resolver:
         kind = message_class(type_name)
         if not given.goals:
             self._fault(given.line, f"{given.action}: no script for a goal", "Give goals=succeeds(…), for example.")
-        for script in given.goals:
+        for script in given.scripts:
             self._check(given.line, given.action, kind.Result, script.result, f"{type_name}_Result")
             for _, fields in script.feedback:
                 self._check(given.line, given.action, kind.Feedback, fields, f"{type_name}_Feedback")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from grader.exercise.exercise import Qos
 from grader.recording.recording import Fields
-from grader.scenario.place import line_of_the_author
+from grader.scenario.code import line_of_the_author
 from grader.scenario.servers import ActionServer, Server
 from grader.scenario.times import BEFORE_START as BEFORE_START
 from grader.scenario.times import SECOND as SECOND
@@ -21,7 +21,7 @@ from grader.scenario.world import World
 #: How often /clock is published between steps, unless the author says otherwise (Hz).
 RATE = 100.0
 
-#: What the computer's own clock shows while simulated time goes by: see `grader.runner.clocks`.
+#: What the computer's own clock shows while simulated time goes by: see `grader.runner.ends`.
 ComputerTime = Literal["apart", "simulated"]
 
 
@@ -29,8 +29,8 @@ ComputerTime = Literal["apart", "simulated"]
 class Message:
     """One message of a scenario, published at `at` ns of simulated time.
 
-    `publisher` tells publishers on one topic apart: when it changes, the former one is gone. Without a `type` it is the
-    one that exercise.toml gives for the topic. `line` is where in scenarios.py it was made.
+    `publisher` distinguishes publishers on one topic: when it changes, the previous one disappears. Without a `type` it
+    is the one that exercise.toml gives for the topic. `line` is where in scenarios.py it was made.
     """
 
     at: int
@@ -100,7 +100,7 @@ class GetParameter(Step):
 
 @dataclass(frozen=True)
 class Subscribe(Step):
-    """A subscriber of the grader's joins; what it gets is recorded under its `name`."""
+    """One of the grader's subscribers joins; what it receives is recorded under its `name`."""
 
     topic: str
     type: str
@@ -110,7 +110,7 @@ class Subscribe(Step):
 
 @dataclass(frozen=True)
 class Leave(Step):
-    """A peer is gone: the server or the subscriber of this name, or the publisher on this topic."""
+    """A peer disappears: the server or the subscriber of this name, or the publisher on this topic."""
 
     name: str
 
@@ -171,7 +171,7 @@ class Scenario:
     `name` is the fixture by which checks ask for its recording, `title` says in words what happens. `messages` takes
     messages and steps, in nested tuples and in any order; a scenario keeps the steps in `steps`.
 
-    `duration` is how long simulated time goes on (s), and `rate` how often /clock is published meanwhile (Hz). Without
+    `duration` is how long simulated time lasts (s), and `rate` how often /clock is published meanwhile (Hz). Without
     both, a scenario that only publishes has its clock set for each message.
 
     `parameters`, `remappings`, `namespace` and `arguments` are given to the program when it starts. `servers` and
@@ -181,8 +181,8 @@ class Scenario:
     With `interrupt` the program is asked to end by Ctrl-C at the end.
 
     `computer_time` says what the computer's clock shows to the program, and what `time.sleep` and wall timers take:
-    "simulated" is the same as simulated time; "apart" is more, so that who measures with the wrong clock measures
-    something else: 1.25 s for each simulated second.
+    "simulated" is the same as simulated time; "apart" is more, 1.25 s for each simulated second, so that a node that
+    measures with the wrong clock gets another value.
     """
 
     name: str

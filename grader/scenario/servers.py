@@ -3,29 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import Any, Literal
+from dataclasses import dataclass, field, replace
+from functools import wraps
+from typing import Any, Literal, ParamSpec
 
 from grader.recording.recording import Fields
-from grader.scenario.code import Code, code_of
-from grader.scenario.place import line_of_the_author
+from grader.scenario.code import Code, code_of, line_of_the_author
 
-#: How an action server takes a request to cancel. "ignore": it accepts, and goes on all the same.
+#: How an action server takes a request to cancel. "ignore": it accepts, but continues anyway.
 OnCancel = Literal["accept", "refuse", "ignore"]
 
 End = Literal["succeeded", "aborted", "never"]
 
+_Given = ParamSpec("_Given")
+
 
 @dataclass(frozen=True)
 class Reply:
-    """The answer to one request, `after` s of simulated time; `fields` None stands for no answer at all."""
+    """The answer to one request, `after` s of simulated time; `fields` is None for no answer at all."""
 
     after: float = 0.0
     fields: Fields | None = None
 
 
 def reply(after: float = 0.0, /, **fields: Any) -> Reply:
-    """Answer with these fields, after so many seconds: `reply(sum=5)`, `reply(2.0, sum=5)`."""
+    """Answer with these fields, after this many seconds: `reply(sum=5)`, `reply(2.0, sum=5)`."""
     return Reply(after, fields)
 
 
@@ -103,19 +105,22 @@ def succeeds(
     answers_after: float = 0.0,
 ) -> GoalScript:
     """Accept the goal, give feedback at these seconds, and succeed `after` s."""
-    return _script("succeeded", after, result, feedback, cancel, cancel_takes, answers_after)
+    given = tuple(sorted((feedback or {}).items(), key=lambda entry: entry[0]))
+    return GoalScript(True, answers_after, given, "succeeded", after, result or {}, cancel, cancel_takes)
 
 
-def aborts(
-    after: float = 0.0,
-    result: Fields | None = None,
-    feedback: dict[float, Fields] | None = None,
-    cancel: OnCancel = "accept",
-    cancel_takes: float = 0.0,
-    answers_after: float = 0.0,
-) -> GoalScript:
-    """Accept the goal, give feedback at these seconds, and abort `after` s."""
-    return _script("aborted", after, result, feedback, cancel, cancel_takes, answers_after)
+def _ending(end: End, script: Callable[_Given, GoalScript], doc: str) -> Callable[_Given, GoalScript]:
+    """Return a function that takes what `script` takes, for goals that end otherwise."""
+
+    @wraps(script)
+    def scripted(*args: _Given.args, **kwargs: _Given.kwargs) -> GoalScript:
+        return replace(script(*args, **kwargs), end=end)
+
+    scripted.__doc__ = doc
+    return scripted
+
+
+aborts = _ending("aborted", succeeds, "Accept the goal, give feedback at these seconds, and abort `after` s.")
 
 
 def never_ends(
@@ -125,7 +130,7 @@ def never_ends(
     answers_after: float = 0.0,
 ) -> GoalScript:
     """Accept the goal, and never end."""
-    return _script("never", 0.0, None, feedback, cancel, cancel_takes, answers_after)
+    return replace(succeeds(0.0, None, feedback, cancel, cancel_takes, answers_after), end="never")
 
 
 def rejects(answers_after: float = 0.0) -> GoalScript:
@@ -133,43 +138,23 @@ def rejects(answers_after: float = 0.0) -> GoalScript:
     return GoalScript(accept=False, answers_after=answers_after)
 
 
-def _script(
-    end: End,
-    after: float,
-    result: Fields | None,
-    feedback: dict[float, Fields] | None,
-    cancel: OnCancel,
-    cancel_takes: float,
-    answers_after: float,
-) -> GoalScript:
-    given = tuple(sorted((feedback or {}).items(), key=lambda entry: entry[0]))
-    return GoalScript(True, answers_after, given, end, after, result or {}, cancel, cancel_takes)
-
-
 @dataclass(frozen=True)
 class ActionServer:
-    """A scripted server of an action: `goals` has a script for each goal; the last one serves all that follow."""
+    """A scripted server of an action: `goals` has a script for each goal, or one for all; the last serves the rest."""
 
     action: str
     type: str = ""
-    goals: tuple[GoalScript, ...] = ()
+    goals: GoalScript | Sequence[GoalScript] = ()
     appears: float | None = None
     gone: float | None = None
     back: float | None = None
     line: int = field(default_factory=line_of_the_author, compare=False, repr=False)
 
-    def __init__(
-        self,
-        action: str,
-        type: str = "",
-        goals: GoalScript | Sequence[GoalScript] = (),
-        appears: float | None = None,
-        gone: float | None = None,
-        back: float | None = None,
-    ) -> None:
-        """Take one script for several."""
-        scripts = (goals,) if isinstance(goals, GoalScript) else tuple(goals)
-        given: dict[str, Any] = {"action": action, "type": type, "goals": scripts}
-        given |= {"appears": appears, "gone": gone, "back": back, "line": line_of_the_author()}
-        for name, value in given.items():
-            object.__setattr__(self, name, value)
+    def __post_init__(self) -> None:
+        """Keep one script as several are kept."""
+        object.__setattr__(self, "goals", self.scripts)
+
+    @property
+    def scripts(self) -> tuple[GoalScript, ...]:
+        """The scripts, in the order of the goals."""
+        return (self.goals,) if isinstance(self.goals, GoalScript) else tuple(self.goals)

@@ -37,7 +37,7 @@ class NotForStudents(ValueError):
     """Raised for a scenario with code of scenarios.py in it, which a student's copy can't have."""
 
 
-#: What no student gets: the code of a public scenario has to be in another file of the exercise's folder.
+#: The file that no student gets: the code of a public scenario must be in another file of the exercise's folder.
 HIDDEN_FILES = ("scenarios.py", "hidden_checks.py")
 
 
@@ -70,9 +70,8 @@ def plain(value: Any) -> Any:
 
 
 def from_plain(value: Any, folder: Path) -> Any:
-    """What `plain` made such; the author's code is in `folder`.
-
-    Raises KeyError or TypeError where it is something else, and OSError where a file is missing.
+    """The scenario that `plain` converted; the author's code is in `folder`. Raises KeyError or TypeError if it is
+    something else, and OSError if a file is missing.
     """
     if isinstance(value, list):
         return tuple(from_plain(one, folder) for one in value)

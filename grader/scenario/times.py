@@ -11,7 +11,7 @@ SECOND = 1_000_000_000
 #: Simulated time at which every scenario begins. Not 0, which means "no time yet" in ROS.
 START = 100 * SECOND
 
-#: When something happens that happens before the student's program starts.
+#: The time of events before the student's program starts.
 BEFORE_START = START - SECOND
 
 
@@ -21,7 +21,7 @@ def every(period: float, seconds: float) -> tuple[float, ...]:
 
 
 def uneven(shortest: float, longest: float, count: int, seed: int) -> tuple[float, ...]:
-    """`count` instants that lie between `shortest` and `longest` s apart, the same for each `seed`."""
+    """`count` instants that are between `shortest` and `longest` s apart, the same for each `seed`."""
     chance = random.Random(f"uneven {seed}")
     times = [0.0]
     while len(times) < count:

@@ -11,24 +11,23 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from grader.recording.recording import Fields
-from grader.scenario.code import Code, code_of
-from grader.scenario.place import line_of_the_author
+from grader.scenario.code import Code, code_of, line_of_the_author
 
-#: How far a world goes on in one step, unless the author says otherwise (s).
+#: The duration of one step of a world, unless the author says otherwise (s).
 PERIOD = 0.02
 
 
 class Model(Protocol):
-    """What a world's class has. `reads` and `publishes` may be set by its constructor, too."""
+    """The interface of a world's class. `reads` and `publishes` may be set by its constructor, too."""
 
     reads: dict[str, str]
     publishes: dict[str, str]
 
     def hear(self, topic: str, message: Any) -> None:
-        """A message came; its fields are attributes."""
+        """A message has arrived; its fields are attributes."""
 
     def step(self, seconds: float) -> None:
-        """Simulated time goes on."""
+        """Simulated time advances."""
 
     def state(self) -> dict[str, Fields]:
         """What is published after a step."""

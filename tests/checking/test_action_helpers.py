@@ -56,8 +56,8 @@ def test_a_right_server_passes() -> None:
 def test_succeed_is_forgotten() -> None:
     mine = run(goal(*BEGIN, (3.0, "aborted")), RIGHT)
     forgot = (
-        "The result is filled in, but the goal was aborted: a server that is done has to call goal_handle.succeed(), "
-        "and not abort()."
+        "The result is filled in, but the goal was aborted: a server that is done must call goal_handle.succeed(), "
+        "not abort()."
     )
     assert says(lambda: mine.must_end("succeeded")) == (
         f"At 3.00 s (as usual), {PART}: it was expected to end as succeeded, got aborted. {forgot}"
@@ -71,7 +71,7 @@ def test_succeed_is_forgotten() -> None:
 def test_execute_raises() -> None:
     mine = goal(*BEGIN, (1.0, "aborted"), result={"sequence": []})
     assert says(lambda: run(mine, RIGHT).must_end("succeeded")).endswith(
-        "Does execute raise, return without goal_handle.succeed(), or call canceled() when nobody asked for it?"
+        "Does execute raise, return without goal_handle.succeed(), or call canceled() without a request to cancel?"
     )
 
 
@@ -79,17 +79,17 @@ def test_execute_raises() -> None:
     ("mine", "told"),
     [
         (goal(*BEGIN, (3.0, "succeeded"), cancels=(replace(ASKED[0], accepted=False, code=0),)),
-         "got succeeded. Your node rejected the request to cancel: without a cancel callback a server rejects each"),
+         "got succeeded. Your node rejected the request to cancel: without a cancel callback, a server rejects every"),
         (goal(*BEGIN, (2.0, "canceling"), (3.0, "succeeded"), cancels=ASKED),
-         "got succeeded. Your node accepted the request to cancel, and then called succeed() all the same."),
+         "got succeeded. Your node accepted the request to cancel, and then called succeed() anyway."),
         (goal(*BEGIN, (3.24, "succeeded"), cancels=(Cancel(ns(2.0), ns(3.24), accepted=False, code=3),)),
-         "The request to cancel was answered only when the goal was over: execute keeps the executor from doing it."),
+         "Your node answered the request to cancel only after the goal had ended: execute blocks the executor."),
         (goal(*BEGIN, (2.0, "canceling"), (2.9, "canceled"), cancels=ASKED),
          "it was expected to end within 0.5 s of the request to cancel, got 0.90 s."),
-        (goal(*BEGIN, (2.0, "canceling"), cancels=ASKED), "and went on: execute has to look at goal_handle.is_can"),
-        (goal(*BEGIN, cancels=(Cancel(ns(2.0)),)), "Your node never answered the request to cancel: execute keeps the"),
+        (goal(*BEGIN, (2.0, "canceling"), cancels=ASKED), "but continued: execute must check goal_handle.is_can"),
+        (goal(*BEGIN, cancels=(Cancel(ns(2.0)),)), "never answered the request to cancel: execute blocks the"),
         (goal(*BEGIN, (1.0, "aborted"), cancels=(Cancel(ns(2.0), ns(2.0), accepted=False, code=3),)),
-         "got aborted. The goal was over before the request to cancel came."),
+         "got aborted. The goal had ended before the request to cancel arrived."),
         (replace(CANCELED, goals=(replace(CANCELED.goals[0], feedback=(Feedback(ns(2.5), {"left": 0}),)),)),
          "At 2.50 s (as usual), goal 1 for /count (order 3): no feedback was expected after the goal was canceled"),
     ],
@@ -142,6 +142,29 @@ def test_results() -> None:
     other = changed(RIGHT, result={"sequence": [0, 1, 2]})
     assert "its result: expected sequence[2] 1, got 2." in says(lambda: run(other, RIGHT).must_match_results())
     assert "a result was expected, got none." in says(lambda: run(goal(*BEGIN), RIGHT).must_match_results())
+    rejected = goal(accepted=False)
+    assert says(lambda: run(rejected, RIGHT).must_match_results()).endswith(
+        "it must be accepted, but your node rejected it."
+    )
+
+
+def test_what_execute_raised_is_quoted_from_the_log() -> None:
+    log = "[ERROR] [1.0] [worker.action_server]: Error raised in execute callback: no joint\nTraceback\n"
+    raised = replace(goal(*BEGIN, (1.5, "aborted"), result={"sequence": []}), log=log)
+    told = "Your execute callback raised an exception: no joint."
+    assert says(lambda: run(raised, RIGHT).must_end("succeeded")).endswith(told)
+    assert says(lambda: run(raised, RIGHT).must_match_results()).endswith(told)
+    unasked = replace(raised, log=log.replace("no joint", "invalid transition with event CANCELED, at ./a/b.c:100"))
+    assert says(lambda: run(unasked, RIGHT).must_match_results()).endswith(
+        "invalid transition with event CANCELED. canceled() is only for a goal that somebody asked to cancel; "
+        "call abort() to give up any other."
+    )
+
+
+def test_a_node_whose_only_thread_waits_in_execute() -> None:
+    stuck = changed(goal(*BEGIN), feedback=())
+    assert says(lambda: run(stuck, RIGHT).must_end("succeeded")).endswith("run the node in a MultiThreadedExecutor.")
+    assert says(lambda: run(goal(*BEGIN), RIGHT).must_end("succeeded")).endswith("The goal never ended.")
 
 
 def test_goals_of_a_client() -> None:
@@ -151,11 +174,11 @@ def test_goals_of_a_client() -> None:
     other = changed(right, goal={"order": 4})
     assert "its goal: expected order 3, got 4." in says(lambda: run(other, right, CLIENT).must_match_goals())
     none = replace(right, goals=())
-    assert "expected 1 goals for /count, got 0. Your node has no action client of /count." in says(
+    assert "expected 1 goals for /count, got 0. Your node has no action client for /count." in says(
         lambda: run(none, right, CLIENT).must_match_goals()
     )
     ignoring = changed(right, accepted=False, asked_result=ns(1.1))
-    assert "it was rejected, and your node asked for its result all the same." in says(
+    assert "it was rejected, but your node asked for its result." in says(
         lambda: run(ignoring, right, CLIENT).must_ask_only_for_accepted()
     )
 

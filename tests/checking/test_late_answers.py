@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,8 +11,8 @@ import pytest
 from grader.checking.run import Run
 from grader.checking.verdict import Wrong
 from grader.exercise import Exercise
-from grader.exercise.exercise import Topic
-from grader.recording import Ending, Received, Recording, Sent
+from grader.exercise.exercise import Durability, Topic
+from grader.recording import Ending, EndPoint, Received, Recording, Sent
 from grader.scenario.scenario import SECOND, START
 
 FLOAT = "std_msgs/msg/Float64"
@@ -90,3 +91,22 @@ def test_a_measurement_by_the_computers_clock_is_told_by_its_factor(factor: floa
 def test_another_factor_is_no_sign_of_a_clock() -> None:
     received = [answer(n, 3 * right(n)) for n in range(1, COUNT + 1)]
     assert told(received, matches).endswith("Every data is 3 times what it should be.")
+
+
+@pytest.mark.parametrize(
+    ("durability", "told"),
+    [
+        (
+            "transient_local",
+            "Your subscription on /in is transient_local, but the publisher is volatile: the two do not",
+        ),
+        ("volatile", "Your node did not subscribe to /in yet: create the subscription in __init__."),
+    ],
+)
+def test_no_answer_at_all_is_explained_by_the_subscription(durability: Durability, told: str) -> None:
+    silent = recording()
+    end = EndPoint("/doubler", "subscription", "/in", FLOAT, "reliable", durability)
+    unheard = replace(silent, sent=tuple(replace(one, heard=False) for one in silent.sent), end_points=(end,))
+    with pytest.raises(Wrong) as caught:
+        Run(EXERCISE, unheard, REFERENCE).must_match("data")
+    assert told in caught.value.finding.text

@@ -44,7 +44,7 @@ def test_parameters_that_are_taken_or_refused_wrongly() -> None:
     assert "the value 3.0 must be taken, but your node refused it. It said: too small. Your node refuses every" in told
     undeclared = replace(EMPTY, parameters=(replace(refuses.parameters[0], reason="access to undeclared parameter"),))
     assert "your node does not have it. Declare it" in says(lambda: run(undeclared, right).must_take("gain", 3.0))
-    assert "your node gave no answer about it." in says(lambda: run(mute, right).must_take("gain"))
+    assert "your node did not answer." in says(lambda: run(mute, right).must_take("gain"))
 
 
 @pytest.mark.parametrize(
@@ -53,7 +53,7 @@ def test_parameters_that_are_taken_or_refused_wrongly() -> None:
         (read(3.0), "parameter gain: expected 2 1/s, got 3 1/s."),
         (read(2), "expected 2.0, a double, got 2, an integer."),
         (read(None), "your node does not have it. Declare it in __init__, with declare_parameter."),
-        (read(None, answered=False), "your node gave no answer about it."),
+        (read(None, answered=False), "your node did not answer."),
     ],
 )
 def test_readings(mine: Recording, told: str) -> None:
@@ -107,12 +107,30 @@ def test_end_points_that_are_too_many() -> None:
     assert says(lambda: run(twice).must_have_interface(only=True)) == "Your node has 2 publishers on /out. Expected 1."
 
 
+def test_each_of_several_programs_may_have_one_end_of_a_topic() -> None:
+    two = replace(EXERCISE, programs=(ProgramFile("a.py", "worker"), ProgramFile("b.py", "other")))
+    both = replace(EMPTY, end_points=(*ENDS, replace(ENDS[1], node="/other")), nodes=("/other", "/worker"))
+    run(both, exercise=two).must_be_as_declared()
+    twice = replace(both, end_points=(*both.end_points, replace(ENDS[1], node="/other")))
+    told = "Your node has 2 publishers on /out. Expected 1."
+    assert says(lambda: run(twice, exercise=two).must_be_as_declared()) == told
+
+
+def test_a_program_must_be_as_exercise_toml_declares_it() -> None:
+    run(EMPTY).must_be_as_declared()
+    assert "There is no node /worker" in says(lambda: run(replace(EMPTY, nodes=("/other",))).must_be_as_declared())
+    best_effort = replace(EMPTY, end_points=(*ENDS[:1], replace(ENDS[1], reliability="best_effort"), *ENDS[2:]))
+    assert "Expected reliable and volatile" in says(lambda: run(best_effort).must_be_as_declared())
+    without = replace(EMPTY, end_points=ENDS[1:])
+    assert "does not subscribe to /in" in says(lambda: run(without).must_be_as_declared())
+
+
 def test_qos() -> None:
     latched = Topic("/out", "std_msgs/msg/Float64", "publish", durability="transient_local")
     exercise = replace(EXERCISE, topics=(latched,))
     assert says(run(EMPTY, exercise=exercise).must_have_qos) == (
         "Your publisher on /out is reliable and volatile. Expected reliable and transient_local. "
-        "Whoever subscribes later gets nothing that it published before."
+        "A late subscriber gets nothing that it published before."
     )
     eager = replace(EMPTY, end_points=(replace(ENDS[0], durability="transient_local"),))
     assert says(run(eager).must_have_qos).endswith(
@@ -137,8 +155,10 @@ def test_ends() -> None:
     assert "still running 2 s after Ctrl-C" in says(run(slow).must_end_on_ctrl_c)
     loud = replace(EMPTY, ending=Ending("completed", interrupted=True, traceback="RCLError: no"))
     assert says(run(loud).must_end_on_ctrl_c) == "After Ctrl-C your program printed a traceback: RCLError: no"
-    with pytest.raises(ValueError, match="has no interrupt=True"):
+    with pytest.raises(ValueError, match="sends no Ctrl-C"):
         run(EMPTY).must_end_on_ctrl_c()
     ended = replace(EMPTY, exits=(Exit(ns(2), "a.py", signal=9, by="grader"), Exit(ns(3), "b.py", code=1)))
     run(ended).must_survive("a.py")
-    assert says(run(ended).must_survive) == "At 3.00 s (as usual): b.py ended by itself, with code 1, but must go on."
+    assert (
+        says(run(ended).must_survive) == "At 3.00 s (as usual): b.py ended by itself, with code 1, but must continue."
+    )

@@ -82,7 +82,7 @@ def test_the_rate_of_two_messages_is_told_by_the_gap_between_them() -> None:
 def test_a_publisher_that_stops() -> None:
     mine = run(published(TIMES[:20], VALUES[:20]), RIGHT)
     assert says(lambda: mine.must_keep_rate(10.0)) == (
-        "At 2.00 s (as usual): your node published nothing on /out after that, but must go on."
+        "At 2.00 s (as usual): your node published nothing on /out after that, but must continue."
     )
 
 
@@ -145,6 +145,29 @@ def test_a_series_that_comes_too_late_or_ends_too_early() -> None:
     stopped = published(TIMES[:30], VALUES[:30])
     told = says(lambda: run(stopped, RIGHT).must_match_series("data"))
     assert told.endswith(f"expected 50 messages on /out, got 30. The last one came at {TIMES[29]:.2f} s.")
+
+
+def test_what_several_threads_publish_at_one_moment_may_come_in_any_order() -> None:
+    right = published([1.0, 2.0, 2.0, 2.0, 3.0], [1.0, 2.0, 3.0, 4.0, 5.0])
+    swapped = published([1.0, 2.0, 2.0, 2.0, 3.0], [1.0, 4.0, 2.0, 3.0, 5.0])
+    threads = replace(swapped, received=tuple(replace(one, unordered=True) for one in swapped.received))
+    run(threads, right).must_match_series("data", time=0.0)
+    run(right, threads).must_match_series("data", time=0.0)
+    assert "message 2 on /out: expected data 2 m, got 4 m." in says(
+        lambda: run(swapped, right).must_match_series("data")
+    )
+    later = replace(threads, received=(*threads.received[:4], replace(threads.received[4], fields={"data": 2.0})))
+    assert "message 5 on /out: expected data 5 m, got 2 m." in says(lambda: run(later, right).must_match_series("data"))
+
+
+def test_a_message_as_soon_as_the_clock_begins_is_explained() -> None:
+    right, at_once = published([1.2, 1.7], [1.0, 2.0]), published([0.0, 1.2], [7.0, 1.0])
+    assert says(lambda: run(at_once, right).must_match_series("data")).endswith(
+        "What is published at 0.00 s comes from the constructor, or from a timer that was created there: such a timer "
+        "fires as soon as simulated time begins, whatever its period."
+    )
+    other = published([1.2, 1.7], [7.0, 1.0])
+    assert "0.00 s" not in says(lambda: run(other, right).must_match_series("data"))
 
 
 def test_a_late_subscriber_of_a_volatile_publisher_gets_nothing() -> None:

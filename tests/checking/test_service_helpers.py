@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from made_up import ADD, EMPTY, ENDS, EXERCISE, finding, ns, run, says
+from made_up import ADD, EMPTY, ENDS, EXERCISE, finding, ns, published, run, says
 
 from grader.exercise.exercise import Endpoint
 from grader.recording import Recording
@@ -70,11 +70,27 @@ def test_requests_of_a_client() -> None:
     run(right, exercise=CLIENT).must_match_requests("a")
     once, none = calls(2, by="node"), calls(by="node")
     assert "expected 2 requests to /add, got 1." in says(lambda: run(once, right, CLIENT).must_call())
-    assert "got 0. Your node has no client of /add. Its clients are for: none." in says(
+    assert "got 0. Your node has no client for /add. Its clients are for: none." in says(
         lambda: run(none, right, CLIENT).must_call()
     )
     other = replace(right, calls=tuple(replace(call, request={"a": 7, "b": 1}) for call in right.calls))
     assert "request 1 to /add: expected a 1, got 7." in says(lambda: run(other, right, CLIENT).must_match_requests())
+
+
+def test_a_client_that_does_nothing_after_its_request_is_asked_whether_it_waits() -> None:
+    def client(requests: int, until: float) -> Recording:
+        ticks = [n / 2 for n in range(1, 20) if n / 2 <= until]
+        asked = calls(*range(requests), by="node")
+        return replace(asked, received=published(ticks, ticks).received)
+
+    right, waits = client(4, 5.0), client(1, 0.9)
+    told = "Your node sent a request to /add at 1.00 s, and did nothing from then on. Does a callback wait"
+    mine = run(waits, right, CLIENT)
+    assert told in says(lambda: mine.must_match_requests("a"))
+    assert told in says(lambda: mine.must_keep_rate(2.0, "/out"))
+    assert told in says(lambda: mine.must_match_series("data", "/out"))
+    goes_on = run(client(1, 5.0), right, CLIENT)
+    assert says(lambda: goes_on.must_match_requests("a")).endswith("expected 4 requests to /add, got 1.")
 
 
 def test_requests_that_come_too_late() -> None:

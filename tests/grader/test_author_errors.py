@@ -68,7 +68,7 @@ def test_a_missing_solution(course: Path, workers: WorkerPool) -> None:
         ("checks.py", "from grader.checking import Run, check", "import no_such_module", "no_such_module"),
         ("checks.py", "depends=[test_publishes_velocities]", "depends=['test_later']", "test_later"),
         ("checks.py", "@check(points=3,", "def test_bare(chapter: Run) -> None: ...\n\n\n@check(points=3,",
-         "test_bare is no check"),
+         "test_bare is not a check"),
         ("scenarios.py", "arm_swing(10)", "arm_wing(10)", "arm_wing"),
         ("exercise.toml", 'topic = "/joint_commands"', 'topic = "joint_commands"', "joint_commands"),
     ],

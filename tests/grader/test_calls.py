@@ -1,4 +1,4 @@
-"""Calls of a node's services, by which the rig knows what the node has handled."""
+"""Calls of a node's services, by which the runner knows what the node has handled."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Slow:
 
 def test_what_was_repeated_is_answered_by_the_answer_to_the_repetition_alone(ros: Ros) -> None:
     slow = Slow(ros)
-    calls = Calls(ros.context, [(Caller(ros.node("rig"), GetParameters, "/ask"), REQUEST)])
+    calls = Calls(ros.context, [(Caller(ros.node("runner"), GetParameters, "/ask"), REQUEST)])
     while not calls.ready():
         pass
     calls.call(2)

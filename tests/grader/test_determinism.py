@@ -13,7 +13,7 @@ import pytest
 
 from grader.grading import Grade
 from grader.grading.grading import Grading
-from grader.recording.store import to_json
+from grader.recording.recording import to_json
 from grader.submission import read
 from grader.submission.reading import of_source
 
@@ -26,7 +26,9 @@ SUBMISSIONS = ("mistakes/joints_by_index.py", "right/several_threads.py")
 @contextmanager
 def busy(loops: int) -> Iterator[None]:
     """Run that many processes that compute without an end."""
-    processes = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(loops)]
+    # Each in a session of its own, for Linux shares its cores by session.
+    command = [sys.executable, "-c", "while True: pass"]
+    processes = [subprocess.Popen(command, start_new_session=True) for _ in range(loops)]
     try:
         yield
     finally:

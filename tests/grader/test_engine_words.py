@@ -104,12 +104,12 @@ def test_a_name_of_ros_is_no_word_of_an_exercise(text: str) -> None:
 
 def test_advice_on_an_exception_comes_from_exercise_toml() -> None:
     exercise = load(ROOT / "exercises" / "joint_velocity")
-    story = "Your program ended by itself: KeyError: 'left_elbow' in line 12."
+    message = "Your program ended by itself: KeyError: 'left_elbow' in line 12."
 
-    told = message_of(Ending("crashed", story), exercise)
+    told = message_of(Ending("crashed", message), exercise)
 
-    assert told == f"{story} What if a joint is in this message and was not in the one before?"
-    assert "joint" not in message_of(Ending("crashed", story), replace(exercise, advice={}))
+    assert told == f"{message} What if a joint is in this message and was not in the one before?"
+    assert "joint" not in message_of(Ending("crashed", message), replace(exercise, advice={}))
 
 
 def test_advice_that_is_no_text_is_refused_with_its_line(tmp_path: Path) -> None:

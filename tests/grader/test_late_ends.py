@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from grader.grading import Grade
 from grader.grading.grading import Grading
 from grader.submission.reading import of_source
 
+MISTAKE = Path(__file__).parents[2] / "solutions/joint_velocity/mistakes/traceback_on_ctrl_c.py"
 PUBLISHER = "        self.publisher = self.create_publisher(JointState, '/joint_velocities', 10)\n"
 SUBSCRIPTION = (
     "        self.subscription = self.create_subscription(JointState, '/joint_commands', self.on_joints, 10)\n"
@@ -60,3 +63,22 @@ def test_however_many_answers_come_at_once_each_is_filed_under_its_message(gradi
     received = grade.recordings["chapter"].received
     assert len(received) == 1200
     assert all(message.fields["effort"] == [message.after] for message in received)
+
+
+#: rclpy's thread that shuts ROS 2 down on Ctrl-C gets a CPU only while nothing else in the program wants it.
+LATE_THREAD = """    rclpy.init()
+    import os
+
+    for thread in os.listdir('/proc/self/task'):
+        with open(f'/proc/self/task/{thread}/comm') as name:
+            if int(thread) != os.getpid() and name.read().strip() != 'lockstep':
+                os.sched_setscheduler(int(thread), os.SCHED_IDLE, os.sched_param(0))
+"""
+
+
+def test_a_second_shutdown_after_ctrl_c_is_found_however_late_rclpys_own_thread_gets_a_cpu(grading: Grading) -> None:
+    source = MISTAKE.read_text(encoding="utf-8")
+    late = source.replace("    rclpy.init()\n", LATE_THREAD)
+    assert late != source
+    grade = grading.grade(of_source("test.py", late.encode(), grading.runner.exercise))
+    assert [verdict.name for verdict in grade.verdicts if verdict.status != "passed"] == ["test_ends_on_ctrl_c"]

@@ -260,6 +260,13 @@ def test_an_interface_is_written_as_it_was_read(tmp_path: Path) -> None:
     ("old", "new", "line", "told"),
     [
         ("points = 10", "points = 10\nclas = 'A'", 3, "'clas' is not known"),
+        ('title = "Any kind"\n', "", None, "title is missing"),
+        (
+            'file = "any_kind.py"\nnode = "any_kind"\nreference_node = "world"\n',
+            "[[program]]\nfile = 'a.py'\nnode = 'a'\n",
+            None,
+            "file is missing.*a submission that is one file with all programs",
+        ),
         ("depth = 5", "deph = 5", 14, r"'deph' is not known in \[\[publish\]\].*depth"),
         ("depth = 5", "depth = '5'", 14, "depth = '5'"),
         ('"best_effort"', '"best-effort"', 15, "reliable, best_effort"),
@@ -272,7 +279,7 @@ def test_an_interface_is_written_as_it_was_read(tmp_path: Path) -> None:
     ],
 )
 def test_what_is_wrong_in_exercise_toml_is_told_with_its_line(
-    tmp_path: Path, old: str, new: str, line: int, told: str
+    tmp_path: Path, old: str, new: str, line: int | None, told: str
 ) -> None:
     assert old in TOML
     with pytest.raises(ExerciseError) as caught:

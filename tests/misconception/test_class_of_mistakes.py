@@ -21,9 +21,12 @@ EXERCISES = sorted(UNLISTED)
 #: Listed mistakes that other listed ones describe, too: if the first were not listed, the others would be true of it.
 AKIN = {
     "again_and_again": {"volatile", "waits_for_a_subscriber", "latched_and_again"},
+    "awaits_in_the_default_group": {"call_in_the_callback", "spins_in_the_callback"},
+    "call_in_the_callback": {"awaits_in_the_default_group"},
     "drops_without_a_server": {"counts_only_what_was_asked", "asks_without_a_server"},
     "only_one_goal_ever": {"only_the_first_goal"},
     "single_threaded": {"no_feedback"},
+    "spins_in_the_callback": {"awaits_in_the_default_group"},
 }
 
 

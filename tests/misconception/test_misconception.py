@@ -5,8 +5,8 @@ from __future__ import annotations
 import plain_grades as plain
 
 from grader.checking.verdict import Finding, Verdict
-from grader.classroom import Entry, Student
 from grader.classroom.misconceptions import Signature, failure_of, failures_of, grouped, mistakes_in
+from grader.grading.grade import Entry, Student
 
 
 def finding(text: str, expected: str = "0.489 rad/s", got: str = "0.978 rad/s") -> Finding:

@@ -1,4 +1,4 @@
-"""Waits for the answer with call(): nobody spins, and the node is stuck for ever.
+"""Waits for the answer with call(): nobody spins, and the node is stuck forever.
 
 Caught by:
 - test_publishes_the_offset

@@ -1,4 +1,4 @@
-"""Waits for an answer for ever.
+"""Waits for an answer forever.
 
 Caught by:
 - test_gives_up

@@ -1,4 +1,4 @@
-"""Takes no second goal.
+"""Accepts no second goal.
 
 Caught by:
 - test_reaches_the_next_goal

@@ -1,4 +1,4 @@
-"""Wraps the angle to the goal in the place of the difference.
+"""Wraps the angle to the goal instead of the difference.
 
 Caught by:
 - test_turns_the_shorter_way

@@ -1,4 +1,4 @@
-"""Rate.sleep() without anybody who spins: it waits for ever.
+"""Rate.sleep() without anybody who spins: it waits forever.
 
 Caught by:
 - test_publishes_beats

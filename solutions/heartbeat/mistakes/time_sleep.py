@@ -1,4 +1,4 @@
-"""A loop with time.sleep() in the place of a timer.
+"""A loop with time.sleep() instead of a timer.
 
 Caught by:
 - test_four_beats_a_second

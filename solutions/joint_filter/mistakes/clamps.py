@@ -1,4 +1,4 @@
-"""Takes every gain, and uses the nearest one that is allowed.
+"""Accepts every gain, and uses the nearest one that is allowed.
 
 Caught by:
 - test_refuses_what_is_not_allowed

@@ -1,4 +1,4 @@
-"""Takes an int or a string for the gain, too.
+"""Accepts an int or a string as the gain, too.
 
 Caught by:
 - test_refuses_other_types

@@ -1,4 +1,4 @@
-"""Takes a gain of exactly 0.0.
+"""Accepts a gain of exactly 0.0.
 
 Caught by:
 - test_refuses_what_is_not_allowed

@@ -1,4 +1,4 @@
-"""Takes the gain for the part of the smooth position.
+"""Uses the gain as the share of the smooth position.
 
 Caught by:
 - test_gain_of_the_start

@@ -1,4 +1,4 @@
-"""The result says nothing of the position.
+"""The result does not have the position.
 
 Caught by:
 - test_result_is_the_position

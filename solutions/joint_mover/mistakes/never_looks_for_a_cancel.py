@@ -1,4 +1,4 @@
-"""Accepts to cancel, and goes on to the end.
+"""Accepts the cancel request, but continues to the end.
 
 Caught by:
 - test_cancel

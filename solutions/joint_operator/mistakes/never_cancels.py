@@ -1,4 +1,4 @@
-"""Waits for a result for ever.
+"""Waits for a result forever.
 
 Caught by:
 - test_asks_to_cancel

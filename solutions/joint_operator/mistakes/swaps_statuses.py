@@ -1,4 +1,4 @@
-"""Takes aborted for canceled, and canceled for aborted.
+"""Mixes up aborted and canceled.
 
 Caught by:
 - test_aborted

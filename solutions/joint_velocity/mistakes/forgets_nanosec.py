@@ -1,4 +1,4 @@
-"""Takes only sec, the whole seconds.
+"""Uses only sec, the whole seconds.
 
 Caught by:
 - test_answers_each_message_once

@@ -1,4 +1,4 @@
-"""Takes a jump for a fault and leaves the joint out.
+"""Treats a jump as a fault and leaves the joint out.
 
 Caught by:
 - test_publisher_restarts

@@ -1,4 +1,4 @@
-"""Publishes the first velocity of each joint for ever.
+"""Publishes the first velocity of each joint forever.
 
 Caught by:
 - test_velocities_follow_the_joints

@@ -1,4 +1,4 @@
-"""Before minus now.
+"""Computes before minus now.
 
 Caught by:
 - test_velocity_of_each_joint

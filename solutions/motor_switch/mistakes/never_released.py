@@ -1,4 +1,4 @@
-"""Takes every message for an emergency stop, also False.
+"""Treats every message as an emergency stop, also False.
 
 Caught by:
 - test_released

@@ -1,4 +1,4 @@
-"""Says no when the motors are already as they should be.
+"""Responds with success false when the motors are already as asked.
 
 Caught by:
 - test_nothing_to_do

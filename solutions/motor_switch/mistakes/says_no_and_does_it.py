@@ -1,4 +1,4 @@
-"""Refuses during an emergency stop, and switches on all the same.
+"""Refuses during an emergency stop, but switches on anyway.
 
 Caught by:
 - test_emergency_switches_off

@@ -1,4 +1,4 @@
-"""Turns the state round, whatever was asked.
+"""Inverts the state, whatever was asked.
 
 Caught by:
 - test_nothing_to_do

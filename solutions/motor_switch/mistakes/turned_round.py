@@ -1,4 +1,4 @@
-"""On is off and off is on.
+"""Switches on when asked for off, and off when asked for on.
 
 Caught by:
 - test_message

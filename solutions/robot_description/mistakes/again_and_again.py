@@ -1,4 +1,4 @@
-"""Publishes once a second, in the place of a latched topic.
+"""Publishes once a second, instead of a latched topic.
 
 Caught by:
 - test_late_subscriber

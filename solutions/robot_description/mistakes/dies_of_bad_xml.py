@@ -1,4 +1,4 @@
-"""Dies of a text that is not XML.
+"""Crashes on a text that is not XML.
 
 Caught by:
 - test_refuses_what_is_no_robot

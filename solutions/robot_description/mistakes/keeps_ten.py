@@ -1,4 +1,4 @@
-"""Keeps ten messages: who joins late gets all the former descriptions.
+"""Keeps ten messages: a late subscriber gets all earlier descriptions.
 
 Caught by:
 - test_late_subscriber_gets_the_newest

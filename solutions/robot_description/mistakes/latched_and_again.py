@@ -1,4 +1,4 @@
-"""Is latched, and publishes once a second all the same.
+"""Is latched, but still publishes once a second.
 
 Caught by:
 - test_late_subscriber

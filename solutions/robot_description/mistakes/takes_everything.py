@@ -1,4 +1,4 @@
-"""Takes any text.
+"""Accepts any text.
 
 Caught by:
 - test_refuses_what_is_no_robot

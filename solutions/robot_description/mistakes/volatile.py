@@ -1,4 +1,4 @@
-"""Publishes volatile: who joins late gets nothing.
+"""Publishes volatile: a late subscriber gets nothing.
 
 Caught by:
 - test_late_subscriber

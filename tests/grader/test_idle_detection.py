@@ -56,7 +56,7 @@ def program() -> Iterator[Program]:
     program.process.communicate()
 
 
-def test_a_program_at_rest_has_not_stirred_until_it_does_something(program: Program) -> None:
+def test_a_program_at_rest_does_not_count_as_busy_until_it_does_something(program: Program) -> None:
     threads = Threads(program.pids)
     assert threads.wait_until_idle(0.0, 60.0)
     assert not threads.has_run()
