@@ -1,1 +1,1 @@
-"""Grades students' ROS 2 nodes by spinning them, sandboxed, against reference publishers."""
+"""Grades students' ROS 2 nodes by running them in a sandbox, against reference publishers."""

@@ -1,6 +1,5 @@
-"""Runs a program to its end, for a limited time, and ends everything that it has started when the time is over.
-
-For programs that we trust. Students' programs run in `grader.sandbox`, nodes of notebooks in `spinbook.kernel.process`.
+"""Runs a program to its end, for a limited time, and ends everything that it has started when the time is over. Use it
+for trusted programs. Students' programs run in `grader.sandbox`, nodes of notebooks in `spinbook.kernel.process`.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ def run_program(
 ) -> subprocess.CompletedProcess[str]:
     """Run `argv` without input for at most `seconds`, and return its exit code and what it printed.
 
-    Raises subprocess.TimeoutExpired when it takes longer; it and all its descendants have been killed then. Raises
+    Raises subprocess.TimeoutExpired when it takes longer; the program and all its descendants are then killed. Raises
     OSError when it can't be started.
     """
     process = subprocess.Popen(
@@ -43,7 +42,7 @@ def run_program(
 
 
 def _kill_family(pid: int) -> None:
-    """Kill a process and its descendants. The parent goes first, so that it starts no more."""
+    """Kill a process and its descendants. The parent is killed first, so that it starts no more."""
     try:
         parent = psutil.Process(pid)
         parent.suspend()

@@ -32,19 +32,19 @@ FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
     "--bag", type=click.Path(path_type=Path), help="Write every scenario as a rosbag2 (MCAP) into this folder."
 )
 @click.option("-v", "--verbose", is_flag=True, help="Print the node's log, too.")
-@click.option("--real-time", is_flag=True, help="Spin at the pace of real time, not as fast as it goes.")
-@click.option("--seed", default=1, show_default=True, help="Chooses the numbers of scenarios that have chance in them.")
+@click.option("--real-time", is_flag=True, help="Run in real time, not as fast as possible.")
+@click.option("--seed", default=1, show_default=True, help="The seed for scenarios with random values.")
 @click.option(
     "--isolation",
     type=click.Choice([level.value for level in Isolation]),
-    help="How the node is kept apart from this machine.  [default: the strongest that works here]",
+    help="How to isolate the node from this machine.  [default: the strongest that works here]",
 )
 @click.option(
     "--middleware",
     type=click.Choice([middleware.value for middleware in Middleware]),
     help="The middleware between the node and the grader.  [default: lockstep, the grader's own, if available]",
 )
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="A class: the folder of the results.")
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="A class: the folder for the results.")
 @click.option("--jobs", type=click.IntRange(1, 64), help="A class: how many submissions to grade at once.")
 @click.option(
     "--regrade",
@@ -52,14 +52,14 @@ FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
     is_flag=False,
     flag_value="*",
     metavar="[STUDENT]",
-    help="A class: grade again what has not changed, all or one student's, and say what is different.",
+    help="A class: grade unchanged submissions again, of all students or of one, and show what is different.",
 )
 @click.option(
     "--overrides",
     type=click.Path(path_type=Path, exists=True, dir_okay=False),
     help="A class: a CSV file with the columns student, points or due, reason.",
 )
-@click.option("--scheduler", metavar="ADDRESS", default="", help="A class: let this Dask cluster do the work.")
+@click.option("--scheduler", metavar="ADDRESS", default="", help="A class: grade on this Dask cluster.")
 @click.option(
     "--rejudge",
     is_flag=True,
@@ -104,12 +104,12 @@ def grade(
     EXERCISE is a name in the course's folder exercises/, or the path of an exercise's folder. A check that can't be
     judged because another failed is marked as blocked.
 
-    Exit codes: 0 full marks, 1 not, 2 wrong usage, 3 a fault of the course's or the machine's.
+    Exit codes: 0 full marks, 1 less than full marks, 2 wrong usage, 3 a fault of the course or the machine.
 
     A class is a folder with one file (or one folder) per student, nbgrader's folder, a zip from Moodle or Canvas, or a
-    CSV file with the columns file and student. What is unchanged since it was graded is not graded again, and a run
-    that was stopped goes on. Exit codes then: 0 all graded, 1 there are questions to settle, 2 wrong usage, 3 a fault
-    of ours.
+    CSV file with the columns file and student. The command does not grade unchanged submissions again, and continues a
+    run that was stopped. Exit codes for a class: 0 all graded, 1 there are questions to settle, 2 wrong usage, 3 a
+    fault of Spinbook or the machine.
 
     \b
       spinbook grade joint_velocity submissions/ --out results/
@@ -136,7 +136,7 @@ def grade(
                 )
             )
         if Path(submission).is_dir() or submission.endswith(".csv"):
-            raise click.UsageError(f"{submission}: to grade a class, say with --out where the results go.")
+            raise click.UsageError(f"{submission}: to grade a class, give a folder for the results with --out.")
         handed_in = read(submission, found)
         result = _graded(found, handed_in, wanted)
     except NoSubmission as error:
@@ -159,7 +159,7 @@ def _options(wanted: dict[str, Any]) -> Options:
 
 
 def _class(exercise: Exercise, submissions: Path, out: Path, wanted: dict[str, Any], wishes: tuple[Any, ...]) -> int:
-    """Grade a class. What that needs is imported here: a single submission's grade comes sooner without."""
+    """Grade a class. The imports are here, so that a single submission is graded sooner."""
     from rich.console import Console
 
     from grader.classroom.class_run import grade_class
@@ -176,7 +176,7 @@ def _class(exercise: Exercise, submissions: Path, out: Path, wanted: dict[str, A
 
 
 def _graded(exercise: Exercise, submission: Submission, wanted: dict[str, Any]) -> Grade:
-    """Grade one submission. What that needs is imported while the worker starts, which takes longer."""
+    """Grade one submission. The imports run while the worker starts, which takes longer."""
     with WorkerPool(wanted["middleware"]) as workers:
         from grader.grading.grading import grading_of
 

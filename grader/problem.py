@@ -1,4 +1,4 @@
-"""What is wrong in an author's file, and what to do about it: of chapters, exercises, scenarios and course.toml."""
+"""What is wrong in an author's file (a chapter, an exercise, a scenario, course.toml), and what to do about it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 class Severity(str, Enum):
-    """An error stops the work; NOT_RUN says that something is shown and not run; a warning stops nothing."""
+    """An error stops the work; NOT_RUN says that something is shown but not run; a warning stops nothing."""
 
     ERROR = "error"
     NOT_RUN = "not run"
@@ -19,9 +19,9 @@ class Severity(str, Enum):
 class Problem:
     """One thing to fix in one file.
 
-    `found` says what is there, `fix` what was expected and what to do. `line` counts from 1, and is None where the
-    whole file is meant. Problems of one `group` have one cause, such as a package that is not installed: a report
-    counts them. `alone` says that nothing else stands in the way there.
+    `found` says what is there, `fix` what was expected and what to do. `line` counts from 1, and is None if it is about
+    the whole file. Problems of one `group` have one cause, such as a package that is not installed: a report counts
+    them. `alone` says that there is no other problem in that place.
     """
 
     file: Path

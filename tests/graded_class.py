@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom import Adjustment, Entry, Student
 from grader.exercise import Exercise, load
 from grader.grading import Grade, Options, grading_of
+from grader.grading.grade import Adjustment, Entry, Student
 from grader.submission import Submission, read
 from grader.submission.reading import of_source
 from grader.workers import WorkerPool

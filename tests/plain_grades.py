@@ -7,9 +7,9 @@ from datetime import datetime, timedelta, timezone
 from pathlib import Path
 
 from grader.checking.verdict import Finding, Verdict
-from grader.classroom import Entry, Student
 from grader.exercise import Exercise, load
 from grader.grading import Grade
+from grader.grading.grade import Entry, Student
 
 ROOT = Path(__file__).parents[1]
 

@@ -21,6 +21,7 @@ from memory import Memory, Watched
 from students import EXERCISE, ROOT, Handed, the_class, write
 
 from grader.classroom.local import at_once
+from grader.sandbox import choose_middleware
 
 
 def main() -> int:
@@ -29,7 +30,9 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=200, help="how many students")
     parser.add_argument("--seed", type=int, default=1, help="which class: the same seed makes the same one")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "class", help="a folder, made anew")
-    parser.add_argument("--jobs", type=int, default=at_once(), help="how many submissions at once  %(default)s")
+    parser.add_argument(
+        "--jobs", type=int, default=_jobs(), help="how many submissions at once  (default: %(default)s)"
+    )
     wanted = parser.parse_args()
     made = the_class(wanted.count, wanted.seed)
     shutil.rmtree(wanted.out, ignore_errors=True)
@@ -39,6 +42,11 @@ def main() -> int:
     print(f"{len(made)} students: " + ", ".join(f"{count} {kind}" for kind, count in kinds.most_common()), flush=True)
     seconds, memory = grade(submissions, results, wanted.jobs)
     return tell(made, results, seconds, memory, wanted.jobs)
+
+
+def _jobs() -> int:
+    """Return how many submissions the grader runs at once if nobody says otherwise."""
+    return at_once(choose_middleware(None).middleware)
 
 
 def grade(

@@ -56,7 +56,7 @@ class Watched:
 
 
 def _megabytes(pid: int) -> tuple[float, float]:
-    """PSS and RSS of a process: proc(5), smaps_rollup. 0 where it is gone."""
+    """PSS and RSS of a process: proc(5), smaps_rollup. 0 if it is gone."""
     try:
         told = Path(f"/proc/{pid}/smaps_rollup").read_text(encoding="ascii")
     except OSError:

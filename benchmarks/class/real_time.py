@@ -1,6 +1,6 @@
 """Plays scenarios to a node in real time, as a notebook's tests must: what nbgrader and otter-grader run.
 
-It lies beside the notebooks, with what is to be played in scenarios.json: see against_others.py.
+It is next to the notebooks; scenarios.json has what to play: see against_others.py.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ def play(node_class: type, name: str) -> bool:
     answers: list[Any] = []
     rclpy.init()
     try:
-        student, rig = node_class(), rclpy.create_node("rig")
-        publisher = rig.create_publisher(JointState, "/joint_commands", 10)
-        rig.create_subscription(JointState, "/joint_velocities", answers.append, 100)
+        student, runner = node_class(), rclpy.create_node("runner")
+        publisher = runner.create_publisher(JointState, "/joint_commands", 10)
+        runner.create_subscription(JointState, "/joint_velocities", answers.append, 100)
         executor = SingleThreadedExecutor()
         executor.add_node(student)
-        executor.add_node(rig)
+        executor.add_node(runner)
         thread = threading.Thread(target=executor.spin, daemon=True)
         thread.start()
         while not publisher.get_subscription_count():

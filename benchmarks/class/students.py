@@ -34,7 +34,7 @@ from odd_files import ODD_FILES, OddFile  # noqa: E402
 #: Of a class this share hands in mistakes, hostile programs and files that are odd as files; the rest is right.
 MISTAKEN, ATTACKING, ODD = 0.30, 0.12, 0.03
 
-#: An empty folder hands in nothing, the link needs a file beside the student's folder, the cells are 100 MB to write.
+#: An empty folder hands in nothing, the link needs a file next to the student's folder, the cells are 100 MB to write.
 LEFT_OUT = {"folder", "symlink_to_a_secret", "million_cells"}
 
 FIRST = (

@@ -29,7 +29,7 @@ from pathlib import Path
 from grader.exercise import Exercise, load
 from grader.grading import Grade, Options
 from grader.grading.grading import Grading, grading_of
-from grader.recording.store import to_json
+from grader.recording.recording import to_json
 from grader.submission.reading import read
 from grader.workers import WorkerPool
 from spinbook.course.course import find_course
@@ -74,6 +74,19 @@ class Counts:
         return {name: value for name, value in vars(self).items() if name != "first"}
 
 
+@dataclass(frozen=True)
+class Program:
+    """One file, with what grades it and what was seen of it."""
+
+    file: Path
+    grading: Grading
+    counts: Counts = field(default_factory=Counts)
+
+    def grade(self) -> None:
+        """Grade it once more."""
+        self.counts.add(self.grading.grade(read(str(self.file), self.grading.runner.exercise)))
+
+
 def _texts(grade: Grade) -> dict[str, str]:
     """Each recording as a text: two NaN are the same there. How long it took, and the log, do not count."""
     return {
@@ -89,12 +102,17 @@ def main() -> int:
     compile_course(find_course(options.course))
     exercises = [load(file.parent) for file in sorted(options.course.glob("exercises/*/exercise.toml"))]
     wanted = [one for one in exercises if not options.exercise or one.name in options.exercise]
-    counts: dict[Path, Counts] = {}
     with WorkerPool() as workers:
-        for exercise in wanted:
-            grading = grading_of(exercise, Options(parallel=1), workers)
-            counts |= _rounds(grading, _files(exercise, options.only), options)
-    return _report(counts, options.course, options.json)
+        programs = [
+            Program(file, grading_of(exercise, Options(parallel=1), workers))
+            for exercise in wanted
+            for file in _files(exercise, options.only)
+        ]
+        for number in range(options.rounds):
+            _round(number, programs, options)
+            # After each round, so that what a long run has seen is there if it is stopped.
+            _write(programs, options.course, options.json)
+    return _report(programs, options.course)
 
 
 def _options() -> argparse.Namespace:
@@ -105,6 +123,12 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--course", type=_folder, default=COURSE, help="a course's folder  (default: this course)")
     parser.add_argument("--exercise", action="append", help="only this one; may be given several times")
     parser.add_argument("--only", action="append", help="only programs whose path contains this, or another such text")
+    parser.add_argument(
+        "--parallel",
+        type=int,
+        default=2 * len(os.sched_getaffinity(0)),
+        help="how many are graded at once  (default: %(default)s)",
+    )
     parser.add_argument("--nice", type=int, default=0, help="how nice the busy loops are  (default: %(default)s)")
     parser.add_argument("--json", type=Path, help="write the counts to this file, too")
     return parser.parse_args()
@@ -122,24 +146,16 @@ def _files(exercise: Exercise, only: list[str] | None) -> list[Path]:
     return [file for file in found if not only or any(text in str(file) for text in only)]
 
 
-def _rounds(grading: Grading, files: list[Path], options: argparse.Namespace) -> dict[Path, Counts]:
-    counts = {file: Counts() for file in files}
-    for number in range(options.rounds):
-        began = time.monotonic()
-        with _load(number % 2 == 1, options.nice):
-            _round(grading, counts)
-        how = "next to busy loops" if number % 2 else "alone"
-        told = f"{grading.runner.exercise.name}, round {number + 1}, {how}: {time.monotonic() - began:.0f} s"
-        print(told, file=sys.stderr, flush=True)
-    return counts
-
-
-def _round(grading: Grading, counts: dict[Path, Counts]) -> None:
-    exercise = grading.runner.exercise
-    with ThreadPoolExecutor(2 * len(os.sched_getaffinity(0))) as pool:
-        grades = {file: pool.submit(grading.grade, read(str(file), exercise)) for file in counts}
-        for file, grade in grades.items():
-            counts[file].add(grade.result())
+def _round(number: int, programs: list[Program], options: argparse.Namespace) -> None:
+    """Grade each program once, every other time next to busy loops."""
+    began = time.monotonic()
+    busy = number % 2 == 1
+    with _load(busy, options.nice), ThreadPoolExecutor(options.parallel) as pool:
+        for done in [pool.submit(program.grade) for program in programs]:
+            done.result()
+    how = "next to busy loops" if busy else "alone"
+    told = f"round {number + 1}, {how}: {time.monotonic() - began:.0f} s, {_total(programs).plain}"
+    print(told, file=sys.stderr, flush=True)
 
 
 @contextlib.contextmanager
@@ -147,7 +163,8 @@ def _load(busy: bool, nice: int) -> Iterator[None]:
     """For as long as this lasts, something else keeps the machine busy."""
     count = LOOPS_PER_CORE * len(os.sched_getaffinity(0)) if busy else 0
     loop = [sys.executable, "-c", f"import os; os.nice({nice})\nwhile True: pass"]
-    loops = [subprocess.Popen(loop) for _ in range(count)]
+    # Linux shares its cores by session: eight loops of one session would get no more than one program.
+    loops = [subprocess.Popen(loop, start_new_session=True) for _ in range(count)]
     try:
         yield
     finally:
@@ -156,20 +173,30 @@ def _load(busy: bool, nice: int) -> Iterator[None]:
             process.wait()
 
 
-def _report(counts: dict[Path, Counts], course: Path, file: Path | None) -> int:
+def _total(programs: list[Program]) -> Counts:
     total = Counts()
+    for program in programs:
+        for name, value in program.counts.plain.items():
+            setattr(total, name, getattr(total, name) + value)
+    return total
+
+
+def _report(programs: list[Program], course: Path) -> int:
     print("| program | spins | other recordings | grades | other grades | faults of the machine |")
     print("| --- | --- | --- | --- | --- | --- |")
-    for path, count in counts.items():
-        _print(_shown(path, course), count)
-        for name, value in count.plain.items():
-            setattr(total, name, getattr(total, name) + value)
+    for program in programs:
+        _print(_shown(program.file, course), program.counts)
+    total = _total(programs)
     _print("**all**", total)
-    if file:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        each = {_shown(path, course): count.plain for path, count in counts.items()}
-        file.write_text(json.dumps({"all": total.plain, "programs": each}, indent=2) + "\n")
     return 1 if total.other_recordings or total.other_grades or total.host_errors else 0
+
+
+def _write(programs: list[Program], course: Path, file: Path | None) -> None:
+    if not file:
+        return
+    file.parent.mkdir(parents=True, exist_ok=True)
+    each = {_shown(program.file, course): program.counts.plain for program in programs}
+    file.write_text(json.dumps({"all": _total(programs).plain, "programs": each}, indent=2) + "\n")
 
 
 def _shown(path: Path, course: Path) -> str:

@@ -1,7 +1,7 @@
 """How long grading takes: `python benchmarks/grader/grade.py --runs 5`.
 
-Prints the median over the runs of: 10 s of robot time at 10 Hz in one spin, beyond the start of the program and the
-meeting of rig and node; and a complete grade of the solution, all scenarios, sandboxed. Each is also given as a ratio
+Prints the median over the runs of: 10 s of robot time at 10 Hz in one run, beyond the start of the program and the
+discovery of the node; and a complete grade of the solution, all scenarios, sandboxed. Each is also given as a ratio
 to a fixed amount of computing done beside it on the same machine, which tells a slow machine from a slow grader.
 """
 

@@ -110,6 +110,9 @@ def _count_chapter(root: Path, reading: Reading, counts: Counts) -> None:
         counts.node_fences[shown] += 1
         if facts.needs or not facts.imports or not facts.is_complete or facts.relative_imports:
             continue
+        if facts.never_initialized:
+            # A template that the reader fills in.
+            continue
         counts.complete += 1
         if not missing_imports(facts, {}):
             counts.ready += 1

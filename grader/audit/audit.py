@@ -39,18 +39,17 @@ from grader.grading.reference import solution_file
 from grader.submission.reading import of_source
 from grader.workers.pool import WorkerPool
 
-#: Over how many seeds right solutions have to be right.
+#: The number of seeds with which right solutions must be right.
 SEEDS = 20
 
-#: How many mutants a quick audit tries.
+#: The number of mutants that a quick audit tries.
 SAMPLE = 12
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Everything that is to be tried. `quick` is whether a trial ends as soon as it is clear.
-
-    `sampled` is whether there are more mutants than these.
+    """Everything that an audit tries. `quick` is whether a trial ends as soon as its result is clear. `sampled` is
+    whether there are more mutants than these.
     """
 
     right: list[Candidate]
@@ -63,7 +62,8 @@ class Plan:
 
 
 def planned(trials: Trials, quick: bool, most: int | None, seeds: int = SEEDS) -> Plan:
-    """All there is; in a quick audit without the other right solutions and the seeds. At most `most` mutants."""
+    """Plan everything; in a quick audit, leave out the other right solutions and the seeds. Take at most `most`
+    mutants."""
     exercise = trials.grading.runner.exercise
     right = right_ones(exercise)
     every = mutants_of(solution_file(exercise).read_text(encoding="utf-8"), exercise)
@@ -81,7 +81,7 @@ def planned(trials: Trials, quick: bool, most: int | None, seeds: int = SEEDS) -
 
 
 def sample(mutants: tuple[Mutant, ...], size: int) -> tuple[Mutant, ...]:
-    """So many mutants, of as many operators as there are; always the same."""
+    """This many mutants, of as many operators as possible; always the same ones."""
     turns: dict[str, int] = {}
     ranked: list[tuple[int, str, Mutant]] = []
     for mutant in sorted(mutants, key=lambda mutant: mutant.id):
@@ -101,17 +101,17 @@ class Tried:
 
     @property
     def all(self) -> list[Trial]:
-        """Every trial with the usual seed."""
+        """Every trial with the default seed."""
         return [*self.programs.values(), *self.mutants.values()]
 
 
 def try_all(plan: Plan, trials: Trials, store: Store, progress: Progress) -> Tried:
-    """The trial of everything in the plan. Raises `HostFault` where the machine or we are at fault."""
+    """The trial of everything in the plan. Raises `HostFault` if the machine or the grader is at fault."""
     tried = Tried()
     work = _Work(plan, trials, store)
     progress.begin(trials.grading.runner.exercise.name, len(plan.seeds) + len(plan.mutants) + len(_programs(plan)))
     with ThreadPoolExecutor(trials.grading.runner.options.parallel) as pool:
-        # What takes longest first, so that nothing is left over at the end.
+        # The longest first, so that the workers finish at about the same time.
         seeds = {pool.submit(over_seed, trials, store, seed, plan.right): seed for seed in plan.seeds}
         programs = {pool.submit(work.program, program): program for program in _programs(plan)}
         mutants = {pool.submit(work.mutant, mutant): mutant for mutant in plan.mutants}
@@ -122,7 +122,7 @@ def try_all(plan: Plan, trials: Trials, store: Store, progress: Progress) -> Tri
                 progress.done()
         except BaseException:
             # Ctrl-C, or a fault: nobody wants to wait for what is under way.
-            trials.spins.stopped.set()
+            trials.runs.stopped.set()
             raise
         finally:
             for future in every:
@@ -134,7 +134,7 @@ def try_all(plan: Plan, trials: Trials, store: Store, progress: Progress) -> Tri
 
 
 def spin_on(plan: Plan, tried: Tried, trials: Trials, store: Store) -> None:
-    """Spin those mutants through every scenario that settle what is in doubt of the checks."""
+    """Run through every scenario those mutants that settle a doubt about the checks."""
     evidence = {**{one.name: tried.programs[one.name] for one in plan.mistakes}, **tried.mutants}
     wanted = set(worth_spinning_on(trials.checks, evidence, tried.mutants))
     work = _Work(plan, trials, store)
@@ -143,7 +143,7 @@ def spin_on(plan: Plan, tried: Tried, trials: Trials, store: Store) -> None:
         try:
             tried.mutants.update({id_: future.result() for id_, future in futures.items()})
         except BaseException:
-            trials.spins.stopped.set()
+            trials.runs.stopped.set()
             raise
         finally:
             for future in futures.values():
@@ -161,13 +161,13 @@ class _Work:
     store: Store
 
     def program(self, program: Candidate) -> Trial:
-        """In a quick audit, of a mistake only what the checks that it names say."""
+        """In a quick audit, judge a mistake only by the checks that it names."""
         only = program.caught_by if self.plan.quick and program.kind == "mistake" else ()
         make: Callable[[], Trial] = lambda: self.trials.try_(program.submission, only)  # noqa: E731
         return self.store.trial({"code": program.submission.digest, "only": only}, make)
 
     def mutant(self, mutant: Mutant, until: Until = "a failure") -> Trial:
-        """Any failure is enough, unless more is to be known."""
+        """Any failure is enough, unless the audit needs to know more."""
         submission = of_source(mutant.id, mutant.source.encode(), self.trials.grading.runner.exercise)
         make: Callable[[], Trial] = lambda: self.trials.try_(submission, until=until)  # noqa: E731
         return self.store.trial({"code": submission.digest, "until": until}, make)
@@ -182,12 +182,12 @@ def audit(
     most: int | None = None,
     seeds: int = SEEDS,
 ) -> Audit:
-    """Everything there is to find out about one exercise.
+    """Audit one exercise.
 
     A `quick` audit asks of each mistake only whether the checks that it names catch it, tries a sample of the mutants,
-    and leaves out the other right solutions and the seeds. With `most`, no more mutants than that are tried; with 0,
-    nothing is said of what each check is worth. Otherwise right solutions have to be right over so many `seeds`.
-    Raises what `grading_of` raises.
+    and leaves out the other right solutions and the seeds. With `most`, it tries at most this many mutants; with 0, it
+    does not say what each check is worth. Otherwise right solutions must be right with this many `seeds`. Raises what
+    `grading_of` raises.
     """
     began = time.monotonic()
     workers.prepare_to_judge()
@@ -211,7 +211,7 @@ def audit(
     for number, with_seed in tried.seeds.items():
         problems += problems_of(plan.right, with_seed, checks, number)
     problems += problems_of_broken(checks, {**tried.programs, **evidence})
-    # What a check is worth shows only next to mutants.
+    # Only mutants show what a check is worth.
     worth = problems_of_checks if mutants and not quick else messages
     problems += worth(checks, evidence)
     problems += problems_in_text(exercise, checks)
@@ -244,5 +244,5 @@ def _low_score(exercise: Exercise, mutants: tuple[MutantResult, ...]) -> list[Au
     if score >= LEAST_SCORE:
         return []
     text = f"{score:.1%} of the mutants that differ from the solution are caught"
-    fix = f"At least {LEAST_SCORE:.0%} are to be: add checks for what survives."
+    fix = f"At least {LEAST_SCORE:.0%} must be caught. Add checks that catch the survivors."
     return [AuditProblem(exercise.folder, None, text, fix, about=exercise.name)]

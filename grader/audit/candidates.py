@@ -1,4 +1,4 @@
-"""The programs an exercise is audited with: its author's files, and what each of them must score."""
+"""The programs with which an exercise is audited: its author's files, and the score that each must get."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from grader.scenario.declared import declared
 from grader.scenario.scenario import Scenario
 from grader.submission.reading import Submission, of_source
 
-#: A node that is there and does nothing.
+#: A node that exists and does nothing.
 IDLE = """import rclpy
 
 rclpy.init()
@@ -30,7 +30,8 @@ rclpy.spin(rclpy.create_node({name!r}))
 
 @dataclass(frozen=True)
 class Candidate:
-    """One program: what it is, where, and for a mistake which checks are to catch it, and in which line that stands."""
+    """One program: its kind, its file, and for a mistake the checks that must catch it, and the line that names
+    them."""
 
     kind: Literal["solution", "right", "mistake", "nothing"]
     name: str
@@ -49,13 +50,13 @@ def right_ones(exercise: Exercise) -> list[Candidate]:
 
 
 def mistakes(exercise: Exercise) -> list[Candidate]:
-    """Every usual mistake."""
+    """Every common mistake."""
     folder = solution_file(exercise).parent / "mistakes"
     return [_candidate("mistake", file, exercise) for file in sorted(folder.glob("*.py"))]
 
 
 def baselines(exercise: Exercise) -> list[Candidate]:
-    """What must get no points at all: the starter, an empty file, a node that does nothing."""
+    """The programs that must get no points: the starter, an empty file, a node that does nothing."""
     solution = solution_file(exercise)
     sources = {
         "the starter": starter(solution.read_text(encoding="utf-8")),
@@ -88,7 +89,7 @@ def _header(text: str) -> str:
 
 @dataclass(frozen=True)
 class Seed:
-    """One seed, with the scenarios that are not as with the audit's own."""
+    """One seed, with the scenarios that differ from those with the audit's own seed."""
 
     number: int
     scenarios: tuple[Scenario, ...]
@@ -96,7 +97,7 @@ class Seed:
 
 
 def seeds_of(trials: Trials, count: int) -> list[Seed]:
-    """The seeds beside the audit's own that make `count` with it; none where no scenario has chance in it."""
+    """The seeds that, with the audit's own, make `count`; none if no scenario has random values."""
     runner = trials.grading.runner
     usual = {scenario.digest for scenario in runner.scenarios}
     found = []
@@ -142,11 +143,11 @@ def over_seed(trials: Trials, store: Store, seed: Seed, candidates: list[Candida
 def _spun(trials: Trials, submission: Submission, scenarios: tuple[Scenario, ...]) -> dict[str, Recording]:
     """The recordings, by scenario.
 
-    What has the same messages and steps as another is not run again: here only the numbers are in question.
+    A scenario with the same messages and steps as another is not run again, because only the numbers matter here.
     """
     spun: list[Scenario] = []
     made: dict[str, Recording] = {}
-    with trials.spins.process() as process:
+    with trials.runs.process() as process:
         for scenario in scenarios:
             like = next((one for one in spun if _content(one) == _content(scenario)), None)
             if like:
@@ -158,19 +159,19 @@ def _spun(trials: Trials, submission: Submission, scenarios: tuple[Scenario, ...
 
 
 def _content(scenario: Scenario) -> Scenario:
-    """All that matters to which numbers there are."""
+    """The part of a scenario that its random numbers can change."""
     return replace(scenario, name="", title="", computer_time="apart")
 
 
 def judged(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> Judged:
-    """How a program did."""
+    """The result of a program."""
     return Judged(candidate.name, candidate.kind, candidate.title, trial.failed, _score(trial, checks))
 
 
 def problems_of(
     candidates: list[Candidate], trials: dict[str, Trial], checks: tuple[Check, ...], seed: int | None = None
 ) -> list[AuditProblem]:
-    """What did not come out as it has to; `seed` is set where another than the usual one was tried."""
+    """The results that are not as they must be; `seed` is set if it is not the default one."""
     found: list[AuditProblem] = []
     for candidate in candidates:
         trial = trials[candidate.name]
@@ -185,7 +186,7 @@ def problems_of(
 
 def _right(candidate: Candidate, trial: Trial, seed: int | None) -> list[AuditProblem]:
     with_seed = f" with --seed {seed}" if seed is not None else ""
-    fix = "Fix the check if the solution is right, else the solution."
+    fix = "If the solution is right, fix the check. Otherwise fix the solution."
     return [
         AuditProblem(
             candidate.file,
@@ -199,11 +200,11 @@ def _right(candidate: Candidate, trial: Trial, seed: int | None) -> list[AuditPr
 
 
 def _nothing(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> list[AuditProblem]:
-    fix = "Let it depend on the check that says that anything comes at all."
+    fix = "Let it depend on the check that requires any message at all."
     return [
         problem_of(
             check,
-            f"{candidate.name} passes {check.name} and gets {check.points:g} points, where it must get none",
+            f"{candidate.name} passes {check.name} and gets {check.points:g} points, but must get none",
             fix,
         )
         for check in checks
@@ -219,8 +220,8 @@ def _mistake(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> l
         return AuditProblem(candidate.file, candidate.line, found, fix, about=about)
 
     if not candidate.caught_by:
-        fix = "Write “Caught by:” in its docstring, and under it each check after “- ”."
-        return [problem(candidate.name, f"{said} names no check that is to catch it", fix)]
+        fix = "Write “Caught by:” in its docstring, and below it a line “- test_…” for each check."
+        return [problem(candidate.name, f"{said} names no check that must catch it", fix)]
     found = []
     for name in candidate.caught_by:
         status = trial.statuses.get(name)
@@ -237,7 +238,7 @@ def _mistake(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> l
     for name in trial.failed:
         if name not in candidate.caught_by:
             text = f"{said} fails {name}, too, which it does not name: {trial.findings[name].text}"
-            fix = "Fix the check if this is no mistake in its eyes, else add it under “Caught by:”."
+            fix = "If the check should pass here, fix it. Otherwise add it under “Caught by:”."
             found.append(problem(name, text, fix))
     return found
 

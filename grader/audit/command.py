@@ -19,18 +19,22 @@ from grader.sandbox.program import Middleware, SandboxUnavailable
 from grader.workers.pool import HostFault, WorkerPool
 from interface_compiler.near import use_near
 
-#: Exit codes, beside click's 2 for usage and a shell's 130 for Ctrl-C.
+#: Exit codes, besides click's 2 for usage and a shell's 130 for Ctrl-C.
 PROVED, TO_FIX, OUR_FAULT, STOPPED = 0, 1, 3, 130
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("exercises", nargs=-1, metavar="[EXERCISE]…")
-@click.option("--quick", is_flag=True, help="Only the mistakes, and a sample of the mutants: for every change.")
-@click.option("--solutions", is_flag=True, help="Only the files of solutions/, each judged in full; no mutants.")
-@click.option("--mutants", type=click.IntRange(0), help="Try at most so many mutants, of all kinds.")
-@click.option("--seeds", type=click.IntRange(1), help="Numbers for the scenarios with chance in them.  [default: 20]")
+@click.option(
+    "--quick", is_flag=True, help="Only the mistakes and a sample of the mutants. Use this after every change."
+)
+@click.option("--solutions", is_flag=True, help="Only the files of solutions/, with every check; no mutants.")
+@click.option("--mutants", type=click.IntRange(0), help="Try at most this many mutants.")
+@click.option(
+    "--seeds", type=click.IntRange(1), help="Number of seeds for scenarios with random values.  [default: 20]"
+)
 @click.option("--json", "json_", type=click.Path(path_type=Path), help="Write the report as JSON, for programs.")
-@click.option("--html", type=click.Path(path_type=Path), help="Write the report as a page.")
+@click.option("--html", type=click.Path(path_type=Path), help="Write the report as an HTML page.")
 @click.option("--shadow", is_flag=True, help="Grade every file in solutions/ over both middlewares, and compare.")
 @click.option(
     "--middleware",
@@ -52,9 +56,10 @@ def audit(
 ) -> None:
     """Show that the checks of each EXERCISE catch what is wrong and pass what is right.
 
-    Right solutions must get full marks, whatever the numbers of a scenario are; the starter, an empty file and an idle
-    node must get nothing; each usual mistake must lose the checks that it names. Then the solution is changed in one
-    place after another, and every such mutant whose messages differ must be caught. Those that are not are shown.
+    Right solutions must get full marks, whatever the random numbers of a scenario are. The starter, an empty file and
+    an idle node must get no points. Each common mistake must fail the checks that it names. Then the audit changes the
+    solution in one place after another. A check must catch every such mutant whose messages differ; the audit shows
+    those that no check catches.
 
     \b
       spinbook audit                              every exercise of the course
@@ -65,21 +70,21 @@ def audit(
       spinbook audit --shadow                     do lockstep and Fast DDS lead to the same verdicts?
 
     EXERCISE is a name in the course's folder exercises/, or the path of an exercise's folder. The first audit of an
-    exercise takes minutes. What has been tried before is not tried again while nothing that it depends on has changed,
-    so that an audit after a change takes seconds, and one that was stopped goes on.
+    exercise takes minutes. The results are kept until something that they depend on changes, so an audit after a change
+    takes seconds, and an interrupted audit continues where it stopped.
 
-    Exit codes: 0 all is proved, 1 there is something to fix, 2 wrong usage, 3 a fault of the machine's or ours.
+    Exit codes: 0 nothing to fix, 1 there is something to fix, 2 wrong usage, 3 a fault of the machine or the grader.
     """
     for option, file in (("--json", json_), ("--html", html)):
         if file and (file.is_dir() or not file.absolute().parent.is_dir()):
             text = "that is a folder" if file.is_dir() else f"there is no folder {file.parent}"
-            raise click.UsageError(f"{option} {file}: {text}. Name a file in a folder that is there.")
+            raise click.UsageError(f"{option} {file}: {text}. Name a file in an existing folder.")
     if solutions and (quick or mutants is not None or seeds):
         raise click.UsageError("--solutions tries no mutants and no seeds: leave out --quick, --mutants and --seeds.")
     if solutions:
         mutants, seeds = 0, 1
     if shadow and (quick or mutants is not None or seeds or json_ or html or middleware):
-        raise click.UsageError("--shadow goes with no other option but --parallel.")
+        raise click.UsageError("--shadow can be combined only with --parallel.")
     options = Options(middleware=Middleware(middleware) if middleware else None)
     options = replace(options, parallel=parallel) if parallel else options
     audits: list[Audit] = []
@@ -89,7 +94,7 @@ def audit(
     try:
         if not shadow and (warning := choose_middleware(options.middleware).warning):
             click.echo(warning, err=True)
-        # Workers can import a course's own interfaces only if these were found before the workers start.
+        # Workers can import a course's own interfaces only if these are found before the workers start.
         use_near(Path.cwd())
         with WorkerPool(*(Middleware if shadow else (options.middleware,))) as workers:
             for folder in [_folder(name) for name in exercises] or _all_here():
@@ -114,13 +119,13 @@ def audit(
         click.echo(f"{error.filename}: {error.strerror}", err=True)
         sys.exit(OUR_FAULT)
     except KeyboardInterrupt:
-        click.echo("Stopped. What was tried is kept; the same command goes on from there.", err=True)
+        click.echo("Stopped. The results so far are kept. Run the same command to continue.", err=True)
         sys.exit(STOPPED)
     sys.exit(TO_FIX if faulty or differing or any(result.problems for result in audits) else PROVED)
 
 
 def _shadowed(exercise: Exercise, options: Options, workers: WorkerPool, console: Console) -> int:
-    """Show on which verdicts the two middlewares disagree; how many there are."""
+    """Show the verdicts on which the two middlewares disagree, and return their number."""
     from grader.audit.shadow import shadow
 
     with on(Console(stderr=True)) as progress:

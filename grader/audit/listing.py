@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 class Check:
     """One check as its author wrote it.
 
-    `scenarios` are those it asks for, `rule` is the sentence of the task on which it stands. `seconds` is how long it
-    took to judge the solution. `file` and `line` are where it is.
+    `scenarios` are those that it uses, `rule` is the sentence of the task that it is based on. `seconds` is the time it
+    took to judge the solution. `file` and `line` say where the check is.
     """
 
     name: str
@@ -52,13 +52,13 @@ class Check:
 
 @dataclass(frozen=True)
 class ChecksJob:
-    """List the checks of an exercise, in the order in which they stand, with the time that each takes."""
+    """List the checks of an exercise, in the order of the files, with the time that each takes."""
 
     exercise: Exercise
     references: dict[str, Recording]
 
     def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Any:
-        """A tuple of `Check`. Raises `ExerciseError` where the files of checks are unusable."""
+        """A tuple of `Check`. Raises `ExerciseError` if the files of checks are unusable."""
         ready()
         runs = {name: Run(self.exercise, recording, recording) for name, recording in self.references.items()}
         listing = _Listing(set(runs))
@@ -75,7 +75,7 @@ class _Listing(Checks):
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_call(self, item: pytest.Item) -> Any:
-        """Take the time of one check."""
+        """Measure the time of one check."""
         began = time.perf_counter()
         try:
             return (yield)
@@ -101,7 +101,7 @@ class _Listing(Checks):
         )
 
 
-#: A line of the solution that is shorter than this gives nothing away: `else:`, `return`, `pass`.
+#: A line of the solution that is shorter than this reveals nothing: `else:`, `return`, `pass`.
 SHORTEST = 12
 
 
@@ -111,7 +111,7 @@ def problem_of(check: Check, found: str, fix: str) -> AuditProblem:
 
 
 def problems_in_text(exercise: Exercise, checks: tuple[Check, ...]) -> list[AuditProblem]:
-    """Hidden checks without their sentence in the task; hints and titles that hold a line of the solution."""
+    """Hidden checks without their sentence in the task; hints and titles that contain a line of the solution."""
     return [*_rules(exercise, checks), *_giveaways(exercise, checks)]
 
 
@@ -119,7 +119,7 @@ def _rules(exercise: Exercise, checks: tuple[Check, ...]) -> list[AuditProblem]:
     found = []
     for check in checks:
         if check.hidden and not check.rule:
-            text = f"the hidden check {check.name} does not name the sentence of the task on which it stands"
+            text = f"the hidden check {check.name} does not name the sentence of the task that it is based on"
             found.append(problem_of(check, text, 'Add rule="…" to @check, with the sentence of task.md.'))
         elif check.rule:
             for error in rule_that_the_task_lacks(exercise.task, check.rule, check.file, check.line):

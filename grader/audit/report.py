@@ -23,7 +23,7 @@ from grader.report.printable import printable
 
 
 def show(audit: Audit, console: Console) -> None:
-    """Print what there is to fix, then what each check is worth and the score."""
+    """Print the problems, then what each check is worth, and the score."""
     console.print(Text(printable(f"{audit.title} ({audit.exercise})"), style="bold"))
     _show_programs(audit, console)
     for problem in audit.problems:
@@ -68,7 +68,7 @@ def _show_problem(problem: AuditProblem, console: Console) -> None:
 
 
 def _short(place: str) -> str:
-    """The place from the folder in which the command was given."""
+    """The path relative to the current folder."""
     here = f"{Path.cwd()}/"
     return place.removeprefix(here)
 
@@ -97,7 +97,9 @@ def _show_score(audit: Audit, console: Console) -> None:
     many = len(audit.problems)
     verdict = "nothing to fix" if not many else f"{many} thing{'s' if many > 1 else ''} to fix"
     console.print(Text(verdict, style="bold red" if many else "bold green"))
-    console.print(Text(f"{audit.seconds:.0f} s; {audit.made} tried, {audit.kept} known from before", style="dim"))
+    console.print(
+        Text(f"{audit.seconds:.0f} s; {audit.made} tried, {audit.kept} reused from earlier runs", style="dim")
+    )
 
 
 def _score(audit: Audit) -> str:
@@ -109,7 +111,7 @@ def _score(audit: Audit) -> str:
 
 
 class Bar:
-    """A bar on a terminal; elsewhere, such as in a log, a line for each tenth."""
+    """A bar on a terminal; otherwise, such as in a log, one line for each tenth."""
 
     def __init__(self, console: Console, bar: Progress) -> None:
         self._console, self._bar = console, bar
@@ -134,7 +136,7 @@ class Bar:
 
 @contextmanager
 def on(console: Console) -> Iterator[Bar]:
-    """A bar on this console, which is gone again afterwards."""
+    """A bar on this console, which disappears afterwards."""
     columns = (
         TextColumn("{task.description:<40.40}"),
         BarColumn(),
@@ -167,7 +169,7 @@ def _problem_entries(problem: AuditProblem) -> dict[str, str]:
     return {name: getattr(problem, name) for name in ("place", "about", "found", "fix", "diff", "evidence")}
 
 
-#: Fate -> what it is called, and the page's colour for it.
+#: Result of a mutant -> its name on the page, and its colour.
 FATES: dict[Fate, tuple[str, str]] = {
     "survived": ("not caught", "bad"),
     "listed": ("not caught, with a reason", "wait"),
@@ -198,7 +200,7 @@ def write_html(audits: list[Audit], faults: list[AuditProblem], file: Path) -> N
 
 
 def _by_operator(audit: Audit) -> list[tuple[str, list[MutantResult]]]:
-    """The mutants, those first that no check catches, each kind together."""
+    """The mutants, grouped by kind; those that no check catches come first."""
     order = list(FATES)
     groups: dict[str, list[MutantResult]] = {}
     for result in sorted(audit.mutants, key=lambda result: (result.mutant.operator, order.index(result.fate))):
@@ -207,6 +209,6 @@ def _by_operator(audit: Audit) -> list[tuple[str, list[MutantResult]]]:
 
 
 def _lines(diff: str) -> list[tuple[str, str]]:
-    """A diff's lines, without its header, each with what it is: `added`, `removed` or nothing."""
+    """A diff's lines, without its header, each with its kind: `added`, `removed` or nothing."""
     kinds = {"+": "added", "-": "removed"}
     return [(line, kinds.get(line[:1], "")) for line in diff.splitlines()[2:]]

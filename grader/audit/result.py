@@ -9,10 +9,10 @@ from grader.audit.mutants.making import Mutant
 from grader.checking.verdict import Finding, Status
 from grader.problem import Problem
 
-#: The part of the mutants that must be caught, of those that can be told from the solution.
+#: The share of the mutants that must be caught, of those that differ from the solution.
 LEAST_SCORE = 0.95
 
-#: `caught`: a check failed. `equivalent`: nothing of it can be told from the solution. `listed`: no check failed, and
+#: `caught`: a check failed. `equivalent`: it does not differ from the solution. `listed`: no check failed, and
 #: the author has judged it in survivors.toml. `survived`: no check failed, and nobody has said why.
 Fate = Literal["caught", "equivalent", "listed", "survived"]
 
@@ -25,20 +25,18 @@ class Difference:
     what: str
 
 
-#: Where a trial may end before its end.
+#: Where a trial may stop early.
 Until = Literal["a failure", "the end"]
 
 
 @dataclass(frozen=True)
 class Trial:
-    """What became of one program.
-
-    `statuses` is how each check that could be judged ended, `findings` what those that failed or broke tell.
-    `spun` are the scenarios that were needed; in `differences` stands what differs from the solution there, and
-    `messages` is how many messages came. `seconds` is how long each spin took.
+    """The result of one program. `statuses` has the status of each check that could be judged, `findings` the findings
+    of those that failed or crashed. `spun` are the scenarios that were needed; `differences` are the differences from
+    the solution there, and `messages` is the number of messages that arrived. `seconds` is the duration of each run.
     """
 
-    story: str
+    message: str
     statuses: dict[str, Status]
     findings: dict[str, Finding]
     spun: tuple[str, ...]
@@ -59,10 +57,8 @@ class Trial:
 
 @dataclass(frozen=True)
 class AuditProblem(Problem):
-    """Something for the exercise's author to fix.
-
-    `about` names the check, the mistake or the mutant that it is about. `diff` is there for a mutant, and `evidence`
-    for what it is that differs.
+    """Something for the exercise's author to fix. `about` names the check, the mistake or the mutant. For a mutant,
+    `diff` is the change, and `evidence` says what differs.
     """
 
     about: str = ""
@@ -72,7 +68,7 @@ class AuditProblem(Problem):
 
 @dataclass(frozen=True)
 class Judged:
-    """A program of the author's, and how it did. `failed` are the checks it did not pass, `score` its points."""
+    """A program of the author's, and its result. `failed` are the checks that it did not pass, `score` its points."""
 
     name: str
     kind: Literal["solution", "right", "mistake", "nothing"]
@@ -83,7 +79,7 @@ class Judged:
 
 @dataclass(frozen=True)
 class MutantResult:
-    """What became of one mutant. `evidence` tells how it was caught, or in what it does not differ."""
+    """The result of one mutant. `evidence` says how it was caught, or in what it does not differ."""
 
     mutant: Mutant
     fate: Fate
@@ -94,12 +90,10 @@ class MutantResult:
 
 @dataclass(frozen=True)
 class CheckResult:
-    """What one check is worth.
-
-    `kills` are the mutants that it catches, `score` their part of all that can be told from the solution, between 0
-    and 1; `alone` are those that no other check catches, as far as they were spun. `mistakes` are those of the author's
-    that it catches. `judging_s` is how long it takes to judge the solution, `spinning_s` how long its scenarios are
-    spun, `alone_s` those of them that no other check asks for; all in seconds.
+    """What one check is worth. `kills` are the mutants that it catches, `score` is their share of all that differ from
+    the solution, between 0 and 1; `alone` are those that no other check catches, as far as they were run. `mistakes`
+    are those of the author's that it catches. `judging_s` is how long it takes to judge the solution, `spinning_s` is
+    how long its scenarios run, `alone_s` the same for those that no other check uses; all in seconds.
     """
 
     name: str
@@ -119,7 +113,8 @@ class CheckResult:
 
 @dataclass(frozen=True)
 class ScenarioResult:
-    """What one scenario costs: `spinning_s` is the median of its spins, `simulated_s` how long it lasts for a node."""
+    """What one scenario costs: `spinning_s` is the median duration of its runs, `simulated_s` how long it lasts for a
+    node."""
 
     name: str
     title: str
@@ -133,8 +128,8 @@ class ScenarioResult:
 class Audit:
     """The audit of one exercise.
 
-    `sampled` is whether not all mutants were tried, `seeds` is over how many seeds the randomised scenarios were spun,
-    `made` and `kept` are how many programs were tried now and were known from before.
+    `sampled` is whether not all mutants were tried, `seeds` is the number of seeds with which the randomised scenarios
+    were run, `made` and `kept` are the numbers of programs that were tried now and reused from earlier runs.
     """
 
     exercise: str
@@ -153,12 +148,12 @@ class Audit:
     kept: int
 
     def count(self, fate: Fate) -> int:
-        """How many mutants met with this fate."""
+        """The number of mutants with this result."""
         return sum(result.fate == fate for result in self.mutants)
 
     @property
     def different(self) -> int:
-        """How many mutants can be told from the solution."""
+        """The number of mutants that differ from the solution."""
         return different(self.mutants)
 
     @property
@@ -168,7 +163,7 @@ class Audit:
 
 
 def different(mutants: tuple[MutantResult, ...]) -> int:
-    """How many of the mutants can be told from the solution."""
+    """The number of mutants that differ from the solution."""
     return sum(result.fate != "equivalent" for result in mutants)
 
 
@@ -180,7 +175,7 @@ def score_of(mutants: tuple[MutantResult, ...]) -> float:
 
 @dataclass(frozen=True)
 class Opinion:
-    """What one middleware led to: a check's status or a grade's outcome, and the words for the student."""
+    """The result over one middleware: a check's status or a grade's outcome, and the message for the student."""
 
     verdict: str
     text: str = ""
@@ -192,7 +187,7 @@ class Opinion:
 
 @dataclass(frozen=True)
 class Differing:
-    """A verdict on which the two disagree. `reason` is why, where the recordings show it; else it is empty."""
+    """A verdict on which the two disagree. `reason` says why, if the recordings show it; otherwise it is empty."""
 
     program: str
     check: str
@@ -214,7 +209,7 @@ class Shadow:
 
 
 class Progress(Protocol):
-    """Hears how far an audit is."""
+    """Shows the progress of an audit."""
 
     def begin(self, exercise: str, total: int) -> None:
         """There are `total` things to try."""

@@ -30,8 +30,8 @@ INFERRED = "over Fast DDS the grader could only infer from sleeping threads when
 def shadow(exercise: Exercise, options: Options, workers: WorkerPool, progress: Progress) -> Shadow:
     """Grade every file of the exercise's solutions over both middlewares, and compare.
 
-    Raises what `grading_of` raises, `MiddlewareUnavailable` where one can't be had, and `HostFault` where a program
-    can't be graded by a fault of the machine's or ours.
+    Raises what `grading_of` raises, `MiddlewareUnavailable` if one is not available, and `HostFault` if a program can't
+    be graded because of a fault of the machine or the grader.
     """
     began = time.monotonic()
     gradings = [grading_of(exercise, replace(options, middleware=one), workers) for one in Middleware]
@@ -77,12 +77,12 @@ def _opinion(verdict: Verdict) -> Opinion:
 
 
 def _reason(lockstep: Grade, fast_dds: Grade, scenario: str) -> str:
-    """What the recordings of a scenario show of why the two differ."""
+    """Why the two differ, as far as the recordings of a scenario show it."""
     ours, theirs = lockstep.recordings.get(scenario), fast_dds.recordings.get(scenario)
     if ours is None or theirs is None:
         return ""
     seen = _seen(ours, theirs)
-    inferred = INFERRED if theirs.hold == "quiet" else ""
+    inferred = INFERRED if theirs.synchronization == "idle" else ""
     return "; ".join(filter(None, (f"scenario {scenario}: {seen}" if seen else "", inferred)))
 
 

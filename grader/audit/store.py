@@ -1,4 +1,4 @@
-"""Keeps what audits know: what programs published, and how they were judged.
+"""Keeps the results of audits: what programs published, and how they were judged.
 
 After a change to a check no program has to run again; what has been judged is not judged again while nothing that it
 depends on has changed.
@@ -25,29 +25,28 @@ from grader.files import write_if_changed
 from grader.grading.grading import Grading
 from grader.grading.reference import GRADER, cache_folder, digest_of, solution_file, versions
 from grader.grading.running import ScenarioRunner
-from grader.recording.recording import Recording
-from grader.recording.store import from_json, to_json
+from grader.recording.recording import Recording, from_json, to_json
 from grader.sandbox.program import Middleware
 from grader.scenario.scenario import Scenario
 from grader.submission.reading import Submission
 from grader.workers.pool import Worker
 
-#: The parts of the grader that decide what a recording holds.
+#: The parts of the grader that decide what a recording contains.
 SPINNING = ("workers", "exercise", "recording", "runner", "sandbox", "scenario", "submission")
 SPINNING_FILES = ("grading/running.py", "loopback.xml")
 
-#: What decides a trial beside what decides a recording.
+#: What decides a trial, besides what decides a recording.
 JUDGING = ("checking", "audit/trial.py", "audit/listing.py")
 
-#: What nobody has asked for since is thrown away.
+#: Entries that were not used for this long are deleted.
 KEPT_DAYS = 30
 
-#: A program that logs more than this is spun each time.
+#: A program that logs more than this is run each time.
 LONGEST_LOG = 20_000
 
 
 class Stopped(Exception):
-    """Raised in place of a recording when the audit is to end at once."""
+    """Raised instead of a recording when the audit must end at once."""
 
 
 class RecordedRuns:
@@ -60,12 +59,12 @@ class RecordedRuns:
 
     def process(self) -> Worker:
         """A process for the spins of one program: what it has made ready for one, it has ready for the next."""
-        return self._grading.runner.workers.hand()
+        return self._grading.runner.workers.reserve()
 
     def spin(self, submission: Submission, scenario: Scenario, turn: int, process: Worker) -> Recording:
         """The recording of a program in one scenario, kept or made now; `turn` chooses the core that it runs on.
 
-        Raises `HostFault` where the machine or we are at fault, `Stopped` when no more are to be made.
+        Raises `HostFault` if the machine or the grader is at fault, `Stopped` when no more recordings are wanted.
         """
         runner = self._grading.runner
         made_by = (str(runner.isolation), engine(runner.middleware))
@@ -88,18 +87,18 @@ class RecordedRuns:
 
 
 def audit_folder(exercise: str) -> Path:
-    """Where an exercise's audits keep what they know."""
+    """The folder in which an exercise's audits keep their results."""
     return cache_folder().parent / "audit" / exercise
 
 
 def keep(file: Path, content: bytes) -> None:
-    """Write a file as a whole. Where nothing can be kept, it is made anew each time."""
+    """Write a file completely. If it can't be written, it is made again each time."""
     with contextlib.suppress(OSError):
         write_if_changed(file, content)
 
 
 def tidy(exercise: str) -> None:
-    """Throw away what has not been asked for in a long time."""
+    """Delete entries that have not been used for a long time."""
     oldest = time.time() - KEPT_DAYS * 24 * 3600
     with contextlib.suppress(OSError):
         for entry in os.scandir(audit_folder(exercise)):
@@ -109,7 +108,8 @@ def tidy(exercise: str) -> None:
 
 @cache
 def engine(middleware: Middleware, also: tuple[str, ...] = ()) -> str:
-    """A digest of all of ours that decides what a recording holds, and the versions of Python, ROS and the middleware.
+    """A digest of our code that decides what a recording contains, and of the versions of Python, ROS and the
+    middleware.
 
     `also` names further files and folders, by their paths below grader/.
     """
@@ -120,7 +120,7 @@ def engine(middleware: Middleware, also: tuple[str, ...] = ()) -> str:
 
 
 class Store:
-    """The kept trials of one exercise. `made` and `kept` count those made now and known from before."""
+    """The kept trials of one exercise. `made` and `kept` count those made now and those reused."""
 
     def __init__(self, runner: ScenarioRunner) -> None:
         exercise = runner.exercise
@@ -137,7 +137,7 @@ class Store:
         self.kept = 0
 
     def trial(self, key: dict[str, Any], make: Callable[[], Trial]) -> Trial:
-        """The trial that `key` names, kept or made now."""
+        """The trial for `key`, kept or made now."""
         text = json.dumps({**self._common, **key}, sort_keys=True)
         file = self._folder / f"{hashlib.sha256(text.encode()).hexdigest()[:32]}.json"
         try:

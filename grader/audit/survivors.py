@@ -24,12 +24,12 @@ NOW = {
 
 
 def survivors_file(exercise: Exercise) -> Path:
-    """Where they are listed."""
+    """The file that lists them."""
     return exercise.folder / "survivors.toml"
 
 
 def listed(exercise: Exercise) -> dict[str, str]:
-    """Mutant's id -> why it is right that no check catches it. Raises `ExerciseError` where that can't be read."""
+    """Mutant's id -> why it is right that no check catches it. Raises `ExerciseError` if the file can't be read."""
     file = survivors_file(exercise)
     if not file.exists():
         return {}
@@ -47,7 +47,7 @@ def listed(exercise: Exercise) -> dict[str, str]:
 
 
 def stale(exercise: Exercise, reasons: dict[str, str], fates: dict[str, Fate]) -> list[AuditProblem]:
-    """The entries that hold no longer."""
+    """The entries that are out of date."""
     file = survivors_file(exercise)
     lines = file.read_text(encoding="utf-8").splitlines() if reasons else []
     found = []
@@ -56,7 +56,7 @@ def stale(exercise: Exercise, reasons: dict[str, str], fates: dict[str, Fate]) -
         if fate in NOW:
             line = next((i for i, text in enumerate(lines, start=1) if id_ in text), 1)
             message = f"the mutant {id_} is listed as a survivor, but {NOW[fate]}"
-            found.append(AuditProblem(file, line, message, "Take the entry out.", about=id_))
+            found.append(AuditProblem(file, line, message, "Remove the entry.", about=id_))
     return found
 
 
@@ -64,10 +64,10 @@ QUESTION = "Is this a right solution? Then list it in {}, as mutant = {!r}, with
 
 
 def result_of(mutant: Mutant, trial: Trial, reasons: dict[str, str]) -> MutantResult:
-    """What became of one mutant, with the evidence."""
+    """The result of one mutant, with the evidence."""
     if trial.caught:
         first = trial.failed[0]
-        message = trial.story or trial.findings[first].text
+        message = trial.message or trial.findings[first].text
         return MutantResult(mutant, "caught", trial.failed, f"{first}: {message}")
     if not trial.differences:
         same = f"all {trial.messages} messages of {len(trial.spun)} scenarios, the graph and the end are the solution's"
@@ -77,7 +77,7 @@ def result_of(mutant: Mutant, trial: Trial, reasons: dict[str, str]) -> MutantRe
 
 
 def _evidence(trial: Trial) -> str:
-    """The differences that no check minds, each with the scenarios it was seen in."""
+    """The differences that no check catches, each with the scenarios in which it was seen."""
     seen = Counter(difference.what for difference in trial.differences)
     first = {difference.what: difference.scenario for difference in reversed(trial.differences)}
     text = [

@@ -22,14 +22,14 @@ from grader.workers.pool import Worker
 
 
 def differences(recording: Recording, reference: Recording) -> tuple[Difference, ...]:
-    """Everything that can be seen of a node from outside and differs: messages, graph, how it ended. Its log is not."""
+    """Every difference that can be seen from outside a node: messages, graph, how it ended. Its log does not count."""
     found: list[str] = []
     if recording.ending != reference.ending:
-        found.append(f"it ended otherwise: {recording.ending.story or recording.ending.traceback or 'not in time'}")
+        found.append(f"it ended otherwise: {recording.ending.message or recording.ending.traceback or 'not in time'}")
     if recording.nodes != reference.nodes:
         found.append(f"nodes {_named(recording.nodes)}, the solution's {_named(reference.nodes)}")
     found += _ends(recording, reference)
-    if recording.hold != reference.hold or recording.uses_sim_time != reference.uses_sim_time:
+    if recording.synchronization != reference.synchronization or recording.uses_sim_time != reference.uses_sim_time:
         found.append("its services or its clock differ")
     found += _messages(recording.received, reference.received)
     found += _events(recording, reference)
@@ -62,7 +62,7 @@ def _messages(mine: tuple[Received, ...], its: tuple[Received, ...]) -> list[str
 
 
 def _events(recording: Recording, reference: Recording) -> list[str]:
-    """What differs in calls, goals, parameters and ends of programs."""
+    """The differences in calls, goals, parameters and ends of programs."""
     found = []
     events: tuple[tuple[str, Sequence[Any], Sequence[Any]], ...] = (
         ("calls of services", recording.calls, reference.calls),
@@ -90,21 +90,19 @@ class Trials:
 
     grading: Grading
     checks: tuple[Check, ...]
-    spins: RecordedRuns
+    runs: RecordedRuns
     _turn: itertools.count[int] = field(default_factory=itertools.count, compare=False)
 
     def try_(self, submission: Submission, only: tuple[str, ...] = (), until: Until = "the end") -> Trial:
-        """Spin and judge a program.
-
-        The first scenario comes first, then the shorter ones before the longer ones. One is spun only where a check
-        wants it that is not blocked, which changes no verdict: a blocked check never looks at its recording. With
-        `only`, nothing but these checks counts. With `until` it ends as soon as a check fails: then nothing is known of
-        the checks that were not judged. A program that no check fails is spun through every scenario. Raises
-        `HostFault` where the machine or we are at fault.
+        """Run and judge a program. The first scenario comes first, then the others, shorter ones before longer ones. A
+        scenario is run only if an unblocked check needs it. That changes no verdict, because a blocked check never
+        looks at its recording. With `only`, only these checks count. With `until`, the trial ends as soon as a check
+        fails; then nothing is known about the checks that were not judged. A program that no check fails runs through
+        every scenario. Raises `HostFault` if the machine or the grader is at fault.
         """
         if not submission.program:
             return self._nothing(submission.problem)
-        with self.spins.process() as process:
+        with self.runs.process() as process:
             return self._tried(lambda scenario: self.spin(submission, scenario, process), only, until)
 
     def _tried(self, spin: Callable[[Scenario], Recording], only: tuple[str, ...], until: Until) -> Trial:
@@ -127,12 +125,12 @@ class Trials:
                 recordings[scenario.name] = spin(scenario)
 
     def _broke_off(self, recordings: dict[str, Recording]) -> Trial:
-        """The trial of a program that does not come through the first scenario: it has run through no other."""
+        """The trial of a program that does not complete the first scenario: it has run through no other."""
         [first] = recordings.values()
-        story = Ending(first.ending.outcome, first.ending.story)
+        ending = Ending(first.ending.outcome, first.ending.message)
         names = [scenario.name for scenario in self.grading.runner.scenarios]
-        every = {name: Recording(name, (), (), (), (), "none", False, story) for name in names} | recordings
-        return self._trial(first.ending.story, recordings, self._judged(every), self.checks)
+        every = {name: Recording(name, (), (), (), (), "none", False, ending) for name in names} | recordings
+        return self._trial(first.ending.message, recordings, self._judged(every), self.checks)
 
     def _shorter_first(self) -> list[Scenario]:
         return sorted(self.grading.runner.scenarios, key=lambda scenario: scenario.seconds)
@@ -151,21 +149,20 @@ class Trials:
     def spin(self, submission: Submission, scenario: Scenario, process: Worker) -> Recording:
         """The recording of one scenario. Raises `HostFault` where the machine or we are at fault."""
         # Turn by turn on each core: a program stays on the one it is given.
-        return self.spins.spin(submission, scenario, next(self._turn), process)
+        return self.runs.spin(submission, scenario, next(self._turn), process)
 
     def _nothing(self, problem: str) -> Trial:
         scenarios = self.grading.runner.scenarios
-        story = Ending("did-not-start", problem)
-        recordings = {s.name: Recording(s.name, (), (), (), (), "none", False, story) for s in scenarios}
+        ending = Ending("did-not-start", problem)
+        recordings = {s.name: Recording(s.name, (), (), (), (), "none", False, ending) for s in scenarios}
         return self._trial(problem, {}, self._judged(recordings), self.checks)
 
     def _judged(self, recordings: dict[str, Recording]) -> dict[str, Verdict]:
         return self.judge(recordings, self.grading.references)
 
     def _judged_where_different(self, recordings: dict[str, Recording]) -> dict[str, Verdict]:
-        """The verdicts, of which only those count whose scenarios were spun.
-
-        Where nothing differs from the solution every check passes, as it does for the solution.
+        """The verdicts of the checks whose scenarios were run. If nothing differs from the solution, every check
+        passes, as it does for the solution.
         """
         references = self.grading.references
         if not any(differences(recording, references[name]) for name, recording in recordings.items()):
@@ -181,7 +178,7 @@ class Trials:
     def _wanted(
         self, names: set[str], verdicts: dict[str, Verdict], recordings: dict[str, Recording]
     ) -> list[Scenario]:
-        """The scenarios that are needed to judge what is not blocked."""
+        """The scenarios that unblocked checks need."""
         spun = set(recordings)
         passed = {c.name for c in self.checks if set(c.scenarios) <= spun and verdicts[c.name].status == "passed"}
         asked = {
@@ -206,14 +203,14 @@ class Trials:
 
     def _trial(
         self,
-        story: str,
+        message: str,
         recordings: dict[str, Recording],
         verdicts: dict[str, Verdict],
         decided: tuple[Check, ...],
     ) -> Trial:
         statuses: dict[str, Status] = {}
         for check in self.checks:
-            # A check that was not spun is blocked, or was not asked for.
+            # A check whose scenarios were not run is blocked, or was not requested.
             if check in decided:
                 statuses[check.name] = verdicts[check.name].status
             elif any(statuses.get(name, "passed") != "passed" for name in check.depends):
@@ -222,7 +219,7 @@ class Trials:
         findings = {name: verdict.finding or Finding(verdict.error) for name, verdict in text.items()}
         references = self.grading.references
         return Trial(
-            story=story,
+            message=message,
             statuses=statuses,
             findings=findings,
             spun=tuple(recordings),

@@ -1,4 +1,4 @@
-"""What the checks are worth: each can fail for something of its own; what each catches and costs."""
+"""What the checks are worth: whether each can fail on its own, what it catches and what it costs."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from grader.audit.result import AuditProblem, CheckResult, ScenarioResult, Trial
 from grader.checking.verdict import Finding
 from grader.scenario.scenario import Scenario
 
-#: A message that names no expected value has to say in words what was to be.
+#: A message without an expected value must say in words what was expected.
 WORDS = re.compile(r"expect|must|should|has to|have to|was to|were to|instead of|may not", re.IGNORECASE)
 
-#: How many mutants are spun on for each check that has not failed yet, and for each two that look alike.
+#: How many mutants are run further for each check that has not failed yet, and for each two that look alike.
 EACH = 4
 
 
 def problems_of_checks(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
-    """`trials` are those of mistakes and of mutants that can be told from the solution, by name."""
+    """`trials` are those of mistakes and of mutants that differ from the solution, by name."""
     return [*_that_never_fail(checks, trials), *_that_fail_together(checks, trials), *messages(checks, trials)]
 
 
@@ -30,10 +30,10 @@ def never_failing(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[C
 
 
 def alike(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[tuple[Check, Check, int]]:
-    """Two checks each that failed together, and never only one of them; and how often they did."""
+    """Pairs of checks that always failed together, with the number of times."""
     found = []
     for one, other in combinations(checks, 2):
-        # Where only one of them was judged, nothing is known of the other.
+        # If only one of them was judged, nothing is known about the other.
         pairs = [(trial.statuses.get(one.name), trial.statuses.get(other.name)) for trial in trials.values()]
         judged = [pair for pair in pairs if set(pair) <= {"passed", "failed"}]
         many = judged.count(("failed", "failed"))
@@ -45,7 +45,7 @@ def alike(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[tuple[Che
 def worth_spinning_on(checks: tuple[Check, ...], trials: dict[str, Trial], mutants: dict[str, Trial]) -> list[str]:
     """The mutants that may show that a check can fail, or that two are not alike: a few for each such doubt.
 
-    They were spun until a check caught them, so that nothing is known yet of the checks of other scenarios.
+    They were run until a check caught them, so nothing is known yet about the checks of other scenarios.
     """
     wanted: set[str] = set()
     for check in never_failing(checks, trials):
@@ -81,7 +81,7 @@ def _that_fail_together(checks: tuple[Check, ...], trials: dict[str, Trial]) -> 
     return [
         problem_of(
             other,
-            f"{one.name} and {other.name} always fail together ({many} times): do both judge the same?",
+            f"{one.name} and {other.name} always fail together ({many} times): Do both judge the same thing?",
             fix,
         )
         for one, other, many in alike(checks, trials)
@@ -89,20 +89,20 @@ def _that_fail_together(checks: tuple[Check, ...], trials: dict[str, Trial]) -> 
 
 
 def problems_of_broken(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
-    """Checks that broke themselves on what some program published; `trials` are those of all programs, by name."""
+    """Checks that crashed on what some program published; `trials` are those of all programs, by name."""
     found = []
     for check in checks:
         for name, trial in trials.items():
             if trial.statuses.get(check.name) == "error":
                 text = f"{check.name} breaks on what {name} publishes: {trial.findings[check.name].text}"
-                fix = "Whatever a student's node publishes, a check has to pass or to fail: look before you take."
+                fix = "A check must pass or fail, whatever a student's node publishes. Look before you use an element."
                 found.append(problem_of(check, text, fix))
                 break
     return found
 
 
 def _broke_off(finding: Finding) -> bool:
-    """Whether the program did not come through the scenario: then its story is told, and not what a check wanted."""
+    """Whether the program did not come through the scenario: then the message is why, and not what a check wanted."""
     return bool(finding.scenario) and finding.message is None
 
 
@@ -122,7 +122,7 @@ def messages(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[AuditP
 def scenario_results(
     scenarios: tuple[Scenario, ...], checks: tuple[Check, ...], trials: list[Trial]
 ) -> tuple[ScenarioResult, ...]:
-    """What each scenario costs, over all its spins in these trials."""
+    """What each scenario costs, over all its runs in these trials."""
     return tuple(
         ScenarioResult(
             name=scenario.name,
@@ -142,7 +142,7 @@ def check_results(
     mutants: dict[str, Trial],
     mistakes: dict[str, Trial],
 ) -> tuple[CheckResult, ...]:
-    """What each check is worth; `mutants` are the trials of those that can be told from the solution."""
+    """What each check is worth; `mutants` are the trials of those that differ from the solution."""
     seconds = {scenario.name: scenario.spinning_s for scenario in scenarios}
     asked_by_one = {scenario.name for scenario in scenarios[1:] if scenario.checks == 1}
     kills = {check.name: sum(check.name in trial.failed for trial in mutants.values()) for check in checks}

@@ -17,7 +17,6 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.prompt import Confirm
 from rich.text import Text
 
-from grader.classroom import Entry, Skipped
 from grader.classroom.collecting import collect
 from grader.classroom.deadline import Adjusting, Deadline, deadline_of, overrides_in
 from grader.classroom.gradebook import gradebook, unknown_to_moodle, write_gradebook
@@ -31,7 +30,7 @@ from grader.classroom.request import Backend, ClassRequest, host_error
 from grader.classroom.results import ClassGrading, Plan, Results, not_written
 from grader.exercise.exercise import Exercise
 from grader.files import write_if_changed
-from grader.grading.grade import Grade
+from grader.grading.grade import Entry, Grade, Skipped
 from grader.grading.grading import Grading, grading_of
 from grader.report.printable import printable
 from grader.submission.reading import Submission, read
@@ -75,11 +74,11 @@ def show_result(
     for entry in faults:
         _say(
             console,
-            f"not graded, a fault of ours or the machine's: {entry.student.id}: {entry.grade.message}",
+            f"not graded, because of a fault of Spinbook or the machine: {entry.student.id}: {entry.grade.message}",
             "red",
         )
     if faults:
-        _say(console, "The same command tries them again.", "red")
+        _say(console, "Run the same command to try them again.", "red")
 
 
 def _say(console: Console, text: str, style: str = "") -> None:
@@ -165,7 +164,7 @@ def grade_class(exercise: Exercise, class_request: ClassRequest, console: Consol
                     return _finish(marking, grading, collected, console, adjusting.deadline, class_request.publish)
                 except KeyboardInterrupt:
                     kept, wanted = len(marking.entries), len(collected.handed_in)
-                    text = f"Stopped. {kept} of {wanted} are graded and kept; the same command goes on from there."
+                    text = f"Stopped. {kept} of {wanted} are graded and kept. Run the same command to continue."
                     console.print(text)
                     return STOPPED
 
@@ -219,7 +218,7 @@ def _finish(
     )
     others = marking.results.others({entry.student.id for entry in every})
     if others:
-        console.print(f"of an earlier run, left as they are: {', '.join(others)}", style="yellow")
+        console.print(f"from an earlier run, unchanged: {', '.join(others)}", style="yellow")
     show_result(console, entries, faults, collected.questions)
     if publishes:
         console.print(f"One zip per student: {publish(folder, entries)}", soft_wrap=True, markup=False)
@@ -255,7 +254,7 @@ def _writable(entry: Entry, marking: ClassGrading, deadline: Deadline | None) ->
 def _signatures(grading: Grading, entries: Sequence[Entry], console: Console) -> tuple[Signature, ...]:
     if all(entry.grade.full_marks or entry.grade.outcome != "graded" for entry in entries):
         return ()
-    with console.status("finding out how the usual mistakes fail"):
+    with console.status("grading the common mistakes"):
         return signatures(grading, [failures_of(entry.grade).keys() for entry in entries])
 
 

@@ -10,7 +10,7 @@ from urllib.parse import quote
 
 from grader.classroom.gradebook import Cell, csv_text
 from grader.classroom.overview import OUTCOMES, Distribution, Tally, distribution, tallies
-from grader.grading.entry import Entry, Student
+from grader.grading.grade import Entry, Student
 from grader.report.as_json import STUDENTS, from_json
 from grader.report.pages import render
 

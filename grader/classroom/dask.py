@@ -90,7 +90,7 @@ def grade_on_worker(packed: ExerciseFiles, options: Options, key: str, who: str,
     bench = _prepared_grading(packed, options)
     runner = bench.grading.runner
     if bench.key != key:
-        text = f"a worker of the cluster grades otherwise than this machine: {versions(runner.middleware)}"
+        text = f"a worker of the cluster has other versions than this machine: {versions(runner.middleware)}"
         return Graded(who, host_error(runner, submission, text), None)
     with own_core() as core:
         runner = replace(runner, options=replace(options, parallel=1, core=core))
@@ -174,7 +174,7 @@ def dask_backend(grading: Grading, address: str) -> Iterator[DaskBackend]:
         client = Client(address, timeout=SCHEDULER_S, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         text = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise NoCluster(f"--scheduler {address}: nobody answers there as a Dask scheduler does: {text}") from None
+        raise NoCluster(f"--scheduler {address}: no Dask scheduler answers there: {text}") from None
     with client:
         try:
             client.wait_for_workers(1, timeout=WORKER_S)
@@ -192,4 +192,6 @@ def _same_versions(ours: Mapping[str, str], text: Mapping[str, object]) -> None:
         if differs := [
             f"{name} {theirs.get(name)}, here {ours[name]}" for name in ours if theirs.get(name) != ours[name]
         ]:
-            raise NoCluster(f"The worker {worker} would grade otherwise: {'; '.join(differs)}. Install the same there.")
+            raise NoCluster(
+                f"The worker {worker} has other versions: {'; '.join(differs)}. Install the same versions there."
+            )

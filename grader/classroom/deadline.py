@@ -10,9 +10,9 @@ from datetime import date, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
-from grader.classroom import Adjustment, Entry
 from grader.classroom.handed_in import SubmissionsError, moment, table_rows
 from grader.exercise.exercise import Exercise, ExerciseError
+from grader.grading.grade import Adjustment, Entry
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -104,7 +104,7 @@ def _length(value: Any, file: Path) -> timedelta:
 def _rule(value: Any, file: Path) -> tuple[float, timedelta, float]:
     match = RULE.fullmatch(value.strip()) if isinstance(value, str) else None
     if not match or float(match[1]) > 100 or float(match[3] or 0) > 100:
-        raise ExerciseError(file, f"penalty = {value!r}", "Write it so: penalty = '10 % a day up to 50 %'.")
+        raise ExerciseError(file, f"penalty = {value!r}", "Write it like this: penalty = '10 % a day up to 50 %'.")
     return float(match[1]), UNITS[match[2]], float(match[3] or 100)
 
 
@@ -156,7 +156,7 @@ def _override(row: dict[str, str], place: str, students: set[str]) -> Override:
             raise OverridesError(f"{place}: due = {due!r}. Write it as 2026-11-22 23:59.")
         return Override(student, row["reason"], due=date)
     if not NUMBER.fullmatch(points):
-        raise OverridesError(f"{place}: points = {points!r}. Write 85 for what counts, +5 or -5 for what is added.")
+        raise OverridesError(f"{place}: points = {points!r}. Write 85 to replace the points, +5 or -5 to change them.")
     if points[0] in "+-":
         return Override(student, row["reason"], added=float(points))
     return Override(student, row["reason"], points=float(points))
@@ -182,7 +182,9 @@ class Adjusting:
             assert last.points is not None
             return (Adjustment("override", last.points - entry.grade.score, last.reason),)
         extended = [override for override in theirs if override.due]
-        made = [Adjustment("override", 0.0, f"due {told(one.due)}: {one.reason}") for one in extended[-1:] if one.due]
+        made = [
+            Adjustment("override", 0.0, f"due {date_shown(one.due)}: {one.reason}") for one in extended[-1:] if one.due
+        ]
         if late := self._late(entry, extended[-1].due if extended else None):
             made.append(late)
         made += [Adjustment("override", one.added, one.reason) for one in theirs if one.added is not None]
@@ -201,7 +203,7 @@ class Adjusting:
         return Adjustment("late", -round(entry.grade.score * percent / 100, 6), reason)
 
 
-def told(moment: datetime | None) -> str:
+def date_shown(moment: datetime | None) -> str:
     """Return a time as text, with its zone."""
     return moment.strftime("%Y-%m-%d %H:%M %z") if moment else ""
 

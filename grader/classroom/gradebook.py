@@ -14,10 +14,9 @@ from pathlib import Path
 from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
 from grader.files import write_if_changed
-from grader.grading.entry import Entry, Student
-from grader.report.as_json import folder_of
+from grader.grading.grade import Entry, Student
+from grader.report.as_json import folder_of, results_json
 from grader.report.feedback import shown_checks
-from grader.report.gradescope import results_json
 from grader.report.printable import printable
 
 Cell = str | float | None

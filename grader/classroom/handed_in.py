@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from grader.classroom import Skipped, Student
+from grader.grading.grade import Skipped, Student
 from grader.submission.reading import MOST_BYTES
 
 #: What can be a submission; each has its reader in grader/submission/reading.py.

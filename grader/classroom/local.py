@@ -15,9 +15,9 @@ from pathlib import Path
 from grader.classroom.request import Graded, host_error
 from grader.classroom.results import grade_key
 from grader.exercise.exercise import ExerciseError
+from grader.files import claim_number
 from grader.grading.grading import Grading
 from grader.grading.running import WorkStealing
-from grader.locks import claim_number
 from grader.report.feedback_plot import picture
 from grader.sandbox.program import Middleware
 from grader.submission.reading import Submission

@@ -15,8 +15,7 @@ from pathlib import Path
 
 from grader.checking.verdict import Finding
 from grader.files import write_if_changed
-from grader.grading.entry import Entry
-from grader.grading.grade import Grade
+from grader.grading.grade import Entry, Grade
 from grader.grading.grading import Grading
 from grader.grading.reference import cache_folder, reference_key
 from grader.submission.reading import of_source

@@ -13,7 +13,7 @@ from urllib.parse import quote
 from grader.checking.verdict import Verdict
 from grader.classroom.misconceptions import Misconceptions
 from grader.exercise.exercise import Exercise
-from grader.grading.entry import Entry, Skipped
+from grader.grading.grade import Entry, Skipped
 from grader.report.as_json import STUDENTS
 from grader.report.pages import points, render
 

@@ -8,7 +8,7 @@ import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from grader.classroom import Entry
+from grader.grading.grade import Entry
 from grader.report.as_json import folder_of
 
 FOLDER = "to-students"

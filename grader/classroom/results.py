@@ -14,17 +14,16 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from grader.classroom import Adjustment, Entry
 from grader.classroom.handed_in import HandedIn, Submissions
 from grader.classroom.request import Backend, Graded
 from grader.exercise.exercise import Exercise
-from grader.files import remove_parts, write_if_changed
+from grader.files import remove_parts, try_lock, write_if_changed
+from grader.grading.grade import Adjustment, Entry
 from grader.grading.grading import Grading
 from grader.grading.reference import digest_of, versions
-from grader.locks import try_lock
 from grader.recording.recording import Recording
-from grader.recording.store import from_json as recordings_from_json
-from grader.recording.store import to_json as recordings_to_json
+from grader.recording.recording import from_json as recordings_from_json
+from grader.recording.recording import to_json as recordings_to_json
 from grader.report.as_json import STUDENTS, folder_of, from_json, to_json
 from grader.report.feedback import feedback_page
 from grader.submission.reading import Submission

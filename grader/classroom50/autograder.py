@@ -1,7 +1,8 @@
 """Grades the repository in the current folder with Spinbook. Classroom 50's runner starts this once per submission.
 
-It needs Python's own library alone: setup.sh installs everything else beside this file. Exits with 0 once result.json
-is written, whatever the score, and with 1 where nothing could be graded by a fault that is not the student's.
+It needs only Python's standard library: setup.sh installs everything else next to this file. Exits with 0 once
+result.json is written, whatever the score, and with 1 if nothing could be graded because of a fault that is not the
+student's.
 """
 
 import subprocess
@@ -16,7 +17,7 @@ def main() -> int:
     """Install what is missing, then grade."""
     python = HERE / "venv" / "bin" / "python"
     if not python.exists():
-        # What is installed is told on standard error: standard output is the runner's.
+        # The installer prints on standard error: standard output is the runner's.
         subprocess.run(["bash", str(HERE / "setup.sh")], check=True, stdout=sys.stderr)
     exercise = HERE / "course" / "exercises" / EXERCISE
     words = [str(python), "-m", "grader.classroom50.run", str(exercise), ".", *filter(None, [ISOLATION])]

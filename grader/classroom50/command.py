@@ -48,12 +48,12 @@ jobs:
 def classroom50(exercise: str, out: Path | None, isolation: Isolation | None) -> None:
     """Write the autograder of an EXERCISE for Classroom 50, or for GitHub Actions in any repository.
 
-    Classroom 50: copy what is in the folder to CLASSROOM/autograders/ASSIGNMENT/ of your organization's repository
+    Classroom 50: copy the contents of the folder to CLASSROOM/autograders/ASSIGNMENT/ of your organization's repository
     classroom50. Its runner starts autograder.py for each submission, which writes result.json (classroom50/result/v1).
 
     GitHub Actions alone: make the folder a private repository, and put its github-workflow.yml into the students'.
 
-    The folder holds the solution and the hidden checks. Classroom 50 publishes it with GitHub Pages, where whoever
+    The folder holds the solution and the hidden checks. Classroom 50 publishes it with GitHub Pages, where anybody who
     finds the address can read it.
 
     Exit codes: 0 written, 2 wrong usage, 3 the exercise is at fault.
@@ -65,8 +65,8 @@ def classroom50(exercise: str, out: Path | None, isolation: Isolation | None) ->
     for name, content in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(content)
-    click.echo(f"{folder}: copy what is in it to CLASSROOM/autograders/ASSIGNMENT/ of your classroom50 repository.")
-    click.echo("It holds the solution: see --help for who can read it there.")
+    click.echo(f"{folder}: copy its contents to CLASSROOM/autograders/ASSIGNMENT/ of your classroom50 repository.")
+    click.echo("It contains the solution; --help says who can read it there.")
 
 
 def _files(exercise: Exercise, isolation: Isolation | None) -> dict[str, bytes]:

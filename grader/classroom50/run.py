@@ -1,7 +1,7 @@
 """Grades a repository: `python -m grader.classroom50.run EXERCISE_FOLDER REPOSITORY [ISOLATION]`.
 
 Writes result.json and release-body.md into REPOSITORY, as Classroom 50's runner expects, and the same text into the
-summary of a job of GitHub Actions. Exits with 1, without either, where the machine or the exercise is at fault.
+summary of a job of GitHub Actions. Exits with 1, without writing either, if the machine or the exercise is at fault.
 """
 
 from __future__ import annotations
@@ -17,8 +17,7 @@ from typing import Any
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
 from grader.files import write_if_changed
-from grader.gradescope.prepare import keep_beside
-from grader.gradescope.run import submission
+from grader.gradescope.run import keep_beside, submission
 from grader.grading.grade import Grade, Options
 from grader.grading.grading import grading_of
 from grader.report.feedback import ShownCheck, shown_checks
@@ -66,16 +65,15 @@ def _fault(text: str) -> int:
 #: https://github.com/foundation50/classroom50/wiki/Advanced-Autograding, "The result.json contract".
 SCHEMA = "classroom50/result/v1"
 
-#: Scores are whole numbers there. Where an exercise gives parts of points, every number is a hundred times as large.
+#: Scores are whole numbers there. If an exercise gives fractions of points, every number is a hundred times as large.
 HUNDREDTHS = 100
 
 LONGEST_TEXT = 5_000
 
 
 def result(grade: Grade, environment: Mapping[str, str]) -> dict[str, Any]:
-    """Return what result.json holds. Of hidden checks it tells title and hint alone, as the feedback page does.
-
-    `environment` is what the runner sets; in any other job of GitHub Actions what is missing is made from `GITHUB_*`.
+    """Return the content of result.json. It has only title and hint of hidden checks, like the feedback page.
+    `environment` is what the runner sets; in other jobs of GitHub Actions, missing values are made from `GITHUB_*`.
     """
     scale = (
         1 if all(float(v.points).is_integer() and float(v.earned).is_integer() for v in grade.verdicts) else HUNDREDTHS
@@ -134,7 +132,7 @@ def _cell(text: str) -> str:
 
 
 def _fenced(text: str) -> str:
-    """Return a text that a student can choose parts of as a block in which nothing is markup."""
+    """Return a text that a student can influence, as a block without markup."""
     shown = printable(text, LONGEST_TEXT)
     fence = "`" * 3
     while fence in shown:

@@ -1,1 +1,1 @@
-"""Grading on Gradescope: what it is told of a grade, and the autograder that is uploaded there."""
+"""Grading on Gradescope: the results that it shows, and the autograder to upload there."""

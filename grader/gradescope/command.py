@@ -19,14 +19,13 @@ from grader.exercise.loading import NoExercise, find, load
 from grader.grading.reference import solution_file
 from grader.sandbox.isolation import Isolation
 from interface_compiler import activation
-from interface_compiler.archive import zipped
 from interface_compiler.building import DEFINITIONS
-from interface_compiler.wheel import record
+from interface_compiler.wheel import record, zipped
 
 #: Where this software's own source is: the folder with pyproject.toml.
 SOURCE = Path(__file__).parents[2]
 
-#: What of it the container needs.
+#: The parts of it that the container needs.
 NEEDED = ("pyproject.toml", "README.md", "LICENSE", "constraints.txt", "constraints-ros.txt")
 
 PACKAGES = ("grader", "spinbook", "rmw_lockstep", "interface_compiler")
@@ -36,15 +35,15 @@ DATE = (1980, 1, 1, 0, 0, 0)
 
 
 class NoSource(Exception):
-    """Raised where neither a checkout nor an installed wheel tells what the container is to install."""
+    """Raised if neither a checkout nor an installed wheel says what the container must install."""
 
 
 def bundle(exercise: Exercise, isolation: Isolation | None = None) -> bytes:
     """The zip's bytes, the same each time for the same content.
 
-    Of the solutions only `solution.py` is in it, and no student can read it there but by breaking out of the sandbox.
-    `isolation` is the level at which students' programs are run, None for the strongest that works in the container.
-    Raises `NoSource`, and `ExerciseError` where there is no solution.
+    Of the solutions it has only `solution.py`, which a student could read only by breaking out of the sandbox.
+    `isolation` is the level at which students' programs run, None for the strongest that works in the container. Raises
+    `NoSource`, and `ExerciseError` if there is no solution.
     """
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -76,7 +75,7 @@ def _source() -> dict[str, bytes]:
 
 
 def _installed() -> dict[str, bytes]:
-    """Return the wheel that is installed here, and the versions of all that it needs."""
+    """Return the wheel that is installed here, and the versions of its dependencies."""
     try:
         name, content = installed_wheel()
     except NotInstalled as error:
@@ -118,12 +117,12 @@ def _add(archive: zipfile.ZipFile, name: str, content: bytes, mode: int) -> None
     archive.writestr(entry, content)
 
 
-#: What the autograders of all platforms take.
+#: The options of every platform's autograder command.
 isolation_option = click.option(
     "--isolation",
     type=click.Choice([level.value for level in Isolation]),
     callback=lambda context, option, value: Isolation(value) if value else None,
-    help="How students' nodes are kept apart where they are graded.  [default: the strongest that works there]",
+    help="How to isolate students' nodes on the machine that grades them.  [default: the strongest that works there]",
 )
 
 
@@ -164,12 +163,12 @@ def gradescope(exercise: str, out: Path | None, isolation: Isolation | None) -> 
 
 NAME = "spinbook"
 
-#: What the installer adds to a wheel's own files.
+#: The files that the installer adds to a wheel's own files.
 _INSTALLERS = ("INSTALLER", "REQUESTED", "direct_url.json", "RECORD")
 
 
 class NotInstalled(Exception):
-    """Raised where this software is not installed from a wheel; says what to do."""
+    """Raised if this software is not installed from a wheel; says what to do."""
 
 
 def installed_wheel() -> tuple[str, bytes]:
@@ -195,7 +194,7 @@ def installed_wheel() -> tuple[str, bytes]:
 
 
 def pins() -> list[str]:
-    """Return the versions, such as `numpy==2.3.1`, of what is installed here of all that the wheel may need."""
+    """Return the installed versions, such as `numpy==2.3.1`, of everything that the wheel may need."""
     found: dict[str, str] = {}
     waiting = [NAME]
     while waiting:

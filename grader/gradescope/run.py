@@ -2,6 +2,8 @@
 
 ROOT is `/autograder` there: it holds `submission/` and `submission_metadata.json`, and gets `results/results.json`.
 What is printed Gradescope shows to instructors alone.
+
+`python -m grader.gradescope.run prepare EXERCISE_FOLDER [ISOLATION]` prepares the container while it is built.
 """
 
 from __future__ import annotations
@@ -9,6 +11,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
+import os
 import sys
 import traceback
 from datetime import datetime
@@ -18,22 +21,42 @@ from typing import Any
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
 from grader.files import write_if_changed
-from grader.gradescope.prepare import keep_beside
-from grader.grading.entry import Entry, Student
-from grader.grading.grade import Options
+from grader.grading.grade import Entry, Options, Student
 from grader.grading.grading import grading_of
-from grader.report.gradescope import no_score, results
+from grader.report.as_json import gradescope_results, no_score
 from grader.sandbox.isolation import Isolation
 from grader.sandbox.program import SandboxUnavailable
 from grader.submission.reading import Submission, read
 from grader.workers.pool import HostFault, WorkerPool
 
 
+def keep_beside(exercise: Path) -> None:
+    """Let this process keep it beside the course that the exercise's folder is in, unless `SPINBOOK_CACHE` is set."""
+    os.environ.setdefault("SPINBOOK_CACHE", str(exercise.resolve().parents[1] / "cache"))
+
+
+def prepare(folder: Path, isolation: str = "") -> None:
+    """Spin the solution and prove the exercise by it. A fault of the exercise's ends the build, with status 1.
+
+    No sandbox ends nothing: a build may allow less than a run. Each submission then tells it, without a score.
+    """
+    keep_beside(folder)
+    try:
+        exercise = load(folder)
+        with WorkerPool() as workers:
+            grading = grading_of(exercise, Options(Isolation(isolation) if isolation else None), workers)
+        print(f"Ready to grade {exercise.name}, isolation: {grading.runner.isolation}.")
+    except (SandboxUnavailable, HostFault) as error:
+        print(f"The solution could not be tried while the container was built:\n{error}")
+    except ExerciseError as error:
+        sys.exit(f"The exercise is at fault.\n{error}")
+
+
 def main(folder: Path, root: Path, isolation: str = "") -> None:
     """Grade what is in `root/submission`. Whatever goes wrong on our side is told, without a score."""
     keep_beside(folder)
     try:
-        text = results(_entry(load(folder), root, isolation))
+        text = gradescope_results(_entry(load(folder), root, isolation))
     except (ExerciseError, SandboxUnavailable, HostFault) as error:
         print(error)
         text = no_score("The autograder is not set up right; its output says more.")
@@ -81,4 +104,7 @@ def _metadata(file: Path) -> tuple[Student, datetime | None]:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]), *sys.argv[3:4])
+    if sys.argv[1] == "prepare":
+        prepare(Path(sys.argv[2]), *sys.argv[3:4])
+    else:
+        main(Path(sys.argv[1]), Path(sys.argv[2]), *sys.argv[3:4])

@@ -36,4 +36,4 @@ python3 -m venv "$here/venv"
 "$here/venv/bin/python" -m interface_compiler install "$here/course" || echo "Some messages could not be compiled." >&2
 
 # Proves that grading works in here, and keeps what the solution publishes. What is wrong stands in the build's output.
-"$here/venv/bin/python" -m grader.gradescope.prepare "$here/course/exercises/$EXERCISE" $ISOLATION
+"$here/venv/bin/python" -m grader.gradescope.run prepare "$here/course/exercises/$EXERCISE" $ISOLATION

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from dataclasses import dataclass, field
+from datetime import datetime
 from typing import Literal
 
 from grader.checking.verdict import Verdict
@@ -22,8 +23,8 @@ class Grade:
     """One grading. Two gradings of one submission are equal: what may differ (timings, logs) does not count.
 
     `message` tells the student, or for a host error the instructor, what happened; `line` is the line of the student's
-    file that is to blame, if known. `hold` is how the runner knew that the node had handled a message. `recordings`
-    and `references` are what the node and the solution published, by scenario.
+    file that is to blame, if known. `synchronization` is how the runner knew that the node had handled a message.
+    `recordings` and `references` are what the node and the solution published, by scenario.
 
     A `self_check` judges by the public checks only, and is not the official grade; `hidden_checks` and `hidden_points`
     are how many more checks there are, and how many points they give together.
@@ -43,7 +44,7 @@ class Grade:
     self_check: bool = False
     hidden_checks: int = 0
     hidden_points: float = 0.0
-    hold: str = "none"
+    synchronization: str = "none"
     line: int | None = None
     log: str = field(default="", compare=False, repr=False)
     seconds: float = field(default=0.0, compare=False)
@@ -105,17 +106,72 @@ def message_of(ending: Ending, exercise: Exercise) -> str:
 
     The exercise's own advice has priority over the advice that fits every program.
     """
-    story = ending.story
+    message = ending.message
     for exception, advice in exercise.advice.items():
-        if re.search(rf"\b{re.escape(exception)}\b", story):
-            return f"{story} {advice}"
-    if missing := MISSING.search(story):
+        if re.search(rf"\b{re.escape(exception)}\b", message):
+            return f"{message} {advice}"
+    if missing := MISSING.search(message):
         return (
-            f"{story} The module {missing[1]} is not available here. Available are Python's own modules, {AVAILABLE}."
+            f"{message} The module {missing[1]} is not available here. Available are Python's own modules, {AVAILABLE}."
         )
-    if no_name := NO_NAME.search(story):
-        return f"{story} The module {no_name[2]} has no {no_name[1]}. Is the name spelled right?"
+    if no_name := NO_NAME.search(message):
+        return f"{message} The module {no_name[2]} has no {no_name[1]}. Is the name spelled right?"
     for pattern, advice in ADVICE:
-        if pattern.search(story):
-            return f"{story} {advice}"
-    return story
+        if pattern.search(message):
+            return f"{message} {advice}"
+    return message
+
+
+@dataclass(frozen=True)
+class Student:
+    """Whose submission it is.
+
+    `id` is unique in the class and names the student's folder. `lms` keeps the values of a learning platform's export
+    for the student, by the platform's own column names, so that grades can be imported there.
+    """
+
+    id: str
+    name: str = ""
+    email: str = ""
+    lms: dict[str, str] = field(default_factory=dict, hash=False)
+
+
+@dataclass(frozen=True)
+class Adjustment:
+    """Points that were added (or, below zero, taken) after grading, and why."""
+
+    kind: Literal["late", "override", "extra"]
+    points: float
+    reason: str
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One student's submission, its grade, and what happened to the score.
+
+    `file` is what was graded, relative to the class's folder. `submitted` is when it was submitted, with a time zone,
+    if known, and `submitted_from` is where that comes from: "timestamp.txt", "the CSV file", "the zip file" or "the
+    file's date". A grade that was read back from results has no recordings.
+    """
+
+    student: Student
+    file: str
+    grade: Grade
+    submitted: datetime | None = None
+    adjustments: tuple[Adjustment, ...] = ()
+    submitted_from: str = ""
+
+    @property
+    def final(self) -> float | None:
+        """The points that count, at least 0; more than the exercise's with extra credit. None for a fault of ours."""
+        if self.grade.outcome == "host-error" and not any(a.kind == "override" for a in self.adjustments):
+            return None
+        return max(0.0, self.grade.score + sum(adjustment.points for adjustment in self.adjustments))
+
+
+@dataclass(frozen=True)
+class Skipped:
+    """A file that was not graded, and why."""
+
+    file: str
+    why: str

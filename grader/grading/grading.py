@@ -95,7 +95,7 @@ class Grading:
             self_check=self.public is not None,
             hidden_checks=self.public.hidden_checks if self.public else 0,
             hidden_points=self.public.hidden_points if self.public else 0.0,
-            hold=first.hold if first else "none",
+            synchronization=first.synchronization if first else "none",
             line=first.ending.line if first else None,
             log=first.log if first else "",
             seconds=time.monotonic() - began,

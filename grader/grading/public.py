@@ -16,8 +16,7 @@ from grader.exercise.exercise import Exercise, ExerciseError
 from grader.grading.grade import Options
 from grader.grading.reference import reference
 from grader.grading.running import ScenarioRunner
-from grader.recording.recording import Recording
-from grader.recording.store import from_plain, plain
+from grader.recording.recording import Recording, from_plain, plain
 from grader.sandbox.isolation import Isolation
 from grader.scenario.declared import declared
 from grader.scenario.scenario import Message, Scenario
@@ -47,7 +46,7 @@ class PublicPart:
 def public_part(exercise: Exercise, options: Options, isolation: Isolation, workers: WorkerPool) -> PublicPart:
     """Return the public part of an exercise: read in a student's copy, made from the solution if there is one.
 
-    Raises `ExerciseError` if there is something to fix for the author, or in a student's copy for whoever changed it.
+    Raises `ExerciseError` if there is something to fix for the author, or for anybody who changed a student's copy.
     """
     if exercise.solution_folder is None:
         return _read(exercise)

@@ -16,8 +16,7 @@ from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.starter import MarkerError, starter
 from grader.files import cached, write_if_changed
 from grader.grading.running import ScenarioRunner
-from grader.recording.recording import Recording
-from grader.recording.store import from_json, to_json
+from grader.recording.recording import Recording, from_json, to_json
 from grader.sandbox.program import Middleware
 from grader.submission.reading import of_source
 from grader.workers.jobs import JudgeJob
@@ -124,12 +123,12 @@ def _made(runner: ScenarioRunner) -> dict[str, Recording]:
     try:
         starter(code.decode("utf-8"))
     except MarkerError as error:
-        raise ExerciseError(file, str(error), "Put every mark in order; the starter is made from them.") from None
+        raise ExerciseError(file, str(error), "Fix the markers; the starter is made from them.") from None
     recordings = runner.spin(of_source("the solution", code, runner.exercise))
     for recording in recordings.values():
         ending = recording.ending
         if ending.outcome != "completed":
-            found = f"the solution does not come through the scenario {recording.scenario}: {ending.story}"
+            found = f"the solution does not come through the scenario {recording.scenario}: {ending.message}"
             raise ExerciseError(file, found, "Fix the solution or the scenario.", ending.line)
     return recordings
 

@@ -46,11 +46,11 @@ class TaskQueue:
         `core` is the CPU to keep the program on, None for the one that each job names. An error in a run is raised when
         its recording is requested.
         """
-        with self._workers.hand() as hand:
+        with self._workers.reserve() as worker:
             while job := self._next():
                 recording = self._recordings[job.scenario.name]
                 try:
-                    recording.set_result(hand.do(job if core is None else replace(job, core=core), self._given_up))
+                    recording.set_result(worker.do(job if core is None else replace(job, core=core), self._given_up))
                 except BaseException as fault:
                     recording.set_exception(fault)
 
@@ -79,16 +79,16 @@ class WorkStealing:
         self._closed = False
 
     @contextlib.contextmanager
-    def wanted(self, spins: TaskQueue) -> Iterator[None]:
+    def wanted(self, queue: TaskQueue) -> Iterator[None]:
         """Let others help with these runs inside the `with` block."""
         with self._changed:
-            self._under_way.append(spins)
+            self._under_way.append(queue)
             self._changed.notify_all()
         try:
             yield
         finally:
             with self._changed:
-                self._under_way.remove(spins)
+                self._under_way.remove(queue)
 
     def help(self, core: int | None) -> None:
         """Help where the most runs are waiting, with the program on CPU `core`; return once this is closed."""
@@ -96,15 +96,15 @@ class WorkStealing:
             pass
 
     def _help_with_one(self, core: int | None) -> bool:
-        spins = self._neediest()
-        if spins:
-            spins.work(core)
-        return spins is not None
+        queue = self._neediest()
+        if queue:
+            queue.work(core)
+        return queue is not None
 
     def _neediest(self) -> TaskQueue | None:
         with self._changed:
-            self._changed.wait_for(lambda: self._closed or any(spins.left for spins in self._under_way))
-            return None if self._closed else max(self._under_way, key=lambda spins: spins.left)
+            self._changed.wait_for(lambda: self._closed or any(queue.left for queue in self._under_way))
+            return None if self._closed else max(self._under_way, key=lambda queue: queue.left)
 
     def close(self) -> None:
         """Release all helpers."""
@@ -150,18 +150,18 @@ class ScenarioRunner:
         """
         jobs = [self.job(submission, scenario, i) for i, scenario in enumerate(self.scenarios)]
         # The longest first, so that none is left over at the end; the very first is needed at once.
-        spins = TaskQueue((jobs[0], *sorted(jobs[1:], key=lambda job: -job.scenario.size)), self.workers)
-        with ThreadPoolExecutor(self.options.parallel) as pool, self.work_stealing.wanted(spins):
+        queue = TaskQueue((jobs[0], *sorted(jobs[1:], key=lambda job: -job.scenario.size)), self.workers)
+        with ThreadPoolExecutor(self.options.parallel) as pool, self.work_stealing.wanted(queue):
             for _ in range(self.options.parallel):
-                pool.submit(spins.work)
+                pool.submit(queue.work)
             try:
-                first = spins.recording(self.scenarios[0].name)
+                first = queue.recording(self.scenarios[0].name)
                 if first.ending.outcome != "completed":
                     return {scenario.name: likewise(first, scenario.name) for scenario in self.scenarios}
                 self.workers.prepare_to_judge()
-                return {scenario.name: spins.recording(scenario.name) for scenario in self.scenarios}
+                return {scenario.name: queue.recording(scenario.name) for scenario in self.scenarios}
             finally:
-                spins.give_up()
+                queue.give_up()
 
     def share(self, references: Iterable[Recording] = ()) -> None:
         """Let the worker have what all jobs need: call it once, before the first submission."""

@@ -1,6 +1,7 @@
-"""Grades and gradebook entries as JSON.
+"""Grades and gradebook entries as JSON: our own form, and Gradescope's.
 
-An entry is `results/STUDENT/grade.json`; docs/grade.schema.json describes it for other programs.
+An entry is `results/STUDENT/grade.json`; docs/grade.schema.json describes it for other programs. Gradescope's
+results.json is described in https://gradescope-autograders.readthedocs.io/en/latest/specs/.
 """
 
 from __future__ import annotations
@@ -13,8 +14,10 @@ from pathlib import Path
 from typing import Any
 
 from grader.checking.verdict import Finding, Verdict
-from grader.grading.entry import Adjustment, Entry, Student
-from grader.grading.grade import Grade
+from grader.grading.grade import Adjustment, Entry, Grade, Student
+from grader.recording.recording import renamed
+from grader.report.feedback import ShownCheck, shown_checks, tail
+from grader.report.printable import printable
 
 
 def as_json(grade: Grade) -> str:
@@ -83,10 +86,75 @@ def from_json(text: str) -> tuple[Entry, str]:
 
 
 def _grade(entries: dict[str, Any]) -> Grade:
-    return Grade(**{**entries, "verdicts": tuple(_verdict(verdict) for verdict in entries["verdicts"])})
+    return Grade(**{**renamed(entries), "verdicts": tuple(_verdict(verdict) for verdict in entries["verdicts"])})
 
 
 def _verdict(entries: dict[str, Any]) -> Verdict:
     kept = {name: value for name, value in entries.items() if name != "earned"}
     finding = Finding(**entries["finding"]) if entries["finding"] else None
     return Verdict(**{**kept, "finding": finding, "blocked_by": tuple(entries["blocked_by"])})
+
+
+LONGEST_TEXT = 20_000
+
+VISIBLE, AFTER_PUBLISHED, HIDDEN = "visible", "after_published", "hidden"
+
+
+def gradescope_results(entry: Entry) -> dict[str, Any]:
+    """What Gradescope is told: public checks visible at once, hidden ones when grades are published, stdout never.
+
+    Of hidden checks it is told as little as the feedback page tells (`grader.report.feedback`), for once grades are
+    published students read it. A fault of ours is told with no score and no tests: Gradescope then records no score.
+    """
+    grade = entry.grade
+    if entry.final is None:
+        return no_score(grade.message)
+    return {
+        "score": round(entry.final, 2),
+        "execution_time": round(grade.seconds),
+        "output": _text(_summary(entry)),
+        "output_format": "text",
+        "stdout_visibility": HIDDEN,
+        "tests": [_test(check) for check in shown_checks(grade)],
+        "extra_data": {"outcome": grade.outcome, "isolation": grade.isolation, "versions": grade.versions},
+    }
+
+
+def no_score(message: str) -> dict[str, Any]:
+    """What Gradescope is told where nothing could be graded by a fault of ours: a text, and no score."""
+    text = f"This could not be graded, and that is not your fault. Tell your instructor.\n{message}"
+    return {"output": _text(text), "output_format": "text", "stdout_visibility": HIDDEN}
+
+
+def results_json(entry: Entry) -> str:
+    """Return `gradescope_results` as JSON text."""
+    return json.dumps(gradescope_results(entry), indent=2, ensure_ascii=False) + "\n"
+
+
+def _summary(entry: Entry) -> str:
+    grade = entry.grade
+    lines = [grade.message] if grade.message else []
+    if grade.full_marks:
+        lines.append("Your node passed every check.")
+    lines += [f"{a.points:+g} points: {a.reason}" for a in entry.adjustments]
+    log, _ = tail(grade.log)
+    if grade.outcome != "graded" and log:
+        lines += ["", "The last lines that your program printed:", log]
+    return "\n".join(lines)
+
+
+def _test(check: ShownCheck) -> dict[str, Any]:
+    return {
+        "name": _text(check.title),
+        "name_format": "text",
+        "score": check.earned,
+        "max_score": check.points,
+        "status": "passed" if check.status == "passed" else "failed",
+        "output": _text(check.text),
+        "output_format": "text",
+        "visibility": AFTER_PUBLISHED if check.hidden else VISIBLE,
+    }
+
+
+def _text(text: str) -> str:
+    return printable(text, LONGEST_TEXT)

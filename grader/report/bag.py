@@ -13,7 +13,7 @@ from grader.recording.events import Event
 from grader.recording.recording import Fields, Received, Recording, Sent
 from interface_compiler import prefixes
 
-#: The solution's answers are in the bag, too, under this name in front of the topic's.
+#: The solution's answers are also in the bag, with this name before the topic's.
 REFERENCE = "/reference"
 
 #: Calls, goals, parameters and ends of programs are on this topic, as JSON in a text each.
@@ -25,7 +25,7 @@ class NoBagWriter(Exception):
 
 
 def write_bags(grade: Grade, folder: Path) -> list[Path]:
-    """Write one bag a scenario into `folder` and return where. A bag of the same name is replaced.
+    """Write one bag per scenario into `folder`, and return their paths. A bag of the same name is replaced.
 
     Raises `NoBagWriter` without the package rosbags, and OSError when the folder can't be written.
     """

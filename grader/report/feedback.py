@@ -9,16 +9,15 @@ from html import unescape
 
 from grader.checking.verdict import Finding, Status, Verdict
 from grader.exercise.exercise import Exercise
-from grader.grading.entry import Adjustment, Entry
-from grader.grading.grade import Grade, Outcome
+from grader.grading.grade import Adjustment, Entry, Grade, Outcome
 from grader.report.pages import render
 from grader.report.printable import as_students_see_it, printable
 
-# Of a public check everything. Of a hidden one its title, its points, whether it was passed, and its hint, which its
-# author wrote for students; never its name, its scenario, or a number that was expected: those would give it away.
+# A public check is shown in full. A hidden one is shown with its title, its points, whether it passed, and its hint,
+# which its author wrote for students; never with its name, its scenario, or an expected number, which would reveal it.
 
 
-#: A status as a sign and as a word. `error` is our fault, and then there is no score.
+#: A status as a sign and as a word. `error` is the grader's fault, and then there is no score.
 SIGNS: dict[Status, tuple[str, str]] = {
     "passed": ("✓", "passed"),
     "failed": ("✗", "failed"),
@@ -60,7 +59,7 @@ def shown_checks(grade: Grade) -> tuple[ShownCheck, ...]:
 
 
 def _shown_check(verdict: Verdict, grade: Grade, titles: dict[str, str]) -> ShownCheck:
-    # Where the first scenario broke off, that is the story; each check would repeat it.
+    # Where the first scenario broke off, that is the message; each check would repeat it.
     telling = grade.outcome == "graded"
     sign, word = SIGNS[verdict.status]
     failed = verdict.status == "failed" and telling
@@ -114,7 +113,7 @@ HEADLINES: dict[Outcome, tuple[str, str]] = {
 
 
 def advice(grade: Grade, exercise: Exercise) -> Advice | None:
-    """What to tell about an outcome that is no plain grade; None for that."""
+    """The message for an outcome other than a plain grade; None for a plain grade."""
     headline, meaning = HEADLINES[grade.outcome]
     if not headline:
         return None
@@ -164,8 +163,8 @@ def feedback_page(entry: Entry, exercise: Exercise, plot_svg: str | None) -> str
     """The page that tells one student the score, every check, and what to do next, as one HTML file.
 
     It needs no network and runs no script. `plot_svg` is what `feedback_plot` drew, or None for a page without a plot.
-    Of hidden checks it tells no more than `grader.report.feedback` allows. Everything that a student can choose (names,
-    messages, output) is shown as text and nothing else.
+    It shows no more of hidden checks than `grader.report.feedback` allows. Everything that a student can choose (names,
+    messages, output) is shown only as text.
     """
     grade = entry.grade
     checks = shown_checks(grade)
@@ -205,6 +204,6 @@ def _picture(svg: str) -> str:
 
 
 def _description(svg: str) -> str:
-    """What the picture says of itself in <desc>."""
+    """The picture's own description in <desc>."""
     found = re.search(r"<desc[^>]*>([^<]*)</desc>", svg)
     return unescape(found[1]).strip() if found else "Your node's output drawn over the solution's."

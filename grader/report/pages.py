@@ -16,7 +16,7 @@ from grader.report.printable import printable
 
 GRADER = Path(__file__).parents[1]
 
-#: Of one text no more is shown: a student can publish a name of a megabyte.
+#: The longest text that is shown: a student can publish a name of a megabyte.
 LONGEST_TEXT = 4000
 
 
@@ -24,7 +24,7 @@ def render(page: str, script: str = "", **values: Any) -> str:
     """The page that the template `page` (a path below grader/) makes of `values`.
 
     Every text is escaped, loses its control and direction-changing characters, and is cut after 4000 characters. The
-    page has the shared style sheet and `script` in it, and forbids the browser everything else: other scripts and
+    page has the shared style sheet and `script` in it, and its policy forbids everything else: other scripts and
     styles, every request, forms.
     """
     style = _style()
@@ -76,7 +76,7 @@ def _style() -> str:
 
 
 def _allowed(text: str) -> str:
-    """What a content security policy calls this very text (CSP level 2, hash sources)."""
+    """The hash of this text for a content security policy (CSP level 2, hash sources)."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from grader.exercise.exercise import Exercise
 from grader.files import write_if_changed
 from grader.grading.grade import Grade
-from grader.report.curves import Curve, Point, Quantity, curves, drawn_quantity
+from grader.report.feedback_plot import Curve, Point, Quantity, curves, drawn_quantity
 from grader.report.printable import printable
 
 #: The same picture each time: no date in it, and identifiers made from a fixed salt.

@@ -1,10 +1,10 @@
-"""Text of a student's, made harmless for terminals and pictures."""
+"""Makes a student's text harmless for terminals and pictures."""
 
 from __future__ import annotations
 
 import re
 
-#: Where a library and the submission itself are on the machine that graded is nothing to a student.
+#: A student need not know where libraries and the submission are on the grading machine.
 PLACES = re.compile(r'(?<=File ")(?:/submission/|[^"\n]*/(?:site|dist)-packages/)')
 
 
@@ -16,7 +16,7 @@ def as_students_see_it(log: str) -> str:
 def printable(text: str, longest: int = 0) -> str:
     """`text` with every character that could steer a terminal shown as a replacement sign; line ends and tabs stay.
 
-    With `longest` only so many characters are kept.
+    With `longest`, only this many characters are kept.
     """
     shown = "".join(c if c.isprintable() or c in "\n\t" else "\N{REPLACEMENT CHARACTER}" for c in text)
     return shown if not longest or len(shown) <= longest else f"{shown[:longest]}…"

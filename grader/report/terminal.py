@@ -15,13 +15,13 @@ from grader.sandbox.program import Middleware
 
 
 def points_so_far(grade: Grade) -> str:
-    """How much of what could be judged here is right: "8 of 8 public checks, 50 of 50 points"."""
+    """How many of the checks that could be judged here passed: "8 of 8 public checks, 50 of 50 points"."""
     passed = sum(verdict.status == "passed" for verdict in grade.verdicts)
     return f"{passed} of {len(grade.verdicts)} public checks, {grade.score:g} of {grade.points:g} points"
 
 
 def hidden_checks_to_come(grade: Grade) -> str:
-    """What is judged later; empty where all checks are public."""
+    """What is judged later; empty if all checks are public."""
     count = grade.hidden_checks
     if not count:
         return ""
@@ -29,7 +29,7 @@ def hidden_checks_to_come(grade: Grade) -> str:
 
 
 def self_check_standing(grade: Grade) -> str:
-    """That this is no grade, and how the code ran."""
+    """Says that this is not a grade, and how the code ran."""
     text = "This is a self-check, not your grade."
     if grade.isolation == Isolation.NONE.value:
         text += " Your code ran without a sandbox, and no grade of record is made that way."
@@ -80,7 +80,7 @@ def _show_verdict(verdict: Verdict, grade: Grade, console: Console) -> None:
     console.print(Text.assemble((f" {sign} ", style), (f"{points:>6}  ", "dim"), verdict.title), soft_wrap=True)
     lines = []
     if verdict.status == "failed":
-        # The story of a run that broke off stands at the top already.
+        # The message of a run that broke off stands at the top already.
         if verdict.finding and grade.outcome == "graded":
             lines.append(verdict.finding.text)
         if grade.outcome == "graded":

@@ -23,9 +23,9 @@ from grader.submission.upload import NoUpload, Upload, unpack
 class Submission:
     """One submission, read.
 
-    `digest` is the SHA-256 of what was handed in. `program` says how it is started, and is None where it can't be;
-    then `problem` tells the student why. `source` is its text, to quote lines from. `warning` tells the instructor what
-    is odd about it, such as an upload that was changed; it costs no points.
+    `digest` is the SHA-256 of what was handed in. `program` says how it is started, and is None if it can't be; then
+    `problem` says to the student why. `source` is its text, to quote lines from. `warning` says to the instructor what
+    is unusual about it, such as an upload that was changed; it costs no points.
     """
 
     name: str
@@ -46,7 +46,7 @@ class Executable:
     python_path: str
 
     def digest(self) -> str:
-        """SHA-256 of the script and of every Python file beside its modules."""
+        """SHA-256 of the script and of every Python file next to its modules."""
         total = hashlib.sha256(self.script.read_bytes())
         for folder in self.python_path.split(os.pathsep):
             for file in sorted(Path(folder).rglob("*.py")):
@@ -82,19 +82,19 @@ def _described(prefix: Path, script: Path) -> Executable:
 
 
 class NoCell(Exception):
-    """Raised when a notebook holds no cell for the exercise; tells the student why."""
+    """Raised when a notebook has no cell for the exercise; says to the student why."""
 
 
 def cell_of(content: bytes, exercise: Exercise) -> str:
-    """The code of the exercise's cell, with its lines numbered as in the cell: of several the last."""
+    """The code of the exercise's cell (of several cells the last), with its lines numbered as in the cell."""
     return cells_of(content, exercise)[-1]
 
 
 def cells_of(content: bytes, exercise: Exercise) -> list[str]:
     """The code of every cell that is the exercise's, in their order; at least one. Lines of magic become empty ones.
 
-    Those are cells whose metadata says `spinbook.exercise`, else those with `%%node` and the exercise's name, else
-    those that define the exercise's class, else those that make its node. Raises `NoCell`.
+    Those are cells whose metadata says `spinbook.exercise`; if there are none, those with `%%node` and the exercise's
+    name, then those that define the exercise's class, then those that create its node. Raises `NoCell`.
     """
     try:
         cells = json.loads(content)["cells"]
@@ -149,7 +149,7 @@ class _Unusable(Exception):
 def read(given: str, exercise: Exercise) -> Submission:
     """The submission that `given` names: a file, or `package/executable` of an installed package.
 
-    A file is a .py, a notebook, or the .zip that `spinbook submit` writes. Raises `NoSubmission` where there is none.
+    A file is a .py, a notebook, or the .zip that `spinbook submit` writes. Raises `NoSubmission` if there is none.
     """
     path = Path(given)
     if exercise.programs and path.is_dir():
@@ -197,7 +197,7 @@ UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 
 def not_python(code: bytes) -> str:
-    """Say why Python can't read a file at all, where Python itself says it badly; empty if it can, or says it well."""
+    """Say why Python can't read a file, if Python's own message is unclear; otherwise empty."""
     if code.startswith(UTF_16):
         return (
             "Your file is saved as UTF-16, which Python can't read. Save it as UTF-8: in VS Code, click UTF-16 below."
@@ -207,7 +207,7 @@ def not_python(code: bytes) -> str:
         return f"Line {line} of your file holds a NUL byte, so it is not a text file. Save your code as text, in UTF-8."
     deepest = max(map(_nested, code.splitlines()), default=0)
     if deepest > DEEPEST:
-        return f"A line of your file nests {deepest:,} operators or brackets. Python can't read anything as deep."
+        return f"A line of your file nests {deepest:,} operators or brackets. Python can't read such deep nesting."
     return ""
 
 
@@ -229,7 +229,7 @@ def _nested(line: bytes) -> int:
 
 
 def of_upload(name: str, content: bytes, exercise: Exercise) -> Submission:
-    """The submission in an upload. What in it does not match is told in `warning`; it is graded all the same."""
+    """The submission in an upload. `warning` says what in it does not match; it is graded anyway."""
     try:
         upload = unpack(content)
     except NoUpload as error:
@@ -271,7 +271,7 @@ def _folder(path: Path) -> dict[str, bytes]:
 
 
 def _content(path: Path) -> bytes:
-    """What is in a file, of the file itself and of nothing that it points to."""
+    """The content of a file itself, without following links."""
     most = MOST_BYTES[path.suffix]
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
@@ -297,7 +297,7 @@ def _executable(given: str, exercise: Exercise) -> Submission:
         raise NoSubmission(found)
     source = found.script.read_bytes()
     program = Program(
-        str(found.script), environment={"PYTHONPATH": found.python_path}, readonly=found.folders, warm=False
+        str(found.script), environment={"PYTHONPATH": found.python_path}, readonly=found.folders, preloaded=False
     )
     return Submission(given, found.digest(), found.script.name, source.decode(errors="replace"), program)
 

@@ -1,7 +1,7 @@
 """The one file that a student uploads: a zip with the code, the notebook it came from, and a record of both.
 
 `submission.json`, the record, holds the SHA-256 of every other file and a digest of itself, so that a damaged or edited
-upload is noticed. That is no signature: whoever means to can write another. So nothing in the record decides a grade.
+upload is noticed. That is not a signature: anybody can write another record. So nothing in the record decides a grade.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import Any
 FORMAT = "spinbook-submission 1"
 RECORD = "submission.json"
 
-#: What an upload may hold. A zip's own figures are not believed: reading ends where this is used up.
+#: The limits of an upload. A zip's own figures are not trusted: reading ends when these limits are reached.
 MOST_FILES = 50
 MOST_BYTES = 4_000_000
 
@@ -32,15 +32,15 @@ ADVICE = "Hand in the file that `spinbook submit` writes."
 
 
 class NoUpload(Exception):
-    """Raised when a file is no zip that can be read, or holds what no upload holds; tells the student why."""
+    """Raised when a file is not a readable zip, or contains what no upload contains; says to the student why."""
 
 
 @dataclass(frozen=True)
 class Upload:
-    """An upload, read. `faults` says what in it is not as it was handed in, and is empty where all matches.
+    """An upload, read. `faults` says what in it has changed since it was written, and is empty if everything matches.
 
-    `files` are the contents by name, without the record; what could not be read is left out. `record` is empty where
-    there is none.
+    `files` are the contents by name, without the record; what could not be read is left out. `record` is empty if there
+    is none.
     """
 
     record: dict[str, Any]
@@ -54,7 +54,7 @@ def pack(record: Mapping[str, Any], files: Mapping[str, bytes]) -> bytes:
     whole["digest"] = record_digest(whole)
     text = json.dumps(whole, indent=2, ensure_ascii=False, sort_keys=True) + "\n"
     out = io.BytesIO()
-    # Stored and not compressed: what a compressor makes depends on its version.
+    # Stored, not compressed: the output of a compressor depends on its version.
     with zipfile.ZipFile(out, "w", zipfile.ZIP_STORED) as archive:
         for name, content in [(RECORD, text.encode()), *((name, files[name]) for name in sorted(files))]:
             entry = zipfile.ZipInfo(name, _DATE)
@@ -117,7 +117,7 @@ def _is_meant(entry: zipfile.ZipInfo) -> bool:
 
 
 def _content(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, most: int) -> bytes | None:
-    """The content of one entry, or None where it can't be read."""
+    """The content of one entry, or None if it can't be read."""
     if stat.S_ISLNK(entry.external_attr >> 16):
         raise NoUpload(f"{entry.filename} in it is a symbolic link. Hand in the file itself.")
     if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):

@@ -102,6 +102,6 @@ def test_ctrl_c_ends_it_at_once_and_leaves_nothing_running(small: SmallExercise,
     running.send_signal(signal.SIGINT)
     _, told = running.communicate(timeout=120)
     assert running.returncode == 130
-    assert "Stopped. What was tried is kept" in told
+    assert "Stopped. The results so far are kept" in told
     assert "Traceback" not in told
     process_mark.wait_until_none()

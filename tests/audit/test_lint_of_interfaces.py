@@ -12,7 +12,7 @@ from grader.checking.created import Created, created
 from grader.checking.proofreading import problems_of
 from grader.exercise.exercise import Qos
 from grader.exercise.loading import load
-from spinbook.new.kind import KINDS, Kind
+from spinbook.new.writing import KINDS, Kind
 
 SOLUTION = "solutions/doubler/solution.py"
 TOML = "exercises/doubler/exercise.toml"

@@ -219,7 +219,7 @@ def test_a_sample_is_always_the_same_and_of_all_kinds(mutants: tuple[Mutant, ...
 def trial(failed: bool = False, different: bool = False) -> Trial:
     """Return the trial of a program that fails a check, or that publishes something else and fails none."""
     return Trial(
-        story="",
+        message="",
         statuses={"test_a": "failed" if failed else "passed"},
         findings={"test_a": Finding("1 was expected")} if failed else {},
         spun=("positive", "any"),

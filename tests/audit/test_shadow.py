@@ -62,4 +62,4 @@ def test_it_goes_with_no_other_option() -> None:
     done = run("--shadow", "--quick")
 
     assert done.exit_code == 2
-    assert "--shadow goes with no other option but --parallel" in done.output
+    assert "--shadow can be combined only with --parallel" in done.output

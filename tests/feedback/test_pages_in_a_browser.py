@@ -11,11 +11,11 @@ from browser import opened
 from graded_class import EXTRA, LATE, WHEN, entry
 from playwright.sync_api import Browser, expect
 
-from grader.classroom import Entry, Skipped, Student
 from grader.classroom.misconceptions import Signature, failures_of, grouped
 from grader.classroom.overview import overview_page
 from grader.exercise import Exercise
 from grader.grading import Grade
+from grader.grading.grade import Entry, Skipped, Student
 from grader.report.feedback import feedback_page
 from grader.report.feedback_plot import feedback_plot
 

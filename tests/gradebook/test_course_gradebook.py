@@ -9,7 +9,6 @@ import plain_grades as plain
 import pytest
 from click.testing import CliRunner
 
-from grader.classroom import Entry, Student
 from grader.classroom.course_gradebook import (
     column_of,
     course_csv,
@@ -19,6 +18,7 @@ from grader.classroom.course_gradebook import (
     graded_exercises,
     struggles,
 )
+from grader.grading.grade import Entry, Student
 from grader.report.as_json import folder_of, to_json
 from spinbook.cli import spinbook
 

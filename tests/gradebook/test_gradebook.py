@@ -11,9 +11,9 @@ from pathlib import Path
 import plain_grades as plain
 from rich.console import Console
 
-from grader.classroom import Adjustment, Entry, Student
 from grader.classroom.class_run import show_result
 from grader.classroom.gradebook import write_gradebook
+from grader.grading.grade import Adjustment, Entry, Student
 
 LATE = Adjustment("late", -1.0, "handed in 1 h 0 min late")
 EXTRA = Adjustment("override", 3.0, "found a mistake")

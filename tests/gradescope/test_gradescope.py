@@ -18,12 +18,12 @@ import pytest
 from click.testing import CliRunner
 from small_class import EXERCISE, ROOT, TEMPLATE
 
-from grader.classroom import Adjustment
 from grader.classroom50.command import classroom50
 from grader.classroom50.run import result, summary
 from grader.exercise import load
 from grader.gradescope.command import bundle
-from grader.report.gradescope import results
+from grader.grading.grade import Adjustment
+from grader.report.as_json import gradescope_results as results
 
 
 def test_public_checks_are_seen_at_once_and_hidden_ones_when_grades_are_published() -> None:

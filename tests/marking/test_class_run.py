@@ -117,10 +117,10 @@ def test_a_fault_of_ours_is_tried_again_listed_apart_and_never_scored(done: Smal
     (done.submissions / "emil.py").unlink()
     code, printed = done.grade()
     assert code == 3, printed
-    assert "not graded, a fault of ours or the machine's: carl" in printed
+    assert "not graded, because of a fault of Spinbook or the machine: carl" in printed
     assert "the check has a hole" in printed
     assert tries.read_text() == "xx", "tried once more, and no oftener"
-    assert "emil" in printed, "of an earlier run, and said so"
+    assert "emil" in printed, "from an earlier run, and says so"
     assert done.finals() == {**POINTS, "carl": None}
     page = (done.folder / "results" / "index.html").read_text(encoding="utf-8")
     assert "Not graded because of a fault on our side" in page
@@ -197,7 +197,7 @@ def test_no_name_of_a_student_and_no_fault_in_one_stops_a_class_of_thirty(small_
     code, printed = small_class.grade()
     assert code == 3, printed
     assert "29 grades: median 0 of" in printed
-    assert "not graded, a fault of ours or the machine's: student00" in printed
+    assert "not graded, because of a fault of Spinbook or the machine: student00" in printed
     kept = {file.parent.name for file in results.glob("students/*/grade.json")}
     assert len(kept) == 29
     assert {"index.html", "grades.csv", "junit.xml", "students"} < kept

@@ -5,9 +5,9 @@ from __future__ import annotations
 import plain_grades as plain
 import pytest
 
-from grader.classroom import Student
 from grader.classroom.misconceptions import grouped
 from grader.classroom.overview import distribution, overview_page, page_of, tallies
+from grader.grading.grade import Student
 
 
 def test_ten_bars_tell_how_the_points_are_spread() -> None:

@@ -1,4 +1,4 @@
-"""Mutants: a right program, each changed in one place, as a student might get it wrong."""
+"""Mutants: copies of a right program, each changed in one place, as a student might get it wrong."""
 
 from grader.audit.mutants.making import Mutant, mutants_of
 

@@ -8,7 +8,7 @@ import libcst as cst
 
 from grader.audit.mutants.program import Change, Program, called, expression, with_body
 
-#: Method -> where its arguments stand and what they are called: type, topic, callback, quality of service.
+#: Method -> positions and names of its arguments: type, topic, callback, quality of service.
 ENDS = {
     "create_publisher": {"type": (0, "msg_type"), "topic": (1, "topic"), "qos": (2, "qos_profile")},
     "create_subscription": {
@@ -24,7 +24,7 @@ ENDS = {
     "ActionClient": {"type": (1, "action_type"), "topic": (2, "action_name")},
 }
 
-#: What an end that is no topic's has for its type, and the module that it is in.
+#: The type to use for an end point that does not belong to a topic, and the module of that type.
 OTHER_TYPES = {
     "create_service": ("std_srvs.srv.Empty", "std_srvs.srv"),
     "create_client": ("std_srvs.srv.Empty", "std_srvs.srv"),
@@ -74,7 +74,7 @@ def quality_of_service(node: cst.CSTNode, program: Program) -> Iterator[Change]:
 
 
 def callback_left_out(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """What arrives is not handed to the callback."""
+    """Messages that arrive are not passed to the callback."""
     place = _argument(node, "callback")
     if place is not None:
         yield Change(node, place.value, expression("lambda *_: None"), f"does not call {program.text(place.value)}")
@@ -114,7 +114,7 @@ def one_publisher_a_message(node: cst.CSTNode, program: Program) -> Iterator[Cha
 
 
 def publisher_on_other_topic(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """There is one more publisher, on a topic that is another node's."""
+    """There is one more publisher, on another node's topic."""
     if isinstance(node, cst.SimpleStatementLine) and "self.create_publisher(" in program.text(node):
         kinds = {topic.name: topic.type for topic in program.exercise.inputs} | {"/clock": "rosgraph_msgs/msg/Clock"}
         for topic, kind in kinds.items():
@@ -125,7 +125,7 @@ def publisher_on_other_topic(node: cst.CSTNode, program: Program) -> Iterator[Ch
 
 
 def spinning(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """The node spins once; it shuts down where the signal has done so already."""
+    """The node spins once; it shuts down although the signal has already done so."""
     if isinstance(node, cst.Call) and isinstance(node.func, cst.Attribute):
         for old, new in (("spin", "spin_once"), ("try_shutdown", "shutdown")):
             if called(node) == old:

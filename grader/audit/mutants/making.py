@@ -9,18 +9,17 @@ import re
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from types import ModuleType
 
 import libcst as cst
 
-from grader.audit.mutants import conditions, end_points, history, loops, messages, numbers, peers, statements
+from grader.audit.mutants import end_points, messages, numbers, peers, statements
 from grader.audit.mutants.program import Change, Program
 from grader.exercise.exercise import Exercise
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """A program that differs from a right one by one change.
+    """A program with one change to a right one.
 
     `id` names the change: it stays the same as long as the changed lines and the function around them do, whatever the
     exercise, its class and its node are called. `operator` is the kind of change, `what` says it in words, `line` is
@@ -37,14 +36,22 @@ class Mutant:
 
 Operator = Callable[[cst.CSTNode, Program], Iterator[Change]]
 
-#: Each of these modules names its operators in OPERATORS.
-FAMILIES: tuple[ModuleType, ...] = (conditions, numbers, statements, loops, end_points, messages, history, peers)
+#: What may go wrong in one place, in the order in which it is tried.
+OPERATORS: tuple[Operator, ...] = (
+    *statements.CONDITIONS,
+    *numbers.NUMBERS,
+    *statements.STATEMENTS,
+    *statements.LOOPS,
+    *end_points.OPERATORS,
+    *messages.OPERATORS,
+    *numbers.HISTORY,
+    *peers.OPERATORS,
+)
 
 
 def mutants_of(source: str, exercise: Exercise) -> tuple[Mutant, ...]:
-    """Every mutant of a program, in the order of its lines; none twice, and none that means the same to Python.
-
-    Only what compiles counts: Python itself tells a student of the rest.
+    """Every mutant of a program, in the order of its lines; none twice, and none that means the same to Python. All of
+    them compile, because Python itself reports the others to a student.
     """
     program = Program(source, exercise)
     seen = {_meaning(source)}
@@ -85,7 +92,7 @@ def _without_names(text: str, exercise: Exercise) -> str:
 
 
 def _meaning(source: str) -> str:
-    """What Python makes of a program, whatever it looks like; empty where it does not compile."""
+    """The meaning of a program for Python, whatever its layout; empty if it does not compile."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -94,6 +101,3 @@ def _meaning(source: str) -> str:
     except (SyntaxError, ValueError):
         return ""
     return ast.dump(tree)
-
-
-OPERATORS: tuple[Operator, ...] = tuple(operator for family in FAMILIES for operator in family.OPERATORS)

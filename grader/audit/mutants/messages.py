@@ -14,7 +14,7 @@ WALL_CLOCK = "rclpy.clock.Clock().now().to_msg()"
 
 
 def other_clock(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """A message's stamp is not asked for, but the node's clock or the computer's."""
+    """The node's clock or the computer's is used instead of a message's stamp."""
     if isinstance(node, cst.Attribute) and program.text(node).endswith(".header.stamp"):
         if isinstance(program.parent(node), cst.AssignTarget):
             return
@@ -24,14 +24,14 @@ def other_clock(node: cst.CSTNode, program: Program) -> Iterator[Change]:
 
 
 def part_of_stamp(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """sec is taken for nanosec, and the other way round."""
+    """sec is used instead of nanosec, and the reverse."""
     if isinstance(node, cst.Attribute) and node.attr.value in ("sec", "nanosec"):
         other = "nanosec" if node.attr.value == "sec" else "sec"
         yield Change(node, node.attr, cst.Name(other), f"takes {other} for {node.attr.value}")
 
 
 def header(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """Where a header is copied: the stamp or the frame is dropped, or the stamp is the time of now."""
+    """When a header is copied, the stamp or the frame is dropped, or the stamp is the current time."""
     assignment = only_assignment(node)
     if assignment is None:
         return
@@ -69,7 +69,7 @@ _EACH = ("[math.degrees(v) for v in {}]", "[v * 1000.0 for v in {}]")
 
 
 def before_publishing(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """The message is spoilt at the last moment: its stamp, its frame, its order, one entry too few or too many."""
+    """The message is changed before it is published: its stamp, its frame, its order, one entry too few or too many."""
     call = only_call(node, "publish")
     if call is None or not call.args or not isinstance(call.args[0].value, cst.Name):
         return

@@ -8,10 +8,10 @@ import libcst as cst
 
 from grader.audit.mutants.program import Change, Program, called, expression, with_body
 
-#: How a goal ends -> how else it might.
+#: How a goal ends -> another way to end.
 OUTCOMES = {"succeed": ("abort", "canceled"), "canceled": ("succeed", "abort"), "abort": ("succeed",)}
 
-#: A name that stands after a dot -> what it is taken for.
+#: A name after a dot -> the name that replaces it.
 CHOICES = {
     "ACCEPT": "REJECT",
     "REJECT": "ACCEPT",
@@ -21,7 +21,7 @@ CHOICES = {
     "BEST_EFFORT": "RELIABLE",
 }
 
-#: What a node asks of its peers -> what it takes for the answer without asking.
+#: What a node asks its peers -> the answer that it assumes without asking.
 ASKED = {
     "is_cancel_requested": ("False", "True"),
     "accepted": ("True", "False"),
@@ -31,14 +31,14 @@ ASKED = {
     "wait_for_server": ("True",),
 }
 
-#: A call -> the call that is taken for it, and the module that it is in.
+#: A call -> the call that replaces it, and the module that defines that call.
 CALLS = {
     "call_async": ("call", ""),
     "MultiThreadedExecutor": ("SingleThreadedExecutor", "rclpy.executors"),
     "ReentrantCallbackGroup": ("MutuallyExclusiveCallbackGroup", "rclpy.callback_groups"),
 }
 
-#: Where functions are named that are called back: call -> positions and names of arguments.
+#: The arguments that name callbacks: call -> positions and names of arguments.
 CALLBACKS: dict[str, tuple[tuple[int, str], ...]] = {
     "create_subscription": ((2, "callback"),),
     "create_timer": ((1, "callback"),),
@@ -57,14 +57,14 @@ def outcome(node: cst.CSTNode, program: Program) -> Iterator[Change]:
 
 
 def choice(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """A goal or a request to cancel is rejected for accepted; a policy is the other one."""
+    """A goal or a request to cancel is rejected instead of accepted; a policy is the other one."""
     if isinstance(node, cst.Attribute) and node.attr.value in CHOICES:
         other = CHOICES[node.attr.value]
         yield Change(node, node.attr, cst.Name(other), f"takes {other} for {node.attr.value}")
 
 
 def not_asked(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """Whether a goal is canceled or accepted, or a server is there, is taken for granted."""
+    """The node assumes that a goal is canceled or accepted, or that a server is there, without asking."""
     above = program.parent(node)
     is_called = isinstance(above, cst.Call) and above.func is node  # the call itself is looked at
     if is_called or isinstance(above, (cst.AssignTarget, cst.Expr)):
@@ -75,7 +75,7 @@ def not_asked(node: cst.CSTNode, program: Program) -> Iterator[Change]:
 
 
 def blocking(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """A call that waits for its answer for one that does not; one thread for several."""
+    """A call that waits for its answer instead of one that does not; one thread instead of several."""
     name = called(node)
     if not isinstance(node, cst.Call) or name not in CALLS:
         return
@@ -99,7 +99,7 @@ def slow_callback(node: cst.CSTNode, program: Program) -> Iterator[Change]:
 
 
 def empty_result(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """A callback returns a response or a result that nobody filled in."""
+    """A callback returns an empty response or result."""
     function = program.function(node)
     if not isinstance(node, cst.Return) or not isinstance(node.value, cst.Name) or function is None:
         return
@@ -109,7 +109,7 @@ def empty_result(node: cst.CSTNode, program: Program) -> Iterator[Change]:
 
 
 def declared_type(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """A parameter is declared as an integer for a double, or without a value."""
+    """A parameter is declared as an integer instead of a double, or without a value."""
     if not isinstance(node, cst.Call) or called(node) != "declare_parameter" or len(node.args) < 2:
         return
     value = node.args[1].value
@@ -120,7 +120,7 @@ def declared_type(node: cst.CSTNode, program: Program) -> Iterator[Change]:
 
 
 def timer_clock(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """A timer goes by the computer's clock."""
+    """A timer uses the computer's clock."""
     if not isinstance(node, cst.Call) or called(node) != "create_timer" or "clock=" in program.text(node):
         return
     wall = cst.parse_expression("f(clock=rclpy.clock.Clock(clock_type=rclpy.clock.ClockType.STEADY_TIME))")
@@ -132,7 +132,7 @@ def timer_clock(node: cst.CSTNode, program: Program) -> Iterator[Change]:
 
 
 def _called_back(program: Program) -> set[str]:
-    """The names of the functions that are handed over to be called back."""
+    """The names of the functions that are passed as callbacks."""
     found = set()
     calls = [node for node in program.nodes() if isinstance(node, cst.Call)]
     for node in calls:

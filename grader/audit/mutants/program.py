@@ -1,4 +1,4 @@
-"""A program in a form in which parts of it can be found and changed, with everything else kept to the last space."""
+"""A parsed program whose parts can be found and changed, while the rest keeps every space."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Kind = TypeVar("Kind", bound=cst.CSTNode)
 
 @dataclass(frozen=True)
 class Change:
-    """Put `new` in the place of `old`, which is at `where`. `imports` are modules that `new` needs."""
+    """Replace `old`, which is at `where`, with `new`. `imports` are modules that `new` needs."""
 
     where: cst.CSTNode
     old: cst.CSTNode
@@ -26,7 +26,7 @@ class Change:
 
 
 class Program:
-    """A parsed program of an exercise. Raises `libcst.ParserSyntaxError` where the source is no Python."""
+    """A parsed program of an exercise. Raises `libcst.ParserSyntaxError` if the source is not valid Python."""
 
     def __init__(self, source: str, exercise: Exercise) -> None:
         self.source = source
@@ -61,27 +61,27 @@ class Program:
         return int(self._positions[node].start.line)
 
     def parent(self, node: cst.CSTNode) -> cst.CSTNode | None:
-        """What the node is a part of."""
+        """The node's parent."""
         return self._parents.get(node)
 
     def around(self, node: cst.CSTNode, kind: type[Kind]) -> Kind | None:
-        """The innermost part of this kind that the node lies in."""
+        """The innermost part of this kind around the node."""
         above = self.parent(node)
         while above is not None and not isinstance(above, kind):
             above = self.parent(above)
         return above
 
     def function(self, node: cst.CSTNode) -> cst.FunctionDef | None:
-        """The function or method that the node lies in."""
+        """The function or method around the node."""
         return self.around(node, cst.FunctionDef)
 
     def has_self(self, node: cst.CSTNode) -> bool:
-        """Whether `self` is at hand where the node is."""
+        """Whether `self` is defined where the node is."""
         function = self.function(node)
         return bool(function and function.params.params and function.params.params[0].name.value == "self")
 
     def place(self, node: cst.CSTNode) -> str:
-        """The names of the classes and functions that the node lies in, such as `JointVelocity.on_joints`."""
+        """The names of the classes and functions around the node, such as `JointVelocity.on_joints`."""
         names: list[str] = []
         above: cst.CSTNode | None = node
         while above is not None:
@@ -91,7 +91,7 @@ class Program:
         return ".".join(names)
 
     def callbacks(self) -> list[cst.FunctionDef]:
-        """The functions that the program names where it subscribes."""
+        """The functions that the program passes to subscriptions."""
         named = {
             text.rpartition(".")[2]
             for node in self.nodes()
@@ -103,7 +103,7 @@ class Program:
     def instead(
         self, statement: cst.CSTNode, what: str, *new: cst.CSTNode | str, imports: tuple[str, ...] = ()
     ) -> Change:
-        """The change that puts `new` statements where `statement` stands; none at all where `new` is empty."""
+        """The change that replaces `statement` with `new` statements, or removes it if `new` is empty."""
         block = self.parent(statement)
         assert isinstance(block, (cst.IndentedBlock, cst.Module))
         body: list[cst.CSTNode] = []
@@ -122,7 +122,7 @@ class Program:
 
 
 def _with_imports(lines: list[str], names: list[str]) -> Iterator[str]:
-    """The lines with imports above the first one there is, in each of several programs."""
+    """Add lines with imports above the first import, in each of several programs."""
     wanted, in_file = bool(names), any(line.startswith(("import ", "from ")) for line in lines)
     if wanted and not in_file:
         yield from (f"import {name}\n" for name in names)
@@ -136,22 +136,22 @@ def _with_imports(lines: list[str], names: list[str]) -> Iterator[str]:
 
 
 def parsed(statement: cst.CSTNode | str) -> cst.CSTNode:
-    """A statement, from its source where it is given as that."""
+    """A statement, parsed if it is given as source."""
     return cst.parse_statement(statement) if isinstance(statement, str) else statement
 
 
 def expression(source: str) -> cst.BaseExpression:
-    """An expression, in parentheses of its own where it needs some."""
+    """An expression, in parentheses if it needs them."""
     return cst.parse_expression(source)
 
 
 def with_body(block: cst.IndentedBlock | cst.Module, body: Sequence[cst.CSTNode]) -> cst.CSTNode:
-    """The block with other statements in it; a `pass` where there would be none."""
+    """The block with other statements in it; a `pass` if there would be none."""
     return block.with_changes(body=list(body) or [cst.parse_statement("pass")])
 
 
 def called(node: cst.CSTNode) -> str:
-    """The last name of what a call calls: `publish` for `self.publisher.publish(…)`; empty for anything else."""
+    """The last name of a call's function: `publish` for `self.publisher.publish(…)`; empty for anything else."""
     if not isinstance(node, cst.Call):
         return ""
     if isinstance(node.func, cst.Attribute):
@@ -160,7 +160,7 @@ def called(node: cst.CSTNode) -> str:
 
 
 def only_call(statement: cst.CSTNode, name: str) -> cst.Call | None:
-    """The call, where a statement is nothing but a call of something with this name."""
+    """The call, if a statement is only a call of a function with this name."""
     if isinstance(statement, cst.SimpleStatementLine) and len(statement.body) == 1:
         inner = statement.body[0]
         if isinstance(inner, cst.Expr) and isinstance(inner.value, cst.Call) and called(inner.value) == name:
@@ -169,7 +169,7 @@ def only_call(statement: cst.CSTNode, name: str) -> cst.Call | None:
 
 
 def only_assignment(statement: cst.CSTNode) -> cst.Assign | None:
-    """The assignment, where a statement is nothing but one with one target."""
+    """The assignment, if a statement is only an assignment with one target."""
     if isinstance(statement, cst.SimpleStatementLine) and len(statement.body) == 1:
         inner = statement.body[0]
         if isinstance(inner, cst.Assign) and len(inner.targets) == 1:

@@ -1,4 +1,4 @@
-"""Operators for statements and calls."""
+"""Operators for statements, calls, conditions and loops."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def _first_line(node: cst.CSTNode, program: Program) -> str:
     return text.strip().splitlines()[0].split("  #")[0]
 
 
-OPERATORS = (
+STATEMENTS = (
     statement_dropped,
     statement_twice,
     statements_swapped,
@@ -159,3 +159,85 @@ OPERATORS = (
     result,
     wrong_name,
 )
+
+
+#: Comparison -> what it is taken for. A boundary missed first, then a direction.
+COMPARISONS = {
+    "<": ("<=", ">", "!="),
+    ">": (">=", "<", "!="),
+    "<=": ("<", ">=", "=="),
+    ">=": (">", "<=", "=="),
+    "==": ("!=",),
+    "!=": ("==",),
+    "in": ("not in",),
+    "not in": ("in",),
+    "is": ("is not",),
+    "is not": ("is",),
+}
+
+
+def comparison(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+    """`a < b` becomes `a <= b`, `a > b`, `a != b`."""
+    if isinstance(node, cst.Comparison) and len(node.comparisons) == 1 and "__name__" not in program.text(node):
+        target = node.comparisons[0]
+        sign = program.text(target.operator).strip()
+        for other in COMPARISONS.get(sign, ()):
+            template = expression(f"a {other} b")
+            assert isinstance(template, cst.Comparison)
+            new = target.with_changes(operator=template.comparisons[0].operator)
+            yield Change(node, target, new, f"compares with {other} and not with {sign}")
+
+
+def part_of_condition(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+    """`a and b` becomes `a or b`, `a` alone, `b` alone."""
+    if isinstance(node, cst.BooleanOperation):
+        is_and = isinstance(node.operator, cst.And)
+        other = node.with_changes(operator=cst.Or() if is_and else cst.And())
+        yield Change(node, node, other, "takes or for and" if is_and else "takes and for or")
+        for kept, left_out in ((node.left, node.right), (node.right, node.left)):
+            yield Change(node, node, kept, f"leaves {program.text(left_out)} out of the condition")
+
+
+def condition(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+    """A condition is turned round, always holds, never holds."""
+    if isinstance(node, (cst.If, cst.While, cst.IfExp, cst.CompIf)):
+        text = program.text(node.test)
+        if not (isinstance(node, cst.While) and text == "True"):
+            yield Change(node, node.test, expression(f"not ({text})"), f"turns the condition {text} round")
+            yield Change(node, node.test, expression("True"), f"removes the guard {text}")
+            yield Change(node, node.test, expression("False"), f"never goes where {text} leads")
+
+
+def without_not(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+    """`not a` becomes `a`."""
+    if isinstance(node, cst.UnaryOperation) and isinstance(node.operator, cst.Not):
+        yield Change(node, node, node.expression, "leaves out not")
+
+
+CONDITIONS = (comparison, part_of_condition, condition, without_not)
+
+
+TAKEN = (
+    ("list({})[1:]", "leaves the first of {} out"),
+    ("list({})[:-1]", "leaves the last of {} out"),
+    ("reversed(list({}))", "goes through {} backwards"),
+    ("sorted({})", "sorts {}"),
+)
+
+
+def loop(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+    """A loop or a comprehension leaves out the first or the last, goes backwards, or sorts."""
+    if isinstance(node, (cst.For, cst.CompFor)):
+        text = program.text(node.iter)
+        for template, what in TAKEN:
+            yield Change(node, node.iter, expression(template.format(text)), what.format(text))
+
+
+def end_of_loop(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+    """A loop ends after its first turn."""
+    if isinstance(node, (cst.For, cst.While)) and isinstance(node.body, cst.IndentedBlock):
+        body = [*node.body.body, cst.parse_statement("break")]
+        yield Change(node, node.body, with_body(node.body, body), "ends the loop after its first turn")
+
+
+LOOPS = (loop, end_of_loop)

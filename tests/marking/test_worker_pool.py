@@ -57,28 +57,28 @@ def test_a_job_refers_to_what_its_process_has_and_carries_the_rest() -> None:
     assert pickle.loads(carried) == pickle.loads(referred) == job
 
 
-def hands(worker: psutil.Process) -> list[psutil.Process]:
-    return [child for child in worker.children() if "grader.workers.worker" in " ".join(child.cmdline())]
+def children_of(pool: psutil.Process) -> list[psutil.Process]:
+    return [child for child in pool.children() if "grader.workers.worker" in " ".join(child.cmdline())]
 
 
-def test_a_hand_does_its_jobs_in_one_process_and_in_another_once_that_died() -> None:
+def test_a_worker_does_its_jobs_in_one_process_and_in_another_once_that_died() -> None:
     job = ListJob(load(EXERCISE))
     others = {process.pid for process in worker_processes()}
     with WorkerPool() as workers:
-        with workers.hand() as hand:
-            before = hand.do(job)
-            [worker] = [process for process in worker_processes() if process.pid not in others]
-            [first] = hands(worker)
-            assert hand.do(job) == before
-            assert hands(worker) == [first]
+        with workers.reserve() as worker:
+            before = worker.do(job)
+            [pool] = [process for process in worker_processes() if process.pid not in others]
+            [first] = children_of(pool)
+            assert worker.do(job) == before
+            assert children_of(pool) == [first]
             first.kill()
             wait_until(lambda: first.status() == psutil.STATUS_ZOMBIE)
-            assert hand.do(job) == before
-            [second] = [process for process in hands(worker) if process != first]
+            assert worker.do(job) == before
+            [second] = [process for process in children_of(pool) if process != first]
         wait_until(lambda: not second.is_running() or second.status() == psutil.STATUS_ZOMBIE)
 
 
-def test_a_pool_that_was_sent_home_does_not_come_back() -> None:
+def test_a_pool_that_was_closed_does_no_more_jobs() -> None:
     with WorkerPool() as workers:
         pass
     with pytest.raises(HostFault, match="the worker process is gone"):

@@ -20,9 +20,9 @@ class Counting(WorkerPool):
         super().__init__()
         self.threads: set[int] = set()
 
-    def hand(self) -> Worker:
+    def reserve(self) -> Worker:
         self.threads.add(threading.get_ident())
-        return super().hand()
+        return super().reserve()
 
 
 def test_whoever_has_no_submission_left_helps_with_the_last_one() -> None:
