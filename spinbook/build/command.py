@@ -19,14 +19,16 @@ from spinbook.course.obstacles import ranked
 from spinbook.interfaces.compiling import compile_course
 from spinbook.problem import Problem, SpinbookError
 
-#: Nodes wait more than they compute: twice the cores keep a machine busy and responsive.
+#: Nodes wait more than they compute: two notebooks per core keep a machine busy and responsive.
 _AT_ONCE = 2 * (os.cpu_count() or 1)
 
 
 @click.command()
 @click.option("--course", "start", type=click.Path(path_type=Path), default=".", help="The course's folder.")
 @click.option("--execute", "run", is_flag=True, help="Run every notebook, with real nodes, and keep its outputs.")
-@click.option("--jobs", type=click.IntRange(1, 50), default=_AT_ONCE, show_default=True, help="Notebooks run at once.")
+@click.option(
+    "--jobs", type=click.IntRange(1, 50), default=_AT_ONCE, show_default=True, help="How many notebooks run at once."
+)
 @click.option(
     "--deadline",
     type=click.FloatRange(1),
@@ -34,8 +36,8 @@ _AT_ONCE = 2 * (os.cpu_count() or 1)
     show_default=True,
     help="Time limit per notebook, in seconds.",
 )
-@click.option("--strict", "is_strict", is_flag=True, help="It is an error that something is shown and not run.")
-@click.option("--again", is_flag=True, help="Run notebooks again that have not changed since a good run.")
+@click.option("--strict", "is_strict", is_flag=True, help="Treat code that is shown but not run as an error.")
+@click.option("--again", is_flag=True, help="Also run notebooks that have not changed since their last good run.")
 @click.argument("chapters", nargs=-1)
 def build(
     start: Path, run: bool, jobs: int, deadline: float, is_strict: bool, again: bool, chapters: tuple[str, ...]
@@ -43,13 +45,13 @@ def build(
     """Make a notebook of each chapter that course.toml lists, in build/notebooks/.
 
     With --execute, also runs each notebook, isolated from the others, and saves it with outputs in
-    build/executed/. A chapter whose code has not changed since a good run is not run again. CHAPTERS, such as
+    build/executed/. It does not run a chapter again whose code has not changed since a good run. CHAPTERS, such as
     03-nodes-and-topics, run only those.
 
-    What can't run here is shown with a word that says why, and counted at the end; `spinbook lint` lists each place.
-    With --strict, as for the CI of your own course, it is an error.
+    Code that can't run here is shown with the reason, and counted at the end; `spinbook lint` lists each place. With
+    --strict, for the CI of your own course, it is an error.
 
-    Exit code: 0 all is well, 1 a chapter has an error or a cell failed; the other chapters are built all the same.
+    Exit code: 0 no errors, 1 a chapter has an error or a cell failed; the other chapters are built anyway.
     """
     course = find_course(start)
     console = Console(soft_wrap=True, highlight=False)
@@ -72,7 +74,8 @@ def build(
 
 
 def _compile_interfaces(console: Console, course: Course) -> bool:
-    """Compile the course's messages, services and actions, and report what is wrong in them. Whether all is well."""
+    """Compile the course's messages, services and actions, and report what is wrong in them. Returns whether there are
+    none."""
     try:
         compiled = compile_course(course)
     except SpinbookError as error:
@@ -95,12 +98,12 @@ def _is_chosen(item: Built, chapters: tuple[str, ...]) -> bool:
 
 
 def _paths(chapter: Path) -> set[str]:
-    """How somebody in the course's folder or in a chapter's may name it."""
+    """The names by which a user in the course's folder or in a chapter's folder may call a chapter."""
     return {chapter.as_posix(), chapter.name, f"./{chapter.as_posix()}", chapter.with_suffix("").as_posix()}
 
 
 def _without_match(built: list[Built], chapters: tuple[str, ...]) -> list[Problem]:
-    """The names that no chapter has."""
+    """The names that do not belong to any chapter."""
     known = [item.name for item in built]
     problems = []
     for name in chapters:

@@ -14,7 +14,7 @@ import spinbook
 
 
 def digest(*parts: str | bytes) -> str:
-    """A digest of these parts, in this order and with these borders."""
+    """A digest of these parts, in this order, that depends on where each part ends."""
     total = hashlib.sha256()
     for part in parts:
         data = part.encode() if isinstance(part, str) else part
@@ -24,9 +24,8 @@ def digest(*parts: str | bytes) -> str:
 
 
 def files_digest(files: Iterable[Path], root: Path) -> str:
-    """A digest of files' names below `root` and of their contents; one that is missing counts as such.
-
-    It is the same wherever `root` lies, so that a course that has been moved need not be made again.
+    """A digest of files' names below `root` and of their contents; a missing file counts as missing. It does not depend
+    on where `root` is, so that a course that has been moved need not be made again.
     """
     return digest(*(part for file in sorted(files) for part in (os.path.relpath(file, root), _bytes(file))))
 

@@ -1,4 +1,4 @@
-"""Runs the notebooks of a course, each in processes of its own, and reports the cells that failed."""
+"""Runs the notebooks of a course, each in its own processes, and reports the cells that failed."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _LOG_LINES = (8, 12)
 
 @dataclass(frozen=True)
 class CellFailure:
-    """One cell that failed. `line` is the chapter's, as near to the fault as is known; `log` is what was printed."""
+    """One cell that failed. `line` is the chapter's line, as near to the fault as is known; `log` is the output."""
 
     chapter: Path
     line: int
@@ -44,9 +44,8 @@ class CellFailure:
 
 
 def find_failures(chapter: Path, ran: dict[str, Any], ended: dict[str, Any]) -> list[CellFailure]:
-    """The failures of one run. A cell in which the run broke off is told so among its outputs in `ran`.
-
-    `ended` is what the run's process said of its end: {"finished": …}, {"timed_out": INDEX}, {"died": INDEX} or
+    """The failures of one run. If the run was interrupted in a cell, the outputs of that cell in `ran` say so. `ended`
+    is what the run's process reported about its end: {"finished": …}, {"timed_out": INDEX}, {"died": INDEX} or
     {"crashed": words}; `ran` the notebook with the outputs that were written.
     """
     cells = ran["cells"]
@@ -54,7 +53,9 @@ def find_failures(chapter: Path, ran: dict[str, Any], ended: dict[str, Any]) -> 
     if "timed_out" in ended or "died" in ended:
         index = ended.get("timed_out", ended.get("died"))
         cell = cells[index] if index is not None else cells[0]
-        what = "the notebook's deadline passed in this cell" if "timed_out" in ended else "the kernel died in this cell"
+        what = (
+            "the notebook's time limit passed in this cell" if "timed_out" in ended else "the kernel died in this cell"
+        )
         note = f"{what}; it and its nodes were ended, and the cells below did not run."
         failures.append(CellFailure(chapter, _line(cell), note, _printed(cell)))
         if cell["cell_type"] == "code":
@@ -68,13 +69,11 @@ def find_failures(chapter: Path, ran: dict[str, Any], ended: dict[str, Any]) -> 
 
 
 def find_warnings(chapter: Path, ran: dict[str, Any]) -> list[CellFailure]:
-    """Find the cells that waited for a text in vain (`until=`): what the chapter says of it can't be seen there."""
+    """Find the cells that waited in vain for a text (`until=`): their outputs do not show what the chapter says."""
     found = []
     for cell in ran["cells"]:
         if cell["cell_type"] == "code" and (never := NEVER_APPEARED.search(_printed(cell))):
-            what = (
-                f"`until` never came: {never[1]} was not printed within {never[2]} s. Correct it, or raise `seconds`."
-            )
+            what = f"`until` failed: {never[1]} was not printed within {never[2]} s. Correct it, or raise `seconds`."
             found.append(CellFailure(chapter, _line(cell), what, ""))
     return found
 
@@ -88,7 +87,7 @@ def _failed_cells(chapter: Path, cells: list[dict[str, Any]]) -> Iterator[CellFa
         if error and not expected:
             yield _failure(chapter, cell, error)
         elif expected and not error and cell["execution_count"]:
-            what = "this cell says `raises`, and it did not fail."
+            what = "this cell says `raises`, but it did not fail."
             yield CellFailure(chapter, _line(cell), what, in_short(_printed(cell), *_LOG_LINES))
 
 
@@ -116,16 +115,16 @@ def _printed(cell: dict[str, Any]) -> str:
     return "".join("".join(o["text"]) for o in cell.get("outputs", []) if o["output_type"] == "stream")
 
 
-#: How long a notebook may take (s), and how much longer its process may take to say so.
+#: The time limit of a notebook (s), and how much longer its process may take to report it.
 DEADLINE_S = 600.0
 _TO_SAY_SO_S = 20.0
-#: What of Spinbook a notebook's cells use.
+#: The parts of Spinbook that a notebook's cells use.
 _USED_BY_CELLS = ("check", "chapter", "course", "graph", "kernel", "ros2", "turtlesim", "package", "interfaces")
 
 
 @dataclass(frozen=True)
 class Executed:
-    """What came of one notebook. `file` holds its outputs, also where cells failed."""
+    """The result of one notebook. `file` has its outputs, even if cells failed."""
 
     chapter: Path
     file: Path
@@ -133,12 +132,12 @@ class Executed:
     seconds: float
     cached: bool
     warnings: tuple[CellFailure, ...] = ()
-    """Cells that did not fail, and yet did not show what they should."""
+    """Cells that did not fail, but did not show what they should."""
 
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a notebook has come: `done` of `cells`."""
+    """The progress of a notebook: `done` of `cells`."""
 
     chapter: Path
     done: int
@@ -156,22 +155,22 @@ class Job:
 
     @property
     def name(self) -> str:
-        """What the chapter is called; it may have dots."""
+        """The chapter's name; it may have dots."""
         return self.notebook.name.removesuffix(".ipynb")
 
     @property
     def executed(self) -> Path:
-        """Where the notebook with its outputs goes."""
+        """The path of the notebook with its outputs."""
         return self.build_folder / "executed" / self.notebook.name
 
     @property
     def graph(self) -> Path:
-        """Where the node graph goes that was seen while it ran (spinbook.graph.model)."""
+        """The path of the node graph that was recorded while it ran (spinbook.graph.model)."""
         return self.executed.with_name(f"{self.name}.graph.json")
 
     @property
     def record(self) -> Path:
-        """What is remembered of the last good run."""
+        """The record of the last good run."""
         return self.build_folder / ".cache" / "executed" / f"{self.name}.json"
 
     @property
@@ -183,9 +182,8 @@ class Job:
 def execute(
     jobs: Iterable[Job], at_once: int, on_progress: Callable[[Progress], None], *, again: bool = False
 ) -> Iterator[Executed]:
-    """Run notebooks, so many at once, and yield each as it is done.
-
-    One whose code has not changed since a good run is not run: it gets that run's outputs. `again` runs it anyway.
+    """Run notebooks, this many at once, and yield each when it is done. A notebook whose code has not changed since a
+    good run is not run, and gets that run's outputs. `again` runs it anyway.
     """
     pool = ThreadPoolExecutor(max_workers=max(1, at_once))
     given_up = threading.Event()
@@ -194,7 +192,7 @@ def execute(
         for future in as_completed(running):
             yield future.result()
     finally:
-        # Reached with notebooks still running only where the caller was interrupted: they end with it.
+        # Notebooks still run here only if the caller was interrupted: they end with it.
         given_up.set()
         pool.shutdown(wait=True, cancel_futures=True)
 
@@ -232,7 +230,7 @@ def _graph_of(raw: Path) -> Path:
 
 
 def _run(job: Job, raw: Path, on_progress: Callable[[Progress], None], given_up: threading.Event) -> dict[str, Any]:
-    """Run the notebook's process. Returns what it said last of how it ended, {} if it ended well."""
+    """Run the notebook's process. Returns its last report of how it ended, {} if it ended well."""
     shutil.rmtree(job.folder, ignore_errors=True)
     job.folder.mkdir(parents=True)
     for file in (raw, _graph_of(raw)):
@@ -268,7 +266,7 @@ def _run(job: Job, raw: Path, on_progress: Callable[[Progress], None], given_up:
 
 
 def _key(notebook: dict[str, Any], job: Job) -> str:
-    """What the outputs depend on: the code, not the prose around it, and what `%check` judges by."""
+    """What the outputs depend on: the code, not the prose around it, and the files that `%check` uses."""
     code = [(c["id"], c["source"], c["metadata"].get("tags")) for c in notebook["cells"] if c["cell_type"] == "code"]
     judged_by = ""
     if any(source.startswith("%check ") for _, source, _ in code):

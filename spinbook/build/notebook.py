@@ -2,22 +2,160 @@
 
 from __future__ import annotations
 
+import base64
 import json
+import mimetypes
+import re
 import shlex
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import nbformat
+import yaml
+from markdown_it.token import Token
 
 from grader.exercise.loading import load
 from grader.exercise.starter import starter
-from spinbook.build.portable import Place, portable
+from spinbook.chapter.attributes import container, container_name, options
 from spinbook.chapter.chapter import Cell, Chapter
 from spinbook.chapter.classify import CellKind
+from spinbook.chapter.fence import directive, parse_info
+from spinbook.chapter.files import is_elsewhere, locate, split
 from spinbook.chapter.flavours import parser
+from spinbook.chapter.links import linked
 from spinbook.chapter.terminal import Command, CommandKind
 from spinbook.course.course import Course
+
+_ALERT = re.compile(r"\[!(NOTE|TIP|IMPORTANT|WARNING|CAUTION)\]\s*$", re.IGNORECASE)
+#: Larger pictures stay out of the notebook, which is read and written as a whole.
+_LARGEST_PICTURE = 4_000_000
+
+
+@dataclass
+class Location:
+    """Where a piece of prose is from: the course's root, the folder of its file, and what its links may lead to.
+
+    `notebooks` are what chapters are called, by their file. `pictures` collects the files that the prose shows: name of
+    the attachment -> media type -> content in base 64.
+    """
+
+    root: Path
+    folder: str
+    notebooks: Mapping[Path, str] = field(default_factory=dict)
+    repository: str = ""
+    pictures: dict[str, dict[str, str]] = field(default_factory=dict)
+
+    def target(self, target: str, is_image: bool) -> str | None:
+        """Where a link or an image leads to from a notebook; None: nowhere else than it says."""
+        if is_elsewhere(target):
+            return None
+        file = locate(self.root, self.folder, target)
+        _, anchor = split(target)
+        if file is not None and file in self.notebooks:
+            return quote(f"{self.notebooks[file]}.ipynb") + anchor
+        if is_image and file is not None and (name := self._attached(file)):
+            return f"attachment:{name}"
+        if not self.repository:
+            return quote(f"../../{file.as_posix()}") + anchor if file else None
+        path = file.as_posix() if file else _joined(self.folder, split(target)[0])
+        return f"{self.repository}/{'raw' if is_image else 'blob'}/main/{quote(path)}{anchor}"
+
+    def _attached(self, file: Path) -> str:
+        kind = mimetypes.guess_type(file.name)[0] or ""
+        path = self.root / file
+        if not kind.startswith("image/") or not path.is_file() or path.stat().st_size > _LARGEST_PICTURE:
+            return ""
+        name = re.sub(r"[^\w.-]+", "-", "-".join(file.parts[-2:]))
+        self.pictures[name] = {kind: base64.b64encode(path.read_bytes()).decode()}
+        return name
+
+
+def portable(prose: str, location: Location) -> str:
+    """The prose with alerts and admonitions as quotations, plain fences, and links that lead somewhere.
+
+    Links to files of the course point into its repository, those to other chapters to their notebooks; pictures are
+    collected in `location`.
+    """
+    return linked("\n".join(_plain(prose.split("\n"))), location.target)
+
+
+def _joined(folder: str, path: str) -> str:
+    parts: list[str] = []
+    for part in f"{folder}/{path}".split("/"):
+        if part == ".." and parts:
+            parts.pop()
+        elif part not in {"", ".", ".."}:
+            parts.append(part)
+    return "/".join(parts)
+
+
+def _plain(lines: list[str]) -> list[str]:
+    """Lines without what only book tools understand."""
+    edits: list[tuple[int, int, list[str]]] = []
+    done = 0
+    for token in parser().parse("\n".join(lines)):
+        if token.map is None or token.nesting < 0 or token.map[0] < done:
+            continue
+        edit = _edit(token, lines)
+        if edit is not None:
+            edits.append(edit)
+            done = edit[1] if token.type == "container_any_open" else done
+    for start, end, new in sorted(edits, reverse=True):
+        lines = [*lines[:start], *new, *lines[end:]]
+    return lines
+
+
+def _edit(token: Token, lines: Sequence[str]) -> tuple[int, int, list[str]] | None:
+    """(first line, line behind, new lines) for a token that needs other words."""
+    start, end = token.map or (0, 0)
+    if token.type == "fence":
+        opening = _opening(token, lines[start])
+        return (start, start + 1, opening) if opening != [lines[start]] else None
+    if token.type == "blockquote_open":
+        before, bracket, rest = lines[start].partition("[")
+        alert = _ALERT.match(bracket + rest)
+        if alert and not before.strip(" >"):
+            return start, start + 1, [f"{before}**{alert[1].capitalize()}**", before.rstrip()]
+    if token.type == "container_any_open" and not lines[start].partition(":")[0].strip():
+        end += end < len(lines) and set(lines[end].strip()) == {":"}
+        return start, end, _quotation(token, list(lines[start:end]))
+    return None
+
+
+def _opening(token: Token, line: str) -> list[str]:
+    """An opening fence without attributes, its file name in a line above it."""
+    if directive(token.info)[0] or not token.info.strip():
+        name = directive(token.info)[0]
+        return [line.replace(token.info, name)] if name else [line]
+    before = line[: len(line) - len(token.info)]
+    language, attributes = parse_info(token.info)
+    written = token.info.strip().split(" ")[0].split("{")[0] or language
+    indent = before[: len(before) - len(before.lstrip())] if not before.strip("`~ ") else ""
+    plain = f"{before}{written}"
+    return [f"{indent}`{attributes['title']}`:", "", plain] if "title" in attributes else [plain]
+
+
+def _quotation(token: Token, lines: list[str]) -> list[str]:
+    """An admonition as a quotation with its title in bold."""
+    ends = set(lines[-1].strip()) == {":"} and len(lines) > 1
+    name, argument = container_name(token.info)
+    inner = lines[1:-1] if ends else lines[1:]
+    _, skipped = options(inner)
+    inner = _plain(inner[skipped:])
+    kind, _, title = container(name, argument, colon=True)
+    title = title or argument or name.capitalize()
+    indent = lines[0].partition(":")[0]
+    if kind not in {"admonition", "details", None}:
+        return inner
+    return [
+        f"{indent}> **{title}**",
+        f"{indent}>",
+        *(f"{indent}> {line.removeprefix(indent)}".rstrip() for line in inner),
+    ]
+
 
 _SETUP = """\
 # Run this cell first: it gives the notebook its commands, such as %%node, %ros2, %plot and %stop.
@@ -49,7 +187,7 @@ def _notebook(chapter: Chapter, course: Course) -> dict[str, Any]:
 def _cells(chapter: Chapter, course: Course) -> Iterator[dict[str, Any]]:
     setup = _SETUP.format(name=chapter.name, package=course.package.name, workspace=course.package.workspace)
     setup_cell = _code("spinbook-setup", setup, {"kind": "setup", "line": 1})
-    place = Place(course.root, chapter.file.parent.as_posix(), course.names, course.repository)
+    location = Location(course.root, chapter.file.parent.as_posix(), course.names, course.repository)
     waiting = True
     for cell in chapter.cells:
         # The chapter's heading comes first, then what makes its cells work.
@@ -57,7 +195,7 @@ def _cells(chapter: Chapter, course: Course) -> Iterator[dict[str, Any]]:
             waiting = False
             yield setup_cell
         if cell.kind is CellKind.PROSE:
-            yield _prose(cell.id, cell.source, cell.line, place)
+            yield _prose(cell.id, cell.source, cell.line, location)
         elif cell.kind is CellKind.EXERCISE:
             yield from _exercise(cell, course)
         else:
@@ -93,6 +231,7 @@ def _how(cell: Cell) -> str:
     """The options that say how a node's code is started and made whole."""
     words = [f"--class {name}" for name in cell.spin_classes]
     words += ["--main"] if cell.runs_main else []
+    words += ["--keep"] if cell.keeps else []
     words += [f"--as {package}/{executable}" for package, executable in cell.executables]
     if cell.before:
         words.append(" ".join(["--after", *cell.after]) if cell.after else "--usual-imports")
@@ -108,18 +247,32 @@ def _bounds(cell: Cell) -> str:
 def _shell_line(command: Command, cell: Cell) -> str:
     if command.kind is CommandKind.NOTE:
         return command.text
-    # A magic is one line: a value that a terminal would take over several loses its line breaks.
-    text = " ".join(command.text.split("\n"))
+    text = _in_one_line(command)
     program, _, rest = text.partition(" ")
     if command.kind is CommandKind.PLOT:
         return f"%plot {rest}" + (f" --seconds {cell.seconds:g}" if cell.seconds else "")
     return f"%{program}{_bounds(cell)} {rest}"
 
 
+def _in_one_line(command: Command) -> str:
+    """A command as a magic's line: YAML that a terminal would take over several lines becomes YAML in one."""
+    if "\n" not in command.text:
+        return command.text
+    return shlex.join(_flowing(word) if "\n" in word else word for word in command.words)
+
+
+def _flowing(value: str) -> str:
+    try:
+        flowing: str = yaml.safe_dump(yaml.safe_load(value), default_flow_style=True, width=float("inf"))
+    except yaml.YAMLError:
+        return " ".join(value.split())
+    return flowing.strip()
+
+
 def _exercise(cell: Cell, course: Course) -> Iterator[dict[str, Any]]:
     exercise = load(course.root / "exercises" / (cell.name or ""))
-    place = Place(course.root, f"exercises/{exercise.name}", course.names, course.repository)
-    yield _prose(f"{cell.id}-task", _one_level_down(exercise.task), cell.line, place)
+    location = Location(course.root, f"exercises/{exercise.name}", course.names, course.repository)
+    yield _prose(f"{cell.id}-task", _one_level_down(exercise.task), cell.line, location)
     if exercise.solution_file is not None:
         module = exercise.file_name.removesuffix(".py")
         source = f"%%node {module}\n{starter(exercise.solution_file.read_text(encoding='utf-8'))}"
@@ -138,12 +291,12 @@ def _one_level_down(task: str) -> str:
     return "\n".join(lines)
 
 
-def _prose(cell_id: str, prose: str, line: int, place: Place) -> dict[str, Any]:
-    place = replace(place, pictures={})
-    source = portable(prose, place)
+def _prose(cell_id: str, prose: str, line: int, location: Location) -> dict[str, Any]:
+    location = replace(location, pictures={})
+    source = portable(prose, location)
     metadata = {"spinbook": {"line": line}}
     cell: dict[str, Any] = {"cell_type": "markdown", "id": cell_id, "metadata": metadata, "source": source}
-    return {**cell, "attachments": place.pictures} if place.pictures else cell
+    return {**cell, "attachments": location.pictures} if location.pictures else cell
 
 
 def _code(cell_id: str, source: str, metadata: dict[str, Any], tags: list[str] | None = None) -> dict[str, Any]:

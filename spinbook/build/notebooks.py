@@ -21,19 +21,20 @@ from spinbook.problem import Problem, Severity
 
 @dataclass(frozen=True)
 class Built:
-    """What came of one chapter. `notebook` exists unless an error stopped it and it was never built before."""
+    """The result of one chapter. `notebook` exists unless an error stopped the chapter and it was never built
+    before."""
 
     chapter: Path
     notebook: Path
     problems: tuple[Problem, ...]
     fresh: bool
-    """False where the chapter was not read again, because nothing that it depends on has changed."""
+    """False if the chapter was not read again, because nothing that it depends on has changed."""
     uses: tuple[str, ...] = ()
     """The files of the course that it includes or shows."""
 
     @property
     def name(self) -> str:
-        """What the chapter is called."""
+        """The chapter's name."""
         return self.notebook.name.removesuffix(".ipynb")
 
     @property
@@ -45,7 +46,7 @@ class Built:
 def build_notebooks(course: Course, *, is_strict: bool = False) -> Iterator[Built]:
     """Build `build/notebooks/CHAPTER.ipynb` for each chapter, in the course's order.
 
-    `is_strict` makes it an error that something is shown and not run.
+    With `is_strict`, code that is shown but not run is an error.
 
     A chapter with an error leaves the notebook of its last good build as it was. Notebooks of chapters that the course
     no longer lists are removed.
@@ -90,7 +91,7 @@ def _build(course: Course, chapter: Path, notebook: Path, known: Surroundings, i
         try:
             write_if_changed(notebook, notebook_json(reading.chapter, course))
         except ExerciseError as error:
-            problems.append(Problem(chapter, None, str(error), "Fix the exercise, or take it out of the chapter."))
+            problems.append(Problem(chapter, None, str(error), "Fix the exercise, or remove it from the chapter."))
     uses = tuple(file.as_posix() for file in reading.chapter.uses) if reading.chapter else ()
     return Built(chapter, notebook, tuple(problems), fresh=True, uses=uses)
 

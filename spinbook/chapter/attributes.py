@@ -1,11 +1,11 @@
-"""What book tools call things: kinds of admonitions, directives, and the attributes of tags."""
+"""The names that book tools use: kinds of admonitions, directives, and the attributes of tags."""
 
 from __future__ import annotations
 
 import re
 from html import unescape
 
-#: The four styles in which admonitions are shown, and what book tools call them.
+#: The four styles in which admonitions are shown, and their names in book tools.
 STYLES = ("note", "tip", "important", "warning", "caution")
 _STYLE = {
     **{style: style for style in STYLES},
@@ -19,9 +19,9 @@ _STYLE = {
     **dict.fromkeys(("attention", "warn", "callout-warning", "new"), "warning"),
     **dict.fromkeys(("callout-important",), "important"),
 }
-#: Directives of MyST that hold code.
+#: MyST directives that contain code.
 CODE = frozenset({"code-cell", "code-block", "code", "sourcecode", "highlight"})
-#: Directives that make lists of pages, and the like: nothing for a reader of one chapter.
+#: Directives that make lists of pages and similar things, which a reader of one chapter does not need.
 UNSEEN = frozenset({"toctree", "tableofcontents", "contents", "index", "bibliography", "only", "raw", "eval-rst"})
 #: Tags that hold blocks: MDX's, HTML's, Liquid's.
 _TABS = frozenset({"Tabs", "TabItem", "Tab", "tabs", "tab", "CodeGroup", "TabPanel"})
@@ -57,6 +57,12 @@ def snippet(line: str) -> str:
     return match[1] if match else ""
 
 
+def not_included(code: str) -> str:
+    """The first file of code's lines `--8<-- "file"` that were not replaced by its text; "" where there are none."""
+    names = (snippet(line) for line in code.split("\n")) if "8<--" in code else ()
+    return next((name for name in names if name), "")
+
+
 def options(lines: list[str]) -> tuple[dict[str, str], int]:
     """A directive's options, and how many lines they take: `:key: value` lines, or YAML between two lines of `---`."""
     found: dict[str, str] = {}
@@ -79,7 +85,7 @@ def pairs(text: str) -> dict[str, str]:
 
 
 def image(path: str, given: dict[str, str]) -> str:
-    """An image as HTML if it has a width, else as Markdown."""
+    """An image as HTML if it has a width, otherwise as Markdown."""
     alt = given.get("alt") or given.get("caption") or ""
     if "width" in given:
         width = given["width"].removesuffix("px")
@@ -159,7 +165,7 @@ def in_words(name: str) -> str:
 
 
 def words_of(name: str, properties: str) -> list[str]:
-    """The sentences among a component's properties, as a quotation; nothing where it has none."""
+    """The sentences among a component's properties, as a quotation; nothing if it has none."""
     found = [(double or single).replace('\\"', '"') for double, single in _QUOTED.findall(properties)]
     title = pairs(properties).get("title", "")
     found = [text for text in found if " " in text and text != title]

@@ -39,7 +39,7 @@ class Line:
 class Block:
     """One block. `lines` are as the author wrote them; `title` and `style` say what an admonition or a tab is called.
 
-    `new` are the lines that stand for it where the author's would not be understood; None: the author's will do.
+    `new` are the lines that replace the author's if Markdown tools would not understand those; None keeps the author's.
     """
 
     kind: Kind
@@ -59,7 +59,7 @@ class Block:
         return self.lines[0].number if self.lines else 1
 
     def walk(self) -> Iterator[Block]:
-        """This block and all that it holds, in order."""
+        """This block and all blocks in it, in order."""
         yield self
         for child in self.children:
             yield from child.walk()
@@ -74,7 +74,7 @@ def unquoted(line: Line) -> Line:
 
 
 def as_fence(fence: Fence, lines: tuple[Line, ...]) -> tuple[Line, ...]:
-    """The lines of a plain fence in place of these."""
+    """The lines of a plain fence instead of these."""
     number = lines[0].number
     title = f' title="{fence.title}"' if fence.title else ""
     code = [Line(text, number) for text in fence.code.rstrip("\n").split("\n")]

@@ -22,8 +22,9 @@ class Cell:
     (None: the runtime's default), `until` is a text in its log that ends that time early. `raises` says that failing
     is the lesson. `spin_classes` are the classes to spin where a node's code only defines them, `runs_main` says that
     its `main` has to be called. `before` is the code above a node's that makes it whole, taken from the nodes and parts
-    that `after` names; a part is code that later nodes use, and with `runs_in_kernel` a snippet as well. `executables`
-    are what `ros2 run` calls a node: (package, executable).
+    that `after` names; a part is code that later nodes use, and with `runs_in_kernel` a snippet as well. `keeps` says
+    that a node is only saved, because it reads words from its command line. `executables` are what `ros2 run` calls a
+    node: (package, executable).
     """
 
     kind: CellKind
@@ -39,6 +40,7 @@ class Cell:
     before: str = ""
     after: tuple[str, ...] = ()
     runs_in_kernel: bool = True
+    keeps: bool = False
     executables: tuple[tuple[str, str], ...] = ()
     commands: tuple[Command, ...] = ()
 
@@ -55,13 +57,13 @@ class Cell:
 
 @dataclass(frozen=True)
 class StaticFence:
-    """A fence that is shown and not run, with the reason, for `spinbook lint` to tell."""
+    """A fence that is shown but not run, with the reason, for `spinbook lint`."""
 
     line: int
     language: str
     why: str
     sign: str = ""
-    """What readers are told below it; "" where nothing needs to be said."""
+    """The note for readers below it; "" if none is needed."""
 
 
 @dataclass(frozen=True)
@@ -146,6 +148,7 @@ def _runnable(item: Classified, ids: _Ids) -> Cell:
         before=item.before,
         after=item.after,
         runs_in_kernel=item.runs_in_kernel,
+        keeps=item.keeps,
         executables=item.executables,
         commands=item.commands,
     )
@@ -166,7 +169,7 @@ def _id(item: Classified, ids: _Ids) -> str:
 
 
 class _Ids:
-    """Names cells for what they hold, and counts where two would have one name."""
+    """Names cells after their content, and adds a number if two would have the same name."""
 
     def __init__(self) -> None:
         self._section = "start"

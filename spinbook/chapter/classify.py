@@ -1,4 +1,4 @@
-"""What a fence is by itself: a program, a snippet, shell, or static, with the reason if it is not run."""
+"""The kind of a single fence: a program, a snippet, shell, or static, with the reason if it is not run."""
 
 from __future__ import annotations
 
@@ -8,13 +8,15 @@ from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 
-from spinbook.chapter.fence import ATTRIBUTES, Fence, interface_path, is_someone_elses
+from spinbook.chapter.attributes import not_included
+from spinbook.chapter.fence import ATTRIBUTES, Fence, interface_path, interface_title, is_someone_elses
 from spinbook.chapter.launch_files import is_package_file, unsupported_in_launch_file
 from spinbook.chapter.python_code import CodeError, PythonCode, has_magics, inspect, programs_in_magics
 from spinbook.chapter.terminal import Command, CommandKind, NotRunnable, looks_like_shell, read_commands
 from spinbook.problem import Problem, Severity
 
-#: Programs that a chapter never runs here, wherever they are named: they change the machine, or fetch from elsewhere.
+#: Programs that a chapter never runs here, wherever they are named, because they change the machine or download
+#: something.
 NEVER_RUN = frozenset(
     [
         "sudo",
@@ -63,7 +65,7 @@ NEVER_RUN = frozenset(
 
 
 class CellKind(str, Enum):
-    """What a cell is, which decides what it becomes in each product; and what a fence is.
+    """The kind of a cell or a fence. It decides what the cell becomes in each product.
 
     A part is code that later programs of the chapter use; a file is a launch or parameter file. Prose and exercises
     come from the text around fences. A static fence is shown in the prose and becomes no cell of its own.
@@ -86,7 +88,7 @@ class Classified:
 
     `name` is a node's, a part's or an interface's. `before` is the code that is put above a node's so that it is
     whole, `after` names the nodes and parts from which that code comes, `runs_in_kernel` says that a part also runs as
-    a snippet. `executables` are what `ros2 run` calls a node: (package, executable).
+    a snippet. `executables` are a node's names for `ros2 run`: (package, executable).
     """
 
     fence: Fence
@@ -109,8 +111,13 @@ class Classified:
         return self.kind is CellKind.NODE and self.code is not None and self.code.runs_main
 
     @property
+    def keeps(self) -> bool:
+        """Whether the code is only saved, for a command to start: it reads words from its command line."""
+        return self.kind is CellKind.NODE and self.code is not None and self.code.words_read > 0
+
+    @property
     def spin_classes(self) -> tuple[str, ...]:
-        """The classes that the runtime must spin, where the code defines Nodes and never spins them."""
+        """The classes that the runtime must run with `rclpy.spin`, if the code only defines them."""
         code = self.code
         if self.kind is not CellKind.NODE or code is None or code.is_complete or code.calls_main:
             return ()
@@ -132,11 +139,16 @@ def first_look(fence: Fence, file: Path, interface_package: str = "") -> tuple[C
         return Classified(fence, CellKind.STATIC, "it says `static`"), problems
     if interface := interface_path(fence.title or "", interface_package):
         return _interface(fence, interface, interface_package), problems
+    if meant := interface_title(fence.title or ""):
+        return Classified(fence, CellKind.STATIC, "its title names no interface"), [_unnamed(fence, meant, file)]
     if is_package_file(fence.title or "") and (item := _package_file(fence)):
         return item, problems
     fence = with_language(fence)
     if fence.is_shell:
         item, found = _shell(fence, file)
+        return item, problems + found
+    if (fence.is_python or fence.is_shell) and (absent := not_included(fence.code)):
+        item, found = _absent(fence, absent, file)
         return item, problems + found
     if fence.is_python:
         item, found = _python(fence, file)
@@ -151,6 +163,12 @@ def _interface(fence: Fence, path: str, own: str) -> Classified:
     if is_someone_elses(package, own):
         return Classified(fence, CellKind.STATIC, f"it shows an interface of {package}, which is installed")
     return Classified(fence, CellKind.INTERFACE, name=path)
+
+
+def _unnamed(fence: Fence, meant: str, file: Path) -> Problem:
+    found = f"this definition is shown and not compiled: its title `{fence.title}` names no interface."
+    fix = f'Write title="{meant}", or write `static` behind the language if it is only to be shown.'
+    return Problem(file, fence.line, found, fix, Severity.NOT_RUN)
 
 
 def _package_file(fence: Fence) -> Classified | None:
@@ -178,13 +196,21 @@ def with_language(fence: Fence) -> Fence:
 
 
 def _unknown_attributes(fence: Fence, file: Path) -> list[Problem]:
-    """Attributes that are nearly one of ours; those of other book tools are no concern of ours."""
+    """Attributes that look like misspellings of ours; those of other book tools are ignored."""
     unknown = [a for a in fence.attributes if a not in ATTRIBUTES and difflib.get_close_matches(a, ATTRIBUTES, 1, 0.75)]
     if not unknown or not (fence.is_python or fence.is_shell):
         return []
     known = "; ".join(f"`{name}`: {meaning}" for name, meaning in ATTRIBUTES.items())
     found = f"unknown attribute {', '.join(f'`{a}`' for a in unknown)} on this fence."
     return [Problem(file, fence.line, found, f"Known are {known}.", Severity.WARNING)]
+
+
+def _absent(fence: Fence, name: str, file: Path) -> tuple[Classified, list[Problem]]:
+    found = f"the fence includes `{name}`, and there is no such file."
+    fix = "Write the path relative to the chapter's folder, or to the course's."
+    problem = Problem(file, fence.line, found, fix, Severity.NOT_RUN, group="files that are not there")
+    why = f"it includes `{name}`, which is not here"
+    return Classified(fence, CellKind.STATIC, why, f"{why}."), [problem]
 
 
 def _shell(fence: Fence, file: Path) -> tuple[Classified, list[Problem]]:
@@ -198,14 +224,14 @@ def _shell(fence: Fence, file: Path) -> tuple[Classified, list[Problem]]:
     if runnable or ros:
         shown = ros or refused[0]
         return Classified(fence, CellKind.STATIC, shown.why, f"{shown.why}."), [_not_run(fence, shown, file)]
-    why = refused[0].why if refused else "it holds no command that a notebook runs"
+    why = refused[0].why if refused else "it contains no command that a notebook runs"
     return Classified(fence, CellKind.STATIC, why), []
 
 
 def _not_run(fence: Fence, command: NotRunnable, file: Path) -> Problem:
     line = fence.first_code_line + command.line - 1
     found = f"this shell fence is shown and not run: {command.why} (`{command.text}`)."
-    fix = "Put what can run into a fence of its own, or write `static` behind the language to say that this is meant."
+    fix = "Put what can run into a fence of its own, or write `static` after the language to say that this is meant."
     return Problem(file, line, found, fix, Severity.WARNING, group="a real shell")
 
 
@@ -223,7 +249,7 @@ def _python(fence: Fence, file: Path) -> tuple[Classified, list[Problem]]:
         problems = _magics_in_node(fence, file)
         if problems:
             return Classified(
-                fence, CellKind.STATIC, "it holds a notebook command", "it holds a notebook command.", code=code
+                fence, CellKind.STATIC, "it contains a notebook command", "it contains a notebook command.", code=code
             ), problems
         return Classified(fence, CellKind.NODE, code=code), []
     return Classified(fence, CellKind.SNIPPET, code=code), []
@@ -231,7 +257,7 @@ def _python(fence: Fence, file: Path) -> tuple[Classified, list[Problem]]:
 
 def _broken(fence: Fence, error: CodeError, file: Path) -> tuple[Classified, list[Problem]]:
     line = fence.first_code_line + error.line - 1
-    fix = "Fix the code, or write `static` behind the language if it is only to be shown and not run."
+    fix = "Fix the code, or write `static` after the language if it is only to be shown and not run."
     found = f"not Python: {error.message} (column {error.column})."
     problem = Problem(file, line, found, fix, Severity.NOT_RUN)
     sign = f"line {error.line} is not valid Python ({error.message})."
@@ -241,7 +267,7 @@ def _broken(fence: Fence, error: CodeError, file: Path) -> tuple[Classified, lis
 def _magics_in_node(fence: Fence, file: Path) -> list[Problem]:
     if not has_magics(fence.code):
         return []
-    found = "a node's code holds a notebook command (a line that begins with % or !)."
+    found = "a node's code contains a notebook command (a line that begins with % or !)."
     fix = "A node is a file of its own, which Python runs: put the command into another fence."
     return [Problem(file, fence.line, found, fix, Severity.NOT_RUN)]
 
@@ -252,7 +278,7 @@ def _refused(fence: Fence, code: PythonCode) -> str:
     if never := sorted(set(started) & NEVER_RUN):
         return f"it runs `{never[0]}`"
     if code.asks and not fence.has("raises"):
-        return "it waits for somebody to type"
+        return "it waits for keyboard input"
     return ""
 
 

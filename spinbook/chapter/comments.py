@@ -19,7 +19,7 @@ Span = tuple[int, int]
 
 
 def without_comments(markdown: str, *, keep_lines: bool = False) -> str:
-    """Return `markdown` without comments; a comment that never ends goes on to the end of the text.
+    """Return `markdown` without comments; a comment that never ends continues to the end of the text.
 
     A line that held nothing else is left out, or, with `keep_lines`, left empty, so that lines keep their numbers.
     """

@@ -7,18 +7,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from interface_compiler import prefixes, shipped, store
+from interface_compiler.definition import KINDS
 
 # The info string is the text behind the opening backticks: a language, then attributes such as
 # `title="joint_publisher.py"` (the form Docusaurus and others use) or bare words. MyST's `{code-cell} python` with its
 # `:option:` lines is read as the same thing.
 
 
-#: Attribute -> what it means, for error messages and `docs/writing-chapters.md`.
+#: Attribute -> its meaning, for error messages and `docs/writing-chapters.md`.
 ATTRIBUTES = {
-    "title": "the file this code is, such as my_node.py",
+    "title": "the name of the file, such as my_node.py",
     "seconds": "how long the log is shown, or how long each command may run",
-    "until": "a text: once the log holds it, the cell is done",
-    "raises": "the cell is expected to fail, and failing is the lesson",
+    "until": "the cell is done once the log contains this text",
+    "raises": "the cell is expected to fail",
     "static": "shown, never run",
 }
 
@@ -142,7 +143,7 @@ def interface_package(package: str) -> str:
 
 
 def interface_path(title: str, package: str) -> str | None:
-    """The path `PACKAGE/msg/NAME.msg` that a title stands for, or None where it is something else's.
+    """The path `PACKAGE/msg/NAME.msg` that a title stands for, or None if it is something else's.
 
     `package` is the one of a title that names none.
 
@@ -155,8 +156,25 @@ def interface_path(title: str, package: str) -> str | None:
     return f"{match['package'] or package}/{match['kind']}/{match['name']}.{match['kind']}"
 
 
+def interface_title(title: str) -> str | None:
+    """The title that somebody surely meant who wrote `Limits.msg` or `my-msgs/msg/Limits.msg`; None for others.
+
+    >>> interface_title("joint-limits.msg")
+    'msg/JointLimits.msg'
+    """
+    path, dot, kind = title.rpartition(".")
+    if not dot or kind not in KINDS or _TITLE.fullmatch(title):
+        return None
+    *folders, name = path.split("/")
+    words = re.findall(r"[A-Za-z0-9]+", name)
+    package = folders[-2] if len(folders) > 1 and folders[-1] == kind else ""
+    package = re.sub(r"\W+", "_", package).lower() + "/" if package else ""
+    return f"{package}{kind}/{''.join(word[:1].upper() + word[1:] for word in words) or 'Name'}.{kind}"
+
+
 def is_someone_elses(package: str, own: str) -> bool:
-    """Whether a package is installed and no course's: a chapter only shows what is in it. `own` is this course's."""
+    """Whether a package is installed and does not belong to a course: a chapter only shows its interfaces. `own` is
+    this course's package."""
     if package == own:
         return False
     if package in (*shipped.standard(), *shipped.optional()):

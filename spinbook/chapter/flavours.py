@@ -35,6 +35,8 @@ _LABEL = re.compile(r"\([\w:.-]+\)=$")
 _ESM = re.compile(
     r"""import\s+(?:[\w*{][\w\s{},*]*\s+from\s+)?["'][^"']+["'];?$|export\s+(?:const|default|function|let)\b"""
 )
+#: What may end a tag, or hide its end.
+_IN_TAG = re.compile(r"[\"'`{}>]")
 _TAG = re.compile(r"<(/?)([A-Z][\w.]*|details|summary)\b")
 
 
@@ -176,7 +178,8 @@ def _same_line(text: str, name: str) -> bool:
 def _tag_end(text: str) -> int:
     """The index behind a tag's `>`, braces and quotation marks respected; -1 if it does not end."""
     depth, quote = 0, ""
-    for index, letter in enumerate(text):
+    for match in _IN_TAG.finditer(text):
+        index, letter = match.start(), match[0]
         if quote:
             quote = "" if letter == quote else quote
         elif letter in "\"'`":

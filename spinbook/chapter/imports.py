@@ -1,4 +1,4 @@
-"""Whether what a program imports is here: packages, their modules, ROS interfaces."""
+"""Checks whether a program's imports are available: packages, their modules, ROS interfaces."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from interface_compiler import prefixes, shipped
 from spinbook.chapter.python_code import PythonCode
 from spinbook.ros2 import interfaces as interface_files
 
-#: What a module's name is in PyPI, where the two differ.
+#: Module -> its package on PyPI, if the two names differ.
 _DISTRIBUTIONS = {
     "cv2": "opencv-python",
     "PIL": "pillow",
@@ -23,7 +23,7 @@ _DISTRIBUTIONS = {
     "sklearn": "scikit-learn",
     "serial": "pyserial",
 }
-#: Packages that exist, though not here: none is a misspelling of another.
+#: Packages that exist, though they are not installed here: none is a misspelling of another.
 _REAL = frozenset(
     [
         "nav2_msgs",
@@ -48,7 +48,7 @@ _REAL = frozenset(
 
 @dataclass(frozen=True)
 class Missing:
-    """Something that is not here. `package` is what would have to be installed."""
+    """Something that is missing here. `package` is the package to install."""
 
     package: str
     found: str
@@ -108,33 +108,38 @@ def _not_installed(top: str, line: int) -> Missing:
     elif top.endswith(("_msgs", "_srvs", "_interfaces", "_actions")):
         fix = remedy(top)
     else:
-        fix = "Install it and add it to the course's dependencies, or write `static` behind the fence's language."
+        fix = "Install it and add it to the course's dependencies, or write `static` after the fence's language."
     return Missing(top, f"imports `{top}`, which is not installed here.", fix, line)
 
 
 def remedy(package: str) -> str:
     """How to get a package of interfaces that is not here."""
-    if package in (*shipped.standard(), *shipped.optional()):
-        return f"Compile it, once: spinbook interfaces add {package}"
-    return "It is a package of ROS interfaces: install it, or show its .msg, .srv and .action files in the chapter."
+    unknown = "It is a package of ROS interfaces: install it, or show its .msg, .srv and .action files in the chapter."
+    return shipped.how_to_add(package) or unknown
 
 
 def _no_module(module: str, names: list[str], line: int) -> Missing:
     top, _, rest = module.partition(".")
     there = sorted(name for name in _modules_in(top) if not name.startswith(("_", f"{top}_s_")))
     close = difflib.get_close_matches(rest.partition(".")[0], there, n=1)
-    elsewhere = sorted(place for place, known in _all_interfaces().items() if known & set(names))
+    elsewhere = _places_of(set(names), top)
     fix = f"Did you mean `{top}.{close[0]}`?" if close else f"It has {', '.join(there[:8])}."
     if elsewhere and names:
         fix = f"Did you mean `from {elsewhere[0]} import {names[0]}`?"
     return Missing(module, f"imports `{module}`, and `{top}` has no such module.", fix, line)
 
 
+def _places_of(names: set[str], package: str) -> list[str]:
+    """The modules that have interfaces of these names, those of `package` first."""
+    found = (place for place, known in _all_interfaces().items() if known & names)
+    return sorted(found, key=lambda place: (place.partition(".")[0] != package, place))
+
+
 def _no_interface(module: str, name: str, known: frozenset[str], line: int) -> Missing:
     close = difflib.get_close_matches(name, known, n=1)
     if close:
         fix = f"Did you mean `{close[0]}`?"
-    elif elsewhere := sorted(place for place, names in _all_interfaces().items() if name in names):
+    elif elsewhere := _places_of({name}, module.partition(".")[0]):
         fix = f"Did you mean `from {elsewhere[0]} import {name}`?"
     else:
         fix = f"It has {', '.join(sorted(known)[:8])} …"
@@ -181,7 +186,7 @@ def _similar(module: str) -> str:
         return ""
     known = [*ros_packages(), "rclpy", "numpy", "matplotlib"]
     close = difflib.get_close_matches(module, known, n=1, cutoff=0.8)
-    # Interface packages are called alike: control_msgs is not a misspelt sensor_msgs.
+    # Interface packages have similar names: control_msgs is not a misspelt sensor_msgs.
     alike = close and module.rpartition("_")[2] == close[0].rpartition("_")[2] and "_" in module
     stem = module.rpartition("_")[0]
     if alike and not difflib.get_close_matches(stem, [close[0].rpartition("_")[0]], n=1, cutoff=0.8):

@@ -1,7 +1,6 @@
-"""Makes a whole program of a piece of one: the imports that everybody leaves out, and what earlier pieces define.
-
-The same code joins when a chapter is read (is the piece complete then?) and when its cell runs (with what the cells
-above hold now).
+"""Completes a piece of a program with the imports that tutorials leave out, and with what earlier pieces define. The
+same code is used when a chapter is read (is the piece then complete?) and when its cell runs (with the current code of
+the cells above).
 """
 
 from __future__ import annotations
@@ -12,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from interface_compiler import prefixes
+from spinbook.chapter.class_pieces import assembled
 from spinbook.chapter.python_code import CodeError, inspect
 from spinbook.ros2 import interfaces
 
@@ -43,13 +43,13 @@ _MODULES = frozenset(
     | {"logging", "numpy"}
 )
 _ALIASES = {"np": "numpy", "plt": "matplotlib.pyplot"}
-#: Where several packages have a message of one name, the first of these is meant.
+#: If several packages have a message of the same name, the first of these is meant.
 _PREFERRED = ("std_msgs", "geometry_msgs", "sensor_msgs", "nav_msgs", "example_interfaces", "std_srvs", "turtlesim")
 
 
 @dataclass(frozen=True)
 class Joined:
-    """A program made whole. `before` is what was put above its code, `used` which pieces it needs, by number.
+    """A complete program. `before` is what was put above its code, `used` which pieces it needs, by number.
 
     `missing` are the names that nothing binds -> line of the code.
     """
@@ -87,8 +87,10 @@ class _Piece:
 def join(code: str, pieces: Sequence[str]) -> Joined:
     """Put above `code` what it needs of earlier `pieces`, in their order, and the usual imports.
 
-    Raises CodeError where `code` is not Python.
+    Raises CodeError if `code` is not Python.
     """
+    groups = assembled(tuple(pieces))
+    pieces = [text for _, text in groups]
     needs = dict(inspect(code).needs)
     amended, base = _amended(code, pieces)
     missing: dict[str, int] = {}
@@ -114,11 +116,12 @@ def join(code: str, pieces: Sequence[str]) -> Joined:
         todo += more
     before = _above(imports, taken, pieces)
     if amended:
-        # The class below then goes on from the one above.
+        # The class below then extends the one above.
         before += f"{base} = {amended}\n\n\n"
     if code.lstrip().startswith("from __future__") and before:
         return Joined(code, missing=needs)
-    return Joined(code, before, tuple(sorted(taken)), missing, amended)
+    used = sorted(number for group in taken for number in groups[group][0])
+    return Joined(code, before, tuple(used), missing, amended)
 
 
 def _amended(code: str, pieces: Sequence[str]) -> tuple[str, str]:
@@ -162,7 +165,7 @@ def _binding(name: str, pieces: Sequence[str]) -> tuple[int, set[int]] | None:
             return number, set(statements)
         if piece.blocks:
             continue
-        # A script that goes on: all that it did so far.
+        # A script that continues: all that it did so far.
         return number, {i for i, s in enumerate(piece.statements) if not _is_guard(s)}
     return None
 
@@ -188,7 +191,7 @@ def _is_guard(statement: ast.stmt) -> bool:
 
 @functools.lru_cache(maxsize=512)
 def _piece(source: str) -> _Piece:
-    """What a piece binds; nothing, if it is no Python by itself."""
+    """What a piece binds; nothing, if it is not valid Python by itself."""
     try:
         facts = inspect(source)
         statements = tuple(ast.parse(source).body)

@@ -1,6 +1,6 @@
 """A chapter's launch and parameter files, such as `launch/humanoid.launch.py`.
 
-They are known by their titles; what a launch file starts is its nodes, as `ros2 run` would start each of them.
+They are recognised by their titles. A launch file starts its nodes, as `ros2 run` would start each of them.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class LaunchedNode:
 
 
 def launched_nodes(code: str) -> list[LaunchedNode]:
-    """The nodes that a launch file starts, in order; none if one of them is not said in plain words."""
+    """The nodes that a launch file starts, in order; none if one of them is not given by literals."""
     nodes = [_node(call) for call in _calls(code)]
     return [node for node in nodes if node is not None] if all(nodes) else []
 
@@ -101,7 +101,7 @@ def is_package_file(title: str) -> bool:
 
 
 def unsupported_in_launch_file(code: str) -> str:
-    """What a Python launch file imports from ROS 2's launch that there is not here; "" if there is all of it.
+    """What a Python launch file imports from ROS 2's launch that is not supported here; "" if all of it is.
 
     Raises SyntaxError.
     """

@@ -1,4 +1,4 @@
-"""Puts a chapter's blocks in a row: what runs comes to the left margin, the rest in Markdown that every tool reads.
+"""Puts a chapter's blocks in sequence: cells move to the left margin, the rest becomes Markdown that every tool reads.
 
 Admonitions become MyST's `:::{note}`, tabs and folded text `<details>`, and whatever holds a cell is cut around it.
 Text that needs no change stays as it is, to the byte.
@@ -139,7 +139,7 @@ class Layout:
         for index, item in enumerate(block.children):
             marker = item.lines[0].text[: item.offset]
             if cut and item.title.isdigit():
-                # A list that is cut goes on counting.
+                # A list that is cut continues its numbers.
                 number = int(block.children[0].title) + index
                 marker = marker.replace(item.title, str(number), 1)
             out += _item(self._children(item.children, depth + 1), marker, item)
@@ -182,7 +182,7 @@ def _height(block: Block) -> int:
 
 
 def _spaced(pieces: list[Piece], block: Block) -> list[Piece]:
-    """With an empty line before and behind: what is put in place of a tag must not run into its neighbours."""
+    """With an empty line before and behind: what is put instead of a tag must not run into its neighbours."""
     if not pieces:
         return []
     before = [] if pieces[0].is_blank else _lines([Line("", block.line)])

@@ -1,4 +1,4 @@
-"""What can be told of a Node class from its code: whether it can be made, and what of `self` nothing sets."""
+"""What the code of a Node class shows: whether it can be created, and which attributes of `self` nothing sets."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def last_name(expression: ast.expr) -> str:
 
 
 def can_stand_alone(name: str, classes: Mapping[str, ast.ClassDef], everything: Sequence[ast.AST]) -> bool:
-    """Whether a Node class can be made without a main: nothing else makes it, and it needs no arguments."""
+    """Whether a Node class can be created without a main: nothing else creates it, and it needs no arguments."""
     own = classes[name]
     inside = set(ast.walk(own))
     used = any(isinstance(i, ast.Name) and i.id == name and i not in inside for i in everything)
@@ -62,18 +62,46 @@ def attributes_lacking(
 
 
 def used_by_init(lacking: Mapping[str, int], names: list[str], classes: Mapping[str, ast.ClassDef]) -> str:
-    """The first of the lacking attributes that a class uses in its own `__init__`; "" if none."""
+    """The first of the lacking attributes that a class uses in its `__init__`, or in what that calls; "" if none."""
     for name in names:
-        for item in classes[name].body:
-            if isinstance(item, ast.FunctionDef) and item.name == "__init__":
-                used = {i.attr for i in ast.walk(item) if isinstance(i, ast.Attribute)}
-                return next((attribute for attribute in lacking if attribute in used), "")
+        methods = {item.name: item for item in classes[name].body if isinstance(item, ast.FunctionDef)}
+        used: set[str] = set()
+        for method in _called_from("__init__", methods):
+            used |= {i.attr for i in ast.walk(methods[method]) if isinstance(i, ast.Attribute)}
+        if found := next((attribute for attribute in lacking if attribute in used), ""):
+            return found
     return ""
+
+
+def _called_from(start: str, methods: Mapping[str, ast.FunctionDef]) -> list[str]:
+    """A method, and those of the class that it calls at the level of its own statements, directly or not."""
+    found = [start] if start in methods else []
+    for name in found:
+        for item in methods[name].body:
+            call = getattr(item, "value", None)
+            dotted = ast.unparse(call.func) if isinstance(call, ast.Call) else ""
+            owner, _, method = dotted.rpartition(".")
+            if owner == "self" and method in methods and method not in found:
+                found.append(method)
+    return found
+
+
+def never_initialized(names: Sequence[str], classes: Mapping[str, ast.ClassDef]) -> dict[str, int]:
+    """The Node classes whose own `__init__` does not call Node's: nothing of such a node works -> line."""
+    found: dict[str, int] = {}
+    for name in names:
+        bases = [last_name(base) for base in classes[name].bases]
+        init = next((i for i in classes[name].body if isinstance(i, ast.FunctionDef) and i.name == "__init__"), None)
+        if init is None or bases not in (["Node"], ["LifecycleNode"]):
+            continue
+        if not any(isinstance(i, ast.Attribute) and i.attr == "__init__" for i in ast.walk(init)):
+            found[name] = init.lineno
+    return found
 
 
 @functools.cache
 def node_attributes() -> frozenset[str]:
-    """What every rclpy Node has, read from rclpy's source; empty where there is no rclpy."""
+    """The attributes of every rclpy Node, read from rclpy's source; empty if there is no rclpy."""
     try:
         spec = importlib.util.find_spec("rclpy")
     except (ImportError, ValueError):

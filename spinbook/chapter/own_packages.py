@@ -1,4 +1,4 @@
-"""The ROS packages that a chapter makes: what it calls them, which files and executables they have.
+"""The ROS packages that a chapter makes: their names, files and executables.
 
 It is read from `ros2 pkg create`, from the `setup.py` shown, and from files' paths and the sentences that name them.
 """
@@ -30,7 +30,7 @@ _ONE = frozenset(
     "--package-format",
 }
 _SEVERAL = frozenset({"--dependencies"})
-#: Files that are part of a package and no program.
+#: Files of a package that are not programs.
 _NOT_PROGRAMS = frozenset({"setup.py", "__init__.py", "conftest.py"})
 
 

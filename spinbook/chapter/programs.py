@@ -1,4 +1,4 @@
-"""Decides for each piece of a chapter's Python what becomes of it: a node, a snippet, a part of one, or shown only."""
+"""Decides what each piece of a chapter's Python becomes: a node, a snippet, a part of a program, or only shown."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ class Programs:
     _used: dict[int, tuple[int, ...]] = field(default_factory=dict)
 
     def decide(self, items: Sequence[Classified]) -> list[Classified]:
-        """What becomes of each fence; those that hold no Python stay as they are."""
+        """What each fence becomes; fences without Python stay as they are."""
         out = list(items)
         for number, item in enumerate(items):
             if item.kind is CellKind.NODE:
                 out[number] = self._node(number, item, out)
             elif item.kind is CellKind.SNIPPET:
                 out[number] = self._snippet(item)
-            if item.code and not item.code.fragment and not item.code.is_setup_script and not item.code.is_launch_file:
+            if item.code and not item.code.is_setup_script and not item.code.is_launch_file:
                 self._pieces.append(number)
         return _with_parts(out, self._used)
 
@@ -48,10 +48,14 @@ class Programs:
         assert code is not None
         joined = self._joined(item, out)
         if item.fence.has("raises"):
-            # Failing is the lesson.
+            # It is meant to fail.
             return self._made(number, item, joined)
         if joined.missing:
             return self._undefined(item, code, joined.missing)
+        if code.never_initialized:
+            return self._uninitialized(item, code)
+        if code.wants_ros and not _facts(joined, code).initializes:
+            return _static(item, "nothing calls `rclpy.init` before it")
         if not code.is_complete and code.node_classes and not code.calls_main:
             if code.lacking and not joined.amends:
                 names = ", ".join(f"`self.{name}`" for name in list(code.lacking)[:3])
@@ -92,6 +96,8 @@ class Programs:
                 f"it uses {names}, which no earlier snippet of the chapter defines",
                 f"it uses {names}, which nothing above defines.",
             )
+        if code.leaves or (code.wants_ros and not code.initializes):
+            return _static(item, code.leaves or "nothing calls `rclpy.init` before it")
         if absent := missing_imports(code, self.own, self.interfaces):
             return self._missing(item, absent, Joined(item.fence.code))
         self._defined |= code.defines
@@ -102,10 +108,18 @@ class Programs:
         verb = "is" if len(missing) == 1 else "are"
         if code.is_complete and code.imports:
             found = f"{names} {verb} defined neither here nor above, so this program would fail."
-            fix = "Define or import it, or write `static` behind the language if this is only a piece of a program."
+            fix = "Define or import it, or write `static` after the language if this is only a piece of a program."
             line = item.fence.first_code_line + min(missing.values()) - 1
             self.problems.append(Problem(self.file, line, found, fix, Severity.NOT_RUN))
         return _static(item, f"it uses {names}, which nothing above defines")
+
+    def _uninitialized(self, item: Classified, code: PythonCode) -> Classified:
+        name, line = next(iter(code.never_initialized.items()))
+        found = f"`{name}.__init__` never calls `super().__init__(…)`, so nothing of this node works."
+        fix = "Call it first, with the node's name, or write `static` behind the language if this is a template."
+        at = item.fence.first_code_line + line - 1
+        self.problems.append(Problem(self.file, at, found, fix, Severity.NOT_RUN))
+        return _static(item, f"`{name}.__init__` never calls `super().__init__(…)`")
 
     def _lacking(self, item: Classified, code: PythonCode) -> None:
         name = code.fails_at_once or next(iter(code.lacking))
@@ -159,7 +173,7 @@ def _static(item: Classified, why: str, sign: str = "") -> Classified:
 
 
 def _with_parts(items: list[Classified], used: Mapping[int, Iterable[int]]) -> list[Classified]:
-    """Name the pieces from which later nodes are made whole, and turn those into parts that are no program alone."""
+    """Name the pieces that complete later nodes, and turn those that are not programs by themselves into parts."""
     out = list(items)
     needed = {i for number, pieces in used.items() if out[number].kind is CellKind.NODE for i in pieces}
     names: dict[int, str] = {}

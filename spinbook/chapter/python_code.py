@@ -10,9 +10,26 @@ import symtable
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from spinbook.chapter.node_classes import attributes_lacking, can_stand_alone, last_name, used_by_init
+from spinbook.chapter.class_pieces import methods_alone, names_begun, uses_super_outside
+from spinbook.chapter.node_classes import (
+    attributes_lacking,
+    can_stand_alone,
+    last_name,
+    never_initialized,
+    used_by_init,
+)
+from spinbook.chapter.starting import (
+    at_top,
+    calls_main,
+    leaves,
+    loops_forever,
+    programs_started,
+    starts_ros,
+    wants_ros,
+    words_read,
+)
 
-#: A line that is IPython's and not Python's: `%plot …`, `!ls`, `%%time`.
+#: A line of IPython's own syntax: `%plot …`, `!ls`, `%%time`.
 _MAGIC = re.compile(r"^(\s*)([%!].*)$")
 #: What setup.py writes under console_scripts.
 _ENTRY_POINT = re.compile(r"[\w.-]+\s*=\s*[\w.]+:\w+")
@@ -61,11 +78,9 @@ class PythonCode:
     needs: Mapping[str, int] = field(default_factory=dict)
     """Names it uses at its top level, or in what runs from there, that neither it nor Python defines -> line."""
     fragment: str | None = None
-    """Why it can't stand alone although each line is Python, if so."""
+    """Why it can't run alone although each line is valid Python, if so."""
     relative_imports: Mapping[str, int] = field(default_factory=dict)
     """`.module` of each `from .module import name` -> line."""
-    star_import: bool = False
-    """Whether `from module import *` may bind any name."""
     calls_main: bool = False
     """Whether its top level calls `main()` outside a guard."""
     starts_ros: bool = False
@@ -75,23 +90,33 @@ class PythonCode:
     programs: Mapping[str, int] = field(default_factory=dict)
     """Programs that it starts through os.system, subprocess or `!…` -> line."""
     asks: int = 0
-    """The line on which it waits for somebody to type; 0: it does not."""
+    """The line on which it waits for keyboard input; 0: it does not."""
     alone: tuple[str, ...] = ()
     """The Node classes that nothing in the code makes or derives from, and that need no arguments."""
     lacking: Mapping[str, int] = field(default_factory=dict)
     """Attributes of `self` that a Node class uses and nothing sets -> line."""
     fails_at_once: str = ""
     """The first of those that `__init__` uses itself."""
+    never_initialized: Mapping[str, int] = field(default_factory=dict)
+    """Node classes whose `__init__` does not call Node's -> line."""
+    wants_ros: bool = False
+    """Whether it needs that `rclpy.init` was called, by itself or above."""
+    initializes: bool = False
+    """Whether it calls `rclpy.init`, however it is imported."""
+    leaves: str = ""
+    """How it would end a notebook's kernel, or take its command line for its own."""
+    words_read: int = 0
+    """How many words it takes from its command line, whether they are there or not."""
 
     @property
     def is_node(self) -> bool:
-        """Whether it is a program of its own: it spins, or is a Node that can be spun."""
+        """Whether it is a complete program: it calls `rclpy.spin`, or defines a Node that can be run."""
         is_program = self.spins or self.starts_ros or self.loops or bool(self.node_classes)
         return is_program and not (self.is_setup_script or self.is_launch_file)
 
     @property
     def runs_main(self) -> bool:
-        """Whether it has a `main` that somebody else has to call, as `ros2 run` does."""
+        """Whether it has a `main` that its own code does not call, as for `ros2 run`."""
         return self.has_main and not self.has_main_guard and not self.calls_main
 
     @property
@@ -125,15 +150,24 @@ def inspect(code: str) -> PythonCode:
     """Read a piece of Python.
 
     Code that is indented as a whole, or that only makes sense inside a function, is a fragment.
-    Raises CodeError where it isn't Python even so.
+    Raises CodeError if it isn't Python even so.
     """
     code = blank_magics(code) if has_magics(code) else code
     first = next((line for line in code.split("\n") if line.strip() and not line.lstrip().startswith("#")), "")
     indented = first[:1].isspace()
     # `if True:` keeps line numbers right for an indented fragment, at the cost of one line.
-    tree = _parse("if True:\n" + code, shift=1) if indented else _parse(code)
+    try:
+        tree = _parse("if True:\n" + code, shift=1) if indented else _parse(code)
+    except CodeError:
+        if names := names_begun(code):
+            return PythonCode(fragment="it ends where a block begins", defines=names)
+        raise
     if indented:
         return PythonCode(fragment="it is indented, as a piece of a class or function is")
+    if methods := methods_alone(tree):
+        return PythonCode(fragment="it is a piece of a class", defines=methods)
+    if uses_super_outside(tree):
+        return PythonCode(fragment="`super()` is used outside a class")
     outside = _only_inside_function(code)
     if outside:
         return PythonCode(fragment=outside)
@@ -213,15 +247,19 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
         relative_imports={
             "." * i.level + (i.module or ""): i.lineno for i in everything if isinstance(i, ast.ImportFrom) and i.level
         },
-        star_import=any(alias.name == "*" for i in everything if isinstance(i, ast.ImportFrom) for alias in i.names),
-        calls_main=any(_calls_main(statement) for statement in tree.body),
-        starts_ros=any(_starts_ros(call) for call in calls),
-        loops=any(_loops(statement) for statement in _at_top(tree)),
-        programs=programs_started(calls),
+        calls_main=any(calls_main(statement) for statement in tree.body),
+        starts_ros=any(starts_ros(call) for call in calls),
+        loops=any(loops_forever(statement) for statement in at_top(tree)),
+        programs=programs_started(everything),
+        words_read=words_read(everything),
+        wants_ros=wants_ros(tree),
+        initializes=any(last_name(call.func) == "init" for call in calls),
+        leaves=leaves(tree),
         asks=next((call.lineno for call in calls if isinstance(call.func, ast.Name) and call.func.id == "input"), 0),
         alone=tuple(name for name in node_classes if can_stand_alone(name, classes, everything)),
         lacking=lacking,
         fails_at_once=used_by_init(lacking, node_classes, classes),
+        never_initialized=never_initialized(node_classes, classes),
     )
 
 
@@ -236,63 +274,6 @@ def _optional_imports(everything: Sequence[ast.AST]) -> set[ast.AST]:
         if caught or (isinstance(item, ast.If) and "TYPE_CHECKING" in ast.dump(item.test)):
             assert isinstance(item, ast.Try | ast.If)
             found |= {i for i in item.body if isinstance(i, ast.Import | ast.ImportFrom)}
-    return found
-
-
-def _calls_main(statement: ast.stmt) -> bool:
-    value = statement.value if isinstance(statement, ast.Expr) else None
-    return isinstance(value, ast.Call) and isinstance(value.func, ast.Name) and value.func.id == "main"
-
-
-def _starts_ros(call: ast.Call) -> bool:
-    dotted = ast.unparse(call.func)
-    return dotted in {"rclpy.init", "rclpy.create_node"}
-
-
-def _at_top(tree: ast.Module) -> list[ast.stmt]:
-    """The statements that run at once, those in `try`, `with` and `if` among them."""
-    found: list[ast.stmt] = []
-    todo = list(tree.body)
-    while todo:
-        statement = todo.pop(0)
-        found.append(statement)
-        if isinstance(statement, ast.Try | ast.With | ast.If):
-            todo += statement.body
-    return found
-
-
-def _loops(statement: ast.stmt) -> bool:
-    """`while True`, `while rclpy.ok()`, and servers that never return."""
-    if isinstance(statement, ast.While):
-        test = statement.test
-        endless = isinstance(test, ast.Constant) and bool(test.value)
-        leaves = any(isinstance(item, ast.Break | ast.Return) for item in ast.walk(statement))
-        return (endless and not leaves) or ast.unparse(test).endswith("rclpy.ok()")
-    value = statement.value if isinstance(statement, ast.Expr) else None
-    return isinstance(value, ast.Call) and last_name(value.func) in {"serve_forever", "run_forever", "mainloop"}
-
-
-_SHELLS = frozenset({"os.system", "os.popen", "subprocess.run", "subprocess.call", "subprocess.Popen"}) | {
-    "subprocess.check_call",
-    "subprocess.check_output",
-    "subprocess.getoutput",
-}
-
-
-def programs_started(calls: list[ast.Call]) -> dict[str, int]:
-    """The programs that calls of os.system and subprocess name -> line."""
-    found: dict[str, int] = {}
-    for call in calls:
-        if ast.unparse(call.func) == "shutil.rmtree":
-            found.setdefault("rm", call.lineno)
-        if ast.unparse(call.func) in _SHELLS and call.args:
-            words = [
-                item.value
-                for item in ast.walk(call.args[0])
-                if isinstance(item, ast.Constant) and isinstance(item.value, str)
-            ]
-            for word in (part for text in words for part in re.split(r"[\s;&|]+", text)):
-                found.setdefault(word.rsplit("/", 1)[-1], call.lineno)
     return found
 
 

@@ -14,6 +14,7 @@ from spinbook.chapter.block import Block, Kind, Line
 from spinbook.chapter.blocks import read_blocks
 from spinbook.chapter.chapter import Chapter, StaticFence, make_cells
 from spinbook.chapter.classify import CellKind, Classified, first_look, with_language
+from spinbook.chapter.excerpts import excerpts, is_excerpt
 from spinbook.chapter.fence import Fence, interface_package
 from spinbook.chapter.files import is_elsewhere, locate, read_included
 from spinbook.chapter.layout import Layout, Piece
@@ -42,7 +43,7 @@ class Surroundings:
 
 @dataclass(frozen=True)
 class Reading:
-    """What came of reading a chapter's file: the chapter, unless an error stopped it, and all that is to be told."""
+    """The result of reading a chapter's file: the chapter, unless an error stopped it, and all problems."""
 
     chapter: Chapter | None
     problems: tuple[Problem, ...]
@@ -62,7 +63,7 @@ class _Parsed:
 
 
 def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> Reading:
-    """Read the chapter at `root / file`. Never raises for what is in it: every fault is a Problem."""
+    """Read the chapter at `root / file`. Never raises because of its content: every fault is a Problem."""
     parsed = _parse(root, file)
     problems = list(parsed.problems)
     if parsed.source is None:
@@ -91,7 +92,7 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> Reading:
 
 
 def fences_of(root: Path, file: Path) -> Iterator[Fence]:
-    """The fences of a chapter that are closed, in order; none where it can't be read."""
+    """The fences of a chapter that are closed, in order; none if it can't be read."""
     return (block.fence for block in _parse(root, file).fences if block.fence and block.closed)
 
 
@@ -131,9 +132,12 @@ def _classify(parsed: _Parsed, file: Path, surroundings: Surroundings) -> tuple[
     problems: list[Problem] = []
     items: list[Classified] = []
     own = interface_package(surroundings.package)
+    repeated = excerpts([with_language(block.fence) for block in parsed.fences if block.fence])
     for block in parsed.fences:
         assert block.fence is not None
         item, found = _unclosed(block, file) if not block.closed else first_look(block.fence, file, own)
+        if is_excerpt(item, repeated.get(block.fence.line, "")):
+            item, found = Classified(block.fence, CellKind.STATIC, "it is a piece of a program of the chapter"), []
         bad = _bad_seconds(item, file)
         items.append(replace(item, fence=_without_seconds(item.fence)) if bad else item)
         problems += [*found, *bad]

@@ -19,7 +19,7 @@ from spinbook.chapter.terminal import Command, CommandKind
 from spinbook.problem import Problem, Severity
 from spinbook.ros2 import executables
 
-#: Commands that fail for a name which nothing has: noun -> verbs.
+#: Commands that fail for a name that does not exist: noun -> verbs.
 _ASKING = {
     "topic": {"echo", "info", "type"},
     "service": {"call", "type", "info"},
@@ -27,14 +27,14 @@ _ASKING = {
     "action": {"info", "send_goal"},
     "param": {"list", "get", "set", "describe", "dump", "load", "delete"},
 }
-#: Programs that fail where there is no keyboard.
+#: Programs that need a keyboard.
 _READ_KEYS = {("turtlesim", "turtle_teleop_key")}
 _TYPE = re.compile(r"(\w+)/(msg|srv|action)/(\w+)")
 
 
 @dataclass(frozen=True)
 class _Refused:
-    """Why a command can't run here. `group` is what would have to be there."""
+    """Why a command can't run here. `group` is what is missing."""
 
     why: str
     fix: str
@@ -86,7 +86,7 @@ class Shells:
     """The chapter's nodes so far -> their number among the fences."""
 
     def decide(self, items: Sequence[Classified]) -> list[Classified]:
-        """What becomes of each fence; a node that `ros2 run` starts further down gets the names it has there."""
+        """What each fence becomes; a node that `ros2 run` starts further down gets the names that it has there."""
         out = list(items)
         for number, item in enumerate(items):
             if item.kind is CellKind.NODE and item.name:
@@ -126,13 +126,11 @@ class Shells:
             return None
         if self._lacks_file(command):
             fix = "Give the parameters with -p NAME:=VALUE."
-            return _Refused("it reads a file of parameters, which is not here", fix, "files of parameters")
+            return _Refused("it reads a parameter file, which is missing", fix, "files of parameters")
         if command.runs is not None:
-            return self._run(*command.runs, out)
+            return self._run(*command.runs, out) or self._lacks_words(command, out)
         if command.words[1:2] == ("launch",):
-            if any(_file_name(word) in self._files for word in command.words[2:]):
-                return None
-            return _Refused("no fence above is its launch file", "Show it in a fence above.", "launch files")
+            return self._launch(command)
         if command.words[1:3] == ("pkg", "create"):
             return self._create(command)
         return self._types(command) or self._named(command)
@@ -151,10 +149,31 @@ class Shells:
             return _Refused(found, fix, "")
         return self._foreign(package, executable)
 
+    def _lacks_words(self, command: Command, out: Sequence[Classified]) -> _Refused | None:
+        """Whether a program of the chapter reads more words than the command gives it."""
+        given = list(itertools.takewhile(lambda word: not word.startswith("-"), command.words[4:]))
+        for number in self._nodes.values():
+            code = out[number].code
+            if command.runs in out[number].executables and code and code.words_read > len(given):
+                words = "a word" if code.words_read == 1 else f"{code.words_read} words"
+                why = f"`{command.words[3]}` reads {words} from its command line"
+                return _Refused(why, "Write them behind the command, as a reader would.", "")
+        return None
+
+    def _launch(self, command: Command) -> _Refused | None:
+        names = [word for word in command.words[2:] if not word.startswith("-") and ":=" not in word]
+        if any(_file_name(name) in self._files for name in names):
+            return None
+        package = names[0] if len(names) > 1 else ""
+        if not package or package in {self.package, *self.own.names, *ros_packages()}:
+            return _Refused("no fence above is its launch file", "Show it in a fence above.", "launch files")
+        fix = "Install it, or show its launch file and its programs in fences of the chapter."
+        return _Refused(f"there is no package `{package}` here", fix, package)
+
     def _foreign(self, package: str, executable: str) -> _Refused | None:
         if (package, executable) in _READ_KEYS:
             fix = "Run it in a terminal; write `static` behind the language to say that this is meant."
-            return _Refused(f"`{executable}` reads keys from a terminal", fix, "")
+            return _Refused(f"`{executable}` reads keys from a terminal", fix, "keys from a terminal")
         there = set(executables.BUILT_IN.get(package, ()))
         if package in ros_packages():
             prefix = prefixes.prefix_of(package, prefixes.installed())
@@ -190,7 +209,7 @@ class Shells:
         return unnamed[-1] if is_own and len(unnamed) == 1 else None
 
     def _lacks_file(self, command: Command) -> bool:
-        """Whether it reads a file of parameters that no cell above has put into the package."""
+        """Whether it reads a parameter file that no cell above has put into the package."""
         words = command.words
         named = [after for word, after in itertools.pairwise(words) if word == "--params-file"]
         if words[1:3] == ("param", "load"):
@@ -238,7 +257,7 @@ class Shells:
         return None
 
     def _named(self, command: Command) -> _Refused | None:
-        """A topic, service or node that no program of the chapter has a name for: asking for it fails."""
+        """A topic, service or node whose name no program of the chapter contains: a command that uses it fails."""
         words = [word for word in command.words[3:] if not word.startswith("-")]
         if command.words[1] not in _ASKING or command.words[2] not in _ASKING[command.words[1]] or self.has_exercise:
             return None

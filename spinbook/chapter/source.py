@@ -37,15 +37,14 @@ class Source:
 
 
 def read_source(file: Path, shown_as: Path) -> tuple[Source | None, list[Problem]]:
-    """Read a chapter's file. Without a Source, one of the problems is an error.
-
-    `shown_as` is the path that problems name, usually relative to the course.
+    """Read a chapter's file. If there is no Source, one of the problems is an error. `shown_as` is the path that
+    problems name, usually relative to the course.
     """
     problems: list[Problem] = []
     try:
         data = file.read_bytes()
     except OSError as error:
-        fix = "Write the chapter, or take it out of `chapters` in course.toml."
+        fix = "Write the chapter, or remove it from `chapters` in course.toml."
         return None, [Problem(shown_as, None, f"the file can't be read: {error.strerror}.", fix)]
     if data.startswith(b"\xef\xbb\xbf"):
         data = data[3:]
@@ -54,7 +53,7 @@ def read_source(file: Path, shown_as: Path) -> tuple[Source | None, list[Problem
                 shown_as,
                 1,
                 "the file begins with a byte-order mark (BOM).",
-                "It is ignored here, but other tools stumble over it: save the file as UTF-8 without BOM.",
+                "It is ignored here, but it confuses other tools: save the file as UTF-8 without BOM.",
                 Severity.WARNING,
             )
         )
@@ -79,7 +78,7 @@ def read_source(file: Path, shown_as: Path) -> tuple[Source | None, list[Problem
     for number, content in enumerate(text.split("\n"), start=1):
         if control := _CONTROL.search(content):
             found = f"control character U+{ord(control.group()):04X} in column {control.start() + 1}."
-            fix = "Delete it; it can't be seen, and notebooks and browsers reject it. Here it is left out."
+            fix = "Delete it; it can't be seen, and notebooks and browsers reject it. It is ignored here."
             problems.append(Problem(shown_as, number, found, fix, Severity.WARNING))
     text = _LIQUID.sub(lambda match: match[1] or (f"/{match[2]}" if match[2] else ""), _CONTROL.sub("", text))
     front_matter, body, front_problems = _split_front_matter(text, shown_as)
@@ -117,7 +116,7 @@ def _split_front_matter(text: str, file: Path) -> tuple[Mapping[str, Any], str, 
 
 
 def _simple_lines(lines: list[str]) -> dict[str, str]:
-    """What can still be read of front matter that is not YAML: its lines `key: value`."""
+    """The part of invalid YAML front matter that can still be read: its lines `key: value`."""
     read = (line.partition(":") for line in lines if line[:1].isalpha())
     return {key.strip(): value.strip().strip("\"'") for key, colon, value in read if colon}
 

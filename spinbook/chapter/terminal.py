@@ -1,7 +1,7 @@
 """A shell fence: the commands in it, and whether a notebook can run them.
 
-A notebook runs `ros2 …`, `colcon …` and `rqt_plot …`. Moving about (`cd`, `source`, `export`) is what a person does
-in a terminal before them; in a notebook it is not needed and stays as a comment. Anything else is shown and not run.
+A notebook runs `ros2 …`, `colcon …` and `rqt_plot …`. A terminal also needs `cd`, `source` and `export`; a notebook
+does not, so they stay as comments. Anything else is shown but not run.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ ROS2 = {
     "launch": set(),
 }
 _MOVING_ABOUT = frozenset({"cd", "source", ".", "export", "unset", "clear"})
-#: Looking at files and making them: harmless to leave out beside a command that runs.
+#: Commands that show or make files: they can be left out next to a command that runs.
 _BESIDE = frozenset(
     [
         "mkdir",
@@ -47,7 +47,11 @@ _BESIDE = frozenset(
     ]
 )
 _SHELL_SYNTAX = re.compile(r"[|;<>`]|&&|\$\(|(?<!\S)&(?!\S)|&$")
+#: What makes a shell read a word otherwise than it is written.
+_QUOTING = re.compile(r"[\"'\\]")
 _PROMPT = re.compile(r"^\s*(?:[\w.-]+@[\w.-]+:\S*)?[$#>]\s+(?=\S)")
+#: What a reader replaces: `{topic_name}`, `[options]`, `<name>`.
+_PLACEHOLDER = re.compile(r"\{[A-Za-z][\w -]*\}|\[[A-Za-z][\w .|=-]*\]|<[A-Za-z][^<>]*>")
 PROGRAMS = frozenset({"ros2", "colcon", "rqt_plot"})
 
 
@@ -92,7 +96,7 @@ class NotRunnable:
 
 
 def read_commands(code: str) -> list[Command | NotRunnable]:
-    """The commands of a shell fence, in order. Beside a command that runs, what is only for a terminal is a note."""
+    """The commands of a shell fence, in order. Next to a command that runs, what is only for a terminal is a note."""
     read = [_read(part, line) for text, line in _logical_lines(code) for part in _parts(text)]
     runs = any(isinstance(command, Command) and command.kind is not CommandKind.NOTE for command in read)
     return [_noted(command) if runs and isinstance(command, NotRunnable) else command for command in read]
@@ -164,6 +168,8 @@ def _logical_lines(code: str) -> Iterator[tuple[str, int]]:
 
 
 def _inside_quotes(text: str) -> bool:
+    if not _QUOTING.search(text):
+        return False
     try:
         shlex.split(text)
     except ValueError:
@@ -175,7 +181,7 @@ def _read(text: str, line: int) -> Command | NotRunnable:
     if text.startswith("#"):
         return Command(CommandKind.NOTE, text, (), line)
     try:
-        words = tuple(shlex.split(text, comments=True))
+        words = tuple(shlex.split(text, comments=True) if _QUOTING.search(text) or "#" in text else text.split())
     except ValueError:
         return NotRunnable(text, line, "a quotation mark is never closed")
     if not words:
@@ -187,6 +193,8 @@ def _read(text: str, line: int) -> Command | NotRunnable:
         return Command(CommandKind.NOTE, f"# {text}", (), line)
     if program not in PROGRAMS:
         return NotRunnable(text, line, f"`{program}` is none of ros2, colcon and rqt_plot")
+    if any(_PLACEHOLDER.fullmatch(word) for word in words[1:]):
+        return NotRunnable(text, line, "it holds placeholders for what a reader fills in")
     if _SHELL_SYNTAX.search(outside_quotes):
         return NotRunnable(text, line, "pipes, `;`, `&` and redirections need a real shell")
     if re.search(r"\.\.\.|…", outside_quotes):

@@ -1,4 +1,4 @@
-"""Reads what an existing book says about itself: its title, its chapters and their order."""
+"""Reads the settings of an existing book: its title, its chapters and their order."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def _tokens(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _value(tokens: list[tuple[str, str]], at: int) -> tuple[Any, int]:
-    """(the value that begins at a token, the place behind it). What is no literal is None."""
+    """(the value that begins at a token, the place behind it). What is not a literal is None."""
     kind, text = tokens[at] if at < len(tokens) else ("mark", "}")
     if (kind, text) == ("mark", "{"):
         return _object(tokens, at + 1)
@@ -89,7 +89,7 @@ def _list(tokens: list[tuple[str, str]], at: int) -> tuple[list[Any], int]:
 class Book:
     """An existing book. `root` is the folder that becomes the course; `chapters` are relative to it, in order.
 
-    `contents` is the file that says the order, None where there is none. `left_out` are pages that it lists and that
+    `contents` is the file that says the order, None if there is none. `left_out` are pages that it lists and that
     are no Markdown, or do not exist.
     """
 
@@ -108,13 +108,13 @@ class _Yaml(yaml.SafeLoader):
 _Yaml.add_multi_constructor("", lambda loader, suffix, node: None)
 
 
-def read_book(place: Path) -> Book:
-    """Read the book at `place`: a folder, or the file that says its order. Raises SpinbookError."""
-    place = place.resolve()
-    if not place.exists():
-        raise SpinbookError(Problem(place, None, "there is no such file or folder.", "Name a book's folder."))
-    contents = place if place.is_file() else _contents_in(place)
-    root = _root(place, contents)
+def read_book(path: Path) -> Book:
+    """Read the book at `path`: a folder, or the file that says its order. Raises SpinbookError."""
+    path = path.resolve()
+    if not path.exists():
+        raise SpinbookError(Problem(path, None, "there is no such file or folder.", "Name a book's folder."))
+    contents = path if path.is_file() else _contents_in(path)
+    root = _root(path, contents)
     pages = Pages(root)
     if contents is None:
         return _book(root, pages, None, "", root, list(pages.in_folder(root)))
@@ -136,10 +136,10 @@ def _contents_in(folder: Path) -> Path | None:
     return None
 
 
-def _root(place: Path, contents: Path | None) -> Path:
+def _root(path: Path, contents: Path | None) -> Path:
     """The folder that holds everything: the one that was named, or that of the repository."""
-    if place.is_dir():
-        return place
+    if path.is_dir():
+        return path
     assert contents is not None
     folder = contents.parent
     above = [folder, *folder.parents][:4]
@@ -196,7 +196,7 @@ def _quarto(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
 def _docusaurus(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
     folder = next((path for path in (file.parent / "docs", file.parent) if path.is_dir()), file.parent)
     listed: list[str | Path] = []
-    for sidebars in objects_in(file.read_text(encoding="utf-8")):
+    for sidebars in objects_in(file.read_text(encoding="utf-8", errors="replace")):
         for sidebar in sidebars.values() if isinstance(sidebars, dict) else ():
             listed += _items(sidebar, folder, pages)
     return "", folder, listed or list(pages.in_folder(folder))
@@ -224,7 +224,7 @@ def _items(item: Any, folder: Path, pages: Pages) -> Iterator[str | Path]:
 
 
 def _list_of_links(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
-    tokens = MarkdownIt("commonmark").parse(file.read_text(encoding="utf-8"))
+    tokens = MarkdownIt("commonmark").parse(file.read_text(encoding="utf-8", errors="replace"))
     targets = [str(child.attrs.get("href", "")) for token in tokens for child in token.children or []]
     listed = [target.partition("#")[0] for target in targets if target and "://" not in target]
     return "", file.parent, [target for target in listed if target]
@@ -277,13 +277,15 @@ def _under(value: Any, keys: tuple[str, ...]) -> Iterator[str]:
 
 
 def _title_of(root: Path) -> str:
-    """What a book's settings call it."""
+    """The book's title in its settings."""
     for name in ("_config.yml", "docs/_config.yml"):
         if (root / name).is_file() and (title := _load(root / name).get("title")):
             return str(title)
     for name in ("docusaurus.config.js", "docusaurus.config.ts"):
         if (root / name).is_file():
-            match = re.search(r"""\btitle:\s*(["'`])(.+?)\1""", (root / name).read_text(encoding="utf-8"))
+            match = re.search(
+                r"""\btitle:\s*(["'`])(.+?)\1""", (root / name).read_text(encoding="utf-8", errors="replace")
+            )
             if match:
                 return match[2]
     return ""
@@ -294,7 +296,9 @@ def _repository(root: Path) -> str:
     for folder in (root, *root.parents):
         config = folder / ".git" / "config"
         if config.is_file():
-            match = re.search(r"github\.com[:/]([\w.-]+/[\w.-]+?)(?:\.git)?\s*$", config.read_text(), re.MULTILINE)
+            match = re.search(
+                r"github\.com[:/]([\w.-]+/[\w.-]+?)(?:\.git)?\s*$", config.read_text(errors="replace"), re.MULTILINE
+            )
             # A course below the repository's root has other paths than the repository.
             return f"https://github.com/{match[1]}" if match and folder == root else ""
     return ""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Sequence
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,7 @@ from spinbook.problem import Problem, SpinbookError
 
 _RUNS = (CellKind.NODE, CellKind.SNIPPET, CellKind.PART, CellKind.SHELL, CellKind.INTERFACE, CellKind.FILE)
 _PLACES = 12
+_MARKED = re.compile(r"(```[^\n]+|`[^`]*`)")
 
 
 def report_page(course: Course, chapters: Sequence[Chapter], problems: Sequence[Problem]) -> str:
@@ -50,9 +52,10 @@ def report_page(course: Course, chapters: Sequence[Chapter], problems: Sequence[
 
 
 def _code(text: str) -> Markup:
-    """Text with what is between backticks as code."""
-    parts = [escape(part) for part in text.split("`")]
-    return Markup("").join(Markup("<code>{}</code>").format(p) if i % 2 else p for i, p in enumerate(parts))
+    """Text with what is between backticks as code; a fence's opening line keeps its own."""
+    parts = _MARKED.split(text)
+    code = (Markup("<code>{}</code>").format(p if p.startswith("```") else p.strip("`")) for p in parts[1::2])
+    return Markup("").join(piece for pair in zip_longest(map(escape, parts[::2]), code, fillvalue="") for piece in pair)
 
 
 def _row(chapter: Chapter, course: Course) -> dict[str, Any]:
@@ -78,10 +81,10 @@ _SHOWN = 6
 
 @click.command(name="import", context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("book", type=click.Path(path_type=Path), default=".")
-@click.option("--title", help="What the course is called.  [default: as the book is]")
-@click.option("--package", help="The ROS 2 package that the nodes make.  [default: from the title]")
+@click.option("--title", help="The course's title.  [default: the book's]")
+@click.option("--package", help="The name of the ROS 2 package for the nodes.  [default: from the title]")
 def import_book(book: Path, title: str | None, package: str | None) -> None:
-    """Make a course of an existing book, without touching its chapters.
+    """Make a course from an existing book, without changing its chapters.
 
     \b
       spinbook import my-book                  a folder: its table of contents is found
@@ -90,12 +93,11 @@ def import_book(book: Path, title: str | None, package: str | None) -> None:
       spinbook import my-book/sidebars.js      Docusaurus; also SUMMARY.md, _sidebar.md
 
     Writes course.toml with the chapters in the book's order, builds the notebooks, and writes a page that says
-    what runs, what does not, and what to do first: build/import.html. Runs nothing. A course.toml that exists is not
-    overwritten.
+    what runs, what does not, and what to do first: build/import.html. Runs nothing. It never overwrites a course.toml.
     """
     read = read_book(book)
     if (read.root / FILE).exists():
-        found = f"{read.root} is a course already."
+        found = f"{read.root} is already a course."
         raise SpinbookError(Problem(read.root / FILE, None, found, "Go there, and run: spinbook build"))
     text = course_toml(read, title or read.title, package or package_of(title or read.title))
     write_if_changed(read.root / FILE, text)
@@ -112,7 +114,7 @@ def course_toml(book: Book, title: str, package: str) -> str:
     chapters = "".join(f"  {_quoted(chapter.as_posix())},\n" for chapter in book.chapters)
     repository = f"repository = {_quoted(book.repository)}\n" if book.repository else ""
     return (
-        "# What the course is called, and the order of its chapters: see docs/writing-chapters.md.\n"
+        "# The course's title, and the order of its chapters: see docs/writing-chapters.md.\n"
         f"title = {_quoted(title)}\n{repository}chapters = [\n{chapters}]\n\n"
         "# The ROS 2 package that the chapters' nodes make: `spinbook package`.\n"
         f'[package]\nname = "{package}"\nworkspace = "{package}_ws"\n'

@@ -1,4 +1,4 @@
-"""The Markdown files of a book, found by whatever its table of contents calls them."""
+"""Finds the Markdown files of a book by the names in its table of contents."""
 
 from __future__ import annotations
 
@@ -8,11 +8,14 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
+
+import yaml
 
 from spinbook.chapter.source import read_source
 
 _ENDINGS = (".md", ".mdx", ".qmd", ".markdown")
-#: Folders that hold no chapters.
+#: Folders without chapters.
 _SKIPPED = frozenset({"node_modules", "build", "blog", "i18n", "versioned_docs", "vendor", "site", "_site", "dist"})
 #: Files about a repository, not of a book.
 _NOT_CHAPTERS = frozenset(
@@ -40,7 +43,7 @@ class Pages:
 
     def find(self, folder: Path, name: str) -> Path | None:
         """The file that a table of contents in `folder` calls `name`: with or without its ending or its number."""
-        name = name.strip().split("?")[0].strip("/")
+        name = unquote(name.strip().split("?")[0]).strip("/")
         for base in (folder, self._root):
             path = base / name
             for candidate in (path, *(path.with_name(path.name + ending) for ending in _ENDINGS)):
@@ -70,7 +73,7 @@ class Pages:
         if not folder.is_dir():
             return
         entries = [entry for entry in folder.resolve().iterdir() if self._is_wanted(entry)]
-        for entry in sorted(entries, key=self._place):
+        for entry in _listed(folder.resolve(), sorted(entries, key=self._place)):
             if entry.is_dir():
                 yield from self.in_folder(entry)
             else:
@@ -111,8 +114,31 @@ class Pages:
         return dict(source.front_matter) if source else {}
 
     def title_of(self, file: Path) -> str:
-        """What a page calls itself, or its folder's name in words."""
+        """The title of a page, or its folder's name in words."""
         return str(self._front_matter(file).get("title") or self._root.name.replace("-", " ").replace("_", " "))
+
+
+def _listed(folder: Path, entries: list[Path]) -> list[Path]:
+    """The entries that a folder's `.pages` lists, in its order; `...` stands for the rest. Without one, all.
+
+    A folder that is not listed but named as a page is, such as `part1/` of `part1.md`, comes behind that page.
+    """
+    try:
+        about = yaml.safe_load((folder / ".pages").read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError):
+        return entries
+    nav = (about.get("nav") or about.get("arrange")) if isinstance(about, dict) else None
+    if not isinstance(nav, list):
+        return entries
+    named = [str(next(iter(item.values()), "")) if isinstance(item, dict) else str(item) for item in nav]
+    by_name = {entry.name: entry for entry in entries}
+    rest = [entry for entry in entries if entry.name not in named]
+    found: dict[Path, None] = {}
+    for name in named:
+        group = [by_name[name]] if name in by_name else rest if name.startswith("...") else []
+        stems = {entry.stem for entry in group if entry.is_file()}
+        found |= dict.fromkeys([*group, *(entry for entry in rest if entry.is_dir() and entry.name in stems)])
+    return [*found] or entries
 
 
 def _category(folder: Path) -> dict[str, Any]:

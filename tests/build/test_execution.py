@@ -53,7 +53,7 @@ def test_cells_run_and_their_outputs_are_kept(course: CourseFolder, process_mark
     outputs = course.outputs("one")
     assert said.returncode == 0, said.stdout
     assert "[INFO] [talker]: talking" in outputs["node-talker"]
-    assert "goes on in the background" in outputs["node-talker"]
+    assert "continues in the background" in outputs["node-talker"]
     assert re.search(r"average rate: \d+\.\d{3}\n\tmin: ", outputs["ros2-topic-hz-chatter"])
     assert course.notebook("one", "executed").cells[-1].outputs[0].data["text/plain"] == "42"
     process_mark.wait_until_none()
@@ -100,9 +100,9 @@ def test_a_text_that_was_waited_for_in_vain_is_reported_by_chapter_and_line(cour
 
     for said in (first, again):
         assert said.returncode == 0, said.stdout
-        assert "chapters/one.md:4: `until` never came: 'walking' was not printed within 1 s." in said.stdout
+        assert "chapters/one.md:4: `until` failed: 'walking' was not printed within 1 s." in said.stdout
     assert "unchanged since its last run" in again.stdout
-    assert "— the text 'walking' did not come within 1 s —" in course.outputs("one")["node-talker"]
+    assert "— the text 'walking' did not appear within 1 s —" in course.outputs("one")["node-talker"]
 
 
 def test_failing_can_be_the_lesson(course: CourseFolder) -> None:
@@ -111,7 +111,7 @@ def test_failing_can_be_the_lesson(course: CourseFolder) -> None:
     said = course.spinbook("build", "--execute")
 
     assert "1 cell failed" in said.stdout
-    assert "chapters/one.md:8: this cell says `raises`, and it did not fail." in said.stdout
+    assert "chapters/one.md:8: this cell says `raises`, but it did not fail." in said.stdout
 
 
 def test_no_folder_of_the_machine_gets_into_the_outputs(course: CourseFolder) -> None:
@@ -128,7 +128,7 @@ HOSTILE = """# Nodes that misbehave
 
 ```python title="endless.py" seconds=60 until=spinning
 import rclpy
-print("spinning for ever")
+print("spinning forever")
 while rclpy: pass
 rclpy.spin(None)
 ```
@@ -188,8 +188,8 @@ def test_misbehaving_nodes_are_told_in_their_cells_and_nothing_is_left_behind(
 
     assert said.returncode == 0, said.stdout
     outputs = course.outputs("one")
-    assert "spinning for ever" in outputs["node-endless"]
-    assert "endless goes on in the background" in outputs["node-endless"]
+    assert "spinning forever" in outputs["node-endless"]
+    assert "endless continues in the background" in outputs["node-endless"]
     assert "NameError: name 'undefined' is not defined" in outputs["node-crasher"]
     assert "crasher ended with exit code 1." in outputs["node-crasher"]
     assert "stubborn ignored Ctrl-C and SIGTERM" in outputs["code-nodes-that-misbehave"]
@@ -211,9 +211,9 @@ def test_the_deadline_ends_a_notebook_and_its_nodes_and_says_where(
     said = course.spinbook("build", "--execute", "--deadline", "10")
 
     assert said.returncode == 1
-    assert "chapters/one.md:20: the notebook's deadline passed in this cell" in said.stdout
+    assert "chapters/one.md:20: the notebook's time limit passed in this cell" in said.stdout
     assert "talking" in course.outputs("one")["node-talker"], "what ran before is kept"
-    assert "deadline passed in this cell" in course.outputs("one")["code-one"], "told in the cell as well"
+    assert "time limit passed in this cell" in course.outputs("one")["code-one"], "the cell says it too"
     process_mark.wait_until_none()
 
 

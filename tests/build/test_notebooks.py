@@ -192,3 +192,12 @@ def test_lint_tells_what_is_not_run_and_builds_nothing(course: CourseFolder) -> 
 @pytest.mark.parametrize(("words", "code"), [((), 0), (("--strict",), 1)])
 def test_lint_fails_for_warnings_only_when_asked_to(course: CourseFolder, words: tuple[str, ...], code: int) -> None:
     assert course.write(one=b"# One\r\n").spinbook("lint", *words).returncode == code
+
+
+def test_yaml_over_several_lines_is_one_line_of_the_notebook(course: CourseFolder) -> None:
+    command = "ros2 topic pub -1 /servos sensor_msgs/msg/JointState \"\nname: ['a']\nposition: [90.0]\n\""
+
+    course.write(one=f"# One\n\n```bash\n{command}\n```\n").spinbook("build")
+
+    wanted = "%ros2 topic pub -1 /servos sensor_msgs/msg/JointState '{name: [a], position: [90.0]}'"
+    assert wanted in sources(course).values()

@@ -58,7 +58,7 @@ FAULTS: dict[str, tuple[bytes, int, list[str], str]] = {
         WARNING,
     ),
     "file name that is no module": (
-        b'# T\n\n```python title="my-node.py"\nimport rclpy\nrclpy.spin(1)\n```\n',
+        b'# T\n\n```python title="my-node.py"\nimport rclpy\nrclpy.init()\nrclpy.spin(1)\n```\n',
         3,
         ["my-node", "letters, digits and underscores"],
         WARNING,
@@ -77,6 +77,12 @@ FAULTS: dict[str, tuple[bytes, int, list[str], str]] = {
         b"# T\n\n```python\nfrom geometry_msgs.srv import GetPlan\n```\n",
         4,
         ["no such module", "Did you mean `from nav_msgs.srv import GetPlan`"],
+        NOT_RUN,
+    ),
+    "misspelt module": (
+        b"# T\n\n```python\nfrom std_msgs.mgs import String\n```\n",
+        4,
+        ["no such module", "Did you mean `from std_msgs.msg import String`"],
         NOT_RUN,
     ),
     "relative import": (

@@ -9,6 +9,7 @@ import pytest
 from spinbook.chapter.chapter import Chapter
 from spinbook.chapter.classify import CellKind
 from spinbook.chapter.read import Surroundings, read_chapter
+from spinbook.problem import Severity
 
 NODE = "import rclpy\nfrom rclpy.node import Node\nrclpy.init()\nnode = Node('talker')\nrclpy.spin(node)\n"
 
@@ -78,6 +79,26 @@ def test_what_cannot_run_is_shown_with_a_reason(tmp_path: Path, info: str, code:
     assert kinds(chapter) == []
     assert [why in fence.why for fence in chapter.static_fences] == [True]
     assert code.rstrip("\n") in "\n".join(cell.source for cell in chapter.cells), "it stays in the prose"
+
+
+@pytest.mark.parametrize(
+    ("title", "meant"),
+    [
+        ("JointLimits.msg", "msg/JointLimits.msg"),
+        ("joint-limits.srv", "srv/JointLimits.srv"),
+        ("my-msgs/msg/Limits.msg", "my_msgs/msg/Limits.msg"),
+        ("ros2_ws/src/my_msgs/action/Go.action", "my_msgs/action/Go.action"),
+    ],
+)
+def test_a_definition_whose_title_names_no_interface_comes_with_the_one_that_was_meant(
+    tmp_path: Path, title: str, meant: str
+) -> None:
+    (tmp_path / "c.md").write_text(f'# C\n\n```text title="{title}"\nfloat64 x\n```\n')
+
+    (problem,) = read_chapter(tmp_path, Path("c.md"), Surroundings("robot")).problems
+
+    assert (problem.line, problem.severity) == (3, Severity.NOT_RUN)
+    assert f'Write title="{meant}"' in problem.fix
 
 
 def test_a_snippet_may_use_what_earlier_snippets_defined(tmp_path: Path) -> None:

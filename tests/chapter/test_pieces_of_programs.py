@@ -5,33 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from fences import GUARD, IMPORTS, MAIN, TALKER, cells, read
 
-from spinbook.chapter.chapter import Cell, Chapter
 from spinbook.chapter.classify import CellKind
 from spinbook.chapter.python_code import inspect
-from spinbook.chapter.read import Reading, Surroundings, read_chapter
-
-IMPORTS = "import rclpy\nfrom rclpy.node import Node\nfrom std_msgs.msg import String\n"
-TALKER = "class Talker(Node):\n    def __init__(self):\n        super().__init__('talker')\n"
-MAIN = "def main(args=None):\n    rclpy.init(args=args)\n    rclpy.spin(Talker())\n"
-GUARD = "if __name__ == '__main__':\n    main()\n"
-
-
-def reading(tmp_path: Path, *fences: str) -> Reading:
-    """Return a chapter with these fences; one without an opening line is Python."""
-    parts = [fence if fence.startswith("```") else f"```python\n{fence}```\n" for fence in fences]
-    (tmp_path / "c.md").write_text("# T\n\n" + "\n".join(parts))
-    return read_chapter(tmp_path, Path("c.md"), Surroundings("robot"))
-
-
-def read(tmp_path: Path, *fences: str) -> Chapter:
-    chapter = reading(tmp_path, *fences).chapter
-    assert chapter is not None
-    return chapter
-
-
-def cells(chapter: Chapter) -> list[Cell]:
-    return [cell for cell in chapter.cells if cell.kind is not CellKind.PROSE]
+from spinbook.chapter.read import Surroundings, read_chapter
 
 
 def test_a_main_continues_the_class_above_which_does_not_run_by_itself(tmp_path: Path) -> None:
@@ -70,7 +48,7 @@ def test_the_usual_imports_are_added(tmp_path: Path, used: str) -> None:
         ("class Arm(Node):\n    def __init__(self, name):\n        super().__init__(name)\n", "nothing makes a node"),
         ("    def tick(self):\n        self.count += 1\n", "indented"),
         ("self.create_timer(1.0, self.tick)\n", "`self`"),
-        (IMPORTS + "name = input()\nrclpy.init()\nrclpy.spin(Node(name))\n", "waits for somebody to type"),
+        (IMPORTS + "name = input()\nrclpy.init()\nrclpy.spin(Node(name))\n", "waits for keyboard input"),
     ],
 )
 def test_what_stays_incomplete_is_shown_with_a_sign(tmp_path: Path, code: str, why: str) -> None:
@@ -207,7 +185,7 @@ def test_a_node_knows_what_ros2_run_calls_it(tmp_path: Path) -> None:
         ("ros2 topic pub /a nav2_msgs/msg/Route {}", "needs `nav2_msgs`"),
         ("ros2 topic echo /scan", "nothing above makes `/scan`"),
         ("ros2 topic echo ...", "is an alias for other commands"),
-        ("ros2 run arm hand --ros-args --params-file p.yaml", "reads a file of parameters"),
+        ("ros2 run arm hand --ros-args --params-file p.yaml", "reads a parameter file"),
     ],
 )
 def test_foreign_commands_are_shown_with_a_word(tmp_path: Path, command: str, why: str) -> None:
@@ -263,6 +241,12 @@ def test_a_launch_file_of_the_chapter_starts_its_nodes(tmp_path: Path) -> None:
 
 def test_a_launch_file_from_elsewhere_is_shown_only(tmp_path: Path) -> None:
     chapter = read(tmp_path, "```bash\nros2 launch nav2_bringup navigation.launch.py\n```\n")
+
+    assert chapter.static_fences[0].sign == "there is no package `nav2_bringup` here."
+
+
+def test_a_launch_file_of_the_chapters_package_that_no_fence_shows_is_shown_only(tmp_path: Path) -> None:
+    chapter = read(tmp_path, "```bash\nros2 launch robot robot.launch.py\n```\n")
 
     assert chapter.static_fences[0].sign == "no fence above is its launch file."
 

@@ -127,6 +127,33 @@ def test_docusaurus_finds_pages_by_their_ids_without_numbers(tmp_path: Path) -> 
     assert order(root) == ["docs/intro.md", "docs/02-topics/01-start.md"]
 
 
+def test_mkdocs_pages_files_give_the_order_and_leave_out_what_they_do_not_list(tmp_path: Path) -> None:
+    root = book(tmp_path / "b", "docs/a.md", "docs/part/one.md", "docs/part/two.md", "docs/part/hidden.md")
+    (root / "mkdocs.yaml").write_text("site_name: B\nplugins:\n  - awesome-pages\n")
+    (root / "docs/.pages").write_text("nav:\n  - The part: part\n  - ...\n")
+    (root / "docs/part/.pages").write_text("nav:\n  - two.md\n  - First: one.md\n")
+
+    assert spinbook_import(root).returncode == 0
+    assert order(root) == ["docs/part/two.md", "docs/part/one.md", "docs/a.md"]
+
+
+def test_a_folder_that_is_not_listed_follows_the_page_of_its_name(tmp_path: Path) -> None:
+    root = book(tmp_path / "b", "docs/part1.md", "docs/part1/code.md", "docs/part2.md", "docs/old/x.md")
+    (root / "mkdocs.yml").write_text("site_name: B\n")
+    (root / "docs/.pages").write_text("nav:\n  - part1.md\n  - part2.md\n")
+
+    assert spinbook_import(root).returncode == 0
+    assert order(root) == ["docs/part1.md", "docs/part1/code.md", "docs/part2.md"]
+
+
+def test_links_of_a_sidebar_are_percent_decoded(tmp_path: Path) -> None:
+    root = book(tmp_path / "b", "docs/two words.md", "docs/日本.md")
+    (root / "docs/_sidebar.md").write_text("- [Two](two%20words.md)\n- [J](%E6%97%A5%E6%9C%AC.md)\n")
+
+    assert spinbook_import(root).returncode == 0
+    assert order(root) == ["docs/two words.md", "docs/日本.md"]
+
+
 def test_the_first_build_and_a_page_say_what_runs_and_what_to_do_first(tmp_path: Path) -> None:
     root = book(tmp_path / "robots", "docs/index.md", "docs/part/second.md", "docs/part/first.md")
     (root / "mkdocs.yml").write_text(MKDOCS)
@@ -145,6 +172,15 @@ def test_the_first_build_and_a_page_say_what_runs_and_what_to_do_first(tmp_path:
     assert (root / "build/notebooks/second.ipynb").exists()
 
 
+def test_the_page_shows_the_opening_line_of_a_fence_as_it_is_written(tmp_path: Path) -> None:
+    root = tmp_path / "b"
+    root.mkdir()
+    (root / "one.md").write_text("# One\n\n```python\nimport rclpy\nrclpy.init()\nrclpy.spin(1)\n```\n")
+
+    assert spinbook_import(root).returncode == 0
+    assert "Name its file: <code>```python title=&#34;node.py&#34;</code>" in (root / "build/import.html").read_text()
+
+
 def test_a_course_is_not_overwritten(tmp_path: Path) -> None:
     root = book(tmp_path / "robots", "a.md")
     (root / "course.toml").write_text("mine")
@@ -152,7 +188,7 @@ def test_a_course_is_not_overwritten(tmp_path: Path) -> None:
     said = spinbook_import(root)
 
     assert said.returncode == 1
-    assert "is a course already" in said.stderr
+    assert "is already a course" in said.stderr
     assert (root / "course.toml").read_text() == "mine"
 
 

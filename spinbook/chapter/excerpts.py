@@ -1,0 +1,44 @@
+"""Which fences of a chapter repeat a piece of a whole program that it shows: they explain, and need not run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from spinbook.chapter.classify import CellKind, Classified
+from spinbook.chapter.fence import Fence
+from spinbook.chapter.python_code import CodeError, inspect
+
+
+def excerpts(fences: Iterable[Fence]) -> dict[int, str]:
+    """Line of a fence whose lines stand one after another in a longer program -> whether that is "above" or "below"."""
+    code = {fence.line: _lines(fence.code) for fence in fences if fence.is_python and not fence.attributes}
+    programs = {fence.line: _lines(fence.code) for fence in fences if fence.is_python and _is_whole(fence.code)}
+    found: dict[int, str] = {}
+    for line, lines in code.items():
+        places = [at for at, whole in programs.items() if at != line and len(lines) < len(whole) and lines in whole]
+        if lines.strip() and places:
+            found[line] = "above" if min(places) < line else "below"
+    return found
+
+
+def is_excerpt(item: Classified, place: str) -> bool:
+    """Whether a fence that repeats a piece of a program `place` ("above", "below", "") only explains it."""
+    if not place:
+        return False
+    if item.kind is CellKind.NODE:
+        return place == "above"
+    return item.kind is CellKind.STATIC and (item.code is None or bool(item.code.fragment))
+
+
+def _lines(code: str) -> str:
+    """The lines of code, without the space around them, empty lines and comments."""
+    lines = (line.strip() for line in code.split("\n"))
+    return "\n" + "".join(f"{line}\n" for line in lines if line and not line.startswith("#"))
+
+
+def _is_whole(code: str) -> bool:
+    try:
+        facts = inspect(code)
+    except CodeError:
+        return False
+    return facts.is_complete and facts.is_node and bool(facts.imports) and not facts.fragment

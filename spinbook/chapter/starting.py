@@ -1,0 +1,163 @@
+"""How a program starts and goes on, which others it starts, and what it wants: read from its syntax tree."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Sequence
+
+from spinbook.chapter.node_classes import last_name
+
+#: Functions that start a program, whatever they are imported as.
+_STARTING = frozenset(
+    ["system", "popen", "Popen", "check_call", "check_output", "getoutput", "getstatusoutput", "startfile"]
+) | {
+    "create_subprocess_exec",
+    "create_subprocess_shell",
+}
+_STARTING_FAMILIES = ("exec", "spawn", "posix_spawn")
+#: Functions of `subprocess` whose names others have as well.
+_OF_SUBPROCESS = frozenset({"run", "call"})
+
+
+#: Calls that fail before `rclpy.init`.
+_NEEDS_INIT = frozenset(
+    ["Node", "rclpy.node.Node", "rclpy.create_node", "rclpy.spin", "rclpy.spin_once", "rclpy.shutdown"]
+) | {"rclpy.spin_until_future_complete"}
+_ENDS = frozenset({"exit", "quit", "sys.exit", "os._exit"})
+_READS_COMMAND_LINE = frozenset({"parse_args", "parse_known_args"})
+
+
+def programs_started(everything: Sequence[ast.AST]) -> dict[str, int]:
+    """The words of the commands that code starts, programs among them -> line. Names are followed to their values."""
+    found: dict[str, int] = {}
+    calls = [item for item in everything if isinstance(item, ast.Call)]
+    of_subprocess = _names_of("subprocess", everything)
+    for call in calls:
+        if ast.unparse(call.func) in {"shutil.rmtree", "rmtree"}:
+            found.setdefault("rm", call.lineno)
+        if _starts_a_program(call, of_subprocess):
+            for word in _command_words(call, everything):
+                found.setdefault(word.rsplit("/", 1)[-1], call.lineno)
+    return found
+
+
+def words_read(everything: Sequence[ast.AST]) -> int:
+    """How many words a program takes from its command line without looking whether they are there."""
+    if any(_looks_first(item) for item in everything):
+        return 0
+    indexes = (item.slice for item in everything if isinstance(item, ast.Subscript) and _is_argv(item.value))
+    found = [index.value for index in indexes if isinstance(index, ast.Constant) and isinstance(index.value, int)]
+    return max(found, default=0)
+
+
+def calls_main(statement: ast.stmt) -> bool:
+    """Whether a statement is `main()`."""
+    value = statement.value if isinstance(statement, ast.Expr) else None
+    return isinstance(value, ast.Call) and isinstance(value.func, ast.Name) and value.func.id == "main"
+
+
+def starts_ros(call: ast.Call) -> bool:
+    """Whether a call is that of `rclpy.init` or `rclpy.create_node`."""
+    dotted = ast.unparse(call.func)
+    return dotted in {"rclpy.init", "rclpy.create_node"}
+
+
+def at_top(tree: ast.Module) -> list[ast.stmt]:
+    """The statements that run at once, those in `try`, `with` and `if` among them."""
+    found: list[ast.stmt] = []
+    todo = list(tree.body)
+    while todo:
+        statement = todo.pop(0)
+        found.append(statement)
+        if isinstance(statement, ast.Try | ast.With | ast.If):
+            todo += statement.body
+    return found
+
+
+def loops_forever(statement: ast.stmt) -> bool:
+    """`while True`, `while rclpy.ok()`, and servers that never return."""
+    if isinstance(statement, ast.While):
+        test = statement.test
+        endless = isinstance(test, ast.Constant) and bool(test.value)
+        leaves = any(isinstance(item, ast.Break | ast.Return) for item in ast.walk(statement))
+        return (endless and not leaves) or ast.unparse(test).endswith("rclpy.ok()")
+    value = statement.value if isinstance(statement, ast.Expr) else None
+    return isinstance(value, ast.Call) and last_name(value.func) in {"serve_forever", "run_forever", "mainloop"}
+
+
+def wants_ros(tree: ast.Module) -> bool:
+    """Whether code outside classes makes a node, spins one or shuts ROS down, and so needs `rclpy.init` before it."""
+    outside = (item for item in tree.body if not isinstance(item, ast.ClassDef))
+    calls = (item for statement in outside for item in ast.walk(statement) if isinstance(item, ast.Call))
+    return any(_is_ros(call.func) for call in calls)
+
+
+def leaves(tree: ast.Module) -> str:
+    """How the top level of code would end a notebook's kernel, or take its command line for its own; "" if not."""
+    for statement in tree.body:
+        if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.If):
+            continue
+        for call in (item for item in ast.walk(statement) if isinstance(item, ast.Call)):
+            if ast.unparse(call.func) in _ENDS:
+                return "it ends its program"
+            own_words = [a for a in call.args if "argv" not in ast.unparse(a)]
+            if last_name(call.func) in _READS_COMMAND_LINE and not own_words:
+                return "it reads its command line"
+    return ""
+
+
+def _is_ros(function: ast.expr) -> bool:
+    return ast.unparse(function) in _NEEDS_INIT
+
+
+def _starts_a_program(call: ast.Call, of_subprocess: frozenset[str]) -> bool:
+    name = last_name(call.func)
+    if name in _STARTING or (name.startswith(_STARTING_FAMILIES) and _is_of_os(call.func)):
+        return True
+    dotted = ast.unparse(call.func)
+    return dotted in of_subprocess or (name in _OF_SUBPROCESS and dotted.rpartition(".")[0] in of_subprocess)
+
+
+def _is_of_os(function: ast.expr) -> bool:
+    return isinstance(function, ast.Attribute) and ast.unparse(function.value) in {"os", "pty"}
+
+
+def _names_of(module: str, everything: Sequence[ast.AST]) -> frozenset[str]:
+    """What code calls a module, and what it imports from it."""
+    found = {module}
+    for item in everything:
+        if isinstance(item, ast.Import):
+            found |= {alias.asname or alias.name for alias in item.names if alias.name == module}
+        elif isinstance(item, ast.ImportFrom) and item.module == module:
+            found |= {alias.asname or alias.name for alias in item.names}
+    return frozenset(found)
+
+
+def _command_words(call: ast.Call, everything: Sequence[ast.AST]) -> Iterator[str]:
+    """The words in a call's arguments, and in what is given to the names among them."""
+    inside = [item for value in [*call.args, *(k.value for k in call.keywords)] for item in ast.walk(value)]
+    names = {item.id for item in inside if isinstance(item, ast.Name)}
+    for item in everything:
+        if isinstance(item, ast.Assign | ast.AnnAssign | ast.AugAssign) and item.value is not None:
+            targets = item.targets if isinstance(item, ast.Assign) else [item.target]
+            if any(isinstance(target, ast.Name) and target.id in names for target in targets):
+                inside += ast.walk(item.value)
+    texts = [item.value for item in inside if isinstance(item, ast.Constant) and isinstance(item.value, str)]
+    before = ""
+    for word in (part for text in texts for part in re.split(r"[\s;&|`()]+", text)):
+        # `ros2 service` is no `service`.
+        if before != "ros2":
+            yield word
+        before = word
+
+
+def _is_argv(value: ast.expr) -> bool:
+    return ast.unparse(value) in {"sys.argv", "argv"}
+
+
+def _looks_first(item: ast.AST) -> bool:
+    """Whether code counts the words, or is ready for too few."""
+    if isinstance(item, ast.Call):
+        return last_name(item.func) == "len" and bool(item.args) and _is_argv(item.args[0])
+    return isinstance(item, ast.ExceptHandler) and "IndexError" in (ast.unparse(item.type) if item.type else "")

@@ -1,0 +1,161 @@
+"""Classes in pieces run as a whole; excerpts, templates and what would end the kernel are shown, with a word why."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from fences import GUARD, IMPORTS, MAIN, TALKER, cells, read, reading
+
+from spinbook.chapter.classify import CellKind
+from spinbook.chapter.python_code import inspect
+from spinbook.problem import Severity
+
+HEADER = "class Talker(Node):\n"
+INIT = "    def __init__(self):\n        super().__init__('talker')\n        self.create_timer(1.0, self.tick)\n"
+TICK = "    def tick(self):\n        self.get_logger().info('tick')\n"
+
+
+@pytest.mark.parametrize("methods", [(INIT, TICK), (INIT.replace("    ", "", 1).replace("\n    ", "\n"), TICK)])
+def test_a_class_that_is_shown_method_by_method_runs_with_the_main_below(
+    tmp_path: Path, methods: tuple[str, ...]
+) -> None:
+    result = reading(tmp_path, IMPORTS, HEADER, *methods, MAIN + GUARD)
+    assert result.chapter is not None
+
+    *parts, node = cells(result.chapter)
+
+    assert [cell.kind for cell in parts[-3:]] == [CellKind.PART] * 3
+    assert (node.kind, node.source) == (CellKind.NODE, MAIN + GUARD)
+    assert not inspect(node.whole).needs
+    assert inspect(node.whole).lacking == {}
+    assert not any(problem.severity is Severity.NOT_RUN for problem in result.problems)
+
+
+def test_what_repeats_a_piece_of_a_program_explains_it_and_is_no_error(tmp_path: Path) -> None:
+    whole = IMPORTS + HEADER + INIT + TICK + MAIN + GUARD
+
+    result = reading(tmp_path, whole, HEADER, INIT.lstrip(), "    def tick(self):\n", MAIN, GUARD)
+    assert result.chapter is not None
+
+    assert [cell.kind for cell in cells(result.chapter)] == [CellKind.NODE]
+    assert not any(problem.severity is Severity.NOT_RUN for problem in result.problems)
+
+
+def test_a_call_of_super_outside_a_class_is_shown_only(tmp_path: Path) -> None:
+    chapter = read(tmp_path, "super().__init__('talker')\n")
+
+    assert cells(chapter) == []
+    assert "outside a class" in chapter.static_fences[0].sign
+
+
+def test_a_template_whose_init_does_not_call_nodes_is_shown_with_line_and_remedy(tmp_path: Path) -> None:
+    template = IMPORTS + "class Pad(Node):\n    def __init__(self):\n        # TODO\n        self.n = 0\n\n"
+
+    result = reading(tmp_path, template + MAIN.replace("Talker", "Pad") + GUARD)
+    assert result.chapter is not None
+
+    assert cells(result.chapter) == []
+    (problem,) = [item for item in result.problems if item.severity is Severity.NOT_RUN]
+    assert (problem.line, "super().__init__" in problem.found) == (8, True)
+
+
+CLIENT = f"import sys\n{IMPORTS}{TALKER}{MAIN.replace('args=args', 'args=[sys.argv[1], sys.argv[2]]')}{GUARD}"
+
+
+def test_a_program_that_reads_words_is_saved_and_started_with_them(tmp_path: Path) -> None:
+    named = CLIENT.join(['```python title="client.py"\n', "```\n"])
+
+    node, shell = cells(read(tmp_path, named, "```bash\nros2 run robot client 2 3\n```\n"))
+
+    assert (node.kind, node.keeps, shell.kind) == (CellKind.NODE, True, CellKind.SHELL)
+
+
+def test_a_command_without_the_words_that_its_program_reads_is_shown_only(tmp_path: Path) -> None:
+    named = CLIENT.join(['```python title="client.py"\n', "```\n"])
+
+    chapter = read(tmp_path, named, "```bash\nros2 run arm client\n```\n")
+
+    assert chapter.static_fences[-1].sign == "`client` reads 2 words from its command line."
+
+
+def test_a_program_that_counts_its_words_first_is_started_without(tmp_path: Path) -> None:
+    (node,) = cells(read(tmp_path, CLIENT.replace("class", "print(len(sys.argv))\n\n\nclass", 1)))
+
+    assert not node.keeps
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import os\ncommand = 'sudo apt update'\nos.system(command)\n",
+        "import subprocess as sp\nsp.run(['git', 'clone', 'x'])\n",
+        "from subprocess import run\nrun('rm -r x', shell=True)\n",
+        "from os import system\nsystem('pip install x')\n",
+        "import os\nos.execvp('rm', ['rm', 'x'])\n",
+        "import subprocess\nwords = ['apt']\nwords += ['sudo']\nsubprocess.Popen(args=words)\n",
+        "get_ipython().system('git pull')\n",
+    ],
+)
+def test_what_changes_the_machine_is_found_behind_names(tmp_path: Path, code: str) -> None:
+    assert cells(read(tmp_path, code)) == []
+
+
+def test_ros2_service_is_not_the_program_service(tmp_path: Path) -> None:
+    (cell,) = cells(read(tmp_path, "import subprocess\nsubprocess.run(['ros2', 'service', 'list'])\n"))
+
+    assert cell.kind is CellKind.SNIPPET
+
+
+def test_a_piece_that_spins_what_nothing_initialized_is_shown_only(tmp_path: Path) -> None:
+    chapter = read(tmp_path, IMPORTS + "node = Node('talker')\n", "try:\n    rclpy.spin(node)\nfinally:\n    pass\n")
+
+    assert all(cell.kind is CellKind.SNIPPET for cell in cells(chapter))
+    assert "rclpy.init" in chapter.static_fences[-1].sign
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import rclpy\nimport sys\nrclpy.shutdown()\nsys.exit(0)\n",
+        "from rclpy.node import Node\nnode = Node('talker')\n",
+        "import argparse\nparser = argparse.ArgumentParser()\nargs = parser.parse_args()\n",
+        "print('done')\nexit()\n",
+    ],
+)
+def test_what_would_fail_or_end_the_kernel_is_no_cell_of_it(tmp_path: Path, code: str) -> None:
+    chapter = read(tmp_path, code)
+
+    assert cells(chapter) == []
+    assert chapter.static_fences[0].sign
+
+
+def test_a_parser_that_is_given_its_words_is_a_snippet(tmp_path: Path) -> None:
+    code = "import argparse\nparser = argparse.ArgumentParser()\nprint(parser.parse_args([]))\n"
+
+    assert [cell.kind for cell in cells(read(tmp_path, code))] == [CellKind.SNIPPET]
+
+
+def test_a_fence_that_includes_a_file_which_is_not_here_is_shown_only(tmp_path: Path) -> None:
+    result = reading(tmp_path, '--8<-- "code/talker.py"\n')
+    assert result.chapter is not None
+
+    assert cells(result.chapter) == []
+    assert "`code/talker.py`" in result.chapter.static_fences[0].sign
+    assert [(item.line, item.severity) for item in result.problems] == [(3, Severity.NOT_RUN)]
+
+
+@pytest.mark.parametrize("words", ["topic pub {topic} {type} {data}", "run [package] [executable]", "topic echo <x>"])
+def test_a_command_with_placeholders_is_shown_only(tmp_path: Path, words: str) -> None:
+    assert cells(read(tmp_path, f"```bash\nros2 {words}\n```\n")) == []
+
+
+def test_what_init_calls_may_not_use_what_nothing_sets(tmp_path: Path) -> None:
+    code = "class Asker(Node):\n    def __init__(self):\n        super().__init__('asker')\n        self.ask()\n\n"
+    code += "    def ask(self):\n        self.client.call_async(None)\n\n\n"
+
+    result = reading(tmp_path, IMPORTS + code + MAIN.replace("Talker", "Asker") + GUARD)
+    assert result.chapter is not None
+
+    assert cells(result.chapter) == []
+    assert [(item.line, item.severity) for item in result.problems if not item.group] == [(13, Severity.NOT_RUN)]
