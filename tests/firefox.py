@@ -78,6 +78,10 @@ class Firefox:
         """Press the button with this label."""
         assert self.evaluate(_CLICK, label) is True, f"no button {label!r}"
 
+    def click_on(self, element: Any) -> None:
+        """Click on an element that `evaluate` has returned, as a mouse does. Fails if something else covers it."""
+        self._call("WebDriver:ElementClick", id=next(iter(element.values())))
+
     def type(self, selector: str, keys: str) -> None:
         """Type into the element that this selects."""
         found = self._call("WebDriver:FindElement", using="css selector", value=selector)["value"]

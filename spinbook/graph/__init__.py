@@ -1,1 +1,1 @@
-"""The node graph as it really is: who publishes and who subscribes, seen by a process that takes no part itself."""
+"""The recorded node graph: who publishes and who subscribes, seen by a process that takes no part itself."""

@@ -1,4 +1,4 @@
-"""What a node graph holds, and the JSON in which it is kept: sorted, without times, the same for the same graph."""
+"""A node graph, and the JSON in which it is kept: sorted, without times, the same for the same graph."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from typing import Any
 class End:
     """A node's publisher or subscription on a topic.
 
-    `type` is "package/msg/Name". `connected` is False where no other end fits: another type, or a QoS that asks for
-    more than any publisher offers, or nobody there.
+    `type` is "package/msg/Name". `connected` is False if there is no matching end: it has another type, its QoS does
+    not match, or there is none.
     """
 
     node: str
@@ -22,7 +22,7 @@ class End:
 
 @dataclass(frozen=True, order=True)
 class Topic:
-    """A topic with its ends, a node named once a side. `rate_hz` is rounded, None where it was not measured."""
+    """A topic with its ends, a node named once a side. `rate_hz` is rounded, None if it was not measured."""
 
     name: str
     publishers: tuple[End, ...]

@@ -16,7 +16,7 @@ from spinbook.build.digest import code_digest, digest, files_digest, versions
 from spinbook.course.course import FILE, Course
 from spinbook.problem import Problem
 from spinbook.site import page as names
-from spinbook.site.repository import repository_of
+from spinbook.site.page import repository_of
 
 
 @dataclass(frozen=True)
@@ -70,8 +70,7 @@ def build_site(course: Course, on_page: Callable[[str], None], *, as_it_ran: boo
     before, key = _read(record), _key(course, as_it_ran=as_it_ran)
     # Sphinx takes a second to import: only where it is needed.
     from spinbook.site.contents import read_contents
-    from spinbook.site.publish import prove_nothing_leaks, publish, stage
-    from spinbook.site.sphinx_build import run_sphinx
+    from spinbook.site.sphinx_build import prove_nothing_leaks, publish, run_sphinx, stage
 
     code = code_digest("site")
     cache = course.build_folder / ".cache" / "site"

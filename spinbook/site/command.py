@@ -24,27 +24,27 @@ from spinbook.site.build import Site, build_site, unchanged_site
 
 @click.command()
 @click.option("--course", "start", type=click.Path(path_type=Path), default=".", help="The course's folder.")
-@click.option("--no-run", is_flag=True, help="Run no notebook: show the outputs that are there, old as they may be.")
-@click.option("--strict", is_flag=True, help="A cell that fails, or code that does not run, stops the site.")
+@click.option("--no-run", is_flag=True, help="Run no notebook: show the existing outputs, even if they are old.")
+@click.option("--strict", is_flag=True, help="Stop if a cell fails, or if code is shown but not run.")
 @click.option("--serve", is_flag=True, help="Show the site in a browser, and build it again whenever a file is saved.")
 @click.option("--port", type=click.IntRange(1, 65535), default=8000, show_default=True, help="Where --serve listens.")
 def site(start: Path, no_run: bool, strict: bool, serve: bool, port: int) -> None:
     """Make the course's website in build/site/.
 
-    Every output on it was made by real nodes: a chapter whose code has changed since it ran is run first, as
-    `spinbook build --execute` would. What has not changed is not made again.
+    Every output on it was made by real nodes: if a chapter's code has changed since it ran, the chapter runs first, as
+    with `spinbook build --execute`. Unchanged pages are not made again.
 
     \b
       spinbook site                    build/site/index.html, to open in any browser
       spinbook site --serve            while you write: http://127.0.0.1:8000
       spinbook site --serve --no-run   the same, without waiting for nodes when code changes
 
-    The folder can be put on any web server as it is, or opened without one. Beside it, build/launch/ holds the
-    notebooks that Colab, Binder and Codespaces open: push it to the branch `notebooks` (docs/site.md).
+    You can copy the folder to any web server, or open it without one. Next to it, build/launch/ has the notebooks that
+    Colab, Binder and Codespaces open: push it to the branch `notebooks` (docs/site.md).
 
-    A cell that fails is shown as it failed. With --strict, as for the CI of your own course, it stops the site.
+    The site shows how a cell failed. With --strict, for the CI of your own course, a failed cell stops the site.
 
-    Exit code: 0 the site is built, 1 something has to be fixed first; the site of the last good build then stays.
+    Exit code: 0 the site is built, 1 something must be fixed first; the site of the last good build then stays.
     """
     course = find_course(start)
     console = Console(soft_wrap=True, highlight=False)
@@ -56,7 +56,7 @@ def site(start: Path, no_run: bool, strict: bool, serve: bool, port: int) -> Non
         _report(console, before)
         return
     if not no_run and not _up_to_date(course, console, strict):
-        console.print("The site was not built: fix what is said above first.", style="red")
+        console.print("The site was not built. Fix the errors above first.", style="red")
         sys.exit(1)
     try:
         with console.status("Making the pages …") as status:
@@ -105,7 +105,7 @@ def serve_site(course: Course, port: int, no_run: bool) -> None:
     server = Server(pages_of(course.build_folder / "site"))
     for place in map(str, (FILE, "chapters", "exercises", "solutions", *course.chapters, course.glossary or FILE)):
         server.watch(str(course.root / place), build)
-    click.echo(f"The site is at http://{_HOST}:{port} and follows what you save. Ctrl-C ends it.")
+    click.echo(f"The site is at http://{_HOST}:{port} and is built again on each save. Ctrl-C ends it.")
     server.serve(port=port, host=_HOST, debug=False)
 
 

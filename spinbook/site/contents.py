@@ -1,4 +1,4 @@
-"""Everything that is to be published, read from the course and its executed notebooks, before any of it is written."""
+"""Collects everything to publish from the course and its executed notebooks, before any of it is written."""
 
 from __future__ import annotations
 
@@ -24,16 +24,22 @@ from spinbook.course.course import Course
 from spinbook.handout.wheels import interface_wheels, package_of
 from spinbook.problem import Problem, Severity, SpinbookError
 from spinbook.site import page as names
-from spinbook.site.addresses import address_files
-from spinbook.site.chapter_page import ExerciseCard, Ran, as_text, chapter_notebook, stills
+from spinbook.site.chapter_page import (
+    ExerciseCard,
+    Ran,
+    as_text,
+    chapter_notebook,
+    node_graph_excerpt,
+    node_graph_of,
+    node_graph_section,
+    stills,
+)
 from spinbook.site.drawing import CanNotDrawError, Picture, draw, drawing_files, drawing_html
 from spinbook.site.exercise_page import exercise_markdown, public_checks
 from spinbook.site.home_page import about_markdown, home_chapters, home_drawing, home_log, home_pictures
-from spinbook.site.node_graph import node_graph_excerpt, node_graph_of, node_graph_section
 from spinbook.site.notebooks import branch_files, launch_notebook, openers, requirement
-from spinbook.site.page import Page
+from spinbook.site.page import Page, Repository, address_files, repository_of
 from spinbook.site.prose import Links, Term, rich, terms_of
-from spinbook.site.repository import Repository, repository_of
 
 DOWNLOADS = "downloads"
 
@@ -63,7 +69,7 @@ class Contents:
 
 
 class _Drawings:
-    """The drawings of a course: asked for in a first reading of the text, and shown in the second."""
+    """The drawings of a course: collected in a first pass over the text, and shown in the second."""
 
     def __init__(self) -> None:
         self.codes: dict[str, None] = {}
@@ -78,7 +84,7 @@ class _Drawings:
 
 
 def read_contents(course: Course) -> Contents:
-    """Read all that the site shows. Raises SpinbookError where a chapter or an exercise can't be shown."""
+    """Read everything that the site shows. Raises SpinbookError if a chapter or an exercise can't be shown."""
     chapters = _chapters(course)
     exercises = _exercises(course, chapters)
     repository = repository_of(course.root, course.repository)
@@ -133,7 +139,7 @@ def _exercises(course: Course, chapters: list[Chapter]) -> dict[str, Exercise]:
                 try:
                     found[cell.name] = load(course.root / "exercises" / cell.name)
                 except ExerciseError as error:
-                    fix = "Fix the exercise, or take it out of the chapter."
+                    fix = "Fix the exercise, or remove it from the chapter."
                     raise SpinbookError(Problem(chapter.file, cell.line, str(error), fix)) from None
     return found
 
@@ -206,7 +212,7 @@ def _chapter(
     )
 
 
-#: Words that most people read in a minute, of a text that they want to understand.
+#: The number of words of a technical text that most people read in a minute.
 WORDS_PER_MINUTE = 200
 
 

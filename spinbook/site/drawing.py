@@ -199,7 +199,7 @@ _SAYS = re.compile(r"^\s*acc(?:Title|Descr)\s*:\s*(.+)$", re.MULTILINE)
 
 
 def in_words(code: str) -> str:
-    """What a drawing says, for those who don't see it: its own accDescr, else which node leads to which.
+    """What a drawing says, for those who don't see it: its own accDescr, otherwise which node leads to which.
 
     "" where it is no flowchart, or one whose edges can't be read.
     """
@@ -282,7 +282,7 @@ def still_of(output: Mapping[str, Any]) -> Still | None:
 
 
 def smaller(png: str) -> str:
-    """A PNG, in base64, with a palette in place of full colour where that makes it smaller.
+    """A PNG, in base64, with a palette instead of full colour where that makes it smaller.
 
     Plots and turtles have few colours, so that nothing is lost that an eye could see.
     """

@@ -54,7 +54,7 @@ def finish(app: Sphinx, page: str, template: str, context: dict[str, Any], doctr
 
 
 def _frame(app: Sphinx, page: str) -> dict[str, Any]:
-    """What was staged beside the page for the theme."""
+    """What was staged next to the page for the theme."""
     try:
         frame = json.loads(Path(app.srcdir, f"{page}{FRAME_SUFFIX}").read_text(encoding="utf-8"))
     except OSError:
@@ -63,12 +63,12 @@ def _frame(app: Sphinx, page: str) -> dict[str, Any]:
 
 
 def depend(app: Sphinx, page: str, source: list[str]) -> None:
-    """A page is made again when what stands beside it changes."""
+    """A page is made again when the files next to it change."""
     app.env.note_dependency(f"{page}{FRAME_SUFFIX}")
 
 
 def _size(file: Path) -> tuple[int, int]:
-    """Width and height of a picture in CSS pixels. Raises OSError or ValueError where it does not say."""
+    """Width and height of a picture in CSS pixels. Raises OSError or ValueError if it does not say."""
     if file.suffix != ".svg":
         with Image.open(file) as image:
             return int(image.width), int(image.height)
@@ -131,7 +131,7 @@ def _describe(cell: nodes.container, about: dict[str, Any]) -> None:
                 code["language"] = _language(kind, about)
         elif part.get("nb_element") == "cell_code_output":
             _pictures(part, about["alts"], about["stills"])
-            words = "Output: it fails, as it is meant to" if about["fails"] else "Output"
+            words = "Output: it fails, as expected" if about["fails"] else "Output"
             part.insert(0, nodes.raw("", f'<p class="output-name">{words}</p>', format="html"))
     cell.insert(0, nodes.raw("", _head(kind, about), format="html"))
 

@@ -24,8 +24,7 @@ from spinbook.course.course import Course
 from spinbook.site.chapter_page import Ran, alternative, is_picture
 from spinbook.site.drawing import PICTURE_FOLDER, Picture, drawing_html, smaller, still_of
 from spinbook.site.log_lexer import LogLexer
-from spinbook.site.page import chapter_page, exercise_page
-from spinbook.site.repository import Repository
+from spinbook.site.page import Repository, chapter_page, exercise_page
 
 _LOG_LINES = 6
 

@@ -19,7 +19,7 @@ from spinbook.course.course import Course
 from spinbook.course.obstacles import ranked
 from spinbook.interfaces.compiling import compile_course
 from spinbook.problem import SpinbookError
-from spinbook.site.repository import Repository
+from spinbook.site.page import Repository
 
 
 def bring_up_to_date(course: Course, console: Console, *, is_strict: bool) -> bool:
@@ -142,7 +142,9 @@ def _origin(repository: Repository) -> str:
     if repository.url and (repository.root / "spinbook" / "cli.py").is_file():
         return f"git+{repository.url}@{repository.commit or 'main'}"
     requirements = repository.root / "requirements.txt"
-    named = _NAMED.search(requirements.read_text(encoding="utf-8")) if requirements.is_file() else None
+    named = (
+        _NAMED.search(requirements.read_text(encoding="utf-8", errors="replace")) if requirements.is_file() else None
+    )
     return named[1] if named else _SPINBOOK
 
 
@@ -180,7 +182,7 @@ def _packed(files: Mapping[str, bytes]) -> str:
 
 
 def branch_files(names: Iterable[str], wanted: str, title: str) -> dict[str, str]:
-    """What the branch holds beside the notebooks: path -> text."""
+    """What the branch holds next to the notebooks: path -> text."""
     files = {
         "README.md": f"# {title}: notebooks\n\nMade by `spinbook site`; edits are lost at the next build.\n",
         "requirements.txt": f"{wanted}\njupyterlab\n",

@@ -1,12 +1,75 @@
-"""A page of the site: its name, what Sphinx reads, and what the frame around it needs."""
+"""A page of the site: its name, what Sphinx reads, the frame around it; and what tells others of all pages.
+
+Forms of sitemap and RSS: https://www.sitemaps.org/protocol.html and https://www.rssboard.org/rss-specification.
+"""
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
+import subprocess
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from html import escape
+from pathlib import Path
 from typing import Any
+
+from grader.child_process import run_program
+
+_GITHUB = re.compile(r"https://github\.com/([\w.-]+)/([\w.-]+?)(?:\.git)?/?")
+_GIT_LIMIT_S = 10
+
+
+@dataclass(frozen=True)
+class Repository:
+    """A course's repository. `url` is empty where the course names none, `commit` where git knows none."""
+
+    root: Path
+    url: str
+    commit: str = ""
+    date: str = ""
+    """The commit's day, as in 2026-01-31."""
+
+    @property
+    def github(self) -> tuple[str, str] | None:
+        """Owner and name, where the repository is on GitHub."""
+        match = _GITHUB.fullmatch(self.url)
+        return (match.group(1), match.group(2)) if match else None
+
+    def link(self, file: Path, line: int | None = None) -> str:
+        """The address of a line of a file of the course, or "" where there is no repository.
+
+        It names the commit that changed the file last, so that it still leads to the same line when the file has
+        changed since, and stays the same when other files change. A file with changes of its own that are in no
+        commit yet is linked where it will be, on the main branch.
+        """
+        if not self.url:
+            return ""
+        commit = self._last_commit_of(file) or "main"
+        # Without plain=1 GitHub renders Markdown, which has no lines.
+        plain = "?plain=1" if file.suffix == ".md" and line else ""
+        return f"{self.url}/blob/{commit}/{file.as_posix()}{plain}{f'#L{line}' if line else ''}"
+
+    def _last_commit_of(self, file: Path) -> str:
+        if not self.commit or _git(self.root, "status", "--porcelain", "--", file.as_posix()):
+            return ""
+        return _git(self.root, "log", "-1", "--format=%H", "--", file.as_posix())
+
+
+def repository_of(root: Path, url: str) -> Repository:
+    """What git and course.toml say of the course in `root`."""
+    known = _git(root, "log", "-1", "--format=%H %cs").split()
+    return Repository(root, url.rstrip("/"), *known[:2])
+
+
+def _git(root: Path, *words: str) -> str:
+    """What git prints, or "" where there is no git or no repository."""
+    try:
+        ran = run_program(["git", *words], _GIT_LIMIT_S, cwd=root)
+    except (OSError, subprocess.TimeoutExpired):
+        return ""
+    return ran.stdout.strip() if ran.returncode == 0 else ""
+
 
 _BLOB = re.compile(r"(https://github\.com/[^/]+/[^/]+)/blob/[^/]+/([^?#]+\.md)(?:[?#].*)?")
 
@@ -78,3 +141,62 @@ def exercise_page(exercise: str) -> str:
 def exercise_notebook(exercise: str) -> str:
     """The name of an exercise's notebook, without its suffix."""
     return f"exercise-{exercise}"
+
+
+def address_of(site: str, page: str) -> str:
+    """Return a page's address; the home page's is the site's own."""
+    return site if page == HOME else f"{site}{page}.html"
+
+
+def address_files(site: str, title: str, pages: Sequence[Page]) -> dict[str, str]:
+    """Return sitemap.xml, feed.xml, robots.txt and 404.html by name; nothing for a site whose address is not known."""
+    if not site:
+        return {}
+    return {
+        "sitemap.xml": _sitemap(site, pages),
+        "feed.xml": _feed(site, title, pages),
+        "robots.txt": f"User-agent: *\nAllow: /\nSitemap: {site}sitemap.xml\n",
+        "404.html": _not_found(site, title),
+    }
+
+
+def _sitemap(site: str, pages: Sequence[Page]) -> str:
+    urls = "".join(f"  <url><loc>{escape(address_of(site, page.name))}</loc></url>\n" for page in pages)
+    head = '<?xml version="1.0" encoding="utf-8"?>\n<urlset xmlns="http://www.sitemaps.org/schemas/sitemap/0.9">\n'
+    return f"{head}{urls}</urlset>\n"
+
+
+def _feed(site: str, title: str, pages: Sequence[Page]) -> str:
+    """The chapters and exercises, in reading order: a reader hears of each new one."""
+    items = "".join(_item(site, page) for page in pages if page.kind in ("chapter", "exercise"))
+    return (
+        '<?xml version="1.0" encoding="utf-8"?>\n'
+        '<rss version="2.0"><channel>\n'
+        f"<title>{escape(title)}</title>\n<link>{escape(site)}</link>\n"
+        f"<description>Chapters and exercises of {escape(title)}</description>\n"
+        f"{items}</channel></rss>\n"
+    )
+
+
+def _item(site: str, page: Page) -> str:
+    address = escape(address_of(site, page.name))
+    summary = f"<description>{escape(page.summary)}</description>" if page.summary else ""
+    return f"<item><title>{escape(page.title)}</title><link>{address}</link><guid>{address}</guid>{summary}</item>\n"
+
+
+def _not_found(site: str, title: str) -> str:
+    """A server shows it for any address, so that all its own addresses are whole."""
+    base = escape(site)
+    name = escape(title)
+    links = f'<a href="{base}">{name}</a>, or <a href="{base}search.html">search the course</a>'
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'self'; "
+        "style-src 'self'\">\n"
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n<meta name="robots" content="noindex">\n'
+        f"<title>Page not found · {name}</title>\n"
+        f'<link rel="stylesheet" href="{base}_static/site.css">\n</head>\n<body>\n'
+        '<div class="frame"><main id="content">\n<h1>Page not found</h1>\n'
+        f"<p>There is no page at this address. Chapters may have got another name: look at {links}.</p>\n"
+        "</main></div>\n</body>\n</html>\n"
+    )

@@ -18,10 +18,10 @@ from spinbook.chapter.fence import directive, parse_info
 from spinbook.chapter.files import is_elsewhere, locate, split
 from spinbook.chapter.flavours import parser
 from spinbook.chapter.links import linked
-from spinbook.site.repository import Repository
+from spinbook.site.page import Repository
 
 # Alerts, admonitions, tables and maths are MyST's own matter. What is done here: links lead to pages of the site or
-# into the repository, pictures to copies beside the pages, and mermaid fences become pictures. No line is added or
+# into the repository, pictures to copies next to the pages, and mermaid fences become pictures. No line is added or
 # lost, so that a line of the text is known by its number still.
 
 
@@ -76,7 +76,7 @@ def rich(text: str, links: Links, folder: str, page_folder: str, draw: Draw) -> 
 
 
 def _fence(token: Token, lines: list[str], draw: Draw) -> None:
-    """A drawing in place of mermaid's code; any other fence without the attributes that tell Spinbook what it is."""
+    """A drawing instead of mermaid's code; any other fence without the attributes that tell Spinbook what it is."""
     start, end = token.map or (0, 0)
     if directive(token.info)[0] or not token.info.strip():
         return

@@ -6,10 +6,9 @@ import math
 
 import numpy as np
 
-from spinbook.turtlesim.events import Pen
-from spinbook.turtlesim.geometry import PIXELS_PER_UNIT, WINDOW_PX
+from spinbook.turtlesim.events import PIXELS_PER_UNIT, WINDOW_PX, Pen
 
-Place = tuple[float, float]
+Point = tuple[float, float]
 
 
 class Canvas:
@@ -26,18 +25,18 @@ class Canvas:
         """Make every pixel white again."""
         self._pixels.fill(255)
 
-    def color(self, place: Place) -> tuple[int, int, int]:
-        """Red, green and blue (0..255) of the pixel at `place` (units, y down)."""
-        column, row = (math.floor(part * PIXELS_PER_UNIT + 0.5) for part in place)
+    def color(self, point: Point) -> tuple[int, int, int]:
+        """Red, green and blue (0..255) of the pixel at `point` (units, y down)."""
+        column, row = (math.floor(part * PIXELS_PER_UNIT + 0.5) for part in point)
         if not (0 <= column < WINDOW_PX and 0 <= row < WINDOW_PX):
             return (0, 0, 0)
         r, g, b = self._pixels[row, column].tolist()
         return (r, g, b)
 
-    def line(self, start: Place, end: Place, pen: Pen) -> None:
+    def line(self, start: Point, end: Point, pen: Pen) -> None:
         """Draw a straight line with square caps from `start` to `end` (units, y down)."""
         # Measured from the end that is nearer to the canvas: the other may be too far away to be exact.
-        near, far = sorted((start, end), key=lambda place: math.hypot(*place))
+        near, far = sorted((start, end), key=lambda point: math.hypot(*point))
         x0, y0, x1, y1 = (part * PIXELS_PER_UNIT for part in (*near, *far))
         half = pen.width / 2
         # A cap's corner lies up to sqrt(2) of half the width away.

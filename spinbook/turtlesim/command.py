@@ -18,7 +18,7 @@ _SECONDS = click.FloatRange(min=0)
     "--moving",
     type=click.Path(dir_okay=False, path_type=Path),
     metavar="OUT.svg",
-    help="Also an SVG in which the turtles drive again, if they have moved.",
+    help="Also write an SVG with the turtles' movement, if they have moved.",
 )
 @click.option("--timeout", default=5.0, show_default=True, type=_SECONDS, help="Seconds to look for the node.")
 @click.option(
@@ -26,7 +26,7 @@ _SECONDS = click.FloatRange(min=0)
     default=7.0,
     show_default=True,
     type=_SECONDS,
-    help="Seconds, all in all, to listen to a turtlesim that can't give a picture.",
+    help="Seconds in total to listen to a turtlesim that can't give a picture.",
 )
 @click.option("--node", default="/turtlesim", show_default=True, help="The node's full name.")
 def turtle(out: Path, moving: Path | None, timeout: float, listen: float, node: str) -> None:

@@ -12,7 +12,7 @@ from geometry_msgs.msg import Twist
 from rclpy.node import Node
 from std_srvs.srv import Empty
 
-from spinbook.turtlesim.geometry import DT, normalized
+from spinbook.turtlesim.events import DT, normalized
 from spinbook.turtlesim.program import Pose, spin_until_stopped
 
 #: Side of the square (units), speeds (units/s and rad/s), and how near is near enough (units, rad; units/s, rad/s).
@@ -104,7 +104,7 @@ def _ahead(pose: Pose) -> tuple[float, float]:
 
 
 def main() -> int:
-    """Run the node until it is told to stop; the exit code."""
+    """Run the node until it is stopped; return the exit code."""
     return spin_until_stopped(lambda: DrawSquare().node)
 
 

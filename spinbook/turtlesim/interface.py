@@ -129,7 +129,7 @@ class Interface:
         self._actions.pop(turtle).destroy()
 
     def publish(self, event: Event) -> None:
-        """Send what has happened to whoever listens."""
+        """Publish what has happened."""
         if isinstance(event, PoseReport):
             self._poses[event.turtle].publish(fill_pose(Pose(), event))
         elif isinstance(event, ColorReport):

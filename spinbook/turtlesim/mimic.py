@@ -28,7 +28,7 @@ def make() -> Node:
 
 
 def main() -> int:
-    """Run the node until it is told to stop; the exit code."""
+    """Run the node until it is stopped; return the exit code."""
     return spin_until_stopped(make)
 
 

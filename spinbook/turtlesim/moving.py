@@ -15,8 +15,7 @@ from matplotlib.patches import Patch as Shape
 from matplotlib.path import Path
 
 from spinbook.animation import Cycle, coord, on_paper, thinned
-from spinbook.turtlesim.events import Pen
-from spinbook.turtlesim.geometry import DT, PIXELS_PER_UNIT
+from spinbook.turtlesim.events import DT, PIXELS_PER_UNIT, Pen
 from spinbook.turtlesim.trail import HEADING_TOLERANCE, PLACE_TOLERANCE, Sample
 from spinbook.turtlesim.trail import thinned as thinned_track
 from spinbook.turtlesim.world_picture import Color, TrackPicture, TurtlePicture, WorldPicture, caption
@@ -160,7 +159,7 @@ _LINE = "#16301f"
 
 
 def moving_svg(world: WorldPicture) -> str | None:
-    """The picture, or None where no turtle has moved. The same for the same world."""
+    """The picture, or None if no turtle has moved. The same for the same world."""
     tracks, error = _few(world.tracks)
     if not tracks:
         return None
@@ -236,13 +235,13 @@ def _drawing(samples: Sequence[Sample], times: Timeline) -> list[tuple[float, st
 def _driving(samples: Sequence[Sample], times: Timeline, size: float) -> list[tuple[float, str]]:
     frames = []
     for sample in samples:
-        x, y = _place(sample.x, sample.y, size)
+        x, y = _position(sample.x, sample.y, size)
         turn = coord(-math.degrees(sample.theta), 0)
         frames.append((times.shown(sample.tick), f"transform:translate({coord(x)}px,{coord(y)}px)rotate({turn}deg)"))
     return frames
 
 
-def _place(x: float, y: float, size: float) -> tuple[float, float]:
+def _position(x: float, y: float, size: float) -> tuple[float, float]:
     """Pixels from the upper left corner."""
     return x * PIXELS_PER_UNIT, (size - y) * PIXELS_PER_UNIT
 
@@ -256,8 +255,8 @@ def _trail(samples: Sequence[Sample], name: str, size: float) -> str:
 
 
 def _path(points: Sequence[tuple[float, float]], color: Color, width: int, more: str, size: float) -> str:
-    """A polyline, each point told from the one before it."""
-    places = [tuple(round(part, 1) for part in _place(x, y, size)) for x, y in points]
+    """A polyline, each point relative to the one before it."""
+    places = [tuple(round(part, 1) for part in _position(x, y, size)) for x, y in points]
     steps = "".join(
         f"l{coord(b[0] - a[0])} {coord(b[1] - a[1])}".replace(" -", "-") for a, b in pairwise(places) if a != b
     )
@@ -277,7 +276,7 @@ def _turtle(turtle: TurtlePicture, coat: int, name: str, size: float) -> str:
         f'<circle cx="22" cy="{s * 3.5}" r="1.9" fill="#fff"/><circle cx="22.6" cy="{s * 3.6}" r="1.1"/>'
         for s in (1, -1)
     )
-    x, y = _place(turtle.x, turtle.y, size)
+    x, y = _position(turtle.x, turtle.y, size)
     place = f"translate({coord(x)} {coord(y)})rotate({coord(-math.degrees(turtle.theta), 0)})"
     moving = f' class="{name}"' if name else ""
     return (
@@ -313,9 +312,7 @@ def _axes(world: WorldPicture, key: str) -> str:
 
 
 def _words(world: WorldPicture, times: Timeline, error: float) -> str:
-    pace = (
-        "at the pace at which it was driven" if times.faster == 1 else f"{times.faster} times as fast as it was driven"
-    )
+    pace = "at the original speed" if times.faster == 1 else f"{times.faster} times the original speed"
     return (
         f"{caption(world)}. The way is shown within {coord(error, 2)} units, {pace}, "
         f"{times.seconds:.0f} seconds, again and again."

@@ -12,8 +12,7 @@ from rclpy.node import Node
 from rclpy.subscription import Subscription
 from std_srvs.srv import Empty, Trigger
 
-from spinbook.turtlesim.events import Event, Killed, LogLine, Severity, Spawned
-from spinbook.turtlesim.geometry import TICK_NS
+from spinbook.turtlesim.events import TICK_NS, Event, Killed, LogLine, Severity, Spawned
 from spinbook.turtlesim.interface import DEPTH, Interface
 from spinbook.turtlesim.program import spin_until_stopped
 from spinbook.turtlesim.world import World
@@ -129,7 +128,7 @@ class Turtlesim:
 
 
 def main() -> int:
-    """Run the node until it is told to stop; the exit code."""
+    """Run the node until it is stopped; return the exit code."""
     try:
         return spin_until_stopped(lambda: Turtlesim().node)
     except (InvalidParameterTypeException, InvalidParameterValueException) as error:

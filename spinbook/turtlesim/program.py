@@ -16,7 +16,7 @@ _NOTICE_S = 0.1
 
 
 def spin_until_stopped(make: Callable[[], Node]) -> int:
-    """Initialize rclpy, make the node and spin it until the process is told to end; the exit code.
+    """Initialize rclpy, make the node and spin it until the process is stopped; return the exit code.
 
     The signals are ours and not rclpy's: its own handlers shut the context down from another thread, so that a
     callback that is just publishing fails with RCLError (1 end in 60 of a node that publishes at 60 Hz), and

@@ -92,7 +92,7 @@ def keys(terminal: int) -> Iterator[bytes]:
 
 
 def main() -> int:
-    """Run the node until Q is pressed or it is told to stop; the exit code."""
+    """Run the node until Q is pressed or it is stopped; return the exit code."""
     terminal = sys.stdin.fileno()
     if not os.isatty(terminal):
         print("turtle_teleop_key reads keys from a terminal: run it in one.", file=sys.stderr)

@@ -12,7 +12,7 @@ Point = tuple[float, float]
 
 #: A point is left out where the line without it passes this near (units): a fifth of a pixel.
 TOLERANCE = 0.004
-#: Beyond this many points the oldest are forgotten, so that a turtle may drive for ever.
+#: Beyond this many points the oldest are forgotten, so that a turtle may drive forever.
 MAX_POINTS = 30_000
 #: A stroke's colour, width and name count as so many points: they take that much room in a message.
 _STROKE_COST = 6
@@ -91,7 +91,7 @@ class Trail:
         self._size = 0
 
     def line(self, turtle: str, pen: Pen, start: Point, end: Point) -> None:
-        """`turtle` draws from `start` to `end`: its last stroke goes on, or a new one begins."""
+        """`turtle` draws from `start` to `end`: its last stroke continues, or a new one begins."""
         stroke = self._latest.get(turtle)
         if stroke is None or stroke.pen != pen or stroke.points[-1] != start:
             stroke = self._latest[turtle] = Stroke(turtle, pen, [start])
@@ -184,7 +184,7 @@ class Track:
 
 
 def thinned(samples: Sequence[Sample], place: float, heading: float) -> list[Sample]:
-    """Fewer samples, of which it holds as of a track's that what lies between is within these (units, rad)."""
+    """Fewer samples. As in a track, everything between two of them is within these tolerances (units, rad)."""
     track = Track(place, heading)
     for sample in samples:
         track.add(sample.tick, sample.x, sample.y, sample.theta, sample.pen)

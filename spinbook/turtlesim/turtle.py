@@ -8,6 +8,9 @@ from dataclasses import dataclass
 
 from spinbook.turtlesim.canvas import Canvas
 from spinbook.turtlesim.events import (
+    COMMAND_TIMEOUT_NS,
+    DT,
+    SIDE,
     ColorReport,
     Event,
     LogLine,
@@ -17,8 +20,9 @@ from spinbook.turtlesim.events import (
     RotationEnded,
     RotationFeedback,
     Severity,
+    normalized,
+    single,
 )
-from spinbook.turtlesim.geometry import COMMAND_TIMEOUT_NS, DT, SIDE, normalized, single
 from spinbook.turtlesim.trail import Trail
 
 #: A rotation has reached its goal when less than this remains, in rad.
@@ -85,7 +89,7 @@ class Turtle:
         self._teleports.append(jump)
 
     def rotate(self, goal: int, theta: float) -> list[Event]:
-        """Turn to the heading `theta` (rad), in place of whatever rotation is under way."""
+        """Turn to the heading `theta` (rad), instead of any rotation that is under way."""
         events = self.abort_rotation("Rotation goal received before a previous goal finished. Aborting previous goal")
         self.rotation = Rotation(goal, theta, self.theta)
         return events
@@ -97,7 +101,7 @@ class Turtle:
         return [LogLine(Severity.WARN, why), self._end_rotation(self.rotation, Outcome.ABORTED)]
 
     def tick(self, now_ns: int, canvas: Canvas, trail: Trail) -> Iterator[Event]:
-        """Move on by DT. `now_ns` tells the age of the last command."""
+        """Move on by DT. `now_ns` gives the age of the last command."""
         self._jump(canvas, trail)
         yield from self._steer(now_ns)
         if now_ns - self._commanded_ns > COMMAND_TIMEOUT_NS:

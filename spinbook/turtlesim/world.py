@@ -1,4 +1,4 @@
-"""The world of the turtles: who is in it, what is asked of it, and what a tick does. No ROS, no clock of its own."""
+"""The world of the turtles: its turtles, its requests, and what a tick does. It uses no ROS and has no clock."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ import math
 import re
 
 from spinbook.turtlesim.canvas import Canvas
-from spinbook.turtlesim.events import Event, Killed, LogLine, Severity, Spawned
-from spinbook.turtlesim.geometry import CENTRE, SIDE, single
+from spinbook.turtlesim.events import CENTRE, SIDE, Event, Killed, LogLine, Severity, Spawned, single
 from spinbook.turtlesim.trail import Track, Trail
 from spinbook.turtlesim.turtle import AbsoluteTeleport, RelativeTeleport, Turtle
 
@@ -18,9 +17,9 @@ _NAME = re.compile(r"/?[A-Za-z]\w{0,40}(/[A-Za-z]\w{0,40}){0,2}", re.ASCII)
 class World:
     """Turtles by name, the canvas they share and the trail they leave.
 
-    Everything that is asked of it returns what follows from it. Lengths in units, angles in rad, y up, times in ns
-    of one clock, whichever. Requests with a number that is not finite are refused with a warning: turtlesim takes
-    them, and its turtle is nowhere from then on.
+    Every request returns the events that follow from it. Lengths in units, angles in rad, y up, times in ns of one
+    clock, whichever. Requests with a number that is not finite are refused with a warning: turtlesim accepts them, and
+    its turtle disappears for good.
     """
 
     def __init__(self) -> None:
@@ -151,7 +150,7 @@ class World:
 
 
 def _outside(turtle: str, x: float, y: float) -> list[Event]:
-    """A warning where a turtle was asked to a place that is not in the window, else nothing."""
+    """A warning if a turtle's new place is not in the window, otherwise nothing."""
     if 0 <= x <= SIDE and 0 <= y <= SIDE:
         return []
     text = f"[{turtle}] stops at the edge: x={x:g}, y={y:g} is outside. Choose both between 0 and {SIDE:.2f}."
@@ -159,7 +158,7 @@ def _outside(turtle: str, x: float, y: float) -> list[Event]:
 
 
 def _refusal(what: str, *numbers: float) -> list[Event]:
-    """A warning where a number is infinite or none at all, else nothing."""
+    """A warning if a number is infinite or NaN, otherwise nothing."""
     if all(math.isfinite(number) for number in numbers):
         return []
     text = ", ".join(f"{number:f}" for number in numbers)

@@ -1,4 +1,4 @@
-"""What a picture of the world shows, and the JSON in which the node tells it."""
+"""What a picture of the world shows, and the JSON in which the node sends it."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from spinbook.turtlesim.events import Pen
-from spinbook.turtlesim.geometry import SIDE
+from spinbook.turtlesim.events import SIDE, Pen
 from spinbook.turtlesim.trail import Point, Sample, Stroke, Track, moves
 from spinbook.turtlesim.world import World
 
@@ -17,7 +16,7 @@ Color = tuple[int, int, int]
 
 #: The window's colour where no parameter says otherwise.
 BLUE: Color = (69, 86, 255)
-#: More turtles than this are not told one by one.
+#: More turtles than this are not described one by one.
 _TOLD = 2
 #: Digits after the point in what the node tells: 1/200 of a pixel.
 _DIGITS = 4
@@ -48,7 +47,7 @@ class StrokePicture:
 
 @dataclass(frozen=True)
 class TrackPicture:
-    """Where `turtle` was when. `whole` is False where what it did first has been forgotten."""
+    """The path of `turtle` over time. `whole` is False if its oldest part was dropped."""
 
     turtle: str
     samples: tuple[Sample, ...]

@@ -17,9 +17,9 @@ threads.replace_threading()
 rcl_python.install()
 
 from grader.exercise import load  # noqa: E402
-from grader.recording.store import plain  # noqa: E402
+from grader.recording.recording import plain  # noqa: E402
 from spinbook.browser.in_page import check  # noqa: E402
-from spinbook.browser.in_page.rig import Program  # noqa: E402
+from spinbook.browser.in_page.runner import Program  # noqa: E402
 
 
 def found(folder: Path, file: Path) -> dict[str, Any]:

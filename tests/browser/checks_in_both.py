@@ -24,7 +24,7 @@ from grader.exercise import Exercise, load
 from grader.grading.grade import Options
 from grader.grading.grading import Grading, grading_of
 from grader.recording import Recording
-from grader.recording.store import from_plain
+from grader.recording.recording import from_plain
 from grader.submission import read
 from grader.workers import WorkerPool
 from spinbook.course.course import find_course
@@ -84,7 +84,7 @@ class InThePage:
 
 def comparable(recording: Recording) -> Recording:
     """Return the result without messages about an end, which name folders that differ."""
-    return replace(recording, ending=replace(recording.ending, story=""))
+    return replace(recording, ending=replace(recording.ending, message=""))
 
 
 def compared(page: InThePage, grading: Grading, exercise: Exercise, file: Path) -> str:

@@ -28,7 +28,7 @@ finally:
     rclpy.try_shutdown()
 ```
 """
-#: Publishes ten times a second; /unheard never has a subscriber, and it prints how many it sees there.
+#: Publishes ten times per second; /unheard never has a subscriber, and it prints how many it sees there.
 _TALKER = """
 chatter, unheard = node.create_publisher(String, "/chatter", 10), node.create_publisher(String, "/unheard", 10)
 said = 0

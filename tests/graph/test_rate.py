@@ -6,7 +6,7 @@ import random
 
 import pytest
 
-from spinbook.graph.sight import Counted, rounded
+from spinbook.graph.watcher import Counted, rounded
 
 _MS = 1_000_000
 

@@ -15,8 +15,7 @@ from hypothesis import strategies as st
 from playwright.sync_api import Browser
 
 from spinbook.animation import BEFORE_S, thinned
-from spinbook.turtlesim.events import Pen
-from spinbook.turtlesim.geometry import DT, PIXELS_PER_UNIT, SIDE, TICK_NS
+from spinbook.turtlesim.events import DT, PIXELS_PER_UNIT, SIDE, TICK_NS, Pen
 from spinbook.turtlesim.moving import LONGEST_S, LONGEST_WAIT_S, MOST_SAMPLES, moving_svg, timeline
 from spinbook.turtlesim.trail import HEADING_TOLERANCE, PLACE_TOLERANCE, Sample, Track
 from spinbook.turtlesim.world import World
@@ -160,7 +159,7 @@ def test_ten_minutes_of_driving_are_thinned_and_the_error_is_told() -> None:
     svg = svg_of(picture_of(world, BLUE))
 
     assert svg.count("rotate(") <= MOST_SAMPLES + 2
-    assert re.search(r"within \.\d+ units, \d times as fast as it was driven", svg)
+    assert re.search(r"within \.\d+ units, \d times the original speed", svg)
 
 
 _STATE = """ms => {

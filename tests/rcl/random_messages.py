@@ -6,6 +6,7 @@ import array
 import importlib
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -41,10 +42,16 @@ def _parts(kind: str, whole: Any) -> list[Any]:
     return [whole.Goal, whole.Result, whole.Feedback, whole.Impl.FeedbackMessage, *parts]
 
 
-def messages(kind: Any) -> st.SearchStrategy[Any]:
-    """Return a strategy for messages of one class."""
+#: How many items a sequence has at most: one of the message itself, and one of a message inside it. Nests of sequences
+#: would otherwise grow beyond what hypothesis draws for one example, and most examples would be thrown away.
+_ITEMS, _ITEMS_INSIDE = 3, 1
+
+
+@cache
+def messages(kind: Any, items: int = _ITEMS) -> st.SearchStrategy[Any]:
+    """Return a strategy for messages of one class, with at most so many items in each sequence."""
     names = [name for name in kind.__slots__ if name != "_check_fields"]
-    fields = [_values(slot) for slot in kind.SLOT_TYPES]
+    fields = [_values(slot, items) for slot in kind.SLOT_TYPES]
 
     def filled(values: tuple[Any, ...]) -> Any:
         message = kind()
@@ -55,7 +62,7 @@ def messages(kind: Any) -> st.SearchStrategy[Any]:
     return st.tuples(*fields).map(filled)
 
 
-def _values(slot: Any) -> st.SearchStrategy[Any]:
+def _values(slot: Any, items: int) -> st.SearchStrategy[Any]:
     kind = type(slot).__name__
     if kind == "BasicType":
         return _numbers(slot.typename)
@@ -64,8 +71,8 @@ def _values(slot: Any) -> st.SearchStrategy[Any]:
         return st.text(st.characters(exclude_categories=("Cs",)), max_size=min(most, 12) // 2)
     if kind == "NamespacedType":
         whole = getattr(importlib.import_module(".".join(slot.namespaces)), slot.name.split("_")[0])
-        return messages(getattr(sys.modules[whole.__module__], slot.name))
-    return _sequences(slot, kind)
+        return messages(getattr(sys.modules[whole.__module__], slot.name), _ITEMS_INSIDE)
+    return _sequences(slot, kind, items)
 
 
 def _numbers(name: str) -> st.SearchStrategy[Any]:
@@ -78,11 +85,11 @@ def _numbers(name: str) -> st.SearchStrategy[Any]:
     return {"boolean": st.booleans(), "octet": st.binary(min_size=1, max_size=1), "char": st.integers(0, 255)}[name]
 
 
-def _sequences(slot: Any, kind: str) -> st.SearchStrategy[Any]:
+def _sequences(slot: Any, kind: str, most: int) -> st.SearchStrategy[Any]:
     name = getattr(slot.value_type, "typename", "")
     if kind == "Array":
-        items = st.lists(_values(slot.value_type), min_size=slot.size, max_size=slot.size)
+        items = st.lists(_values(slot.value_type, most), min_size=slot.size, max_size=slot.size)
         kept = getattr(numpy, _NUMPY.get(name, name)) if name in _CODES else None
         return items.map(lambda values: numpy.array(values, dtype=kept)) if kept else items
-    items = st.lists(_values(slot.value_type), max_size=min(getattr(slot, "maximum_size", 3), 3))
+    items = st.lists(_values(slot.value_type, most), max_size=min(getattr(slot, "maximum_size", most), most))
     return items.map(lambda values: array.array(_CODES[name], values)) if name in _CODES else items

@@ -1,10 +1,11 @@
-"""Runs rclpy's own tests over rcl_python, and prints how many pass.
+"""Runs rclpy's own tests over rcl_python or a middleware, and prints how many pass.
 
-    python tests/rcl/rclpys_own_tests.py FOLDER [--real] [--only NAME]
+    python tests/rcl/rclpys_own_tests.py FOLDER [--over rcl_python|fastdds|lockstep] [--only NAME]
 
 FOLDER is `rclpy/test` of https://github.com/ros2/rclpy at the release that is installed. Each file runs in its own
-process. With --real they run over the compiled module, for comparison. Failures are listed; expected_failures.toml
-says which are expected, and why. A test that fails or passes unexpectedly makes the exit code 1.
+process. `fastdds` and `lockstep` are the compiled module over these middlewares: the first for comparison, the second
+to show that rmw_lockstep is complete, without a hub. Failures are listed; expected_failures.toml says which are
+expected over rcl_python, and why. A test that fails or passes there unexpectedly makes the exit code 1.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ import tempfile
 import xml.etree.ElementTree as ET
 from collections import Counter
 from pathlib import Path
+
+from rmw_lockstep.library import Unavailable, library
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -41,9 +44,11 @@ KINDS = ("passed", "failed", "skipped")
 _LIMIT = 30
 
 
-def outcomes(file: Path, real: bool) -> dict[str, str]:
+def outcomes(file: Path, over: str) -> dict[str, str]:
     """Run one file; return the name of each test -> passed, failed or skipped."""
-    code = _RUN.format(root=str(ROOT), tests=str(file.parent.resolve()), install="pass" if real else _INSTALL)
+    code = _RUN.format(
+        root=str(ROOT), tests=str(file.parent.resolve()), install=_INSTALL if over == "rcl_python" else ""
+    )
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder, "report.xml")
         options = ["-q", "-p", "no:cacheprovider", "-p", "pytest_timeout", f"--timeout={_LIMIT}"]
@@ -55,7 +60,7 @@ def outcomes(file: Path, real: bool) -> dict[str, str]:
             "junit_family=xunit2",
             str(file),
         ]
-        environment = {**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1", "ROS_LOG_DIR": folder}
+        environment = {**os.environ, **_middleware(over), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1", "ROS_LOG_DIR": folder}
         command = [sys.executable, "-c", code, *options]
         try:
             subprocess.run(
@@ -64,6 +69,16 @@ def outcomes(file: Path, real: bool) -> dict[str, str]:
             return _read(report)
         except (subprocess.TimeoutExpired, OSError, ET.ParseError):
             return {f"{file.stem}::(the file)": "failed"}
+
+
+def _middleware(over: str) -> dict[str, str]:
+    """Return the environment variables that make rclpy load this middleware."""
+    if over != "lockstep":
+        return {}
+    found = library()
+    if isinstance(found, Unavailable):
+        sys.exit(f"{found.reason} {found.remedy}")
+    return found.environment(os.environ)
 
 
 def _read(report: Path) -> dict[str, str]:
@@ -79,16 +94,16 @@ def main() -> int:
     """Run every file and print the figures."""
     parser = argparse.ArgumentParser()
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--real", action="store_true")
+    parser.add_argument("--over", choices=("rcl_python", "fastdds", "lockstep"), default="rcl_python")
     parser.add_argument("--only", default="")
     given = parser.parse_args()
-    expected = {} if given.real else tomllib.loads(EXPECTED.read_text(encoding="utf-8"))["expected"]
+    expected = tomllib.loads(EXPECTED.read_text(encoding="utf-8"))["expected"] if given.over == "rcl_python" else {}
     total: Counter[str] = Counter()
     surprises = []
     for file in sorted(given.folder.glob("test_*.py")):
         if given.only not in file.name:
             continue
-        found = outcomes(file, given.real)
+        found = outcomes(file, given.over)
         counts = Counter(found.values())
         total += counts
         print(
@@ -98,7 +113,7 @@ def main() -> int:
         for name, outcome in found.items():
             if outcome == "failed":
                 print(f"    {name}  {expected.get(name, '(unexpected)')}", flush=True)
-            if (outcome == "failed") != (name in expected) and not given.real:
+            if (outcome == "failed") != (name in expected) and given.over == "rcl_python":
                 surprises.append(f"{name}: {outcome}")
     judged = total["passed"] + total["failed"]
     print(f"{total['passed']} of {judged} passed ({total['passed'] / max(judged, 1):.1%}), {total['skipped']} skipped")

@@ -145,7 +145,7 @@ def test_colcon_builds_the_package_and_ros2_run_starts_its_executable(new_kernel
     assert built.error == "", built.text
     assert "1 package finished" in built.text
 
-    assert "arm goes on in the background" in arm.run("%ros2 --seconds 60 --until moving run robot arm").text
+    assert "arm continues in the background" in arm.run("%ros2 --seconds 60 --until moving run robot arm").text
     assert "/arm\n" in arm.run("%ros2 node list").text
     assert arm.run("%stop arm").text == "arm stopped.\n"
 

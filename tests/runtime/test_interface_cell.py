@@ -28,7 +28,7 @@ def test_a_definition_is_compiled_once_and_a_changed_one_says_what_to_restart(
     assert kernel.run("from robot_interfaces.msg import Limits; print(Limits())").error == ""
 
     changed = kernel.run(MESSAGE + "float64 upper\n")
-    assert "Run the cells of these nodes again, they still have the former text: holder." in changed.text
+    assert "Run the cells of these nodes again, they still use the old text: holder." in changed.text
     assert "This kernel has imported robot_interfaces already: restart it" in changed.text
     assert "Limits(name='', upper=0.0)" in kernel.run(NODE).text
     assert (

@@ -37,7 +37,7 @@ def test_a_node_runs_unmodified_and_goes_on_behind_the_cell(kernel: Kernel) -> N
 
     assert shown.error == ""
     assert "[INFO] [talker]: talking" in shown.text
-    assert "talker goes on in the background" in shown.text
+    assert "talker continues in the background" in shown.text
     assert re.search(r"^talker +running", kernel.run("%nodes").text)
     assert (kernel.folder / "robot_ws/src/robot/robot/talker.py").read_text() == TALKER
 
@@ -61,7 +61,7 @@ def test_stop_ends_a_node_as_ctrl_c_does(kernel: Kernel) -> None:
 
     assert kernel.run("%stop talker").text == "talker stopped.\n"
     assert kernel.run("%nodes").text.startswith("No nodes.")
-    assert "started no node `talker`" in kernel.run("%stop talker").error
+    assert "not started a node `talker`" in kernel.run("%stop talker").error
     assert "Which one?" in kernel.run("%stop").error
 
 
@@ -80,7 +80,7 @@ def test_a_node_that_crashes_fails_its_cell_with_its_own_words(kernel: Kernel) -
 
     assert shown.text.startswith("hello\nTraceback")
     assert 'robot_ws/src/robot/robot/crash.py", line 3' in shown.text
-    assert shown.error == "crash ended with exit code 1. Its last words are above."
+    assert shown.error == "crash ended with exit code 1. Its last output is above."
 
 
 def test_a_node_that_ends_by_itself_is_said_to(kernel: Kernel) -> None:

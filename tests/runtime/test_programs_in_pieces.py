@@ -71,5 +71,14 @@ def test_an_endless_loop_is_a_process_that_the_kernel_does_not_wait_for(kernel: 
         "%%node endless --seconds 60 --until on\nimport time\nwhile True:\n    print('on')\n    time.sleep(1)\n"
     )
 
-    assert "endless goes on in the background" in shown.text
+    assert "endless continues in the background" in shown.text
     assert "did not come" not in shown.text
+
+
+WORDS = "import sys\nprint(int(sys.argv[1]) + int(sys.argv[2]))\n"
+
+
+def test_a_node_that_is_kept_is_started_by_ros2_run_with_its_words(kernel: Kernel) -> None:
+    assert "saved, not started" in kernel.run(f"%%node adder --keep --as sums/add\n{WORDS}").text
+
+    assert kernel.run("%ros2 run sums add 2 3").text.startswith("5\n")

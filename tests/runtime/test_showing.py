@@ -11,7 +11,7 @@ from pathlib import Path
 
 from spinbook.kernel.process import KeptProcess
 from spinbook.kernel.showing import Bound, Countdown
-from spinbook.ros2.participants import participants, participates
+from spinbook.ros2.opening import participants, participates
 
 
 @dataclass

@@ -12,7 +12,7 @@ from notebook_kernel import Kernel
         ("%%node 1bad\nx = 1", "can't be a node's file name"),
         ("%%node\nx = 1", "required: name"),
         ("%%node a --seconds soon\nx = 1", "invalid float value"),
-        ("%log nobody", "Started are: none"),
+        ("%log nobody", "Started: none"),
         ("%ros2 topic pub 'x", "quotation mark"),
         ("%colcon build", "run the chapter's node cells first"),
         ("%ros2 run turtlesim", "ros2 run PACKAGE EXECUTABLE"),

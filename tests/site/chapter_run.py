@@ -1,10 +1,10 @@
 """Runs every cell of a chapter's page in order, and compares what each shows with the executed notebook.
 
-    python tests/site/chapter_run.py SITE EXECUTED_NOTEBOOK RESULTS [--seconds N]
+    python tests/site/chapter_run.py SITE EXECUTED_NOTEBOOK RESULTS [--seconds N] [--browser firefox]
 
 appends a line of JSON to RESULTS for each cell, and prints the cells that differ. With --seconds it stops after so
 long; the same command then goes on. Numbers that depend on time count as equal; what a page's cell shows of something
-that goes on for ever must hold every kind of line that was recorded.
+that goes on forever must hold every kind of line that was recorded.
 """
 
 from __future__ import annotations
@@ -15,13 +15,20 @@ import re
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
-from playwright.sync_api import Locator, Page
+ROOT = Path(__file__).parents[2]
+sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "site")]
 
-CELLS = "main .cell:is(.cell-node, .cell-shell, .cell-snippet, .cell-interface, .cell-package_file)"
+from browser import chromium, opened  # noqa: E402
+from chapter_page import ChapterPage, InChromium, InFirefox  # noqa: E402
+from firefox import firefox  # noqa: E402
+from small_course import served  # noqa: E402
+
 PICTURE = "(a picture)"
 _NOT_IN_A_PAGE = ("spinbook-setup", "exercise-")
 _ENDLESS = re.compile(
@@ -34,8 +41,8 @@ _OF_THE_NOTEBOOK = re.compile(
     # A call that is made too early waits, in a notebook as in a page.
     r"|^waiting for service"
 )
-#: How long to wait for a cell (ms): the machine may be busy.
-PATIENCE_MS = 120_000
+#: How long to wait for every kind of line that something endless has shown (s).
+SHOWN_S = 15
 
 
 @dataclass(frozen=True)
@@ -108,15 +115,14 @@ def shape(line: str) -> str:
     return _NUMBER.sub("#", _FILE.sub(r'File "\1"', line)).strip()
 
 
-def run_chapter(page: Page, cells: list[Recorded], first: int = 0) -> Iterator[Result]:
+def run_chapter(page: ChapterPage, cells: list[Recorded], first: int = 0) -> Iterator[Result]:
     """Run each cell of the open page in order, from `first` on, where `beginnings` says that this can be done."""
-    places = page.locator(CELLS)
-    assert places.count() == len(cells), f"{places.count()} cells on the page, {len(cells)} in the notebook"
+    assert page.count() == len(cells), f"{page.count()} cells on the page, {len(cells)} in the notebook"
     if first:
-        _catch_up(page, [places.nth(at) for at, cell in enumerate(cells[:first]) if _leaves_something(cell)])
+        _catch_up(page, [at for at, cell in enumerate(cells[:first]) if _leaves_something(cell)])
     for at, cell in enumerate(cells[first:], first):
         began = time.monotonic()
-        lines = _run(page, places.nth(at), cell)
+        lines = _run(page, at, cell)
         yield Result(cell.id, compared(cell, lines), tuple(lines), round(time.monotonic() - began, 1))
 
 
@@ -130,52 +136,29 @@ def _leaves_something(cell: Recorded) -> bool:
     return not cell.source.startswith(("%", "#")) or cell.source.startswith(("%%", "%env"))
 
 
-def _catch_up(page: Page, places: list[Locator]) -> None:
+def _catch_up(page: ChapterPage, places: list[int]) -> None:
     """Run these cells without looking at what they show, and stop what they started."""
-    for place in places:
-        _press(page, place)
-    every = page.get_by_role("button", name="Stop all nodes")
-    if every.is_visible():
-        every.click()
-    every.wait_for(state="hidden", timeout=PATIENCE_MS)
+    for at in places:
+        page.run(at)
+    page.stop_all()
 
 
-def _run(page: Page, place: Locator, cell: Recorded) -> list[str]:
-    _press(page, place)
+def _run(page: ChapterPage, at: int, cell: Recorded) -> list[str]:
+    page.run(at)
     if cell.endless:
-        _wait_for_kinds(page, place, cell)
-    return shown(place)
-
-
-def _press(page: Page, place: Locator) -> None:
-    place.get_by_role("button", name=re.compile(r"^Run (?!all)")).click()
-    page.wait_for_function(_ENDED, arg=place.element_handle(), timeout=PATIENCE_MS)
-
-
-_ENDED = "cell => cell.querySelector('.ran') && !cell.hasAttribute('aria-busy')"
-_SHOWS = """([cell, wanted, picture]) => {
-  const text = cell.querySelector('.ran pre').textContent + (cell.querySelector('.ran figure svg > *') ? picture : '');
-  return wanted.every((pattern) => new RegExp(pattern, 'm').test(text));
-}"""
-
-
-def _wait_for_kinds(page: Page, place: Locator, cell: Recorded) -> None:
-    """Wait until a line of each recorded kind is there, or the time is up: then it differs."""
-    wanted = [_pattern(kind) for kind in cell.kinds]
-    try:
-        page.wait_for_function(_SHOWS, arg=[place.element_handle(), wanted, PICTURE], timeout=15_000)
-    except Exception:
-        return
+        wanted = [_pattern(kind) for kind in cell.kinds - {PICTURE}]
+        page.wait_for(at, wanted, PICTURE in cell.kinds, SHOWN_S)
+    return shown(page, at)
 
 
 def _pattern(kind: str) -> str:
     return r"-?[0-9a-f][0-9a-f.e+-]*".join(re.escape(part).replace(r"\ ", " ") for part in kind.split("#"))
 
 
-def shown(place: Locator) -> list[str]:
+def shown(page: ChapterPage, at: int) -> list[str]:
     """Return what a cell of the page shows now."""
-    pictures = place.locator(".ran figure svg").count()
-    return [*meaningful(place.locator(".ran pre").text_content() or ""), *([PICTURE] if pictures else [])]
+    text, picture = page.shown(at)
+    return [*meaningful(text), *([PICTURE] if picture else [])]
 
 
 def compared(cell: Recorded, lines: list[str]) -> tuple[str, ...]:
@@ -206,27 +189,38 @@ def read_results(file: Path) -> dict[str, Result]:
     }
 
 
-def go_on(site: Path, notebook: Path, file: Path, seconds: float) -> None:
-    """Run the cells that have no result yet, for so long, from the last place at which a run can begin."""
-    sys.path.insert(0, str(Path(__file__).parents[1]))
-    from browser import chromium, opened
-    from small_course import served
+@contextmanager
+def page_in(browser: str, url: str) -> Iterator[ChapterPage]:
+    """The chapter's page at this address in "chromium" or "firefox"; at the end, print what went wrong in it."""
+    if browser == "firefox":
+        with TemporaryDirectory() as profile, firefox(Path(profile)) as running:
+            running.open(url)
+            page = ChapterPage(InFirefox(running))
+            yield page
+            print("\n".join(f"outside request: {name}" for name in page.outside()))
+        return
+    with chromium() as playwright, opened(playwright, url) as shown:
+        yield ChapterPage(InChromium(shown.page))
+        print("\n".join(shown.faults))
 
+
+def go_on(site: Path, notebook: Path, file: Path, seconds: float, browser: str = "chromium") -> None:
+    """Run the cells that have no result yet, for so long, from the last place at which a run can begin."""
     cells, known = recorded(notebook), read_results(file)
     done = next((at for at, cell in enumerate(cells) if cell.id not in known), len(cells))
+    if done == len(cells):
+        return
     first = max(at for at in beginnings(cells) if at <= done)
     end = time.monotonic() + seconds
     with (
         served(site) as address,
-        chromium() as browser,
-        opened(browser, f"{address}/chapters/{notebook.stem}.html") as page,
+        page_in(browser, f"{address}/chapters/{notebook.stem}.html") as page,
         file.open("a", encoding="utf-8") as results,
     ):
-        for result in run_chapter(page.page, cells, first) if done < len(cells) else ():
+        for result in run_chapter(page, cells, first):
             print(json.dumps(asdict(result), ensure_ascii=False), file=results, flush=True)
             if time.monotonic() > end:
                 break
-        print("\n".join(page.faults))
 
 
 def main() -> int:
@@ -236,8 +230,9 @@ def main() -> int:
     parser.add_argument("notebook", type=Path)
     parser.add_argument("results", type=Path)
     parser.add_argument("--seconds", type=float, default=float("inf"))
+    parser.add_argument("--browser", choices=("chromium", "firefox"), default="chromium")
     given = parser.parse_args()
-    go_on(given.site, given.notebook, given.results, given.seconds)
+    go_on(given.site, given.notebook, given.results, given.seconds, given.browser)
     cells, found = recorded(given.notebook), read_results(given.results)
     differ = [result for result in found.values() if result.differs]
     print(f"{len(cells)} cells, {len(found)} run, {len(found) - len(differ)} as recorded")

@@ -79,6 +79,8 @@ def the_chapter(shown: Opened) -> None:
     press(page, "Node graph")
     expect(page.locator(".graph-panel svg")).to_contain_text("/left_foot/toe", timeout=PATIENCE_MS)
     clean(shown)
+    for name in ("left_toe", "balance_controller"):
+        expect(page.get_by_role("button", name=f"Stop {name}", exact=True)).to_be_in_viewport(ratio=1)
     picture(page, "1-two-nodes")
     press(page, "Node graph")
 
@@ -124,11 +126,11 @@ def the_exercise(shown: Opened, downloads: Path) -> Path:
 
 
 def check(page: Page, file: Path) -> None:
-    page.get_by_label("A file to go on with").set_input_files(file)
+    page.get_by_label("A file to continue with").set_input_files(file)
     expect(page.get_by_role("textbox", name="Code of joint_velocity.py")).to_contain_text(file.read_text()[:40])
     page.locator(".check-result").evaluate("place => place.replaceChildren()")
     press(page, "Check joint_velocity.py")
-    expect(page.locator(".check-total")).to_be_visible(timeout=PATIENCE_MS)
+    expect(page.locator(".check-total")).to_be_in_viewport(timeout=PATIENCE_MS)
 
 
 @pytest.mark.parametrize("width", WIDTHS)

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from browser import opened
+from chapter_page import ChapterPage, InChromium
 from chapter_run import Result, recorded, run_chapter
 from playwright.sync_api import Browser
 from small_course import ROOT, served
@@ -44,7 +45,8 @@ def test_a_chapter_shows_in_its_page_what_it_shows_in_its_notebook(
         served(real_course / "site") as address,
         opened(browser, f"{address}/chapters/{chapter}.html") as shown,
     ):
-        found = {result.cell: result for result in run_chapter(shown.page, recorded(notebook)) if result.differs}
+        page = ChapterPage(InChromium(shown.page))
+        found = {result.cell: result for result in run_chapter(page, recorded(notebook)) if result.differs}
         assert set(found) == set(known) - SAME_PYTHON, found
         reasons = {cell: EXPECTED["reasons"][known[cell]] for cell in found}
         assert [notes for cell, result in found.items() if (notes := unexplained(result, reasons[cell]))] == []

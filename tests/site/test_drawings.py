@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from spinbook.site.page import Repository
 from spinbook.site.prose import Links, rich
-from spinbook.site.repository import Repository
 
 TEXT = "See [the task](task.md).\n\n```mermaid\nflowchart LR\n    A --> B\n```\n"
 

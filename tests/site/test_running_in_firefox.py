@@ -52,6 +52,16 @@ def test_a_page_runs_edits_and_stops_a_node(page: Firefox) -> None:
     page.wait_for(".cell-node .run-state", "talker ended with 0.")
 
 
+def test_an_error_in_a_worker_arrives_with_its_message(page: Firefox) -> None:
+    said = page.evaluate(
+        "const { Process } = await import(new URL('../run/processes.js', location.href));"
+        "const worker = new Process('broken', {}); await worker.ready;"
+        "const said = await worker.call('record', { topics: null, seconds: 1 }).catch(String);"
+        "worker.end(); return said"
+    )
+    assert "object is not iterable" in said
+
+
 def test_an_exercise_is_checked(page: Firefox, address: str) -> None:
     solution = Path(__file__).parents[2] / "solutions" / "joint_velocity" / "solution.py"
     page.open(f"{address}/exercises/joint_velocity.html")

@@ -109,7 +109,7 @@ def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str) -> N
         total = page.locator(".check-total")
 
         def check(file: Path, comes_to: str) -> None:
-            page.get_by_label("A file to go on with").set_input_files(file)
+            page.get_by_label("A file to continue with").set_input_files(file)
             expect(page.get_by_role("textbox", name="Code of joint_velocity.py")).to_contain_text(file.read_text()[:40])
             page.get_by_role("button", name="Check joint_velocity.py").click()
             expect(total).to_have_text(comes_to, timeout=PATIENCE_MS)
@@ -132,7 +132,7 @@ def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str) -> N
         draft = page.get_by_role("textbox", name="Code of joint_velocity.py")
         expect(draft).to_contain_text((solutions / "solution.py").read_text()[:40])
 
-        page.get_by_label("A file to go on with").set_input_files(solutions / "right" / "numpy_arrays.py")
+        page.get_by_label("A file to continue with").set_input_files(solutions / "right" / "numpy_arrays.py")
         page.get_by_role("button", name="Check joint_velocity.py").click()
         expect(page.locator(".check-message")).to_contain_text("imports numpy", timeout=PATIENCE_MS)
         assert shown.faults == []

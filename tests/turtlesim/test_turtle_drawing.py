@@ -12,10 +12,9 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from spinbook.turtlesim.drawing import draw, save
-from spinbook.turtlesim.events import Pen
-from spinbook.turtlesim.geometry import SIDE, TICK_NS
+from spinbook.turtlesim.events import SIDE, TICK_NS, Pen
 from spinbook.turtlesim.moving import COATS
+from spinbook.turtlesim.picture import draw, save
 from spinbook.turtlesim.world import World
 from spinbook.turtlesim.world_picture import BLUE, StrokePicture, TurtlePicture, WorldPicture, picture_of
 

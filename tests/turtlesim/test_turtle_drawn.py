@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from spinbook.turtlesim.canvas import Canvas
-from spinbook.turtlesim.events import ColorReport, Pen
-from spinbook.turtlesim.geometry import CENTRE, SIDE, TICK_NS
+from spinbook.turtlesim.events import CENTRE, SIDE, TICK_NS, ColorReport, Pen
 from spinbook.turtlesim.trail import MAX_POINTS, TOLERANCE, Point, Stroke, Trail
 from spinbook.turtlesim.world import World
 

@@ -34,7 +34,7 @@ from turtlesim.action import RotateAbsolute
 from turtlesim.msg import Color, Pose
 from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
 
-from spinbook.turtlesim.geometry import CENTRE
+from spinbook.turtlesim.events import CENTRE
 from spinbook.turtlesim.picture import NoPictureError, fetch
 
 DEADLINE_S = 60.0
@@ -314,6 +314,7 @@ def test_a_rotation_tells_what_remains_and_how_it_ended(turtlesim: Running, outs
     cancelled = second.cancel_goal_async()
     outside.until(cancelled.done, "the answer to cancelling")
     assert ended(outside, second).status == GoalStatus.STATUS_CANCELED
+    outside.until(lambda: len(turtlesim.log) > 3, "the second rotation's line in the log")
     assert turtlesim.log[2:] == [
         "[INFO] [turtlesim]: Rotation goal completed successfully",
         "[INFO] [turtlesim]: Rotation goal canceled",

@@ -7,8 +7,7 @@ from turtlesim.msg import Color, Pose
 from turtlesim.srv import SetPen, Spawn, TeleportAbsolute, TeleportRelative
 
 from spinbook.turtlesim import interface
-from spinbook.turtlesim.events import ColorReport, Pen, PoseReport
-from spinbook.turtlesim.geometry import TICK_NS
+from spinbook.turtlesim.events import TICK_NS, ColorReport, Pen, PoseReport
 from spinbook.turtlesim.node import Pacing
 from spinbook.turtlesim.world import World
 

@@ -7,6 +7,7 @@ import math
 import pytest
 
 from spinbook.turtlesim.events import (
+    TICK_NS,
     Event,
     Killed,
     LogLine,
@@ -17,7 +18,6 @@ from spinbook.turtlesim.events import (
     RotationFeedback,
     Spawned,
 )
-from spinbook.turtlesim.geometry import TICK_NS
 from spinbook.turtlesim.world import World
 
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from spinbook.turtlesim import canvas
-from spinbook.turtlesim.events import Pen
-from spinbook.turtlesim.geometry import PIXELS_PER_UNIT, WINDOW_PX
+from spinbook.turtlesim.events import PIXELS_PER_UNIT, WINDOW_PX, Pen
 
 _PIXEL = 3
 
@@ -21,18 +20,18 @@ class PlainCanvas:
         """Make every pixel white again."""
         self._pixels = bytearray(b"\xff" * (WINDOW_PX * WINDOW_PX * _PIXEL))
 
-    def color(self, place: canvas.Place) -> tuple[int, int, int]:
-        """Return red, green and blue (0..255) of the pixel at `place` (units, y down)."""
-        column, row = (math.floor(part * PIXELS_PER_UNIT + 0.5) for part in place)
+    def color(self, point: canvas.Point) -> tuple[int, int, int]:
+        """Return red, green and blue (0..255) of the pixel at `point` (units, y down)."""
+        column, row = (math.floor(part * PIXELS_PER_UNIT + 0.5) for part in point)
         if not (0 <= column < WINDOW_PX and 0 <= row < WINDOW_PX):
             return (0, 0, 0)
         at = (row * WINDOW_PX + column) * _PIXEL
         red, green, blue = self._pixels[at : at + _PIXEL]
         return (red, green, blue)
 
-    def line(self, start: canvas.Place, end: canvas.Place, pen: Pen) -> None:
+    def line(self, start: canvas.Point, end: canvas.Point, pen: Pen) -> None:
         """Draw a straight line with square caps from `start` to `end` (units, y down)."""
-        near, far = sorted((start, end), key=lambda place: math.hypot(*place))
+        near, far = sorted((start, end), key=lambda point: math.hypot(*point))
         x0, y0, x1, y1 = (part * PIXELS_PER_UNIT for part in (*near, *far))
         half = pen.width / 2
         length = math.hypot(x1 - x0, y1 - y0)

@@ -14,12 +14,11 @@ from typing import Any
 from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load
-from grader.recording.recording import Recording, likewise
-from grader.recording.store import from_plain
+from grader.recording.recording import Recording, from_plain, likewise
 from grader.scenario.scenario import Message, Scenario
 from grader.scenario.store import from_plain as scenario_from_plain
-from spinbook.browser.in_page import rig
-from spinbook.browser.in_page.rig import Program
+from spinbook.browser.in_page import runner
+from spinbook.browser.in_page.runner import Program
 
 _ARCHIVE = Path("/check.zip")
 _FOLDER = Path("/exercises")
@@ -89,11 +88,11 @@ def _scenario(entries: dict[str, Any], folder: Path) -> Scenario:
 def record(exercise: Exercise, scenarios: list[Scenario], program: Program) -> dict[str, Recording]:
     """Run the program through each scenario; the first decides whether it works at all, as in the grader."""
     first, *others = scenarios
-    found = {first.name: rig.run(exercise, first, program)}
+    found = {first.name: runner.run(exercise, first, program)}
     works = found[first.name].ending.outcome == "completed"
     for scenario in others:
         found[scenario.name] = (
-            rig.run(exercise, scenario, program) if works else likewise(found[first.name], scenario.name)
+            runner.run(exercise, scenario, program) if works else likewise(found[first.name], scenario.name)
         )
     return found
 
@@ -109,7 +108,7 @@ def verdicts(
 
 
 def _forget_modules_of(folder: Path) -> None:
-    """Let each judging import the checks anew, as it does in a process of its own."""
+    """Let each judging import the checks again, as it does in a process of its own."""
     for name, module in list(sys.modules.items()):
         if (getattr(module, "__file__", None) or "").startswith(f"{folder}/"):
             del sys.modules[name]
@@ -124,7 +123,7 @@ def shown(found: tuple[Verdict, ...], recordings: dict[str, Recording], hidden: 
     return {
         "total": f"{passed} of {len(found)} public checks, {earned:g} of {points:g} points",
         "full": passed == len(found),
-        "message": broken.ending.story if broken else "",
+        "message": broken.ending.message if broken else "",
         "log": broken.log[-4000:] if broken else "",
         "hidden": hidden,
         "rows": [_row(verdict, titles) for verdict in found],

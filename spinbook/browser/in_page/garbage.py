@@ -1,9 +1,9 @@
 """Garbage collection in a page whose threads have stacks of their own.
 
 CPython 3.14 collects on its own in small steps, and each step reads the frames of every thread (`mark_stacks` in its
-`Python/gc.c`). Part of these lies on WebAssembly's argument stack. While a thread is suspended, Pyodide 314.0.7 moves
+`Python/gc.c`). Part of these is on WebAssembly's argument stack. While a thread is suspended, Pyodide 314.0.7 moves
 that part away and lets another thread write there. The collector then reads what is no frame, and the interpreter is
-gone: "memory access out of bounds", and `handback_tstate == NULL` when the next thread goes on
+gone: "memory access out of bounds", and `handback_tstate == NULL` when the next thread continues
 (https://github.com/pyodide/pyodide/issues/6464). `gc.collect(0)` and `gc.collect(2)` read no frames. So nothing is
 collected in steps while any thread is suspended, and a thread that is about to wait collects what is due.
 """

@@ -25,7 +25,7 @@ class PageLink:
     def __init__(self, page: Any) -> None:
         from pyodide.ffi import to_js  # type: ignore[import-not-found]
 
-        self.lock = threads.Told(threading.RLock())
+        self.lock = threads.NotifyingCondition(threading.RLock())
         self._page, self._to_js = page, to_js
         self._breathed = time.monotonic()
 

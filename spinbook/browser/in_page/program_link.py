@@ -54,7 +54,7 @@ class ProgramLink:
     """The link of a program whose whole world is a page's hub."""
 
     def __init__(self, hub: PageHub, turns: Turns) -> None:
-        self.lock = threads.Told(threading.RLock())
+        self.lock = threads.NotifyingCondition(threading.RLock())
         self._hub, self._turns, self._connection = hub, turns, hub.connection
         self._now = hub.now
         self._activity = self._number = 0

@@ -105,7 +105,7 @@ class Rota:
         self._end_behind_program(mine)
 
     def _end_behind_program(self, mine: int) -> None:
-        """Behind the program's end, end as `sys.exit` does; a thread that goes on waits for ever."""
+        """After the program's end, end as `sys.exit` does; a thread that continues waits forever."""
         if self._refused is None or mine == self._main:
             return
         self._refused[mine] += 1

@@ -150,7 +150,7 @@ class _RawLock(Lock):
             self._wanted -= 1
 
 
-class Told(threading.Condition):
+class NotifyingCondition(threading.Condition):
     """A condition that also notifies those who wait for messages."""
 
     def notify_all(self) -> None:

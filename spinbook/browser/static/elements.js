@@ -17,7 +17,7 @@ export function hindrance() {
 export function failure(error) {
   const text = String(error?.message ?? error);
   if (/memory|RangeError|Maximum call stack/i.test(text)) return NO_MEMORY;
-  if (/fetch|NetworkError|: 404/i.test(text)) return "It could not be loaded: is the website still there? Try again.";
+  if (/fetch|NetworkError|: 404/i.test(text)) return "It could not be loaded. Is the website still there? Try again.";
   const words = text.split("\n").filter((line) => /^[\w.]+(Error|Exception|Fault)\b/.test(line));
   return `It could not run here: ${words.at(-1) ?? text.split("\n")[0]}`;
 }

@@ -69,18 +69,22 @@ export function open(section) {
   state.setAttribute("role", "status");
   const result = element("div", { className: "check-result" });
   const say = (text) => (state.textContent = text);
+  // On a phone, what follows the buttons is below the window.
+  const show = (part) => part.scrollIntoView({ block: "nearest" });
 
   const act = async () => {
     result.replaceChildren();
     const hindered = hindrance();
     if (hindered) return say(hindered);
     say("Starting …");
+    show(state);
     checking.disabled = true;
     try {
       await load(say);
       const found = await check(name, editor.text, say);
       say("");
       result.replaceChildren(...panel(found));
+      show(result);
       announce(found.problem ?? found.total);
     } catch (error) {
       say(failure(error));
@@ -90,14 +94,14 @@ export function open(section) {
   };
   const checking = button("Check", `Check ${file}`, act);
   const upload = element("input", { type: "file", accept: ".py,text/x-python", className: "hidden-text", tabIndex: -1 });
-  upload.setAttribute("aria-label", "A file to go on with");
+  upload.setAttribute("aria-label", "A file to continue with");
   upload.addEventListener("change", async () => editor.replace(await upload.files[0].text()));
   const tools = element(
     "div",
     { className: "check-tools" },
     checking,
     button("Download", `Download your ${file}`, () => download(file, editor.text)),
-    button("Upload", "Go on with a file of yours", () => upload.click()),
+    button("Upload", "Continue with a file of yours", () => upload.click()),
     button("Reset", "Back to the starter", () => editor.restore()),
     upload,
   );

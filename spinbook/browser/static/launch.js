@@ -11,8 +11,13 @@ class Launch {
     this.name = name;
     this.hears = cell.hears(name);
     this.parts = [];
-    this.status = 0;
+    this.died = false;
     this.over = new Promise((resolve) => (this.finish = resolve));
+  }
+
+  // As in a terminal: what died doesn't count once the launch was interrupted.
+  get status() {
+    return this.died && !this.interrupted ? 1 : 0;
   }
 
   get running() {
@@ -48,7 +53,7 @@ class Launch {
     if (status === 0) this.print(`[INFO] [${name}]: process has finished cleanly [pid ${number}]`);
     else {
       this.print(`[ERROR] [${name}]: process has died [pid ${number}, exit code ${status ?? -9}]`);
-      if (!this.interrupted) this.status = 1;
+      this.died = true;
     }
     if (!this.running) this.finish();
   }
@@ -57,7 +62,6 @@ class Launch {
   async stop() {
     if (!this.running) return;
     this.interrupted = true;
-    this.status = 0; // as in a terminal: what died before doesn't count then
     this.print("[WARNING] [launch]: user interrupted with ctrl-c (SIGINT)");
     await Promise.all(this.parts.map((part) => part.running && part.stop()));
     await this.over;

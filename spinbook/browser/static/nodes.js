@@ -38,7 +38,7 @@ function ending(name, status, process) {
   process.status = status;
   if (status !== null) return `${name} ended with ${status}.`;
   if (!process.forced) return `${name} was ended.`;
-  return `${name} did not react to Ctrl-C, so it was ended after 2 s. A loop that never waits hears nothing: use a timer.`;
+  return `${name} did not react to Ctrl-C, so it was ended after 2 s. A loop that never waits can't react: use a timer.`;
 }
 
 // Run a node's cell. Resolves when it has started, or has ended at once.
@@ -53,7 +53,7 @@ export async function runExecutable(cell, [, , pack, executable, ...args]) {
   if (executable === "turtlesim_node") {
     await start(name ?? executable, cell, TURTLESIM, "turtlesim_node.py", args);
     await cell.shows(SHOWN_S);
-    return cell.say("turtlesim_node runs. Look at it with %turtle.");
+    return cell.say("turtlesim_node runs. Show its window with %turtle.");
   }
   const wanted = cellOf(executable, `${pack}/${executable}`);
   if (wanted && name) {
@@ -87,7 +87,7 @@ export async function showLog(cell, args) {
   const value = (option) => (args.includes(option) ? args[args.indexOf(option) + 1] : undefined);
   const text = value("--until");
   if (text && !(await logHolds(name, text, Number(value("--seconds") ?? LOG_S)))) {
-    cell.print(`The text ${text} did not come.`);
+    cell.print(`The text ${text} did not appear.`);
   }
   for (const line of logs.get(name) ?? []) cell.print(line);
 }
@@ -103,7 +103,7 @@ async function logHolds(name, text, seconds) {
 }
 
 function refuse(cell, name) {
-  cell.fail(`This page has started no node \`${name}\`. Started are: ${[...started.keys()].join(", ") || "none"}.`);
+  cell.fail(`This page has not started a node \`${name}\`. Started: ${[...started.keys()].join(", ") || "none"}.`);
 }
 
 export async function stop(cell, words) {

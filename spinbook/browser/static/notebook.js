@@ -43,7 +43,7 @@ async function busy(cell, process, op, given) {
   process.work(cell.name);
   try {
     const status = await process.call(op, given);
-    if (status === null) cell.fail(cell.say("It was ended, and the variables of the cells above are gone: run those cells again."));
+    if (status === null) cell.fail(cell.say("It was ended, and the variables of the cells above are gone. Run those cells again."));
     else if (status) cell.failed = true;
     return status;
   } finally {

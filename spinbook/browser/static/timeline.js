@@ -30,7 +30,7 @@ async function begin(cell, names) {
   await Promise.race([appeared, after(APPEAR_MS)]);
   cell.print(`Recording ${names.join(", ")}. %timeline draws what happens from now on.`);
   const missing = names.filter((name) => !found.has(name));
-  if (missing.length) cell.print(`Not there yet: ${missing.join(", ")}.`);
+  if (missing.length) cell.print(`Not found yet: ${missing.join(", ")}.`);
 }
 
 function dress(rules) {

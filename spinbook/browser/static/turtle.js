@@ -1,4 +1,4 @@
-// Turtlesim's window: its picture four times a second, and the arrow keys.
+// Turtlesim's window: its picture four times per second, and the arrow keys.
 import { Process } from "./processes.js";
 import { draw } from "./plot.js";
 

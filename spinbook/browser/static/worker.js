@@ -122,6 +122,7 @@ const does = {
   count: async ({ seconds }) => JSON.parse(await (await pictures()).counted.callPromising(seconds)),
   record: async ({ topics, seconds }) => {
     const { py } = await ready;
+    await shares(py);
     const lines = await (await cells()).record.callPromising(py.toPy(topics), seconds);
     return lines.toJs({ dict_converter: Object.fromEntries });
   },
@@ -185,6 +186,6 @@ self.onmessage = async ({ data: message }) => {
   try {
     self.postMessage({ op: "done", id: message.id, value: await does[message.op](message) });
   } catch (error) {
-    self.postMessage({ op: "done", id: message.id, error: String(error?.stack ?? error) });
+    self.postMessage({ op: "done", id: message.id, error: String(error) });
   }
 };

@@ -1,9 +1,24 @@
-"""A hidden node that sees the graph of its ROS domain and, where it may, measures the rate of topics."""
+"""Watches the node graph of a ROS domain, and counts messages to know the rates.
+
+`python -m spinbook.graph.watcher now [SECONDS]` prints the graph of ROS_DOMAIN_ID as it is now, as JSON. For so many
+seconds it listens to every topic that is published, to know the rates.
+
+`python -m spinbook.graph.watcher` watches on behalf of another process. It reads words from standard input, a line
+each, and ends with it:
+
+    domain N    look at this ROS domain from now on
+    count       listen to topics that have a listener anyway, to know their rates, until the next word
+    look        stop that, wait until the graph is known, and print it as one line of JSON
+"""
 
 from __future__ import annotations
 
+import json
 import math
 import os
+import queue
+import sys
+import threading
 import time
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -18,10 +33,9 @@ from spinbook.graph.model import End, NodeGraph, SeenNode, Topic
 from spinbook.ros2.cli import CommandError
 from spinbook.ros2.graph import LOOK, Graph
 from spinbook.ros2.interfaces import message_class
-from spinbook.ros2.opening import domain_id, prepare
-from spinbook.ros2.participants import participants
+from spinbook.ros2.opening import domain_id, participants, prepare
 
-#: A rate is told from at least this long (s).
+#: A rate is measured over at least this long (s).
 ENOUGH_S = 0.8
 _NS = 1e9
 #: First digits that rates of timers have. A rate within 4 % of one is that one: a measured 9.94 Hz is a 10 Hz timer.
@@ -39,7 +53,7 @@ class _Stream:
 
 @dataclass
 class Counted:
-    """The messages of a topic with so many publishers that were heard, told apart by publisher.
+    """The messages of a topic with so many publishers that were received, kept apart by publisher.
 
     Each publisher numbers its messages, so that what was missed in between is counted too (RTPS 2.5, 8.3.5.4), and
     stamps them when it sends them, so that the time that they took to come does not matter.
@@ -72,7 +86,7 @@ class Counted:
 
 
 def rounded(rate_hz: float) -> float:
-    """A rate as it is told: two digits, or that of a usual timer where it is one (9.99 and 10.01 are 10)."""
+    """A rate as it is shown: two digits, or that of a usual timer if it is close to one (9.99 and 10.01 are 10)."""
     if not rate_hz > 0 or not math.isfinite(rate_hz):
         return 0.0
     scale = 10.0 ** math.floor(math.log10(rate_hz))
@@ -182,7 +196,7 @@ class GraphWatcher(Graph):
 
 
 def _ear(counted: Counted) -> Any:
-    """A callback of the form that rclpy gives the information beside a message to: it looks at the parameters."""
+    """A callback of the form to which rclpy passes the message's information, too: rclpy looks at the parameters."""
 
     def hear(data: bytes, information: dict[str, int]) -> None:
         counted.heard(information["publication_sequence_number"], information["source_timestamp"])
@@ -218,3 +232,63 @@ def _fit(one: TopicEndpointInfo, other: TopicEndpointInfo) -> bool:
     publisher, subscription = (one, other) if one.endpoint_type.name == "PUBLISHER" else (other, one)
     compatibility, _ = qos_check_compatible(publisher.qos_profile, subscription.qos_profile)
     return bool(compatibility != QoSCompatibility.ERROR)
+
+
+def graph_now(seconds: float) -> NodeGraph:
+    """The graph, with the rates of what could be counted within `seconds`."""
+    with GraphWatcher() as watcher:
+        watcher.wait_until_idle()
+        deadline = time.monotonic() + seconds
+        while time.monotonic() < deadline and watcher.count(unheard=True):
+            pass
+        watcher.stop_counting()
+        return watcher.graph()
+
+
+def _listen(words: queue.SimpleQueue[str]) -> None:
+    for line in sys.stdin:
+        words.put(line.strip())
+    words.put("end")
+
+
+def observe(words: queue.SimpleQueue[str]) -> None:
+    """Do what the words say, until "end"."""
+    word = words.get()
+    while word != "end":
+        os.environ["ROS_DOMAIN_ID"] = word.removeprefix("domain ")
+        with GraphWatcher() as watcher:
+            word = _look_at(watcher, words)
+
+
+def _look_at(watcher: GraphWatcher, words: queue.SimpleQueue[str]) -> str:
+    """Do what is asked of one domain; the word that ends it."""
+    while (word := words.get()) != "end" and not word.startswith("domain "):
+        while word == "count" and words.empty():
+            watcher.count()
+        watcher.stop_counting()
+        if word == "look":
+            watcher.wait_until_idle()
+            print(json.dumps(json.loads(watcher.graph().to_json())), flush=True)
+    return word
+
+
+def observe_standard_input() -> None:
+    """Observe until standard input ends."""
+    words: queue.SimpleQueue[str] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(words,), daemon=True).start()
+    observe(words)
+
+
+def main(how: str = "", seconds: str = "0") -> None:
+    """Look once, or as often as standard input asks."""
+    try:
+        if how == "now":
+            print(graph_now(float(seconds)).to_json())
+        else:
+            observe_standard_input()
+    except CommandError as error:
+        sys.exit(error.format_message())
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from grader.exercise.exercise import Exercise
 from grader.recording.recording import Recording
 from grader.runner.run import Run
-from grader.runner.task import Task
+from grader.runner.student import Task
 from grader.scenario.command_line import arguments
 from grader.scenario.scenario import Scenario
 from rcl_python import abort, logs
@@ -147,7 +147,7 @@ def _main(program: Program, student: PageStudent, log: io.StringIO) -> None:
     except SystemExit as error:
         student.code = _status(error.code, log)
     except BaseException as error:
-        traceback.print_exception(type(error), error, _without_rig(error.__traceback__), file=log)
+        traceback.print_exception(type(error), error, _without_runner(error.__traceback__), file=log)
         student.code = 130 if isinstance(error, KeyboardInterrupt) else 1
     if student.code:
         gc.collect()  # nodes that only the traceback held leave the graph before the end, as in a process that ends
@@ -160,8 +160,8 @@ def _status(code: object, log: io.StringIO) -> int:
     return 1
 
 
-def _without_rig(trace: types.TracebackType | None) -> types.TracebackType | None:
-    while trace is not None and re.search(r"in_page[/\\]rig\.py$", trace.tb_frame.f_code.co_filename):
+def _without_runner(trace: types.TracebackType | None) -> types.TracebackType | None:
+    while trace is not None and re.search(r"in_page[/\\]runner\.py$", trace.tb_frame.f_code.co_filename):
         trace = trace.tb_next
     return trace
 
