@@ -1,6 +1,6 @@
 # `make course` and `make test` install everything that a fresh machine needs, in $(VENV): see setup.sh.
 #
-#   make PYTHON=python3.12 ...     with another Python (default: the environment's own, else python3)
+#   make PYTHON=python3.12 ...     with another Python (default: the environment's own, otherwise python3)
 #   make VENV=/some/place ...      with the environment in another place
 
 PYTHON ?=
@@ -18,7 +18,7 @@ PYTEST := PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(BIN)/pytest -p pytest_timeout -p xd
 help:    ## List what can be made.
 	@sed -nE 's/^([a-z-]+):.*##/\1\t/p' Makefile | expand -t 10
 
-setup:   ## Make the virtual environment with every pinned dependency, or bring it up to date.
+setup:   ## Make the virtual environment with every pinned dependency, or update it.
 	@PYTHON="$(PYTHON)" VENV="$(VENV)" sh setup.sh
 	@VENV="$(VENV)" sh fetch-pyodide.sh
 
@@ -30,10 +30,10 @@ course: setup   ## Build, run and package the real course, make its site, and gr
 	@echo
 	@echo "The course is in build/notebooks, as it ran here in build/executed, its package in humanoid_ws."
 	@echo "Its site is build/site/index.html: open it in any browser."
-	@echo "How the class did is build/class/results/index.html; each exercise's and each student's page is a click away."
+	@echo "The class's results are in build/class/results/index.html, with links to each exercise's and each student's page."
 	@echo "Open a notebook in any editor, with $(BIN)/python as its Python."
 
-class: setup   ## Make a class of 200, grade it, and check every grade; the pages lie in build/class/results.
+class: setup   ## Make a class of 200, grade it, and check every grade; the pages are in build/class/results.
 	$(BIN)/python benchmarks/class/grade_all.py --count 200 --out build/class
 
 test: setup   ## Check style, types and the direction of imports, then run every test.
@@ -48,7 +48,7 @@ soak: setup   ## Run the long suites in full, and count how often the same progr
 	$(PYTEST) -m soak
 	$(BIN)/python benchmarks/determinism/determinism.py --rounds 12 --json build/determinism.json
 
-audit: setup   ## Show what every exercise's checks are worth; the report lies in build/audit.html.
+audit: setup   ## Show what every exercise's checks are worth; the report is in build/audit.html.
 	@mkdir -p build
 	$(BIN)/spinbook audit --html build/audit.html --json build/audit.json
 

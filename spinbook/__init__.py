@@ -8,7 +8,7 @@ __version__ = "0.1.0"
 
 
 def load_ipython_extension(shell: Any) -> None:
-    """What `%load_ext spinbook` calls."""
+    """Called by `%load_ext spinbook`."""
     from spinbook.kernel.extension import load
 
     load(shell)

@@ -6,15 +6,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 
-#: An animation begins and ends with a rest (s), so that the eye finds the start and sees the whole.
+#: An animation begins and ends with a pause (s), so that readers find the start and see the whole.
 BEFORE_S, AFTER_S = 0.4, 2.6
 
 
 @dataclass(frozen=True)
 class Cycle:
-    """`moving_s` seconds of motion between two rests, again and again.
-
-    `key` begins every class and animation: several pictures may stand in one page.
+    """`moving_s` seconds of motion between two pauses, repeated. The names of all classes and animations begin with
+    `key`, because a page may have several pictures.
     """
 
     key: str
@@ -22,13 +21,13 @@ class Cycle:
 
     @property
     def whole_s(self) -> float:
-        """The cycle with its rests (s)."""
+        """The cycle with its pauses (s)."""
         return BEFORE_S + self.moving_s + AFTER_S
 
     def keyframes(self, name: str, frames: Iterable[tuple[float, str]]) -> str:
         """CSS that lets the class `key` + `name` go through declarations at times (s of the motion), in order.
 
-        Between two of them CSS goes steadily; before the first and after the last it rests.
+        Between two of them CSS moves steadily; before the first and after the last it pauses.
         """
         at = {self._percent(seconds): declaration for seconds, declaration in frames}
         first, last = next(iter(at.values())), list(at.values())[-1]
@@ -41,12 +40,12 @@ class Cycle:
         return coord(100 * (BEFORE_S + seconds) / self.whole_s, 2)
 
     def style(self, *rules: str) -> str:
-        """A style element in which the rules hold only on a screen, for readers who do not mind motion."""
+        """A style element whose rules apply only on a screen, and not for readers who prefer no motion."""
         return f"<style>@media screen and (prefers-reduced-motion:no-preference){{{''.join(rules)}}}</style>"
 
 
 def coord(value: float, digits: int = 1) -> str:
-    """A number in as few characters as say it to so many digits after the point."""
+    """A number in as few characters as possible, with this many digits after the point."""
     text = f"{value:.{digits}f}".rstrip("0").rstrip(".") if digits else f"{value:.0f}"
     return "0" if text in ("-0", "") else text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
 
@@ -54,7 +53,7 @@ def coord(value: float, digits: int = 1) -> str:
 def thinned(points: Sequence[tuple[float, float]], tolerance: float) -> list[tuple[float, float]]:
     """Some of these (time, value) points, in order of time, between which a steady change passes within `tolerance`.
 
-    Douglas and Peucker's way (1973), on the value at the same time.
+    The algorithm is Douglas and Peucker's (1973), on the value at the same time.
     """
     if len(points) < 3:
         return list(points)
@@ -80,7 +79,8 @@ _COLOURS = (
 
 
 def on_paper(content: str, width: int, height: int, key: str, title: str, words: str) -> str:
-    """An SVG document, `width` by `height` px. What has the class `key` + "i" is in ink; `words` describe it all."""
+    """An SVG document, `width` by `height` px. Elements with the class `key` + "i" have the text colour; `words`
+    describe the picture."""
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" '
         f'role="img" aria-labelledby="{key}t {key}d" font-family="{FONT}">'

@@ -1,4 +1,4 @@
-"""The `spinbook` command: one name for every verb, each of which lives in a folder of its own."""
+"""The `spinbook` command. Each verb has its own folder."""
 
 from __future__ import annotations
 
@@ -16,9 +16,8 @@ from spinbook.problem import SpinbookError
 
 @dataclass(frozen=True)
 class Verb:
-    """Where a verb's click command is, as `module:name`, and one line for `spinbook --help`.
-
-    `needs` is a module without which the verb can do nothing but show its help.
+    """A verb: its click command as `module:name`, and one line for `spinbook --help`. `needs` is a module without which
+    the verb can only show its help.
     """
 
     command: str
@@ -27,11 +26,11 @@ class Verb:
 
 
 AUTHORS = {
-    "new": Verb("spinbook.new.command:new", "Make a course or an exercise that works at once, to go on from."),
+    "new": Verb("spinbook.new.command:new", "Make a new course or exercise that works at once."),
     "import": Verb(
-        "spinbook.importing.command:import_book", "Make a course of a book that exists (MkDocs, Docusaurus …)."
+        "spinbook.importing.command:import_book", "Make a course from an existing book (MkDocs, Docusaurus …)."
     ),
-    "lint": Verb("spinbook.lint:lint", "Say what is wrong in the chapters and what will not run."),
+    "lint": Verb("spinbook.lint:lint", "Check the chapters: what is wrong, and what will not run."),
     "build": Verb(
         "spinbook.build.command:build", "Build notebooks from chapters; --execute runs them with real nodes."
     ),
@@ -41,7 +40,7 @@ AUTHORS = {
     "package": Verb("spinbook.package.command:package", "Write the chapters' nodes as a ROS 2 package."),
     "site": Verb("spinbook.site.command:site", "Build the course's website from the notebooks as they ran."),
     "handout": Verb(
-        "spinbook.handout.command:command", "Write what students get: no solutions, no hidden checks.", needs="rclpy"
+        "spinbook.handout.contents:command", "Write what students get: no solutions, no hidden checks.", needs="rclpy"
     ),
 }
 INSTRUCTORS = {
@@ -60,21 +59,21 @@ INSTRUCTORS = {
     ),
 }
 STUDENTS = {
-    "check": Verb("spinbook.submit.check_command:check", "Say what the public checks say of your node.", needs="rclpy"),
+    "check": Verb("spinbook.submit.command:check", "Say what the public checks say of your node.", needs="rclpy"),
     "submit": Verb(
-        "spinbook.submit.command:submit", "Write one file to upload, with what the public checks say.", needs="rclpy"
+        "spinbook.submit.command:submit", "Run the public checks, and write one file to upload.", needs="rclpy"
     ),
-    "update": Verb("spinbook.update.command:update", "Bring your folder up to a newer handout; your work stays."),
+    "update": Verb("spinbook.update.command:update", "Update your folder to a newer handout; your work stays."),
 }
 EVERYBODY = {
-    "ros2": Verb("spinbook.ros2.command:ros2", "The ros2 command line, where no ROS 2 is installed."),
+    "ros2": Verb("spinbook.ros2.command:ros2", "The ros2 command, without a ROS 2 installation."),
     "turtle": Verb("spinbook.turtlesim.command:turtle", "Draw the running turtlesim.", needs="rclpy"),
     "doctor": Verb("spinbook.doctor.command:doctor", "Say what works on this machine, and how to fix what does not."),
 }
 SECTIONS = {"Authors": AUTHORS, "Instructors": INSTRUCTORS, "Students": STUDENTS, "Everybody": EVERYBODY}
 VERBS = {name: verb for section in SECTIONS.values() for name, verb in section.items()}
 
-#: The extra of `pip install spinbook[…]` that brings a module which not every installation has.
+#: Module -> the extra of `pip install spinbook[…]` that installs it.
 EXTRAS = {
     "libcst": "audit",
     "distributed": "cluster",
@@ -104,7 +103,7 @@ class Verbs(click.Group):
         return name, command, rest
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run a verb. Raises UsageError where a module is missing that an extra would have brought."""
+        """Run a verb. Raises UsageError if a module of an extra is missing."""
         try:
             return super().invoke(ctx)
         except ModuleNotFoundError as missing:
@@ -121,7 +120,7 @@ class Verbs(click.Group):
 
 
 def _load(name: str, verb: Verb) -> click.Command:
-    """A verb's command. Raises UsageError where a module is missing that an extra would have brought."""
+    """A verb's command. Raises UsageError if a module of an extra is missing."""
     module, _, attribute = verb.command.partition(":")
     try:
         command = getattr(importlib.import_module(module), attribute)

@@ -33,7 +33,7 @@ def gradebook(results: Path, start: Path) -> None:
       spinbook gradebook results/
 
     It writes RESULTS/index.html (points so far, what the class struggles with, a row for each student and a column for
-    each exercise) and RESULTS/gradebook.csv. Exercises come in the order of the chapters.
+    each exercise) and RESULTS/gradebook.csv. The exercises are in the order of the chapters.
 
     Exit codes: 0 written, 1 there are no grades in RESULTS, 2 wrong usage.
     """

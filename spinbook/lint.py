@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,18 +16,18 @@ from spinbook.chapter.read import Reading
 from spinbook.chapters import read_all
 from spinbook.course.course import Course, find_course
 from spinbook.course.obstacles import ranked
-from spinbook.interfaces.compiling import checked
+from spinbook.interfaces.compiling import checked, compile_course
 from spinbook.problem import Problem, Severity, SpinbookError
 
-#: So many problems are read one by one; of more there is a count at the end, too.
+#: Up to this many problems need no count; with more, a count follows at the end.
 _FEW = 12
 
 
 @click.command()
 @click.option("--course", "start", type=click.Path(path_type=Path), default=".", help="The course's folder.")
-@click.option("--strict", is_flag=True, help="Warnings fail as well.")
+@click.option("--strict", is_flag=True, help="Treat warnings as errors.")
 @click.option(
-    "--static", "show_static", is_flag=True, help="List every fence that is shown and not run, with the reason."
+    "--static", "show_static", is_flag=True, help="List every fence that is shown but not run, with the reason."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, for editors and CI.")
 def lint(start: Path, strict: bool, show_static: bool, as_json: bool) -> None:
@@ -60,18 +61,28 @@ def lint(start: Path, strict: bool, show_static: bool, as_json: bool) -> None:
 
 
 def _interfaces(course: Course) -> tuple[Problem, ...]:
-    """What is wrong in the course's messages, services and actions."""
+    """What is wrong in the course's messages, services and actions. Those that exercises use are compiled."""
     try:
-        checked(course)
+        collected = checked(course)
+        if any(_mentions(file, collected.packages) for file in _exercise_files(course)):
+            compile_course(course, collected)
     except SpinbookError as error:
         return error.problems
     return ()
 
 
+def _mentions(file: Path, packages: Sequence[str]) -> bool:
+    text = file.read_bytes()
+    return any(f"{package}/".encode() in text for package in packages)
+
+
+def _exercise_files(course: Course) -> list[Path]:
+    return sorted((course.root / "exercises").glob("*/exercise.toml"))
+
+
 def _exercises(course: Course) -> tuple[Problem, ...]:
     """What is wrong in the course's exercises and their solutions."""
-    folders = sorted(file.parent for file in (course.root / "exercises").glob("*/exercise.toml"))
-    problems = [problem for folder in folders for problem in problems_of(folder)]
+    problems = [problem for file in _exercise_files(course) for problem in problems_of(file.parent)]
     return tuple(replace(problem, file=_near(problem.file)) for problem in problems)
 
 

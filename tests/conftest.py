@@ -14,6 +14,7 @@ import pytest
 import ros_domains
 from browser import chromium
 from course_folder import CourseFolder
+from hypothesis import settings
 from playwright.sync_api import Browser
 from process_mark import ProcessMark
 from workers import ByPiece
@@ -25,6 +26,9 @@ from interface_compiler import activation
 def pytest_configure(config: pytest.Config) -> None:
     # Started in a shell's background, tests would make every program that they start ignore Ctrl-C.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    # Hypothesis fails an example that takes longer than 200 ms, unless told otherwise: on a busy machine, many do.
+    settings.register_profile("no deadline", deadline=None)
+    settings.load_profile("no deadline")
     # Each run makes the solutions' recordings again, once for all its processes: the user's own cache proves nothing.
     if "PYTEST_XDIST_WORKER" not in os.environ:
         os.environ["SPINBOOK_CACHE"] = tempfile.mkdtemp(prefix="spinbook-tests-")

@@ -50,12 +50,12 @@ class Course:
 
     @property
     def build_folder(self) -> Path:
-        """Where everything that is made goes."""
+        """The folder for everything that Spinbook makes."""
         return self.root / "build"
 
     @property
     def names(self) -> dict[Path, str]:
-        """What each chapter's notebook and page are called, by its file."""
+        """Each chapter's file -> the name of its notebook and page."""
         return names_of(self.chapters)
 
     @property
@@ -93,7 +93,7 @@ def find_course(start: Path) -> Course:
 
 
 def read_course(root: Path) -> Course:
-    """Read `root / course.toml`. Raises SpinbookError with all that is wrong in it."""
+    """Read `root / course.toml`. Raises SpinbookError with every problem in it."""
     try:
         text = (root / FILE).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
@@ -113,7 +113,7 @@ def read_course(root: Path) -> Course:
         problems.append(Problem(FILE, None, found, 'Write for example: chapters = ["chapters/01-start.md"]'))
         chapters = []
     for name in {c for c in chapters if chapters.count(c) > 1}:
-        problems.append(Problem(FILE, None, f"`{name}` is listed twice.", "Take one of them out."))
+        problems.append(Problem(FILE, None, f"`{name}` is listed twice.", "Remove one of them."))
     for name in chapters:
         if Path(name).is_absolute() or ".." in Path(name).parts:
             problems.append(

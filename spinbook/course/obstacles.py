@@ -1,4 +1,4 @@
-"""What stands between a course and running cells, counted: one cause is told once, the one that unlocks most first."""
+"""What keeps a course's cells from running. Each cause is listed once; the cause that would unlock most comes first."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 from spinbook.problem import Problem, Severity
 
-#: What a count of each kind is called: group -> words. Any other group is a package.
+#: The words for each kind of cause: group -> singular and plural. Any other group is a package.
 _WORDS = {
     "a real shell": (
         "shell fence needs a real shell (a pipe, or a command that is not ROS's)",
@@ -28,6 +28,7 @@ _WORDS = {
     ),
     "launch files": ("command launches a file that no fence shows", "commands launch files that no fence shows"),
     "files of parameters": ("command reads a file of parameters", "commands read files of parameters"),
+    "keys from a terminal": ("command reads keys from a terminal", "commands read keys from a terminal"),
     "C++ packages": ("command makes a package for C++", "commands make packages for C++"),
 }
 
@@ -51,12 +52,12 @@ class Obstacle:
 
     @property
     def unlocks(self) -> int:
-        """At how many places nothing else stands in the way."""
+        """The number of places with no other cause."""
         return len({(problem.file, problem.line) for problem in self.problems if problem.alone})
 
     @property
     def in_words(self) -> str:
-        """One line: how often, and what would help."""
+        """One line: how often it occurs, and what to do."""
         places = {(problem.file, problem.line) for problem in self.problems}
         one, many = _WORDS.get(self.group, (f"fence needs {self.group}", f"fences need {self.group}"))
         count = len(places)
@@ -76,16 +77,16 @@ def obstacles(problems: Iterable[Problem]) -> list[Obstacle]:
 
 
 def by_itself(problems: Iterable[Problem]) -> Iterator[Problem]:
-    """The problems that are told one by one: each has its own cause."""
+    """The problems that are listed one by one, because each has its own cause."""
     return (problem for problem in problems if not problem.group)
 
 
 def ranked(problems: Sequence[Problem]) -> list[str]:
-    """The lines of a report of all causes; none where there are none."""
+    """The lines of a report of all causes; none if there are none."""
     found = obstacles(problems)
     blocking = [item.in_words for item in found if item.blocks]
     others = [item.in_words for item in found if not item.blocks]
-    lines = ["Shown and not run, the cause that unlocks most first:", *blocking] if blocking else []
+    lines = ["Shown but not run, with the cause that would unlock most first:", *blocking] if blocking else []
     return [*lines, *(["To look at:", *others] if others else [])]
 
 

@@ -10,8 +10,7 @@ import click
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
-from spinbook.doctor.diagnosis import CHECKS, Check, diagnose
-from spinbook.doctor.finding import Finding, State, is_able, show
+from spinbook.doctor.diagnosis import CHECKS, Check, Finding, State, diagnose, is_able, show
 from spinbook.ros2.cli import CONTEXT, CommandError
 
 

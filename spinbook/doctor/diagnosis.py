@@ -1,4 +1,4 @@
-"""Runs the checks in parallel, each in a process that may crash or hang without harm to the others."""
+"""Each check of this machine in a process of its own, what it found, and how a table shows it."""
 
 from __future__ import annotations
 
@@ -11,9 +11,95 @@ import sys
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
 
 from grader.child_process import run_program
-from spinbook.doctor.finding import Finding, State, missing
+
+
+class State(str, Enum):
+    """How grave a finding is."""
+
+    OK = "ok"
+    """It works."""
+    WARNING = "warning"
+    """Something is weaker, or surprising; courses are built and graded all the same."""
+    MISSING = "missing"
+    """Without it courses are not built or not graded."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that was looked at.
+
+    `found` says what is there, with versions and paths. `fix` says what to do if something is wrong.
+    """
+
+    name: str
+    state: State
+    found: str
+    fix: str = ""
+
+
+def ok(name: str, found: str) -> Finding:
+    """It works."""
+    return Finding(name, State.OK, found)
+
+
+def warning(name: str, found: str, fix: str) -> Finding:
+    """It works, but not as well as it could."""
+    return Finding(name, State.WARNING, found, fix)
+
+
+def missing(name: str, found: str, fix: str) -> Finding:
+    """Something that is needed does not work."""
+    return Finding(name, State.MISSING, found, fix)
+
+
+SIGNS = {State.OK: ("✓", "green"), State.WARNING: ("!", "yellow"), State.MISSING: ("✗", "red")}
+
+
+def show(console: Console, findings: Sequence[Finding]) -> None:
+    """Print every finding, then what to do about those that are not well, then a line that sums up."""
+    table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 1))
+    table.add_column(width=1)
+    table.add_column(no_wrap=True)
+    table.add_column(overflow="fold")
+    for finding in findings:
+        sign, colour = SIGNS[finding.state]
+        table.add_row(Text(sign, style=colour), Text(finding.name), Text(_with_tilde(finding.found)))
+    console.print(table)
+    for finding in findings:
+        if finding.fix:
+            sign, colour = SIGNS[finding.state]
+            console.print()
+            console.print(Text.assemble((f"{sign} {finding.name}", f"bold {colour}")))
+            console.print(Text("\n".join(f"  {line}" for line in finding.fix.splitlines())), soft_wrap=True)
+    console.print()
+    console.print(_summary(findings), soft_wrap=True)
+
+
+def is_able(findings: Sequence[Finding]) -> bool:
+    """Whether everything that is needed to build and grade works."""
+    return all(finding.state is not State.MISSING for finding in findings)
+
+
+def _summary(findings: Sequence[Finding]) -> str:
+    amiss = sum(finding.state is State.MISSING for finding in findings)
+    warnings = sum(finding.state is State.WARNING for finding in findings)
+    also = f" ({warnings} {'warning' if warnings == 1 else 'warnings'})" if warnings else ""
+    if amiss:
+        return f"Fix every ✗ before you build or grade a course here. Failed: {amiss} of {len(findings)}{also}."
+    return f"Courses can be built and graded here{also}."
+
+
+def _with_tilde(text: str) -> str:
+    home = os.environ.get("HOME", "")
+    return text.replace(f"{home}/", "~/") if Path(home).is_absolute() and home != "/" else text
 
 
 @dataclass(frozen=True)
@@ -21,7 +107,7 @@ class Check:
     """One thing to look at.
 
     `function` is what does it, as `module:name`; it is called with `name`. `seconds` is how long it may take.
-    `needs` are the words of earlier checks without which this one can only fail, so that a cause is told once.
+    `needs` are the words of earlier checks without which this one can only fail, so that each cause is reported once.
     """
 
     word: str
@@ -42,7 +128,7 @@ CHECKS = (
     Check("ros", "ROS 2", "spinbook.doctor.ros:examine_ros_library", 30.0, ("libraries",)),
     Check("middleware", "Middleware", "spinbook.doctor.middleware:examine_middleware", 30.0, ("ros",)),
     Check("logs", "Log folder", "spinbook.doctor.middleware:examine_log_folder"),
-    Check("message", "A message", "spinbook.doctor.message:examine", 60.0, _NODE),
+    Check("message", "A message", "spinbook.doctor.middleware:examine_message", 60.0, _NODE),
     Check("environment", "ROS settings", "spinbook.doctor.ros:examine_ros_settings"),
     Check("memory", "Shared memory", "spinbook.doctor.middleware:examine_shared_memory"),
     Check("kernel", "Jupyter kernel", "spinbook.doctor.machine:examine_kernel", 60.0),
@@ -114,7 +200,6 @@ def main(function: str, name: str) -> None:
     os.dup2(2, 1)
     module, _, attribute = function.partition(":")
     finding = getattr(importlib.import_module(module), attribute)(name)
-    assert isinstance(finding, Finding)
     with os.fdopen(answer, "w") as out:
         json.dump(dataclasses.asdict(finding), out)
 

@@ -15,7 +15,7 @@ from typing import Any
 
 from grader.child_process import run_program
 from interface_compiler import prefixes, shipped, toolchain
-from spinbook.doctor.finding import Finding, missing, ok, warning
+from spinbook.doctor.diagnosis import Finding, missing, ok, warning
 from spinbook.ros2.executables import is_built_in, real_ros2
 
 OLDEST, NEWEST = (3, 10), (3, 14)
@@ -30,14 +30,14 @@ def examine_python(name: str) -> Finding:
 
 
 def examine_folder(name: str) -> Finding:
-    """Look for characters that colcon's shell scripts, or the search paths, fall apart at."""
+    """Look for characters that break colcon's shell scripts or the search paths."""
     places = (Path.cwd(), Path(sys.prefix))
     for place in places:
         if any(character.isspace() or character == ":" for character in str(place)):
             return missing(
                 name,
                 f"'{place}' has a space or a colon in it",
-                "colcon's scripts and ROS's search paths fall apart there. "
+                "colcon's scripts and ROS's search paths break there. "
                 "Move it to a path without one, and run make again.",
             )
     return ok(name, f"{places[0]} (environment: {places[1]})")
@@ -92,7 +92,7 @@ def examine_colcon(name: str) -> Finding:
         colcon, setuptools = version("colcon-core"), version("setuptools")
     except PackageNotFoundError as error:
         return missing(
-            name, f"{error.name} is not installed for {sys.executable}", "Make the environment anew: make setup"
+            name, f"{error.name} is not installed for {sys.executable}", "Set the environment up again: make setup"
         )
     found = f"colcon-core {colcon}, setuptools {setuptools}"
     with tempfile.TemporaryDirectory(prefix="spinbook-doctor-") as folder:
@@ -104,7 +104,7 @@ def examine_colcon(name: str) -> Finding:
         built = _build(workspace)
         if built.returncode:
             lines = [line for line in built.stderr.splitlines() if line.strip()] or [f"exit code {built.returncode}"]
-            return missing(name, f"{found}; a build fails: {lines[-1]}", "Make the environment anew: make setup")
+            return missing(name, f"{found}; a build fails: {lines[-1]}", "Set the environment up again: make setup")
         linked = not any((workspace / "install").glob(f"{_NAME}/lib/python*/site-packages/{_NAME}/trial.py"))
     if not linked or int(setuptools.split(".")[0]) >= _TOO_NEW:
         return warning(
@@ -169,7 +169,7 @@ def examine_browser(name: str) -> Finding:
 
 
 def examine_ros2_command(name: str) -> Finding:
-    """Look for them. Either way the chapters run, so this is never a fault."""
+    """Look for them. The chapters run without them too, so their absence is never a fault."""
     ros2 = real_ros2([], os.environ)
     prefix = prefixes.prefix_of("turtlesim", prefixes.installed())
     turtlesim = None if is_built_in("turtlesim", prefix) else prefix
@@ -189,7 +189,7 @@ def examine_kernel(name: str) -> Finding:
     try:
         from jupyter_client.manager import start_new_kernel
     except ImportError as error:
-        return missing(name, str(error), "Make the environment anew: make setup")
+        return missing(name, str(error), "Set the environment up again: make setup")
     start = time.monotonic()
     try:
         manager, client = start_new_kernel(kernel_name="python3", startup_timeout=_KERNEL_DEADLINE_S)
@@ -206,7 +206,7 @@ def examine_kernel(name: str) -> Finding:
         manager.shutdown_kernel(now=True)
     took = time.monotonic() - start
     if fault:
-        return missing(name, f"a cell fails: {fault}", "Make the environment anew: make setup")
+        return missing(name, f"a cell fails: {fault}", "Set the environment up again: make setup")
     if printed.strip().splitlines()[-1:] != [sys.prefix]:
         return missing(name, f"another Python answers: {printed.strip()}", "jupyter kernelspec remove python3")
     return ok(name, f"started and ran a cell in {took:.1f} s")

@@ -1,17 +1,20 @@
-"""Checks of the middleware: which one the nodes use, shared memory, log files, and the grader's own."""
+"""What lies between nodes: the middleware, the grader's own one, memory, logs; and a message that is really sent."""
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 from pathlib import Path
 
 from rmw_lockstep.library import IDENTIFIER, Library, library
-from spinbook.doctor.finding import Finding, missing, ok, warning
-from spinbook.kernel.environment import missing_middleware
+from spinbook.doctor.diagnosis import Finding, missing, ok, warning
+from spinbook.kernel.environment import claim_domain, for_domain, missing_middleware
 
 #: What rclpy exits with where RMW_IMPLEMENTATION can't be loaded.
 NOT_LOADED = 102
@@ -40,7 +43,7 @@ def examine_middleware(name: str) -> Finding:
             "Nodes would end without a word (exit code 102). unset RMW_IMPLEMENTATION",
         )
     lines = trial.stderr.strip().splitlines() or [f"exit code {trial.returncode}"]
-    return missing(name, f"does not load: {lines[-1]}", "Make the environment anew: make setup")
+    return missing(name, f"does not load: {lines[-1]}", "Set the environment up again: make setup")
 
 
 _WEAKER = (
@@ -141,3 +144,110 @@ def _fallback(name: str, reason: str) -> Finding:
         f"{reason}; Spinbook uses {tempfile.gettempdir()} instead",
         "Your own nodes in a terminal fail at rclpy.init: export ROS_LOG_DIR=/tmp/ros-log",
     )
+
+
+_ARRIVES_WITHIN_S = 30.0
+
+
+def examine_message(name: str) -> Finding:
+    """Start a publisher and a subscriber as processes, in a ROS domain of their own, on this machine's loopback."""
+    inherited = dict(os.environ)
+    if missing_middleware(inherited):
+        del inherited["RMW_IMPLEMENTATION"]
+    claimed = claim_domain()
+    try:
+        environment = inherited | for_domain(claimed.number, inherited)
+        took = _send_one(environment)
+    except subprocess.TimeoutExpired:
+        return missing(
+            name,
+            f"none arrived within {_ARRIVES_WITHIN_S:g} s (domain {claimed.number}, 127.0.0.1)",
+            "Is the loopback interface up (ip link show lo)? Does a firewall drop UDP on 127.0.0.1?",
+        )
+    except subprocess.CalledProcessError as error:
+        lines = (error.stderr or "").strip().splitlines() or [f"exit code {error.returncode}"]
+        return missing(
+            name, f"the listener failed: {lines[-1]}", "Its whole output: python -m spinbook.doctor.middleware listen"
+        )
+    finally:
+        claimed.release()
+    return ok(
+        name,
+        f"arrived from another process in {took['travel_s'] * 1e3:.1f} ms; they had found each other "
+        f"after {took['discovery_s'] * 1e3:.0f} ms",
+    )
+
+
+def _send_one(environment: dict[str, str]) -> dict[str, float]:
+    talker = subprocess.Popen(
+        [sys.executable, "-m", "spinbook.doctor.middleware"],
+        env=environment,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    try:
+        listener = subprocess.run(
+            [sys.executable, "-m", "spinbook.doctor.middleware", "listen"],
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=_ARRIVES_WITHIN_S,
+            check=True,
+        )
+    finally:
+        talker.kill()
+        talker.communicate()
+    took = json.loads(listener.stdout)
+    assert isinstance(took, dict)
+    return took
+
+
+TOPIC = "/spinbook_doctor"
+_PERIOD_S = 0.02
+
+
+# What loads rclpy is imported by the two programs alone: where it is missing, the other checks say so.
+
+
+def talk() -> None:
+    """Publish the monotonic clock (ns) until standard input is closed."""
+    import rclpy
+    from std_msgs.msg import UInt64
+
+    closed = threading.Event()
+
+    def read() -> None:
+        sys.stdin.read()
+        closed.set()
+
+    threading.Thread(target=read, daemon=True).start()
+    rclpy.init()
+    publisher = rclpy.create_node("spinbook_doctor_talker").create_publisher(UInt64, TOPIC, 10)
+    while not closed.wait(_PERIOD_S):
+        publisher.publish(UInt64(data=time.monotonic_ns()))
+    rclpy.try_shutdown()
+
+
+def listen() -> None:
+    """Print `discovery_s`, from the node's start to the first message, and `travel_s`, the message's own time (s)."""
+    import rclpy
+    from std_msgs.msg import UInt64
+
+    rclpy.init()
+    node = rclpy.create_node("spinbook_doctor_listener")
+    travels: list[float] = []
+
+    def keep(message: UInt64) -> None:
+        travels.append(time.monotonic_ns() - message.data)
+
+    node.create_subscription(UInt64, TOPIC, keep, 10)
+    start = time.monotonic()
+    while not travels:
+        rclpy.spin_once(node, timeout_sec=0.1)
+    print(json.dumps({"discovery_s": time.monotonic() - start, "travel_s": travels[0] / 1e9}), flush=True)
+    rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    listen() if sys.argv[1:] == ["listen"] else talk()

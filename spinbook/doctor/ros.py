@@ -9,14 +9,14 @@ from importlib.metadata import version as distribution_version
 from pathlib import Path
 from xml.etree import ElementTree
 
-from spinbook.doctor.finding import Finding, missing, ok, warning
+from spinbook.doctor.diagnosis import Finding, missing, ok, warning
 from spinbook.doctor.ros_origin import NoRos, ros_origin, this_machine
 from spinbook.kernel.environment import HIGHEST, LOOPBACK_PROFILE
 from spinbook.ros2.executables import GUARD
 
 #: Packages that the chapters and the grader use.
 MESSAGES = ("builtin_interfaces", "geometry_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs")
-_MAKE_ANEW = "Make the environment anew, in the terminal that you want to use: make setup"
+_SET_UP_AGAIN = "Set the environment up again, in the terminal that you want to use: make setup"
 
 
 def examine_ros_library(name: str) -> Finding:
@@ -37,7 +37,7 @@ def examine_ros_library(name: str) -> Finding:
         return missing(
             name,
             f"two of them: rclpy {version} from {package.parent}, and PyPI's wheels in {sys.prefix}",
-            f"Which libraries are loaded would be chance. {_MAKE_ANEW}",
+            f"Which libraries are loaded would be chance. {_SET_UP_AGAIN}",
         )
     return ok(name, f"rclpy {version}, {'PyPI wheels' if wheels else 'sourced'}, {package.parent}")
 
@@ -71,7 +71,7 @@ def _fix_of(error: ImportError) -> str:
         return "The library is not found: open a new terminal. Where ROS 2 is sourced, source its setup file again."
     if absent in MESSAGES and os.environ.get("ROS_DISTRO"):
         return f"sudo apt-get install ros-{os.environ['ROS_DISTRO']}-common-interfaces"
-    return _MAKE_ANEW
+    return _SET_UP_AGAIN
 
 
 _PROFILES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")

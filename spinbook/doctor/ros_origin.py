@@ -1,7 +1,7 @@
 """Where this machine's ROS 2 comes from: a sourced installation, or the wheels from PyPI. Never both.
 
 Also a program, which set-up runs with the bare Python before anything is installed (standard library only):
-it prints `wheels`, or `sourced FOLDER`; or tells on stderr why neither works, and exits with 1.
+it prints `wheels` or `sourced FOLDER`. If neither works, it says why on stderr and exits with 1.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-from spinbook.doctor.finding import Finding, missing, ok, warning
+from spinbook.doctor.diagnosis import Finding, missing, ok, warning
 
 _ALLOW = (
     "Install bubblewrap (sudo apt-get install bubblewrap) and allow namespaces (see the finding about them); "
@@ -20,7 +20,7 @@ def examine_sandbox(name: str) -> Finding:
     try:
         from grader.sandbox.isolation import Isolation, available
     except ImportError as error:
-        return missing(name, f"the grader does not load: {error}", "Make the environment anew: make setup")
+        return missing(name, f"the grader does not load: {error}", "Set the environment up again: make setup")
     levels = available()
     strong = [level for level in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES) if levels[level] is None]
     reasons = "; ".join(f"{level}: {reason}" for level, reason in levels.items() if reason)

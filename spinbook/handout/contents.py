@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 
+import click
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
+from grader.files import write_if_changed
 from grader.workers.jobs import ListJob
-from grader.workers.pool import WorkerPool
+from grader.workers.pool import HostFault, WorkerPool
+from interface_compiler.wheel import zipped
 from spinbook import __version__
 from spinbook.build.notebooks import build_notebooks
-from spinbook.course.course import Course
+from spinbook.course.course import Course, find_course
 from spinbook.handout.leaks import Secret, authors_code, located, secrets_of_all
 from spinbook.handout.student_copy import exercise_files, for_students
 from spinbook.handout.wheels import interface_wheels, requirement, spinbook_wheel
@@ -187,3 +191,47 @@ def _prove(files: dict[str, bytes], known: list[Secret]) -> None:
         problems.append(Problem(folder / leak.file, leak.line, f"{leak.what} would be in it{place}.", fix))
     if problems:
         raise SpinbookError(*problems)
+
+
+@click.command("handout", context_settings={"help_option_names": ["-h", "--help"]})
+@click.option("--course", "start", type=click.Path(path_type=Path), default=".", help="The course's folder.")
+def command(start: Path) -> None:
+    """Write what students get: a folder and a zip, in build/handout/.
+
+    In it are the notebooks, the exercises with starters and public checks, a README with three steps, and what installs
+    Spinbook and ROS 2. Solutions, hidden checks and their scenarios, and comments in chapters are not: every file is
+    looked through for them before anything is written. The same course gives the same bytes.
+
+    Exit codes: 0 written, 1 a chapter or an exercise has to be fixed first.
+    """
+    course = find_course(start)
+    try:
+        made = handout(course)
+    except HostFault as error:
+        found = f"a solution could not be run because of a fault of this machine: {error}"
+        raise SpinbookError(Problem(course.root, None, found, "Try again.")) from None
+    folder = course.build_folder / "handout" / made.slug
+    archive = folder.with_suffix(".zip")
+    _write(folder, made)
+    write_if_changed(archive, zipped({f"{made.slug}/{name}": content for name, content in made.files.items()}))
+    for exercise in made.exercises:
+        click.echo(
+            f"  {exercise.name}: {exercise.public} checks that students can run, {exercise.hidden} that stay hidden"
+        )
+    click.echo(f"{len(made.files)} files, no solution and no hidden check among them.")
+    click.echo(f"Folder: {_shown(folder)}/\nZip:    {_shown(archive)} ({archive.stat().st_size / 1e6:.1f} MB)")
+
+
+def _write(folder: Path, made: Handout) -> None:
+    """Make the folder hold these files and no others."""
+    for file in sorted(folder.rglob("*"), reverse=True):
+        if file.is_file() and file.relative_to(folder).as_posix() not in made.files:
+            file.unlink()
+        elif file.is_dir() and not any(file.iterdir()):
+            shutil.rmtree(file)
+    for name, content in made.files.items():
+        write_if_changed(folder / name, content)
+
+
+def _shown(path: Path) -> Path:
+    return path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path

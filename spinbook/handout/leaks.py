@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.exercise.exercise import Exercise
-from grader.exercise.starter import BEGIN, END, starter
+from grader.exercise.starter import hidden_blocks, starter
 
 #: A line with so many characters besides spaces is not a coincidence, nor are so many lines with so many together.
 _ONE_LINE = 40
@@ -143,15 +143,8 @@ def _windows(what: str, place: str, lines: list[Line]) -> list[Secret]:
 
 def _solved(source: str) -> Iterator[list[Line]]:
     """Yield the lines of each block between markers, without spaces."""
-    block: list[Line] | None = None
-    for number, line in enumerate(source.splitlines(), start=1):
-        if BEGIN.match(line):
-            block = []
-        elif END.match(line):
-            yield block or []
-            block = None
-        elif block is not None and line.strip():
-            block.append((number, bare(line)))
+    for block in hidden_blocks(source):
+        yield [(number, bare(line)) for number, line in block if line.strip()]
 
 
 def _lines(file: Path) -> list[Line]:

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import spinbook
 from interface_compiler import shipped, store
-from interface_compiler.archive import zipped
-from interface_compiler.wheel import record, wheel, wheel_platform
+from interface_compiler.checks import dependencies
+from interface_compiler.wheel import record, wheel, wheel_platform, zipped
 from spinbook.course.course import Course
-from spinbook.interfaces.compiling import FOLDER, compile_course
+from spinbook.interfaces.compiling import FOLDER, collect, compile_course
 from spinbook.problem import Problem, SpinbookError
 
 # A wheel is a zip whose RECORD lists every file with its hash (PEP 427, and "Recording installed projects").
@@ -84,10 +84,11 @@ def _installed() -> dict[str, bytes]:
 OTHERS = Path(FOLDER, "wheels")
 
 
-def interface_wheels(course: Course, texts: Iterable[bytes]) -> dict[str, bytes]:
+def interface_wheels(course: Course, texts: Iterable[bytes], environment: Path = Path(sys.prefix)) -> dict[str, bytes]:
     """Return file name -> content of each wheel: the course's own packages, and those beyond PyPI's that it may use.
 
-    `texts` are what students get to read; an optional package is included if it is named there.
+    `texts` are what students get to read; an optional package is included if it is named there, or if the course's
+    interfaces need it. `environment` has the packages that come with Spinbook.
 
     Raises:
         SpinbookError: if the course's interfaces have faults or can't be compiled.
@@ -95,7 +96,7 @@ def interface_wheels(course: Course, texts: Iterable[bytes]) -> dict[str, bytes]
     own = wheel_platform()
     others = (path for path in sorted((course.root / OTHERS).glob("*.whl")) if not path.stem.endswith(own))
     found = {path.name: path.read_bytes() for path in others}
-    found.update(wheel(package, prefix) for package, prefix in _packages(course, b"".join(texts)))
+    found.update(wheel(package, prefix) for package, prefix in _packages(course, b"".join(texts), environment))
     return found
 
 
@@ -104,16 +105,17 @@ def package_of(wheel: str) -> str:
     return wheel.partition("-")[0].removeprefix("spinbook_interfaces_")
 
 
-def _packages(course: Course, text: bytes) -> Iterator[tuple[str, Path]]:
+def _packages(course: Course, text: bytes, environment: Path) -> Iterator[tuple[str, Path]]:
     """Yield the packages, each with the prefix that has it."""
-    environment = Path(sys.prefix)
+    collected = collect(course)
+    compiled = compile_course(course, collected)
+    needed = {name for names in dependencies(collected.definitions).values() for name in names}
     for package in (*shipped.standard(), *shipped.optional()):
-        wanted = package in shipped.standard() or package.encode() in text
+        wanted = package in shipped.standard() or package in needed or package.encode() in text
         if wanted and store.key_of(package, environment):
             yield package, environment
-    if compiled := compile_course(course):
-        for package in compiled.packages:
-            yield package, compiled.prefix
+    if compiled:
+        yield from ((package, compiled.prefix) for package in compiled.packages)
 
 
 def requirement(file: str) -> str:

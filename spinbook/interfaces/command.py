@@ -9,7 +9,7 @@ import click
 
 from interface_compiler import prefixes, shipped
 from interface_compiler.definition import CompileError
-from interface_compiler.wheel import install, needed, wheel
+from interface_compiler.wheel import install, is_current, needed, wheel
 from spinbook.course.course import find_course
 from spinbook.interfaces.compiling import FOLDER, collect, compile_course
 from spinbook.problem import Problem, SpinbookError
@@ -71,14 +71,25 @@ def add(packages: tuple[str, ...]) -> None:
     for package in packages:
         if package not in known:
             click.echo(f"There is no package {package!r} to add. There are: {', '.join(known)}.", err=True)
+            click.echo(f"A course brings any other as definitions, in its folder {FOLDER}/{package}/.", err=True)
             sys.exit(1)
     for package in packages:
         try:
             for each in (*needed(package), package):
-                click.echo(f"{each}: {'compiled and installed' if install(each) else 'is installed'}")
+                _add(each)
         except CompileError as error:
             click.echo(str(error), err=True)
             sys.exit(1)
+
+
+def _add(package: str) -> None:
+    if is_current(package):
+        click.echo(f"{package}: is installed")
+        return
+    # Before it is done, as it may take minutes.
+    click.echo(f"{package}: compiling {len(shipped.definitions(package))} interfaces")
+    install(package)
+    click.echo(f"{package}: compiled and installed")
 
 
 @interfaces.command()
@@ -86,8 +97,8 @@ def add(packages: tuple[str, ...]) -> None:
 def wheels(start: Path) -> None:
     """Write wheels of the course's interfaces, for this computer's processor, into interfaces/wheels/.
 
-    They fit every Python from 3.10 on. `spinbook handout` has those for the computer that it runs on anyway, and adds
-    those for other processors that it finds there.
+    They fit every Python from 3.10 on. `spinbook handout` always includes wheels for the computer that it runs on. It
+    also includes wheels for other processors that it finds there.
     """
     course = find_course(start)
     compiled = compile_course(course)

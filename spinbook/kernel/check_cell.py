@@ -24,9 +24,8 @@ from spinbook.kernel.showing import Bound
 
 @dataclass(frozen=True)
 class Code:
-    """The exercise's code, its lines numbered as in the cell, and where it is from.
-
-    `origin` completes "Checked: …". `warning` says that the cell's text is another one now; empty if that is not known.
+    """The exercise's code, with its lines numbered as in the cell, and its origin. `origin` completes "Checked: …".
+    `warning` says that the cell's text has changed; it is empty if that is not known.
     """
 
     text: str
@@ -34,7 +33,8 @@ class Code:
     warning: str = ""
 
     def note(self, what: str, command: str) -> str:
-        """Return what to tell the student: `what` is "Checked" or "Handed in", `command` what to run again."""
+        """Return the message for the student: `what` is "Checked" or "Handed in", `command` the command to run
+        again."""
         text = f"{what}: {self.origin}."
         return f"{text}\nWARNING: {self.warning.format(command=command)}" if self.warning else text
 
@@ -42,7 +42,7 @@ class Code:
 def code_of(exercise: Exercise, session: Session, notebook: Path | None) -> Code:
     """The code of the exercise's cell, as the session ran it last.
 
-    Raises CellFailed, with what to do, where the cell has not been run and the notebook's file is not known.
+    Raises CellFailed, with what to do, if the cell has not been run and the notebook's file is not known.
     """
     node = exercise.file_name.removesuffix(".py")
     saved = _saved(exercise, notebook)
@@ -91,14 +91,14 @@ VS_CODE = "__vsc_ipynb_file__"
 
 
 def notebook_file(variables: Mapping[str, Any], environment: Mapping[str, str]) -> Path | None:
-    """The notebook's file as it was last saved, or None where that is not known (Colab, a plain terminal)."""
+    """The notebook's file as last saved, or None if it is not known (Colab, a plain terminal)."""
     for given in (variables.get(VS_CODE), environment.get(JUPYTER)):
         if isinstance(given, str) and given.endswith(".ipynb") and Path(given).is_file():
             return Path(given).resolve()
     return None
 
 
-#: How long the process has to end in order when it is told to (s).
+#: The time that the process has to end cleanly when it is asked to (s).
 _GRACE = (0.5, 0.5)
 
 
@@ -110,7 +110,7 @@ def checked(exercise: Path, code: str, seconds: float) -> dict[str, str]:
     with tempfile.TemporaryDirectory(prefix="spinbook-") as temporary:
         folder = Path(temporary)
         (folder / "code").write_text(code, encoding="utf-8", errors="replace")
-        argv = [sys.executable, "-m", "spinbook.check.program", os.fspath(exercise), "code", "result"]
+        argv = [sys.executable, "-m", "spinbook.submit.program", os.fspath(exercise), "code", "result"]
         process = KeptProcess(argv, os.environ, folder)
         try:
             status = process.wait(seconds)
@@ -122,7 +122,7 @@ def checked(exercise: Path, code: str, seconds: float) -> dict[str, str]:
                 )
             said = process.read_all()[0].decode(errors="replace")
         except KeyboardInterrupt:
-            raise CellFailed("The check was interrupted; nothing is known of your code.") from None
+            raise CellFailed("The check was interrupted, so there is no result.") from None
         finally:
             if process.status.running:
                 process.stop(_GRACE)
@@ -135,16 +135,16 @@ def _result(file: Path, said: str) -> dict[str, str]:
         result: dict[str, str] = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         last = "\n".join(said.strip().splitlines()[-3:])
-        raise CellFailed(f"The check itself broke, which is not your fault:\n{last}") from None
+        raise CellFailed(f"The check itself failed, which is not your fault:\n{last}") from None
     if "problem" in result:
         raise CellFailed(result["problem"])
     return result
 
 
 def check_cell(session: Session, shell: Any, name: str, course: str, seconds: float) -> None:
-    """Check the cell of the exercise `name` and show the result. Raises CellFailed where it can't be checked.
+    """Check the cell of the exercise `name` and show the result. Raises CellFailed if it can't be checked.
 
-    `course` is the folder that has the exercises, where it is neither this one nor one above it or the notebook's.
+    `course` is the folder with the exercises, if it is neither this one, nor one above it, nor the notebook's.
     """
     notebook = notebook_file(shell.user_ns, os.environ)
     exercise = exercise_of(name, course, notebook)
@@ -154,7 +154,7 @@ def check_cell(session: Session, shell: Any, name: str, course: str, seconds: fl
 
 
 def exercise_of(name: str, course: str, notebook: Path | None) -> Exercise:
-    """The exercise `name`, in the folder `course`, else in this one, the notebook's, or above. Raises CellFailed."""
+    """The exercise `name`, in `course`, otherwise in this folder, the notebook's, or above. Raises CellFailed."""
     places = [Path(course)] if course else [Path.cwd(), *([notebook.parent] if notebook else [])]
     text = ""
     for place in places:
@@ -172,7 +172,7 @@ def exercise_of(name: str, course: str, notebook: Path | None) -> Exercise:
 
 
 def submit_cell(session: Session, shell: Any, name: str, course: str, student: str | None, seconds: float) -> None:
-    """Write the upload for the exercise `name`. Raises CellFailed where there is nothing to hand in, or it fails."""
+    """Write the upload for the exercise `name`. Raises CellFailed if there is nothing to hand in, or if it fails."""
     notebook = notebook_file(shell.user_ns, os.environ)
     exercise = exercise_of(name, course, notebook)
     code = code_of(exercise, session, notebook)

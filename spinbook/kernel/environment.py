@@ -9,22 +9,21 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from grader.locks import claim_number
+from grader.files import claim_number
 from interface_compiler import prefixes
 
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
 #: No time stamps: the same log from build to build.
 LOG_FORMAT = "[{severity}] [{name}]: {message}"
-#: Set while a notebook is executed by `spinbook build`: nobody watches, so plots are drawn once.
+#: Set while `spinbook build` runs a notebook: nobody watches, so plots are drawn once.
 EXECUTING = "SPINBOOK_EXECUTING"
-#: Names a file into which a notebook writes its ROS domain, for whoever watches it.
+#: Names a file into which a notebook writes its ROS domain, for anybody who watches it.
 DOMAIN_NOTE = "SPINBOOK_DOMAIN_NOTE"
 
 
 def for_domain(domain: int, environment: Mapping[str, str]) -> dict[str, str]:
-    """What to set so that ROS processes talk in `domain`, and with this machine only.
-
-    Fast DDS (the default) gets a profile that speaks UDP on 127.0.0.1; other middlewares are told LOCALHOST.
+    """The variables with which ROS processes communicate in `domain`, on this machine only. Fast DDS (the default) gets
+    a profile for UDP on 127.0.0.1; other middlewares get LOCALHOST.
     """
     is_fast_dds = environment.get("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp").startswith("rmw_fastrtps")
     settings = {
@@ -67,14 +66,14 @@ def missing_middleware(environment: Mapping[str, str]) -> str | None:
 # however it ends. Domains up to 101 have ports below Linux's ephemeral range (ROS 2's concepts, "The ROS_DOMAIN_ID").
 
 
-#: 0 is everybody's default and is left to the terminals of this machine.
+#: 0 is the default of every program, and is left to the terminals of this machine.
 OWN_DOMAINS = range(1, 60)
 HIGHEST = 101
 
 
 @dataclass(frozen=True)
 class Domain:
-    """A ROS domain. `lock` is the open file that holds it, or None where it is shared with others on purpose."""
+    """A ROS domain. `lock` is the open file that holds it, or None if it is shared with others on purpose."""
 
     number: int
     lock: int | None
@@ -86,11 +85,11 @@ class Domain:
 
 
 class NoDomainLeft(Exception):
-    """Every domain is held by some running notebook."""
+    """Every domain is in use by a running notebook."""
 
 
 def claim_domain() -> Domain:
-    """Take a domain that nobody on this machine holds. Raises NoDomainLeft."""
+    """Take a domain that is free on this machine. Raises NoDomainLeft."""
     folder = Path(tempfile.gettempdir()) / "spinbook-domains"
     folder.mkdir(exist_ok=True)
     with contextlib.suppress(PermissionError):
@@ -106,7 +105,7 @@ def claim_domain() -> Domain:
 
 
 def shared_domain(number: int) -> Domain:
-    """A domain that others may use too. Raises ValueError where ROS has no such domain."""
+    """A domain that others may use too. Raises ValueError if it is not a ROS domain."""
     if not 0 <= number <= HIGHEST:
         raise ValueError(f"a ROS domain is a number from 0 to {HIGHEST}, not {number}.")
     return Domain(number, None)

@@ -1,4 +1,4 @@
-"""`%load_ext spinbook`: gives a notebook its commands, a ROS domain of its own, and an orderly end."""
+"""`%load_ext spinbook`: gives a notebook its commands and its own ROS domain, and ends its nodes cleanly."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from spinbook.kernel import environment as domain
 from spinbook.kernel.process import KeptProcess
 from spinbook.kernel.session import Session
 
-#: Names a domain to share with other programs, in place of one of the notebook's own.
+#: Names a domain to share with other programs, instead of the notebook's own.
 DOMAIN_VARIABLE = "SPINBOOK_DOMAIN"
-#: How long the nodes have to end in order when the kernel does (s).
+#: The time that the nodes have to end cleanly when the kernel ends (s).
 _FAREWELL_S = 2.0
 
 

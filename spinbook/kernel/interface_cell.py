@@ -80,7 +80,7 @@ def _all(session: Session, item: Definition) -> list[Definition]:
 def _say_what_is_stale(session: Session, stale: Sequence[str], package: str, *, had_one: bool) -> None:
     nodes = [name for name in session.nodes.names() if package in session.ran.get(name, "")]
     if had_one and nodes:
-        print(f"Run the cells of these nodes again, they still have the former text: {', '.join(nodes)}.")
+        print(f"Run the cells of these nodes again, they still use the old text: {', '.join(nodes)}.")
     if stale:
         print(f"This kernel has imported {', '.join(stale)} already: restart it to use the new text in its own cells.")
 

@@ -1,6 +1,6 @@
 """The notebook's commands: `%%node`, `%nodes`, `%stop`, `%log`, `%ros2`, `%colcon`, `%plot`, `%graph`, `%turtle` …
 
-Thin: each reads its line and calls the session.
+Each reads its line and calls the session.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any, NoReturn
 from IPython.core.magic import Magics, cell_magic, line_magic, magics_class, no_var_expand
 
 from spinbook.course.course import Package
-from spinbook.kernel import environment, interface_cell, picture_cells, plot_cell, terminal_cells, timeline_cell
+from spinbook.kernel import environment, interface_cell, picture_cells, terminal_cells, timeline_cell
 from spinbook.kernel.process import CellFailed
 from spinbook.kernel.session import COMMAND_SECONDS, GRAPH_SECONDS, LOG_SECONDS, NODE_SECONDS, Session, Start
 from spinbook.kernel.showing import Bound
@@ -23,7 +23,7 @@ _OWN_OPTION = re.compile(r"""\s*--(seconds|until)\s+("[^"]*"|'[^']*'|\S+)\s*""")
 
 
 class LineReader(argparse.ArgumentParser):
-    """Reads a magic's line; bad usage is told in the cell, and `--help` prints there."""
+    """Reads a magic's line; the cell shows wrong usage, and the text of `--help`."""
 
     def __init__(self, prog: str, description: str) -> None:
         super().__init__(prog=prog, description=description, allow_abbrev=False)
@@ -35,7 +35,7 @@ class LineReader(argparse.ArgumentParser):
         raise CellFailed(f"{message}\n{self.format_usage().rstrip()}")
 
     def read(self, line: str) -> argparse.Namespace | None:
-        """The arguments, or None where help was asked for and has been printed."""
+        """The arguments, or None if the help was requested and has been printed."""
         words = split(line)
         if "-h" in words or "--help" in words:
             print(self.format_help())
@@ -52,9 +52,8 @@ def split(line: str) -> list[str]:
 
 
 def own_options(line: str, seconds: float) -> tuple[Bound, str]:
-    """Take leading options `--seconds N` and `--until TEXT` off a line whose rest belongs to another command.
-
-    `seconds` holds where the line does not say.
+    """Split leading options `--seconds N` and `--until TEXT` from a line whose rest belongs to another command.
+    `seconds` is the default.
     """
     until = None
     while match := _OWN_OPTION.match(line):
@@ -66,7 +65,7 @@ def own_options(line: str, seconds: float) -> tuple[Bound, str]:
         try:
             seconds = float(value)
         except ValueError:
-            raise CellFailed("`--seconds` wants a number, as in --seconds 5.") from None
+            raise CellFailed("`--seconds` needs a number, as in --seconds 5.") from None
     return Bound(seconds, until), line
 
 
@@ -81,8 +80,8 @@ class SpinbookMagics(Magics):
     @no_var_expand
     @line_magic
     def chapter(self, line: str) -> None:
-        """%chapter NAME --package PACKAGE: what this notebook's nodes belong to."""
-        reader = LineReader("%chapter", "Say which chapter this notebook is, and which package its nodes make.")
+        """%chapter NAME --package PACKAGE: set the chapter and the package of this notebook's nodes."""
+        reader = LineReader("%chapter", "Set this notebook's chapter, and the package of its nodes.")
         reader.add_argument("name")
         reader.add_argument("--package", default="notebook_nodes")
         reader.add_argument("--workspace", default="notebook_ws")
@@ -94,7 +93,7 @@ class SpinbookMagics(Magics):
     @cell_magic
     def interface(self, line: str, cell: str) -> None:
         """%%interface msg/NAME.msg: define a message, a service or an action, and compile it if it is new."""
-        reader = LineReader("%%interface", "Define a message, a service or an action: this cell's text is its file.")
+        reader = LineReader("%%interface", "Define a message, a service or an action: this cell has its text.")
         reader.add_argument("path", help="msg/NAME.msg, srv/NAME.srv or action/NAME.action; a package may come first")
         if given := reader.read(line):
             interface_cell.run(self.session, given.path, cell.rstrip("\n") + "\n" if cell.strip() else "")
@@ -112,23 +111,26 @@ class SpinbookMagics(Magics):
     @cell_magic
     def node(self, line: str, cell: str) -> None:
         """%%node NAME: run this cell's code as a process of its own, as `ros2 run` would."""
-        reader = LineReader("%%node", "Run this cell as a node: a process of its own. Running it again restarts it.")
+        reader = LineReader("%%node", "Run this cell as a node, in its own process. Running it again restarts it.")
         reader.add_argument("name", help="the node's file, without .py")
         reader.add_argument("--seconds", type=float, default=NODE_SECONDS, help="how long its log is shown")
-        reader.add_argument("--until", help="stop showing once the log holds this text")
-        reader.add_argument("--class", dest="classes", action="append", default=[], help="spin this Node class")
-        reader.add_argument("--main", action="store_true", help="call the code's main(); it does not do so itself")
+        reader.add_argument("--until", help="stop showing the log once it contains this text")
+        reader.add_argument(
+            "--class", dest="classes", action="append", default=[], help="run this Node class with rclpy.spin"
+        )
+        reader.add_argument("--main", action="store_true", help="call main(), because the code does not call it")
         reader.add_argument(
             "--after", nargs="+", default=[], metavar="CELL", help="use what these nodes and parts define"
         )
         reader.add_argument("--usual-imports", action="store_true", help="add the imports that the code leaves out")
+        reader.add_argument("--keep", action="store_true", help="only save it, for `%%ros2 run` to start with words")
         reader.add_argument(
             "--as",
             dest="known_as",
             action="append",
             default=[],
             metavar="PACKAGE/EXECUTABLE",
-            help="what `ros2 run` calls this node",
+            help="the name of this node for `ros2 run`",
         )
         if given := reader.read(line):
             name = given.name.removesuffix(".py")
@@ -136,15 +138,18 @@ class SpinbookMagics(Magics):
                 raise CellFailed(f"`{name}` can't be a node's file name: use letters, digits and underscores.")
             parts = given.after if given.after or given.usual_imports else None
             start = Start(tuple(given.classes), given.main, tuple(given.known_as))
-            self.session.run_node(name, cell, Bound(given.seconds, given.until), start, parts)
+            if given.keep:
+                self.session.keep_node(name, cell, start, parts)
+            else:
+                self.session.run_node(name, cell, Bound(given.seconds, given.until), start, parts)
 
     @no_var_expand
     @cell_magic
     def part(self, line: str, cell: str) -> None:
         """%%part NAME: code that later nodes use, by `%%node … --after NAME`."""
         reader = LineReader("%%part", "Keep this cell's code for nodes further down, and run it as any other cell.")
-        reader.add_argument("name", help="what `--after` calls it")
-        reader.add_argument("--keep", action="store_true", help="only keep it: it can't run by itself")
+        reader.add_argument("name", help="its name for `--after`")
+        reader.add_argument("--keep", action="store_true", help="only keep it, because it can't run by itself")
         if given := reader.read(line):
             self.session.parts[given.name] = cell
             if given.keep:
@@ -156,7 +161,7 @@ class SpinbookMagics(Magics):
     @no_var_expand
     @line_magic
     def nodes(self, line: str) -> None:
-        """%nodes: what this notebook has started, and whether it still runs."""
+        """%nodes: list the nodes that this notebook has started, and whether they still run."""
         reader = LineReader("%nodes", "List the nodes that this notebook has started.")
         if reader.read(line) is None:
             return
@@ -180,7 +185,7 @@ class SpinbookMagics(Magics):
             return
         if not given.names and not given.all:
             running = ", ".join(self.session.nodes.names()) or "none"
-            raise CellFailed(f"Which one? %stop NAME, or %stop --all. Started are: {running}.")
+            raise CellFailed(f"Which one? %stop NAME, or %stop --all. Started: {running}.")
         for stopped in self.session.stop(None if given.all else given.names):
             if not stopped.had_ended and stopped.status.exit not in (0, None) and stopped.said.strip():
                 print(stopped.said.rstrip())
@@ -189,11 +194,11 @@ class SpinbookMagics(Magics):
     @no_var_expand
     @line_magic
     def log(self, line: str) -> None:
-        """%log NAME [--all] [--until TEXT]: what a node has printed so far."""
+        """%log NAME [--all] [--until TEXT]: show what a node has printed so far."""
         reader = LineReader("%log", "Show what a node has printed since it was started.")
         reader.add_argument("name")
         reader.add_argument("--all", action="store_true", help="every line, however many")
-        reader.add_argument("--until", help="wait until the log holds this text")
+        reader.add_argument("--until", help="wait until the log contains this text")
         reader.add_argument("--seconds", type=float, default=LOG_SECONDS, help="how long to wait for it at most")
         if given := reader.read(line):
             if given.until is not None:
@@ -203,14 +208,14 @@ class SpinbookMagics(Magics):
     @no_var_expand
     @line_magic
     def ros2(self, line: str) -> None:
-        """%ros2 …: the command of a terminal, bounded in time."""
+        """%ros2 …: run the command of a terminal, with a time limit."""
         bound, rest = own_options(line, COMMAND_SECONDS)
         terminal_cells.run_ros2(self.session, split(rest), bound)
 
     @no_var_expand
     @line_magic
     def colcon(self, line: str) -> None:
-        """%colcon build …: colcon in this notebook's workspace."""
+        """%colcon build …: run colcon in this notebook's workspace."""
         bound, rest = own_options(line, terminal_cells.COLCON_SECONDS)
         terminal_cells.run_colcon(self.session, split(rest), bound)
 
@@ -218,12 +223,12 @@ class SpinbookMagics(Magics):
     @line_magic
     def plot(self, line: str) -> None:
         """%plot TOPIC/FIELD[i] …: draw what topics carry, as rqt_plot would."""
-        reader = LineReader("%plot", "Record topics for a while and draw them; live where somebody watches.")
+        reader = LineReader("%plot", "Record topics for a while and draw them, live in an open notebook.")
         reader.add_argument("what", nargs="+", metavar="TOPIC/FIELD[i]", help="such as /turtle1/pose/x")
         reader.add_argument("--seconds", type=float, default=COMMAND_SECONDS, help="how long to record")
         reader.add_argument("--title", default="", help="the title above the plot")
         if given := reader.read(line):
-            plot_cell.run(given.what, given.seconds, given.title)
+            picture_cells.show_plot(given.what, given.seconds, given.title)
 
     @no_var_expand
     @line_magic
@@ -265,13 +270,13 @@ class SpinbookMagics(Magics):
     @no_var_expand
     @line_magic
     def check(self, line: str) -> None:
-        """%check EXERCISE: what the public checks say of the exercise's cell."""
-        reader = LineReader("%check", "Check the cell of an exercise, as you ran it last. This is not your grade.")
+        """%check EXERCISE: run the public checks on the exercise's cell."""
+        reader = LineReader("%check", "Check the cell of an exercise, as you last ran it. This is not your grade.")
         reader.add_argument("exercise")
         reader.add_argument("--course", default="", help="the folder of the handout, if it is not this one")
         reader.add_argument("--seconds", type=float, default=60.0, help="how long it may take")
         if given := reader.read(line):
-            # Loaded when it is used: most cells are no exercise.
+            # Loaded when it is used: most cells are not exercises.
             from spinbook.kernel import check_cell
 
             check_cell.check_cell(self.session, self.shell, given.exercise, given.course, given.seconds)
@@ -279,10 +284,10 @@ class SpinbookMagics(Magics):
     @no_var_expand
     @line_magic
     def submit(self, line: str) -> None:
-        """%submit EXERCISE: write one file to upload, with the exercise's cell as it was run last."""
-        reader = LineReader("%submit", "Write one file to upload: the exercise's cell, as you ran it last.")
+        """%submit EXERCISE: write one file to upload, with the exercise's cell as it was last run."""
+        reader = LineReader("%submit", "Write one file to upload: the exercise's cell, as you last ran it.")
         reader.add_argument("exercise")
-        reader.add_argument("--student", help="your name or number, as your course wants it; kept for the next time")
+        reader.add_argument("--student", help="your name or number, as your course requires; kept for the next time")
         reader.add_argument("--course", default="", help="the folder of the handout, if it is not this one")
         reader.add_argument("--seconds", type=float, default=120.0, help="how long it may take")
         if given := reader.read(line):
@@ -293,9 +298,9 @@ class SpinbookMagics(Magics):
     @no_var_expand
     @line_magic
     def domain(self, line: str) -> None:
-        """%domain [N]: the ROS domain in which this notebook's nodes talk."""
-        reader = LineReader("%domain", "Tell this notebook's ROS domain, or share another one with other programs.")
-        reader.add_argument("number", nargs="?", type=int, help="hear and be heard by everything in this domain")
+        """%domain [N]: show or set the ROS domain of this notebook's nodes."""
+        reader = LineReader("%domain", "Show this notebook's ROS domain, or join another one.")
+        reader.add_argument("number", nargs="?", type=int, help="communicate with everything in this domain")
         given = reader.read(line)
         if given is None:
             return
@@ -312,7 +317,7 @@ class SpinbookMagics(Magics):
 
 
 def register(shell: Any, session: Session) -> Sequence[str]:
-    """Give a shell the commands. Returns their names."""
+    """Add the commands to a shell. Returns their names."""
     magics = SpinbookMagics(shell, session)
     shell.register_magics(magics)
     return [*magics.magics["line"], *magics.magics["cell"]]

@@ -1,4 +1,4 @@
-"""`%graph` and `%turtle`: the node graph and turtlesim's window as pictures in the notebook."""
+"""`%graph`, `%turtle` and `%plot`: pictures of the node graph, of turtlesim's window and of numbers over time."""
 
 from __future__ import annotations
 
@@ -6,13 +6,19 @@ import base64
 import os
 import sys
 import tempfile
+import time
 from pathlib import Path
+from typing import Any
 
 from IPython.display import display
 
 from spinbook.graph.layout import drawings
 from spinbook.graph.model import NodeGraph
 from spinbook.graph.picture import in_words, node_graph_svg
+from spinbook.kernel.environment import EXECUTING
+from spinbook.kernel.plot.drawing import as_png, draw, moving_plot
+from spinbook.kernel.plot.drawing import in_words as plot_in_words
+from spinbook.kernel.plot.quantity import Recording
 from spinbook.kernel.process import CellFailed, KeptProcess
 
 #: How long the look may take beyond the counting (s).
@@ -21,7 +27,7 @@ _GRAPH_LIMIT_S = 20.0
 
 def show_graph(seconds: float) -> None:
     """Look at the graph, count messages for so many seconds, and show it. Raises CellFailed."""
-    process = KeptProcess([sys.executable, "-m", "spinbook.graph.now", str(seconds)], os.environ, Path.cwd())
+    process = KeptProcess([sys.executable, "-m", "spinbook.graph.watcher", "now", str(seconds)], os.environ, Path.cwd())
     try:
         status = process.wait(seconds + _GRAPH_LIMIT_S)
         said = process.read_all()[0].decode(errors="replace")
@@ -61,3 +67,90 @@ def show_turtle() -> None:
         if moving.exists():
             bundle["image/svg+xml"] = moving.read_text(encoding="utf-8")
         display(bundle, raw=True, metadata={kind: {"alt": alt} for kind in bundle if kind != "text/plain"})
+
+
+#: How long the recorder may take to start, and a topic's first message to come after that (s).
+_STARTING_S = 30.0
+_APPEAR_S = 7.0
+#: How often a watched plot is drawn anew (s).
+_REDRAW_S = 0.5
+
+
+def show_plot(paths: list[str], seconds: float, title: str) -> None:
+    """Record these paths for so many seconds from the first sample on, and show the plot. Raises CellFailed."""
+    argv = [sys.executable, "-u", "-m", "spinbook.kernel.plot.recorder", *paths]
+    process = KeptProcess(argv, os.environ, Path.cwd())
+    recording = Recording()
+    try:
+        handle = _record(process, recording, seconds, title)
+    finally:
+        process.stop((0.5, 0.5))
+        process.close()
+    if recording.error:
+        raise CellFailed(recording.error)
+    if not recording.curves:
+        raise CellFailed(_nothing_received(recording, paths))
+    _show(recording, title, handle)
+
+
+class RecordingTime:
+    """Says when a recording is over: its seconds count from the first sample, or it waited for one in vain.
+
+    The recorder's own start does not count as waiting: on a busy machine it may take longer than the recording.
+    """
+
+    def __init__(self, seconds: float, now: float) -> None:
+        self._seconds = seconds
+        self._ends = now + _STARTING_S
+        self._is_looking = self._has_samples = False
+
+    def is_over(self, recording: Recording, now: float) -> bool:
+        """To be asked again and again; `now` is a monotonic clock's time (s)."""
+        if recording.is_looking and not self._is_looking:
+            self._is_looking, self._ends = True, now + _APPEAR_S
+        if recording.curves and not self._has_samples:
+            self._has_samples, self._ends = True, now + self._seconds
+        return now > self._ends
+
+
+def _record(process: KeptProcess, recording: Recording, seconds: float, title: str) -> Any:
+    """Take in what comes. Returns the handle of the picture that is being watched, if one is."""
+    watched = EXECUTING not in os.environ
+    handle: Any = None
+    rest = ""
+    drawn = 0.0
+    recording_time = RecordingTime(seconds, time.monotonic())
+    try:
+        while True:
+            data, _ = process.read()
+            *lines, rest = (rest + data.decode(errors="replace")).split("\n")
+            recording.take(lines)
+            now = time.monotonic()
+            if recording.error or not process.status.running or recording_time.is_over(recording, now):
+                return handle
+            if watched and recording.curves and now - drawn > _REDRAW_S:
+                handle = _show(recording, title, handle)
+                drawn = now
+            time.sleep(0.03)
+    except KeyboardInterrupt:
+        return handle
+
+
+def _show(recording: Recording, title: str, handle: Any) -> Any:
+    """Show what has been recorded so far. Where nobody has watched it come, it comes again, as a moving picture."""
+    words = plot_in_words(recording)
+    bundle = {"image/png": as_png(draw(recording, title)), "text/plain": words}
+    if EXECUTING in os.environ and (moving := moving_plot(recording, title)) is not None:
+        bundle["image/svg+xml"] = moving
+    metadata = {kind: {"alt": words} for kind in bundle if kind != "text/plain"}
+    if handle is None:
+        return display(bundle, raw=True, metadata=metadata, display_id=True)
+    handle.update(bundle, raw=True, metadata=metadata)
+    return handle
+
+
+def _nothing_received(recording: Recording, paths: list[str]) -> str:
+    there = ", ".join(recording.published) or "none"
+    if recording.waiting:
+        return f"Nobody publishes {', '.join(recording.waiting)}. Topics with a publisher are: {there}."
+    return f"{', '.join(paths)}: there is a publisher, but no message arrived."

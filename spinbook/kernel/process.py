@@ -15,13 +15,13 @@ from typing import Any
 
 from spinbook.kernel import supervisor
 
-#: How long a process may take to end after Ctrl-C, and then after SIGTERM, before it is killed (s).
+#: The time that a process has to end after Ctrl-C, and then after SIGTERM, before it is killed (s).
 STOP_GRACE = (3.0, 2.0)
 
 
 @dataclass(frozen=True)
 class Status:
-    """Where a process stands. `exit` is None while it runs; negative: ended by that signal (as in subprocess)."""
+    """The status of a process. `exit` is None while it runs; negative: ended by that signal (as in subprocess)."""
 
     exit: int | None
     ended_by: str | None
@@ -34,7 +34,8 @@ class Status:
 
 
 class KeptProcess:
-    """A child process under a supervisor (see supervisor.py): it never outlives this process, however this one ends."""
+    """A child process under a supervisor (see supervisor.py): it never outlives this process, however this process
+    ends."""
 
     def __init__(self, argv: Sequence[str], env: Mapping[str, str], cwd: Path) -> None:
         ours, theirs = socket.socketpair()
@@ -95,15 +96,15 @@ class KeptProcess:
             time.sleep(0.01)
 
     def close(self) -> None:
-        """Let it go: whatever still runs of it is ended."""
+        """Release it, and end whatever still runs of it."""
         self._answers.close()
         self._control.close()
         self._supervisor.wait()
 
 
 class CellFailed(Exception):
-    """Raised by a notebook command. Shown as its message alone, yet the cell counts as failed everywhere."""
+    """Raised by a notebook command. Only its message is shown, but the cell counts as failed everywhere."""
 
     def _render_traceback_(self) -> list[str]:
-        """What IPython prints in place of a traceback."""
+        """What IPython prints instead of a traceback."""
         return [str(self)]

@@ -1,4 +1,4 @@
-"""What one notebook has while its kernel lives: a ROS domain, its nodes, a workspace, the package of its cells."""
+"""The state of one notebook while its kernel runs: a ROS domain, its nodes, a workspace, the package of its cells."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class RunningNode:
 
 @dataclass(frozen=True)
 class Stopped:
-    """How a node ended when it was told to. `said` is what it printed after it was told."""
+    """How a node ended when it was asked to. `said` is what it printed after that."""
 
     name: str
     status: Status
@@ -76,11 +76,11 @@ class NodeRegistry:
         return list(self._nodes)
 
     def status(self, name: str) -> Status:
-        """Where a node stands now."""
+        """The current status of a node."""
         return self._nodes[name].process.wait(0)
 
     def stop(self, name: str) -> Stopped:
-        """End a node as Ctrl-C would, harder where that does not help, and forget it."""
+        """End a node as Ctrl-C would, or by force if that does not help, and forget it."""
         return self.stop_all([name])[0]
 
     def stop_all(self, names: Sequence[str] | None = None) -> list[Stopped]:
@@ -106,11 +106,11 @@ NODE_SECONDS = 3.0
 COMMAND_SECONDS = 5.0
 #: How long `%log --until` waits at most (s).
 LOG_SECONDS = 30.0
-#: How often it looks (s).
+#: The time between two looks (s).
 _LOG_POLL_S = 0.1
 #: How long messages are counted for the graph (s).
 GRAPH_SECONDS = 2.5
-#: How long a bounded command may take to end by itself when it is told to (s): its last lines are wanted.
+#: The time that a bounded command has to end by itself when it is asked to (s), so that its last lines are shown.
 COMMAND_GRACE = (3.0, 1.0)
 
 
@@ -164,7 +164,7 @@ class Session:
 
     @property
     def workspace(self) -> Path:
-        """The colcon workspace: beside the notebook."""
+        """The colcon workspace, next to the notebook."""
         return Path.cwd() / self.package.workspace
 
     def run_node(
@@ -175,6 +175,18 @@ class Session:
         `after` names the nodes and parts whose code makes it whole; None: it is whole.
         """
         start = start or Start()
+        file = self._saved(name, code, start, after)
+        self.run_background(name, start.argv(file), self._import_path(file), Path.cwd(), bound)
+
+    def keep_node(self, name: str, code: str, start: Start, after: Sequence[str] | None = None) -> None:
+        """Write a node's code as a module of its package, for `ros2 run` to start with words of its own."""
+        known_as = start.known_as or (f"{self.package.name}/{name}",)
+        self._saved(name, code, replace(start, known_as=known_as), after)
+        package, _, executable = known_as[0].partition("/")
+        print("— saved, not started: it reads words from its command line. Start it with them:")
+        print(f"  %ros2 run {package} {executable} …")
+
+    def _saved(self, name: str, code: str, start: Start, after: Sequence[str] | None) -> Path:
         package, executables = self._package_of(start.known_as)
         if package.name == name:
             raise CellFailed(f"A node can't have the package's name, {name}.")
@@ -184,7 +196,7 @@ class Session:
         module = Module(name, whole.rstrip("\n") + "\n", executables)
         file = add_module(self.workspace, package, module)
         self.starts[name] = (file, start)
-        self.run_background(name, start.argv(file), self._import_path(file), Path.cwd(), bound)
+        return file
 
     def write_file(self, path: str, text: str) -> None:
         """Put a launch or parameter file into the package. Raises CellFailed for any other path."""
@@ -214,7 +226,7 @@ class Session:
         try:
             return join(code, pieces).whole
         except CodeError:
-            # Python says best itself what is wrong.
+            # Python's own message is the clearest.
             return code
 
     def _import_path(self, module: Path) -> dict[str, str]:
@@ -225,7 +237,7 @@ class Session:
     def run_executable(self, package: str, executable: str, words: Sequence[str], bound: Bound, known_as: str) -> bool:
         """Start the node that a cell made as this executable. False if no cell did.
 
-        `known_as` is another name than the executable's where it runs beside the one that has that.
+        `known_as` is another name than the executable's where it runs next to the one that has that.
         """
         for name, (file, start) in self.starts.items():
             if f"{package}/{executable}" in start.known_as:
@@ -235,7 +247,7 @@ class Session:
         return False
 
     def run_background(self, name: str, argv: list[str], settings: dict[str, str], cwd: Path, bound: Bound) -> None:
-        """Start a process that goes on behind the cell, and show its log for a while. Raises CellFailed."""
+        """Start a process that continues in the background, and show its log for a while. Raises CellFailed."""
         if self.nodes.get(name):
             if self.nodes.status(name).running:
                 print(f"(restarting {name})")
@@ -252,16 +264,17 @@ class Session:
             return
         status = node.process.status
         if status.exit is None:
-            print(f"— {node.name} goes on in the background: %stop {node.name} ends it, %log {node.name} shows more —")
+            print(
+                f"— {node.name} continues in the background: %stop {node.name} ends it, %log {node.name} shows more —"
+            )
         elif status.exit == 0:
             print(f"— {node.name} has ended (exit code 0) —")
         else:
-            raise CellFailed(f"{node.name} {_how_it_ended(status.exit)} Its last words are above.")
+            raise CellFailed(f"{node.name} {_how_it_ended(status.exit)} Its last output is above.")
 
     def run_command(self, argv: list[str], settings: dict[str, str], cwd: Path, bound: Bound, shown_as: str) -> None:
-        """Run a command in the cell; one that has not ended when its time is up is ended as Ctrl-C would.
-
-        Raises CellFailed where it fails.
+        """Run a command in the cell; if it has not ended when its time is up, end it as Ctrl-C would. Raises CellFailed
+        if it fails.
         """
         process = KeptProcess(argv, {**os.environ, **settings}, cwd)
         try:
@@ -293,12 +306,12 @@ class Session:
             time.sleep(_LOG_POLL_S)
 
     def log(self, name: str, whole: bool) -> str:
-        """All that is kept of what a node printed. Raises CellFailed for a name that nothing has."""
+        """All that is kept of what a node printed. Raises CellFailed for an unknown name."""
         node = self.find(name)
         data, dropped = node.process.read_all()
         text = data.decode(errors="replace")
         if dropped:
-            text += f"\n({dropped:,} bytes in the middle were too many to keep)"
+            text += f"\n({dropped:,} bytes in the middle were not kept)"
         return text if whole else in_short(text)
 
     def find(self, name: str) -> RunningNode:
@@ -306,11 +319,11 @@ class Session:
         node = self.nodes.get(name)
         if node is None:
             there = ", ".join(self.nodes.names()) or "none"
-            raise CellFailed(f"This notebook has started no node `{name}`. Started are: {there}.")
+            raise CellFailed(f"This notebook has not started a node `{name}`. Started: {there}.")
         return node
 
     def stop(self, names: list[str] | None) -> list[Stopped]:
-        """End these nodes, or all. Raises CellFailed for a name that nothing has."""
+        """End these nodes, or all. Raises CellFailed for an unknown name."""
         for name in names or ():
             self.find(name)
         return self.nodes.stop_all(names)

@@ -10,13 +10,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from spinbook.kernel.process import KeptProcess
-from spinbook.ros2.participants import participates
+from spinbook.ros2.opening import participates
 
 #: Lines shown as they come, and lines kept for the end when more come.
 FIRST_LINES = 60
 LAST_LINES = 10
 _POLL_S = 0.03
-#: How often it is looked whether a process has joined ROS (s).
+#: The time between two looks whether a process has joined ROS (s).
 _LOOK_S = 0.2
 #: A process that has neither printed anything nor joined ROS by then (s) is taken to have started.
 _STARTING_S = 20.0
@@ -24,7 +24,7 @@ _STARTING_S = 20.0
 
 @dataclass(frozen=True)
 class Bound:
-    """How long a process is shown: for so many seconds, or until it has printed this text, or until it ends.
+    """How long a process is shown: for this many seconds, or until it has printed this text, or until it ends.
 
     The seconds count from its first line, so that a slow machine shows as much as a fast one.
     """
@@ -34,7 +34,7 @@ class Bound:
 
 
 class Countdown:
-    """Says when a process has been shown for long enough.
+    """Decides when a process has been shown for long enough.
 
     The seconds count from its first line. While there is none they count from when it joined ROS, and then they are
     at least as many as it took to join: where starting takes long, so does the first message.
@@ -123,7 +123,7 @@ class Shown:
             self._last.append(line)
 
     def end(self, total_lines: int, rest_is: str) -> None:
-        """Print what was held back. `rest_is` tells where the lines between can be read."""
+        """Print what was held back. `rest_is` says where the omitted lines can be read."""
         if self._part:
             self._line(self._part)
             self._part = ""
@@ -136,12 +136,12 @@ class Shown:
 
 
 #: What is said where a text was waited for in vain: see `never_appeared`.
-NEVER_APPEARED = re.compile(r"^— the text (.+) did not come within ([\d.]+) s —$", re.MULTILINE)
+NEVER_APPEARED = re.compile(r"^— the text (.+) did not appear within ([\d.]+) s —$", re.MULTILINE)
 
 
 def never_appeared(bound: Bound) -> str:
     """Say that the text a cell waited for was not printed in its time; `NEVER_APPEARED` finds it again."""
-    return f"— the text {bound.until!r} did not come within {bound.seconds:g} s —"
+    return f"— the text {bound.until!r} did not appear within {bound.seconds:g} s —"
 
 
 def show_for(process: KeptProcess, bound: Bound, rest_is: str, has_joined: Callable[[], bool] = lambda: False) -> None:
@@ -168,7 +168,7 @@ def show_for(process: KeptProcess, bound: Bound, rest_is: str, has_joined: Calla
 
 
 def show_rest(process: KeptProcess, seconds: float) -> None:
-    """Show what a process that was told to end still prints, for so many seconds at most."""
+    """Show what a process that was asked to end still prints, for at most this many seconds."""
     shown = Shown()
     deadline = time.monotonic() + seconds
     while True:

@@ -1,4 +1,4 @@
-"""Supervises one process: starts it, reads its output, signals it, and leaves nothing of it behind."""
+"""Supervises one process: starts it, reads its output, signals it, and ends everything that it started."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-#: Bytes kept of what the process prints: the first and the last so many.
+#: The number of first and last bytes that are kept of a process's output.
 KEPT_AT_EACH_END = 2_000_000
 _PR_SET_PDEATHSIG = 1
 _PR_SET_CHILD_SUBREAPER = 36

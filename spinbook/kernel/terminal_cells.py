@@ -20,7 +20,7 @@ COLCON_SECONDS = 120.0
 
 
 def run_colcon(session: Session, words: list[str], bound: Bound) -> None:
-    """Run colcon with these words. Raises CellFailed where there is nothing to build, or where the build fails."""
+    """Run colcon with these words. Raises CellFailed if there is nothing to build, or if the build fails."""
     workspace = session.workspace
     if not (workspace / "src").is_dir():
         raise CellFailed(f"There is nothing to build in {workspace.name} yet: run the chapter's node cells first.")
@@ -46,7 +46,7 @@ def _without_interfaces(session: Session) -> list[str]:
 
 
 def run_ros2(session: Session, words: list[str], bound: Bound) -> None:
-    """Run a `ros2` command, for no longer than its bound. Raises CellFailed where it fails."""
+    """Run a `ros2` command, for no longer than its limit. Raises CellFailed if it fails."""
     if words[:1] == ["run"] and not {"-h", "--help"} & set(words):
         _run_executable(session, words[1:], bound)
         return
@@ -67,7 +67,7 @@ def _folder(session: Session, words: list[str]) -> Path:
 
 
 def _launch(session: Session, words: list[str], bound: Bound) -> None:
-    """`ros2 launch …`: goes on behind the cell as a node does, under the name of its file: `humanoid`."""
+    """`ros2 launch …`: continues in the background as a node does, under the name of its file: `humanoid`."""
     files = [word.rpartition("/")[2] for word in words if re.search(r"launch\.(py|ya?ml|xml)$", word)]
     name = files[0].split(".")[0] if files else "launch"
     argv = [sys.executable, "-m", "spinbook.ros2", *words]
@@ -100,7 +100,7 @@ def _run_executable(session: Session, words: list[str], bound: Bound) -> None:
 
 
 def _renamed(words: list[str]) -> str:
-    """What `__node:=NAME` or `__name:=NAME` calls the node: a second one of that executable, beside the first."""
+    """What `__node:=NAME` or `__name:=NAME` calls the node: a second one of that executable, next to the first."""
     for word in words:
         option, found, name = word.partition(":=")
         if found and option in ("__node", "__name"):

@@ -32,7 +32,7 @@ class Event:
 
 @dataclass
 class RecordedEvents:
-    """What the recorder has told so far."""
+    """What the recorder has reported so far."""
 
     events: list[Event] = field(default_factory=list)
     kinds: dict[str, str] = field(default_factory=dict)
@@ -51,7 +51,7 @@ class RecordedEvents:
 
 @dataclass(frozen=True)
 class Span:
-    """A bar from one time to another (s). `look` says what goes on; `open` that it has not ended."""
+    """A bar from one time to another (s). `look` says what is happening; `open` that it has not ended."""
 
     start: float
     end: float
@@ -61,7 +61,7 @@ class Span:
 
 @dataclass(frozen=True)
 class Mark:
-    """A point in time (s) on a lane. `text` is written beside it, if there is any."""
+    """A point in time (s) on a lane. `text` is written next to it, if there is any."""
 
     at: float
     look: Literal["tick", "asked", "answered", "cancel", "good", "bad"]

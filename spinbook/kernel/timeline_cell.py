@@ -33,7 +33,7 @@ class Timeline:
         self._rest = ""
 
     def wait_for_all(self) -> list[str]:
-        """Wait until every name has been found. Returns those that have not. Raises CellFailed where it fails."""
+        """Wait until every name has been found. Returns those that have not. Raises CellFailed if it fails."""
         deadline = time.monotonic() + _APPEAR_S
         while self._missing() and time.monotonic() < deadline and self._process.status.running:
             time.sleep(0.03)
@@ -68,7 +68,7 @@ class Timeline:
 
 
 def begin(names: list[str]) -> Timeline:
-    """Start recording, and say so. Raises CellFailed where it fails."""
+    """Start recording, and say so. Raises CellFailed if it fails."""
     timeline = Timeline(names)
     try:
         missing = timeline.wait_for_all()
@@ -77,7 +77,7 @@ def begin(names: list[str]) -> Timeline:
         raise
     print(f"Recording {', '.join(names)}. %timeline draws what happens from now on.")
     if missing:
-        print(f"Not there yet: {', '.join(missing)}.")
+        print(f"Not found yet: {', '.join(missing)}.")
     return timeline
 
 

@@ -1,4 +1,4 @@
-"""Records what happens on services, actions and topics, one JSON array a line: a process of its own beside the kernel.
+"""Records what happens on services, actions and topics, one JSON array per line, in its own process next to the kernel.
 
     python -m spinbook.kernel.timeline_recorder NAME …
 
@@ -8,9 +8,9 @@ goal, text], where `what` is one of those in timeline.py, `goal` is a goal's num
 Everything is read where it goes by: requests by a second server that never answers, answers from their DDS topic,
 feedback and status by subscribing. Times are those at which it was sent.
 
-A client that has found this second server and not yet the real one takes the service for ready, and its request would
-be lost. So the requests of a service are read only if it has a client already, which then knows the real one. Clients
-of an action also wait for its status and feedback, which this does not publish.
+A client that has found this second server and not yet the real one believes that the service is ready, and its request
+would be lost. So the requests of a service are read only if it has a client already, which then knows the real one.
+Clients of an action also wait for its status and feedback, which this does not publish.
 """
 
 from __future__ import annotations
@@ -167,7 +167,7 @@ class TimelineRecorder(Node):
             number = _number(goal.goal_info.goal_id)
             if self._states.get(number) != goal.status:
                 self._states[number] = goal.status
-                # The status is kept for late listeners: what is older than the recording is none of its business.
+                # The status is kept for late subscribers: ignore what is older than the recording.
                 if at >= self._began:
                     write_line("event", at, name, _STATES.get(goal.status, "UNKNOWN"), number, "")
 
@@ -179,7 +179,7 @@ _STATES = {
 
 
 def _ear(tell: Callable[..., None]) -> Any:
-    """A callback of the form that rclpy gives the information beside a message to: it looks at the parameters."""
+    """A callback of the form that rclpy gives the information besides a message to: it looks at the parameters."""
 
     def hear(message: Any, information: dict[str, int]) -> None:
         tell(information["source_timestamp"] / 1e9, message)
@@ -213,7 +213,7 @@ _MAY_WAIT = 300
 
 
 def _told_to_stop() -> threading.Event:
-    """An event that SIGINT and SIGTERM set. ROS goes on: what has arrived by then is still to be read."""
+    """An event that SIGINT and SIGTERM set. ROS continues: what has arrived by then is still to be read."""
     text = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: text.set())

@@ -9,9 +9,11 @@ import click
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
 from spinbook.course.course import find_course
-from spinbook.new.kind import BY_NAME, KINDS, Kind
 from spinbook.new.writing import (
+    BY_NAME,
     EXERCISE,
+    KINDS,
+    Kind,
     exercise_name,
     package_name,
     title_of,
@@ -67,14 +69,14 @@ def _kind(context: click.Context, parameter: click.Parameter, name: str | None) 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]}, epilog=f"\b\nKinds of exercises:\n{_listed()}")
 @click.argument("course", required=False, type=click.Path(path_type=Path))
-@click.option("--exercise", metavar="NAME", help="Make one more exercise, in the course in which you are.")
+@click.option("--exercise", metavar="NAME", help="Make one more exercise in the current course.")
 @click.option(
     "--kind", metavar="KIND", callback=_kind, help="What kind of node students write, see below.  [default: filter]"
 )
-@click.option("--solution", metavar="NAME", help="Write a first solution.py of an exercise, from its exercise.toml.")
-@click.option("--title", help="What the course or the exercise is called.  [default: its name, in words]")
+@click.option("--solution", metavar="NAME", help="Write a first solution.py for an exercise, from its exercise.toml.")
+@click.option("--title", help="The title of the course or the exercise.  [default: its name, in words]")
 def new(course: Path | None, exercise: str | None, kind: Kind | None, solution: str | None, title: str | None) -> None:
-    """Make a small course of your own, or one more exercise, that builds, checks and grades at once.
+    """Make a small course of your own, or one more exercise, that you can build, check and grade at once.
 
     \b
       spinbook new my-robots                   a course, in the new folder my-robots
@@ -83,14 +85,14 @@ def new(course: Path | None, exercise: str | None, kind: Kind | None, solution: 
       spinbook new --exercise door --kind service-server
       spinbook new --solution door             solutions/door/solution.py, from the interface in exercise.toml
 
-    A course has a chapter with a publisher and a subscriber, an exercise with checks, its solution and usual mistakes,
-    tests that prove it, and a workflow for CI. An exercise has a task, scenarios, checks, a solution, other right
-    solutions and usual mistakes. Go on from there. Nothing that exists is ever overwritten.
+    A course has a chapter with a publisher and a subscriber, an exercise with checks, its solution and common mistakes,
+    tests, and a workflow for CI. An exercise has a task, scenarios, checks, a solution, other right solutions and
+    common mistakes. Change them step by step. Existing files are never overwritten.
     """
     if sum(given is not None for given in (course, exercise, solution)) != 1:
-        raise click.UsageError("Name a folder for a course, or give --exercise NAME or --solution NAME: one of them.")
+        raise click.UsageError("Give one of these: a folder for a course, --exercise NAME, or --solution NAME.")
     if kind is not None and exercise is None:
-        raise click.UsageError("--kind says what kind of exercise to make: give --exercise NAME, too.")
+        raise click.UsageError("--kind needs an exercise to make: give --exercise NAME, too.")
     if course is not None:
         package = package_name(course)
         title = title_of(title or words(course.name), course)

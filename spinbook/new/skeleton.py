@@ -128,7 +128,7 @@ def _program(
 
 def _filled(title: str, node: ProgramFile, imports: str, init: Sequence[str], methods: str) -> str:
     class_name = node.class_name or "".join(word.capitalize() for word in node.node.split("_"))
-    # With one thread, an action's callback that waits by the node's clock would wait for ever.
+    # With one thread, an action's callback that waits by the node's clock would wait forever.
     spun = "node, MultiThreadedExecutor()" if "MultiThreadedExecutor" in imports else "node"
     body = _BODY.format(class_name=class_name, node=node.node, init="\n".join(init), methods=methods, spun=spun)
     return f'"""{title}."""\n\n{imports}\n\n\n{body}'

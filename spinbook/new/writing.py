@@ -9,13 +9,59 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from grader.exercise.exercise import Exercise
 from grader.files import write_if_changed
-from spinbook.new.kind import COURSE, Kind
 from spinbook.new.skeleton import skeleton
 from spinbook.problem import Problem, SpinbookError
+
+#: A whole course, whose only exercise is the template of a filter.
+COURSE = Path(__file__).parent / "template"
+
+_KINDS = Path(__file__).parent / "kinds"
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One kind of exercise: what its node does, and its template.
+
+    `exercise` is the template's own name, and `title` its title. `root` contains its `exercises` and `solutions`.
+    """
+
+    name: str
+    summary: str
+    exercise: str
+    title: str
+    root: Path = _KINDS
+
+
+#: In the order in which a course would teach them.
+KINDS = (
+    Kind("filter", "one message in, one message out", "speed_limit", "A speed limit", COURSE),
+    Kind("publisher", "messages at a steady rate, by a timer", "lighthouse_beam", "The beam of a lighthouse"),
+    Kind(
+        "latched-topic",
+        "keeps its last message for late subscribers",
+        "departure_board",
+        "A board of departures",
+    ),
+    Kind(
+        "parameters",
+        "set at the start, changed while it runs",
+        "room_thermostat",
+        "A thermostat with parameters",
+    ),
+    Kind("service-server", "answers requests", "coin_turnstile", "A turnstile that takes coins"),
+    Kind("service-client", "calls a service and never waits", "fire_watch", "A fire watch that calls the sprinkler"),
+    Kind("action-server", "goals, feedback, results, cancel", "telescope_mount", "A telescope that turns on request"),
+    Kind("action-client", "sends goals that may fail", "night_observer", "An observer of the night sky"),
+    Kind("closed-loop", "steers a small simulated world", "ship_autopilot", "An autopilot that keeps a ship on course"),
+    Kind("several-nodes", "two programs that work together", "bottle_line", "A bottling line of two nodes"),
+)
+
+BY_NAME = {kind.name: kind for kind in KINDS}
 
 
 def package_name(course: Path) -> str:
@@ -85,6 +131,8 @@ EXERCISE = "speed_limit"
 #: Files whose names begin with a dot in a course, but not here, as packaging tools would leave them out.
 _DOTTED = ("_gitignore", "_github")
 
+_CHECKOUT = "Use a checkout of Spinbook: git clone https://github.com/spinbook/spinbook && cd spinbook && make course"
+
 
 def write_course(folder: Path, title: str, package: str) -> None:
     """Make a course in `folder`, which must not exist. Raises `SpinbookError`."""
@@ -130,19 +178,22 @@ def _refuse_existing(folder: Path) -> None:
 
 
 def _filled(template: Path, names: Mapping[str, str]) -> dict[Path, str]:
-    """Return the template's files by their paths in the result, with other names in them."""
+    """Return the template's files by their paths in the result, with other names in them. Raises `SpinbookError`."""
+    if not template.is_dir():
+        found = "this installation has no templates of courses and exercises: it came with a handout, for students."
+        raise SpinbookError(Problem(template, None, found, _CHECKOUT))
     files: dict[Path, str] = {}
     for file in sorted(template.rglob("*")):
-        place = file.relative_to(template)
-        if not file.is_file() or "__pycache__" in place.parts:
+        path = file.relative_to(template)
+        if not file.is_file() or "__pycache__" in path.parts:
             continue
-        first = place.parts[0]
+        first = path.parts[0]
         if first in _DOTTED:
-            place = Path(f".{first[1:]}", *place.parts[1:])
+            path = Path(f".{first[1:]}", *path.parts[1:])
         text = file.read_text(encoding="utf-8")
         for old, new in names.items():
             text = text.replace(old, new)
-        files[place] = text
+        files[path] = text
     return files
 
 

@@ -18,7 +18,7 @@ action = Menu(
     name="action",
     entries={
         "info": Entry("spinbook.ros2.action:info", "The clients and servers of an action."),
-        "list": Entry("spinbook.ros2.action:list_", "The actions there are."),
+        "list": Entry("spinbook.ros2.action:list_", "All actions."),
         "send_goal": Entry("spinbook.ros2.action:send_goal", "Send a goal and print its result."),
         "type": Entry("spinbook.ros2.action:type_", "The type of an action."),
     },
@@ -36,10 +36,10 @@ CANCELLING = 2.0
 
 @click.command(name="list", context_settings=CONTEXT)
 @click.option("-t", "--show-types", is_flag=True, help="Show each action's type too.")
-@click.option("-c", "--count-actions", is_flag=True, help="Print how many there are, no more.")
+@click.option("-c", "--count-actions", is_flag=True, help="Print only the number.")
 @discovery_options
 def list_(show_types: bool, count_actions: bool, spin_time: float | None, use_sim_time: bool) -> None:
-    """The actions there are.
+    """All actions.
 
     \b
       ros2 action list -t
@@ -80,7 +80,7 @@ def type_(action_name: str, spin_time: float | None, use_sim_time: bool) -> None
 @click.command(context_settings=CONTEXT)
 @click.argument("action_name")
 @click.option("-t", "--show-types", is_flag=True, help="Show the type each node uses too.")
-@click.option("-c", "--count", is_flag=True, help="Print how many there are, no more.")
+@click.option("-c", "--count", is_flag=True, help="Print only the number.")
 @discovery_options
 def info(action_name: str, show_types: bool, count: bool, spin_time: float | None, use_sim_time: bool) -> None:
     """The clients and servers of an action.
@@ -127,8 +127,7 @@ def send_goal(
         from rclpy.action import ActionClient
 
         from spinbook.ros2.graph import absolute
-        from spinbook.ros2.message_fields import fill, read_values
-        from spinbook.ros2.message_text import to_yaml
+        from spinbook.ros2.messages import fill, read_values, to_yaml
 
         kind = interfaces.action_class(action_type)
         message = kind.Goal()
@@ -189,7 +188,7 @@ class _News:
 
 
 def _print_feedback(message: Any) -> None:
-    from spinbook.ros2.message_text import to_yaml
+    from spinbook.ros2.messages import to_yaml
 
     print(f"Feedback:\n    {to_yaml(message.feedback)}", flush=True)
 

@@ -37,7 +37,7 @@ class Menu(click.Group):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         if not args and not ctx.resilient_parsing:
-            # As the real command: help is no error.
+            # As the real command: help is not an error.
             click.echo(ctx.get_help())
             ctx.exit(0)
         return super().parse_args(ctx, args)
@@ -81,7 +81,7 @@ def discovery_options(command: F) -> F:
             "--spin-time",
             type=click.FloatRange(min=0, min_open=True),
             metavar="N",
-            help="Give discovery N seconds and no more.",
+            help="End discovery after N seconds.",
         ),
     ):
         command = option(command)
@@ -89,9 +89,8 @@ def discovery_options(command: F) -> F:
 
 
 class CommandError(click.ClickException):
-    """A message for the person at the terminal; the process ends with 1, as the real command's does.
-
-    The first line has the real command's words where it has any; further lines say what is there and what to do.
+    """A message for the person at the terminal; the process exits with 1, like the real command's. The first line has
+    the real command's words if it has any; further lines say what exists and what to do.
     """
 
     exit_code = 1
@@ -105,7 +104,7 @@ class CommandError(click.ClickException):
         click.echo(self.message, err=True)
 
 
-#: What the real command exits with after Ctrl-C (it passes on the number of the signal).
+#: The real command's exit status after Ctrl-C (it passes on the number of the signal).
 EXIT_AFTER_SIGINT = int(signal.SIGINT)
 
 

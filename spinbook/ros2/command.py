@@ -15,9 +15,9 @@ from spinbook.ros2.executables import hand_over
 NOUNS = {
     "action": Entry("spinbook.ros2.action:action", "List actions, send a goal to one."),
     "bag": Entry("spinbook.ros2.bag:bag", "Record topics into a file, play them again."),
-    "daemon": Entry("spinbook.ros2.command:daemon", "There is none: says so."),
+    "daemon": Entry("spinbook.ros2.command:daemon", "Say that there is no daemon."),
     "doctor": Entry("spinbook.doctor.command:ros2_doctor", "Check whether ROS 2 works here."),
-    "interface": Entry("spinbook.ros2.interface:interface", "Show the fields of message, service and action types."),
+    "interface": Entry("spinbook.ros2.interfaces:interface", "Show the fields of message, service and action types."),
     "launch": Entry("spinbook.ros2.launch.command:launch", "Start the nodes of a launch file."),
     "node": Entry("spinbook.ros2.node:node", "List running nodes, show what one offers."),
     "param": Entry("spinbook.ros2.param:param", "Read and change parameters of running nodes."),
@@ -56,7 +56,7 @@ ros2 = Ros2(
     \b
       ros2 node list                       which nodes run
       ros2 topic list -t                   the topics, with their types
-      ros2 topic hz /joint_commands        how many messages a second
+      ros2 topic hz /joint_commands        how many messages per second
       ros2 topic echo /joint_commands      what is in them (Ctrl-C ends it)
       ros2 interface show sensor_msgs/msg/JointState
 
@@ -68,9 +68,9 @@ ros2 = Ros2(
 daemon = Menu(
     name="daemon",
     entries={
-        "start": Entry("spinbook.ros2.command:start", "Says that none is needed."),
-        "status": Entry("spinbook.ros2.command:status", "Says that none is running."),
-        "stop": Entry("spinbook.ros2.command:stop", "Says that none is running."),
+        "start": Entry("spinbook.ros2.command:start", "Say that none is needed."),
+        "status": Entry("spinbook.ros2.command:status", "Say that none is running."),
+        "stop": Entry("spinbook.ros2.command:stop", "Say that none is running."),
     },
     help="""The ROS 2 installation's ros2 keeps a daemon that remembers the graph. Here each call looks for itself.
 

@@ -1,4 +1,4 @@
-"""What a node of ours sees of the others: nodes, topics, services and their names."""
+"""What our own node sees of the others: nodes, topics, services and their names."""
 
 from __future__ import annotations
 
@@ -22,18 +22,17 @@ from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 from rclpy.validate_full_topic_name import validate_full_topic_name
 
 from spinbook.ros2.cli import CommandError, held_back
-from spinbook.ros2.opening import domain_id
-from spinbook.ros2.participants import hears_other_hosts, participants
+from spinbook.ros2.opening import domain_id, hears_other_hosts, participants
 
-# Each call of the command starts its own node, so each has to let discovery finish before it answers. What finished
-# means is asked of the graph, not of the clock: see `Graph.settle`.
+# Each call of the command starts its own node, so each has to let discovery finish before it answers. The graph, not
+# the clock, decides when it is finished: see `Graph.settle`.
 
 
 #: Seconds between two looks at the graph, and at most between a signal and its being noticed.
 LOOK, NAP = 0.02, 0.1
-#: Seconds without a change after which the graph is taken for known.
+#: Seconds without a change after which the graph counts as known.
 QUIET = 0.25
-#: Seconds that nodes on other hosts get to be heard of, as long as the real command gives them.
+#: Seconds to discover nodes on other hosts, the same as the real command's.
 OTHER_HOSTS = 0.5
 #: Seconds until the answer "there is no such thing" is believed.
 ABSENT = 1.0

@@ -29,7 +29,7 @@ node = Menu(
 
 @click.command(name="list", context_settings=CONTEXT)
 @click.option("-a", "--all", "include_hidden", is_flag=True, help="Hidden nodes too (an underscore before the name).")
-@click.option("-c", "--count-nodes", is_flag=True, help="Print how many there are, no more.")
+@click.option("-c", "--count-nodes", is_flag=True, help="Print only the number.")
 @discovery_options
 def list_(include_hidden: bool, count_nodes: bool, spin_time: float | None, use_sim_time: bool) -> None:
     """The nodes that run.

@@ -114,12 +114,12 @@ param = Menu(
     name="param",
     entries={
         "delete": Entry("spinbook.ros2.param:delete", "Delete a parameter of a node."),
-        "describe": Entry("spinbook.ros2.param:describe", "What is known of a parameter: type, range."),
+        "describe": Entry("spinbook.ros2.param:describe", "Describe a parameter: type, range."),
         "dump": Entry("spinbook.ros2.param:dump", "All parameters of a node, in a parameter file's YAML."),
         "get": Entry("spinbook.ros2.param:get", "The value of a parameter."),
         "list": Entry("spinbook.ros2.param:list_", "The parameters of one node or of all."),
         "load": Entry("spinbook.ros2.param:load", "Set a node's parameters from a parameter file."),
-        "set": Entry("spinbook.ros2.param:set_", "Give a parameter another value."),
+        "set": Entry("spinbook.ros2.param:set_", "Set a parameter."),
     },
     help="""Read and change parameters of running nodes.
 
@@ -242,9 +242,11 @@ def set_(
         client = client_of(graph, name)
         wanted = Parameter(name=parameter_name, value=parameter_value(value))
         result = answer(graph, name, client.set_parameters([wanted])).results[0]
-        if not result.successful:
-            raise CommandError(_with_reason("Setting parameter failed", result.reason))
-    click.echo(_with_reason("Set parameter successful", result.reason))
+    if result.successful:
+        click.echo(_with_reason("Set parameter successful", result.reason))
+    else:
+        # As ROS 2's own command: a node that refuses a value has answered, and the command has not failed.
+        click.echo(_with_reason("Setting parameter failed", result.reason), err=True)
 
 
 @click.command(context_settings=CONTEXT)

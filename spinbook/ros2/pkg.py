@@ -14,9 +14,9 @@ from spinbook.ros2.cli import CONTEXT, CommandError, Entry, Menu
 pkg = Menu(
     name="pkg",
     entries={
-        "create": Entry("spinbook.package.create:create", "Make a new package of Python."),
+        "create": Entry("spinbook.package.write:create", "Make a new package of Python."),
         "executables": Entry("spinbook.ros2.pkg:executables", "What `ros2 run` can start."),
-        "list": Entry("spinbook.ros2.pkg:list_", "The packages there are."),
+        "list": Entry("spinbook.ros2.pkg:list_", "All packages."),
         "prefix": Entry("spinbook.ros2.pkg:prefix", "Where a package is installed."),
         "xml": Entry("spinbook.ros2.pkg:xml", "A package's package.xml, or one tag of it."),
     },
@@ -30,7 +30,7 @@ pkg = Menu(
 
 @click.command(name="list", context_settings=CONTEXT)
 def list_() -> None:
-    """The packages there are.
+    """All packages.
 
     \b
       ros2 pkg list

@@ -97,7 +97,7 @@ def profile(asked: Asked) -> QoSProfile:
 def suiting(graph: Graph, topic: str, asked: Asked) -> QoSProfile:
     """The profile for a subscription that hears every publisher on `topic`.
 
-    Reliable and transient local if all publishers are; else what connects to all, which is then said. What was
+    Reliable and transient local if all publishers are; otherwise what connects to all, which is then said. What was
     asked for is taken as it is.
     """
     from rclpy.qos import DurabilityPolicy, ReliabilityPolicy

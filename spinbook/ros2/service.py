@@ -22,7 +22,7 @@ service = Menu(
         "call": Entry("spinbook.ros2.service:call", "Call a service and print its answer."),
         "find": Entry("spinbook.ros2.service:find", "The services of a type."),
         "info": Entry("spinbook.ros2.service:info", "How many clients and servers a service has."),
-        "list": Entry("spinbook.ros2.service:list_", "The services there are."),
+        "list": Entry("spinbook.ros2.service:list_", "All services."),
         "type": Entry("spinbook.ros2.service:type_", "The type of a service."),
     },
     help="""List services, call one.
@@ -36,13 +36,13 @@ service = Menu(
 
 @click.command(name="list", context_settings=CONTEXT)
 @click.option("-t", "--show-types", is_flag=True, help="Show each service's type too.")
-@click.option("-c", "--count-services", is_flag=True, help="Print how many there are, no more.")
+@click.option("-c", "--count-services", is_flag=True, help="Print only the number.")
 @click.option("-a", "--include-hidden-services", is_flag=True, help="Hidden ones too.")
 @discovery_options
 def list_(
     show_types: bool, count_services: bool, include_hidden_services: bool, spin_time: float | None, use_sim_time: bool
 ) -> None:
-    """The services there are.
+    """All services.
 
     \b
       ros2 service list -t
@@ -74,7 +74,7 @@ def type_(service_name: str, spin_time: float | None, use_sim_time: bool) -> Non
 
 @click.command(context_settings=CONTEXT)
 @click.argument("service_type")
-@click.option("-c", "--count-services", is_flag=True, help="Print how many there are, no more.")
+@click.option("-c", "--count-services", is_flag=True, help="Print only the number.")
 @click.option("-a", "--include-hidden-services", is_flag=True, help="Hidden ones too.")
 @discovery_options
 def find(
@@ -128,7 +128,7 @@ def call(
     """
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
         from spinbook.ros2.graph import absolute
-        from spinbook.ros2.message_fields import fill, read_values
+        from spinbook.ros2.messages import fill, read_values
 
         kind = interfaces.service_class(service_type)
         request = kind.Request()
@@ -181,7 +181,7 @@ def _wait_until_ready(graph: Graph, client: Any, name: str, wanted: str) -> None
 
 
 def _alike(graph: Graph, name: str) -> str:
-    """The services whose names look like `name`, with 'or'; empty where there are none."""
+    """The services whose names look like `name`, with 'or'; empty if there are none."""
     names = [found.name for found in graph.services() if found.name != name]
     return " or ".join(difflib.get_close_matches(name, names, n=2, cutoff=0.75))
 

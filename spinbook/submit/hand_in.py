@@ -54,7 +54,7 @@ def candidates(exercise: Exercise, folder: Path) -> list[Candidate]:
 
 
 def is_starter(candidate: Candidate, exercise: Exercise) -> bool:
-    """Whether this is the starter still, as it was handed out."""
+    """Whether this is still the unchanged starter."""
     return _bare(candidate.submission.source) in _starters(exercise)
 
 
@@ -90,7 +90,7 @@ def _bare(code: str) -> str:
 
 @dataclass(frozen=True)
 class SelfCheck:
-    """The public part of a grade, or `why` there is none. It is never the grade of record."""
+    """The public part of a grade, or `why` there is none. It is never the official grade."""
 
     grade: Grade | None
     why: str = ""
@@ -110,7 +110,7 @@ class SelfCheck:
 
 
 def self_check(exercise: Exercise, submission: Submission) -> SelfCheck:
-    """Run the public checks. Nothing that goes wrong is raised, for it must not keep anybody from handing in."""
+    """Run the public checks. It raises nothing, because a failure must not keep anybody from handing in."""
     try:
         grade = grade_submission(exercise.public(), submission)
     except KeyboardInterrupt:
@@ -124,7 +124,7 @@ def self_check(exercise: Exercise, submission: Submission) -> SelfCheck:
     return SelfCheck(replace(grade, submission=Path(grade.submission).name))
 
 
-#: A notebook larger than this (bytes) stays at home; its cell is in the upload in any case.
+#: A notebook larger than this (bytes) is left out of the upload; its cell is in the upload in any case.
 LARGEST_NOTEBOOK = 2_500_000
 
 
@@ -157,7 +157,7 @@ def write_upload(hand_in: HandIn, target: Path) -> None:
 
 
 def default_target(exercise: Exercise, folder: Path) -> Path:
-    """Where the upload goes if nobody says."""
+    """The default path of the upload."""
     return folder / f"{exercise.name}-submission.zip"
 
 
@@ -171,12 +171,12 @@ def _now() -> datetime:
 
 FILE = Path(".spinbook") / "student"
 
-#: No name is longer; whatever is, is a mistake.
+#: A longer name is a mistake.
 LONGEST = 200
 
 
 def remembered_student(folder: Path) -> str | None:
-    """The name kept in `folder` or in one above it: empty where the student gave none, None where nobody asked yet."""
+    """The name kept in `folder` or in one above it: empty if the student gave none, None if nobody asked yet."""
     for place in (folder, *folder.parents):
         try:
             return (place / FILE).read_text(encoding="utf-8").strip()[:LONGEST]

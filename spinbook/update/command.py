@@ -19,22 +19,22 @@ _INSTALLS = {"requirements.txt", "environment.yml"}
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("new_handout", required=False, type=click.Path(path_type=Path))
-@click.option("--dry-run", is_flag=True, help="Only say what would be done; change nothing.")
+@click.option("--dry-run", is_flag=True, help="Only show what would change; change nothing.")
 def update(new_handout: Path | None, dry_run: bool) -> None:
-    """Bring your folder up to a newer handout, and keep what you wrote.
+    """Update your folder to a newer handout, and keep what you wrote.
 
     \b
       spinbook update ../course-handout.zip            the zip or folder that you were given
       spinbook update ../course-handout.zip --dry-run  only say what would be done
 
-    Start it in your folder of the course. Save and close your notebooks first. NEW_HANDOUT may be left out where there
-    is just one handout's zip in this folder or beside it.
+    Start it in your folder of the course. Save and close your notebooks first. You may leave out NEW_HANDOUT if there
+    is just one handout's zip in this folder or next to it.
 
-    A cell that you changed or added is kept. A cell that only the course changed is taken. Where both did, yours is
-    kept, and the new one is shown below it, marked CHANGED IN THE NEW HANDOUT. Outputs stay where the code did. Before
-    anything is changed, a copy of it is put into backups/.
+    The update keeps a cell that you changed or added, and replaces a cell that only the course changed. If both changed
+    a cell, it keeps yours and shows the new one below it, marked CHANGED IN THE NEW HANDOUT. A cell whose code stays
+    keeps its outputs. Before the update changes a file, it copies the file into backups/.
 
-    Exit codes: 0 all is done (or nothing was to do), 1 it could not be done, 2 wrong usage.
+    Exit codes: 0 done (or nothing to do), 1 failed, 2 wrong usage.
     """
     folder = _folder(Path.cwd())
     source = new_handout or _only_handout(folder)
@@ -55,14 +55,14 @@ def update(new_handout: Path | None, dry_run: bool) -> None:
     try:
         backup = carry_out(made, folder)
     except OSError as error:
-        place = Path(error.filename) if error.filename else folder
+        path = Path(error.filename) if error.filename else folder
         fix = "Fix that, then start the same update again: nothing is lost."
-        raise SpinbookError(Problem(place, None, f"it can't be written: {error.strerror}.", fix)) from None
+        raise SpinbookError(Problem(path, None, f"it can't be written: {error.strerror}.", fix)) from None
     if backup:
         click.echo(f"What was there before is in {backup.relative_to(folder)}/.")
-    if _INSTALLS & {place.name for place in made.writes}:
+    if _INSTALLS & {path.name for path in made.writes}:
         click.echo("What to install has changed, too: follow the first step of README.md again.")
-    for wheel in (place for place in made.writes if place.suffix == ".whl"):
+    for wheel in (path for path in made.writes if path.suffix == ".whl"):
         click.echo(f"Spinbook itself has changed, too: pip install --force-reinstall --no-deps {wheel}")
 
 
@@ -77,7 +77,7 @@ def _folder(start: Path) -> Path:
 
 
 def _only_handout(folder: Path) -> Path:
-    found = [file for place in (folder, folder.parent) for file in sorted(place.glob("*.zip")) if _is_handout(file)]
+    found = [file for path in (folder, folder.parent) for file in sorted(path.glob("*.zip")) if _is_handout(file)]
     if len(found) == 1:
         return found[0]
     text = f"There are {', '.join(str(file) for file in found)}." if found else "No zip of a handout was found here."
@@ -93,23 +93,24 @@ def _is_handout(file: Path) -> bool:
 
 
 def _tell(made: Plan) -> None:
-    for place, lines in sorted(made.report.items()):
+    for path, lines in sorted(made.report.items()):
         for line in lines:
-            click.echo(f"{place}: {line}")
-        if place in made.notebooks:
-            click.echo(f"{place}:")
-            for line in _lines(made.notebooks[place]):
+            click.echo(f"{path}: {line}")
+        if path in made.notebooks:
+            click.echo(f"{path}:")
+            for line in _lines(made.notebooks[path]):
                 click.echo(f"  {line}")
 
 
 def _lines(text: MergeReport) -> list[str]:
-    """What became of a notebook's cells, in words."""
+    """What happened to a notebook's cells, in words."""
     lines = [f"CONFLICT: you and the course changed this cell; yours is kept: {name}" for name in text.conflicts]
     lines += [
-        f"the course has taken this cell out; yours is kept, for you changed it: {n}" for n in text.kept_though_removed
+        f"the course has removed this cell; yours is kept, because you changed it: {n}"
+        for n in text.kept_though_removed
     ]
     lines += [f"you had deleted this cell, and the course has changed it: it is back: {name}" for name in text.back]
-    lines += [f"you have deleted this cell, and it stays so, but an exercise needs it: {name}" for name in text.missing]
+    lines += [f"you deleted this cell, and it stays deleted, but an exercise needs it: {name}" for name in text.missing]
     if text.order_kept:
         lines.append("you and the course moved cells: yours are in your order")
     counted = (("changed", text.taken), ("new", text.added), ("taken out", text.removed))

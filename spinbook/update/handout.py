@@ -1,4 +1,4 @@
-"""Reads a handout, a folder or a zip, and what a student's folder remembers of the last one."""
+"""Reads a handout (a folder or a zip), and the copy of the last one in a student's folder."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from spinbook.problem import Problem, SpinbookError
 #: Where it is, in the handout and in the student's folder.
 BASE = PurePosixPath(".spinbook/base")
 
-#: What students may want to change. Of anything else the handout's is taken.
+#: Files that students may want to change. All others come from the handout.
 _REMEMBERED = {".ipynb", ".md", ".py", ".toml", ".txt", ".yml"}
 
 
-def is_remembered(place: PurePosixPath) -> bool:
+def is_remembered(path: PurePosixPath) -> bool:
     """Whether a file of a handout, by its path in it, is remembered."""
-    return place.suffix in _REMEMBERED and place.parts[0] != ".spinbook"
+    return path.suffix in _REMEMBERED and path.parts[0] != ".spinbook"
 
 
 def base_files(handout: Mapping[str, bytes]) -> dict[str, bytes]:
@@ -32,7 +32,7 @@ def base_files(handout: Mapping[str, bytes]) -> dict[str, bytes]:
 MOST_FILES = 5_000
 MOST_BYTES = 500_000_000
 
-#: Never part of a handout: what editors, Python and students leave in folders.
+#: Files that editors, Python and students leave in folders, and that are never part of a handout.
 _LEFT_OUT = {"__pycache__", ".ipynb_checkpoints", ".git", ".venv", "backups"}
 
 Files = dict[PurePosixPath, bytes]
@@ -43,29 +43,29 @@ _GIVE = "Give the course's new handout, a folder or a zip."
 _PACKAGE = re.compile(rb"%chapter [^\n\"\\]*--package ([a-z0-9_]+)")
 
 
-def read_handout(place: Path) -> Files:
+def read_handout(path: Path) -> Files:
     """Every file of a handout, by its path in it. Raises `SpinbookError` where it can't be read or is none."""
-    if not place.exists():
-        raise SpinbookError(Problem(place, None, "there is no such file or folder.", "Name the new handout."))
+    if not path.exists():
+        raise SpinbookError(Problem(path, None, "there is no such file or folder.", "Name the new handout."))
     try:
-        files = _of_folder(place) if place.is_dir() else _of_zip(place)
+        files = _of_folder(path) if path.is_dir() else _of_zip(path)
     except (OSError, zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError) as error:
         found = f"it can't be read: {error}."
-        raise SpinbookError(Problem(place, None, found, "Download the handout once more.")) from None
+        raise SpinbookError(Problem(path, None, found, "Download the handout once more.")) from None
     files = _without_outer_folder(files)
     if found := _why_not(files):
-        raise SpinbookError(Problem(place, None, found, f"Nothing was changed. {_GIVE}"))
+        raise SpinbookError(Problem(path, None, found, f"Nothing was changed. {_GIVE}"))
     return files
 
 
-def refuse_another_course(place: Path, files: Files, folder: Path) -> None:
+def refuse_another_course(path: Path, files: Files, folder: Path) -> None:
     """Raise `SpinbookError` where a handout's notebooks and those in the student's folder are of different courses."""
     base = folder / BASE
     mine = packages(file.read_bytes() for file in sorted((base if base.is_dir() else folder).glob("*.ipynb")))
     new = packages(data for path, data in files.items() if path.suffix == ".ipynb" and len(path.parts) == 1)
     if mine and new and not mine & new:
         found = f"it is a handout of another course: its package is {_and(new)}, yours is {_and(mine)}."
-        raise SpinbookError(Problem(place, None, found, f"Nothing was changed. {_GIVE}"))
+        raise SpinbookError(Problem(path, None, found, f"Nothing was changed. {_GIVE}"))
 
 
 def packages(notebooks: Iterable[bytes]) -> set[str]:
@@ -91,9 +91,9 @@ def _and(names: Iterable[str]) -> str:
 def _of_folder(folder: Path) -> Files:
     files: Files = {}
     for path in sorted(folder.rglob("*")):
-        place = PurePosixPath(path.relative_to(folder).as_posix())
-        if path.is_file() and not path.is_symlink() and not _LEFT_OUT & set(place.parts):
-            files[place] = path.read_bytes()
+        name = PurePosixPath(path.relative_to(folder).as_posix())
+        if path.is_file() and not path.is_symlink() and not _LEFT_OUT & set(name.parts):
+            files[name] = path.read_bytes()
             _bounded(folder, len(files), 0)
     return files
 
@@ -105,24 +105,24 @@ def _of_zip(file: Path) -> Files:
         entries = [entry for entry in archive.infolist() if not entry.is_dir() and "__MACOSX" not in entry.filename]
         _bounded(file, len(entries), 0)
         for entry in entries:
-            place = PurePosixPath(entry.filename)
-            if place.is_absolute() or ".." in place.parts or "\\" in entry.filename or "\0" in entry.filename:
+            path = PurePosixPath(entry.filename)
+            if path.is_absolute() or ".." in path.parts or "\\" in entry.filename or "\0" in entry.filename:
                 found = f"{entry.filename!r} in it leads out of its folder."
                 raise SpinbookError(Problem(file, None, found, "This is not a handout. Nothing was changed."))
             if stat.S_ISLNK(entry.external_attr >> 16):
                 found = f"{entry.filename!r} in it is a symbolic link."
                 raise SpinbookError(Problem(file, None, found, "This is not a handout. Nothing was changed."))
             with archive.open(entry) as opened:
-                files[place] = opened.read(left + 1)
-            left -= len(files[place])
+                files[path] = opened.read(left + 1)
+            left -= len(files[path])
             _bounded(file, 0, MOST_BYTES - left)
     return files
 
 
-def _bounded(place: Path, count: int, size: int) -> None:
+def _bounded(path: Path, count: int, size: int) -> None:
     if count > MOST_FILES or size > MOST_BYTES:
         found = f"it holds more than {MOST_FILES} files or {MOST_BYTES // 1_000_000} MB."
-        raise SpinbookError(Problem(place, None, found, "Give the course's new handout, a folder or a zip."))
+        raise SpinbookError(Problem(path, None, found, "Give the course's new handout, a folder or a zip."))
 
 
 def _without_outer_folder(files: Files) -> Files:

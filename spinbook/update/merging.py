@@ -10,16 +10,16 @@ from typing import Any
 
 Cell = dict[str, Any]
 
-#: Cells at least this alike are taken for one cell that was edited. Between 0 and 1.
+#: Cells that are at least this similar count as one cell that was edited. Between 0 and 1.
 ALIKE = 0.7
-#: More of a cell than this (characters) is not looked at to find out how alike two are.
+#: Only this many characters of a cell are compared to find out how similar two cells are.
 _COMPARED = 4000
 
 _NODE = re.compile(r"%%node\s+(\w+)")
 
 
 def text(cell: Cell) -> str:
-    """What stands in a cell. Editors differ in line ends and in space at the end; those don't count."""
+    """The content of a cell. Editors differ in line ends and in space at the end, so these don't count."""
     source = cell.get("source", "")
     joined = source if isinstance(source, str) else "".join(source)
     return joined.replace("\r\n", "\n").rstrip()
@@ -37,7 +37,7 @@ def label(cell: Cell) -> str:
 
 
 def found_again(old: Sequence[Cell], new: Sequence[Cell]) -> dict[int, int]:
-    """For cells of `old`, by their index, where they are in `new`: by id, by content, as a node, or as much alike."""
+    """For cells of `old`, by their index, where they are in `new`: by id, by content, as a node, or by similarity."""
     found: dict[int, int] = {}
     # Of two cells with one id the one with the old content is meant.
     _pair(old, new, found, lambda cell: (cell.get("id"), content(cell)) if cell.get("id") else None)
@@ -96,7 +96,7 @@ def _pair_alike(old: Sequence[Cell], new: Sequence[Cell], found: dict[int, int])
 
 @dataclass
 class MergeReport:
-    """What became of cells, by their labels, for the student to read."""
+    """What happened to cells, by their labels, for the student to read."""
 
     taken: list[str] = field(default_factory=list)
     added: list[str] = field(default_factory=list)
@@ -129,7 +129,7 @@ def merged(base: Sequence[Cell], mine: Sequence[Cell], new: Sequence[Cell]) -> t
 
 
 def merged_without_base(mine: Sequence[Cell], new: Sequence[Cell]) -> tuple[list[Cell], MergeReport]:
-    """The same where nobody knows what was handed out: a cell that differs counts as changed by both."""
+    """The same if the original handout is not known: a cell that differs counts as changed by both."""
     pairs = sorted(found_again(new, mine).items())
     unknown: Cell = {"cell_type": "", "source": ""}
     base = [new[j] if content(new[j]) == content(mine[i]) else unknown for j, i in pairs]
@@ -220,7 +220,7 @@ class _Merge:
         return items
 
     def _moved(self, of: dict[int, int]) -> bool:
-        """Whether the cells that both sides have stand in another order than in the base."""
+        """Whether the cells that both sides have are in another order than in the base."""
         places = [of[b] for b in range(len(self.base)) if b in self.mine_of and b in self.new_of]
         return places != sorted(places)
 
@@ -257,7 +257,7 @@ def shown_below(new: Cell) -> Cell:
 
 
 def _woven(first: Sequence[_Item], second: Sequence[_Item]) -> list[_Item]:
-    """`first` in its order, with what only `second` has put behind what it follows there."""
+    """`first` in its order, with the entries that only `second` has put after those that they follow there."""
     order = list(first)
     before: _Item | None = None
     for item in second:

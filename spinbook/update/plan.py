@@ -2,16 +2,96 @@
 
 from __future__ import annotations
 
+import copy
+import hashlib
+import json
 import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 from grader.files import write_if_changed
 from spinbook.update.handout import BASE, Files, is_remembered
-from spinbook.update.merging import MergeReport
-from spinbook.update.notebook import NoNotebook, chapter, merged_notebook, read
+from spinbook.update.merging import Cell, MergeReport, content, merged, merged_without_base
+
+
+class NoNotebook(Exception):
+    """Raised when a file is no notebook that can be read; says why."""
+
+
+def read(data: bytes) -> dict[str, Any]:
+    """A notebook as a dictionary, with at least `cells` and `metadata`. Raises `NoNotebook`."""
+    try:
+        notebook = json.loads(data)
+    except (ValueError, RecursionError) as error:
+        raise NoNotebook(f"{type(error).__name__}: {error}") from None
+    cells = notebook.get("cells") if isinstance(notebook, dict) else None
+    if not isinstance(cells, list) or not all(_is_cell(cell) for cell in cells):
+        raise NoNotebook("it has no list of cells, as notebooks since 2015 have")
+    if not isinstance(notebook.setdefault("metadata", {}), dict):
+        raise NoNotebook("its metadata is not a dictionary")
+    assert isinstance(notebook, dict)
+    return notebook
+
+
+def _is_cell(cell: Any) -> bool:
+    if not isinstance(cell, dict) or not isinstance(cell.get("cell_type"), str):
+        return False
+    known = cell.get("metadata", {})
+    source = cell.get("source", "")
+    texts = source if isinstance(source, list) else [source]
+    return (
+        isinstance(known, dict)
+        and isinstance(known.get("spinbook", {}), dict)
+        and all(isinstance(part, str) for part in texts)
+    )
+
+
+def chapter(notebook: dict[str, Any]) -> str:
+    """The chapter whose notebook this is, by whatever name it is saved; empty where it is another's."""
+    known = notebook["metadata"].get("spinbook", {})
+    name = known.get("chapter", "") if isinstance(known, dict) else ""
+    return name if isinstance(name, str) else ""
+
+
+def merged_notebook(base: bytes | None, mine: bytes, new: bytes) -> tuple[bytes, MergeReport]:
+    """The student's notebook with the author's changes in it. Raises `NoNotebook` where one of them is none.
+
+    With no `base` (a handout that kept none) a cell counts as the student's wherever it differs from the new one.
+    """
+    ours, theirs = read(mine), read(new)
+    if base == new:
+        return mine, MergeReport()
+    if base is None:
+        result, text = merged_without_base(ours["cells"], theirs["cells"])
+    else:
+        result, text = merged(read(base)["cells"], ours["cells"], theirs["cells"])
+    notebook = copy.deepcopy(ours)
+    notebook["cells"] = _with_ids_of_their_own(copy.deepcopy(result))
+    for key in ("spinbook", "title"):
+        if key in theirs["metadata"]:
+            notebook["metadata"][key] = theirs["metadata"][key]
+    # Cells have ids since nbformat 4.5.
+    if (notebook.get("nbformat"), notebook.get("nbformat_minor", 0)) < (4, 5):
+        notebook["nbformat"], notebook["nbformat_minor"] = 4, 5
+    if notebook == ours:
+        return mine, text
+    return (json.dumps(notebook, ensure_ascii=False, indent=1) + "\n").encode(), text
+
+
+def _with_ids_of_their_own(cells: list[Cell]) -> list[Cell]:
+    """Cells without an id, or with one that another has, get a new one, which depends on nothing but the cells."""
+    seen: set[str] = set()
+    for number, cell in enumerate(cells):
+        name = cell.get("id")
+        while not isinstance(name, str) or not name or name in seen:
+            name = hashlib.sha256(f"{name} {number} {content(cell)}".encode()).hexdigest()[:16]
+        cell["id"] = name
+        seen.add(name)
+    return cells
+
 
 #: Folders in which a student's notebook is not looked for.
 _NOT_LOOKED_IN = {".spinbook", ".ipynb_checkpoints", ".venv", "backups", "build"}
@@ -30,30 +110,30 @@ class Plan:
     base: Files = field(default_factory=dict)
     forgotten: list[PurePosixPath] = field(default_factory=list)
 
-    def tell(self, place: PurePosixPath, line: str) -> None:
+    def tell(self, path: PurePosixPath, line: str) -> None:
         """Add a line for the student about one file."""
-        self.report.setdefault(place, []).append(line)
+        self.report.setdefault(path, []).append(line)
 
 
 def plan(folder: Path, handout: Mapping[PurePosixPath, bytes]) -> Plan:
     """What brings the student's `folder` up to `handout`. Changes nothing."""
     made = Plan()
     base = _base_in(folder)
-    for place, data in sorted(handout.items()):
-        if place.parts[0] == ".spinbook":
-            if not place.is_relative_to(BASE):
-                _own(made, folder, place, data)
+    for path, data in sorted(handout.items()):
+        if path.parts[0] == ".spinbook":
+            if not path.is_relative_to(BASE):
+                _own(made, folder, path, data)
             continue
-        if place.suffix == ".ipynb":
-            _notebook(made, folder, place, base.get(place), data)
+        if path.suffix == ".ipynb":
+            _notebook(made, folder, path, base.get(path), data)
         else:
-            _file(made, folder, place, base.get(place), data)
-        if is_remembered(place) and base.get(place) != data:
-            made.base[BASE / place] = data
-    for place in sorted(set(base) - set(handout)):
-        made.forgotten.append(BASE / place)
-        if (folder / place).exists():
-            made.tell(place, "is no longer part of the handout. Yours stays.")
+            _file(made, folder, path, base.get(path), data)
+        if is_remembered(path) and base.get(path) != data:
+            made.base[BASE / path] = data
+    for path in sorted(set(base) - set(handout)):
+        made.forgotten.append(BASE / path)
+        if (folder / path).exists():
+            made.tell(path, "is no longer part of the handout. Yours stays.")
     return made
 
 
@@ -66,34 +146,34 @@ def _base_in(folder: Path) -> Files:
     }
 
 
-def _own(made: Plan, folder: Path, place: PurePosixPath, data: bytes) -> None:
+def _own(made: Plan, folder: Path, path: PurePosixPath, data: bytes) -> None:
     """A file of ours, which no student edits."""
-    if _content(folder / place) != data:
-        made.base[place] = data
+    if _content(folder / path) != data:
+        made.base[path] = data
 
 
-def _file(made: Plan, folder: Path, place: PurePosixPath, base: bytes | None, new: bytes) -> None:
-    mine = _content(folder / place)
+def _file(made: Plan, folder: Path, path: PurePosixPath, base: bytes | None, new: bytes) -> None:
+    mine = _content(folder / path)
     if mine == new or new == base:
         return
     if mine is None:
-        made.writes[place] = new
-        made.tell(place, "is new." if base is None else "was deleted here and has changed in the handout: it is back.")
-    elif mine == base or not is_remembered(place) or (base is None and place.suffix != ".py"):
-        made.writes[place] = new
-        made.tell(place, "has changed in the handout: the new one is taken.")
+        made.writes[path] = new
+        made.tell(path, "is new." if base is None else "was deleted here and has changed in the handout: it is back.")
+    elif mine == base or not is_remembered(path) or (base is None and path.suffix != ".py"):
+        made.writes[path] = new
+        made.tell(path, "has changed in the handout: the new one is taken.")
     else:
-        _beside(made, folder, place, new, "You have changed it and so has the handout. Yours is kept")
+        _beside(made, folder, path, new, "You have changed it and so has the handout. Yours is kept")
 
 
-def _notebook(made: Plan, folder: Path, place: PurePosixPath, base: bytes | None, new: bytes) -> None:
+def _notebook(made: Plan, folder: Path, path: PurePosixPath, base: bytes | None, new: bytes) -> None:
     if new == base:
         return
-    where = _students(folder, place, new)
+    where = _students(folder, path, new)
     mine = _content(folder / where)
     if mine is None:
-        made.writes[place] = new
-        made.tell(place, "is new." if base is None else "was deleted here and has changed in the handout: it is back.")
+        made.writes[path] = new
+        made.tell(path, "is new." if base is None else "was deleted here and has changed in the handout: it is back.")
         return
     if mine in (base, new):
         if mine != new:
@@ -111,20 +191,20 @@ def _notebook(made: Plan, folder: Path, place: PurePosixPath, base: bytes | None
         made.report.setdefault(where, [])
 
 
-def _students(folder: Path, place: PurePosixPath, new: bytes) -> PurePosixPath:
+def _students(folder: Path, path: PurePosixPath, new: bytes) -> PurePosixPath:
     """Where the student has this notebook, which may have another name by now."""
-    if (folder / place).exists():
-        return place
+    if (folder / path).exists():
+        return path
     try:
         wanted = chapter(read(new))
     except NoNotebook:
-        return place
+        return path
     found = []
-    for path in sorted(folder.rglob("*.ipynb")):
-        where = PurePosixPath(path.relative_to(folder).as_posix())
-        if wanted and not _NOT_LOOKED_IN & set(where.parts) and _chapter_of(path) == wanted:
+    for file in sorted(folder.rglob("*.ipynb")):
+        where = PurePosixPath(file.relative_to(folder).as_posix())
+        if wanted and not _NOT_LOOKED_IN & set(where.parts) and _chapter_of(file) == wanted:
             found.append(where)
-    return found[0] if len(found) == 1 else place
+    return found[0] if len(found) == 1 else path
 
 
 def _chapter_of(path: Path) -> str:
@@ -134,11 +214,11 @@ def _chapter_of(path: Path) -> str:
         return ""
 
 
-def _beside(made: Plan, folder: Path, place: PurePosixPath, new: bytes, why: str) -> None:
-    beside = place.with_name(f"{place.stem}.new{place.suffix}")
+def _beside(made: Plan, folder: Path, path: PurePosixPath, new: bytes, why: str) -> None:
+    beside = path.with_name(f"{path.stem}.new{path.suffix}")
     if _content(folder / beside) != new:
         made.writes[beside] = new
-    made.tell(place, f"{why}; the new one is next to it: {beside.name}")
+    made.tell(path, f"{why}; the new one is next to it: {beside.name}")
 
 
 def _content(file: Path) -> bytes | None:
@@ -156,16 +236,16 @@ def carry_out(plan: Plan, folder: Path) -> Path | None:
 
     If it breaks off, the same update can be done again: what was handed out is remembered last. Raises `OSError`.
     """
-    replaced = [place for place in plan.writes if (folder / place).exists()]
+    replaced = [path for path in plan.writes if (folder / path).exists()]
     backup = _new_backup(folder) if replaced else None
-    for place in replaced:
+    for path in replaced:
         assert backup
-        (backup / place).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy2(folder / place, backup / place)
-    for place, data in (*plan.writes.items(), *plan.base.items()):
-        write_if_changed(folder / place, data)
-    for place in plan.forgotten:
-        (folder / place).unlink(missing_ok=True)
+        (backup / path).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(folder / path, backup / path)
+    for path, data in (*plan.writes.items(), *plan.base.items()):
+        write_if_changed(folder / path, data)
+    for path in plan.forgotten:
+        (folder / path).unlink(missing_ok=True)
     return backup
 
 

@@ -47,10 +47,10 @@ def test_the_starter_gets_no_points_and_is_told_what_to_fix_first(kernel: Kernel
         assert "This is a self-check, not your grade." in told
         assert "Next:" in told
         assert "fix the first ✗, run the cell that begins with %%node joint_velocity, then this one again." in told
-    assert text.count("Can't be judged before this is right: It hears /joint_commands") == PUBLIC - 1
+    assert text.count("Can't be judged before this is right: It subscribes to /joint_commands") == PUBLIC - 1
     assert html.count('class="sb-failed"') == 1
     assert html.count('class="sb-blocked"') == PUBLIC - 1
-    waiting = f"The next {PUBLIC - 1} checks can&#39;t be judged before this is right: It hears /joint_commands"
+    waiting = f"The next {PUBLIC - 1} checks can&#39;t be judged before this is right: It subscribes to /joint_commands"
     assert html.count(waiting) == 1, "what all wait for is told once"
 
 
@@ -159,7 +159,7 @@ def checks_of(kernel: Kernel) -> list[psutil.Process]:
     found = []
     for process in psutil.Process(kernel.process_id).children(recursive=True):
         try:
-            if "spinbook.check.program" in process.cmdline():
+            if "spinbook.submit.program" in process.cmdline():
                 found.append(process)
         except psutil.Error:
             continue

@@ -8,10 +8,9 @@ from pathlib import Path
 import psutil
 import pytest
 
-from spinbook.doctor.diagnosis import Check, diagnose, examine
-from spinbook.doctor.finding import Finding, State
+from spinbook.doctor.diagnosis import Check, Finding, State, diagnose, examine
 
-_HEAD = "import os, pathlib, signal, subprocess, sys, time\nfrom spinbook.doctor.finding import missing, ok\n"
+_HEAD = "import os, pathlib, signal, subprocess, sys, time\nfrom spinbook.doctor.diagnosis import missing, ok\n"
 _EXAMINE = "def examine(name):\n    {}\n"
 
 

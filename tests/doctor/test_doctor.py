@@ -8,8 +8,7 @@ import sys
 from rich.console import Console
 from running import doctor
 
-from spinbook.doctor.diagnosis import CHECKS
-from spinbook.doctor.finding import Finding, is_able, missing, ok, show, warning
+from spinbook.doctor.diagnosis import CHECKS, Finding, is_able, missing, ok, show, warning
 
 
 def test_here_everything_that_is_needed_works() -> None:
@@ -52,7 +51,7 @@ def test_what_is_missing_makes_it_unable_and_a_warning_does_not() -> None:
     assert not is_able([ok("One", "works"), missing("Two", "is not there", "do that")])
 
 
-def test_mends_stand_below_the_list_each_with_its_name() -> None:
+def test_the_fixes_follow_the_list_each_with_its_name() -> None:
     text = told(
         ok("One", "works"), warning("Two", "is odd", "do this\nand that"), missing("Three", "is gone", "get it")
     )
@@ -68,7 +67,7 @@ def test_mends_stand_below_the_list_each_with_its_name() -> None:
         "✗ Three",
         "  get it",
         "",
-        "Courses can't be built or graded here until what has a ✗ is fixed: 1 of 3 (1 warning).",
+        "Fix every ✗ before you build or grade a course here. Failed: 1 of 3 (1 warning).",
     ]
 
 

@@ -18,7 +18,7 @@ from course_folder import CourseFolder
 
 from grader.exercise import load
 from handout.conftest import CHAPTER, NOTE, ROOT, HandedOut, append, copy_course
-from interface_compiler.archive import zipped
+from interface_compiler.wheel import zipped
 from spinbook.handout.leaks import Secret, hidden_names, leaks, secrets
 from spinbook.handout.student_copy import for_students
 from spinbook.handout.wheels import spinbook_wheel

@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 import yaml
 
-from spinbook.site.notebooks import BRANCH
+from spinbook.site.notebooks import BRANCH, requirement
+from spinbook.site.page import Repository
 
 ROOT = Path(__file__).parents[2]
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
@@ -89,3 +90,9 @@ def test_the_dev_container_is_the_image() -> None:
     assert told["remoteUser"] == "student"
     assert told["workspaceFolder"] == "/course"
     assert f"{told['workspaceFolder']}\n" in (ROOT / "Dockerfile").read_text()
+
+
+def test_a_courses_requirements_that_are_no_utf8_name_no_other_place_for_spinbook(tmp_path: Path) -> None:
+    (tmp_path / "requirements.txt").write_bytes("numpy\n".encode("utf-16"))
+
+    assert requirement(Repository(tmp_path, "")) == "spinbook[ros,colcon] @ git+https://github.com/spinbook/spinbook"

@@ -20,8 +20,7 @@ from grader.submission import read
 from grader.submission.reading import of_source
 from grader.workers import WorkerPool
 from spinbook.new.command import new
-from spinbook.new.kind import BY_NAME, KINDS
-from spinbook.new.writing import write_course
+from spinbook.new.writing import BY_NAME, KINDS, write_course
 from spinbook.problem import SpinbookError
 
 #: For each kind, a usual mistake that the default suite grades. The soak grades all of them.

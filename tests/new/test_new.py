@@ -12,6 +12,7 @@ import nbformat
 import pytest
 from click.testing import CliRunner, Result
 
+import spinbook
 from spinbook.course.course import read_course
 from spinbook.new.command import new
 from spinbook.problem import SpinbookError
@@ -151,7 +152,7 @@ def test_a_title_that_would_break_a_file_is_refused(
 def test_either_a_course_or_an_exercise(words: list[str]) -> None:
     done = made(*words)
     assert done.exit_code == 2
-    assert "one of them" in done.output
+    assert "one of these" in done.output
 
 
 def test_the_untouched_course_can_be_handed_out(course: Path) -> None:
@@ -168,3 +169,16 @@ def test_an_audit_of_the_untouched_course_has_nothing_to_fix(pristine: Path, tmp
         command = [sys.executable, "-m", "spinbook", "audit"]
         done = subprocess.run(command, cwd=pristine, env=environment, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_a_spinbook_that_came_with_a_handout_says_that_it_has_no_templates(tmp_path: Path) -> None:
+    without = shutil.ignore_patterns("template", "kinds", "__pycache__")
+    for package in ("spinbook", "grader", "interface_compiler", "rmw_lockstep", "rcl_python"):
+        shutil.copytree(Path(spinbook.__file__).parents[1] / package, tmp_path / package, ignore=without)
+
+    done = run("spinbook", "new", "robots", cwd=tmp_path)
+
+    assert done.returncode == 1
+    assert "this installation has no templates of courses and exercises" in done.stderr
+    assert "Use a checkout of Spinbook: git clone" in done.stderr
+    assert not (tmp_path / "robots").exists()

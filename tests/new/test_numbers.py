@@ -39,7 +39,7 @@ def test_a_wave_swings_between_its_heights_at_its_instants() -> None:
     assert len(WAVE) == 20
     assert seconds(WAVE) == pytest.approx(TIMES)
     assert values(WAVE)[10] == 1.5
-    assert {(message.topic, message.type) for message in WAVE} == {("/wanted", "std_msgs/msg/Float64")}
+    assert {(message.topic, message.type) for message in WAVE} == {("/wanted", "")}, "the type is in exercise.toml"
 
 
 def test_a_number_goes_into_any_field_of_any_message() -> None:
@@ -57,6 +57,18 @@ def test_stamps_are_the_instants_and_move_with_a_pause() -> None:
     assert fields["header"]["stamp"] == {"sec": 130, "nanosec": 750_000_000}
     assert (fields["range"], fields["max_range"]) == (2.0, 9.0)
     assert stream[1].fields["header"]["stamp"] == {"sec": 100, "nanosec": 500_000_000}, "the stream itself stays"
+
+
+def test_other_fields_of_the_header_stay_next_to_the_stamp() -> None:
+    [message] = numbers("/t", [(0.5, 2.0)], field="temperature", stamped=True, header={"frame_id": "kiln"})
+    assert message.fields["header"] == {"frame_id": "kiln", "stamp": {"sec": 100, "nanosec": 500_000_000}}
+
+
+def test_a_value_that_is_placed_in_a_field_without_a_number_is_refused() -> None:
+    ranges = numbers("/range", [(0.0, 1.0)], field="range")
+    assert placed(ranges, 0, 2.0, field="range")[0].fields["range"] == 2.0
+    with pytest.raises(ValueError, match=r"message 0 on /range has no number in its field 'data'. Name the field"):
+        placed(ranges, 0, 2.0)
 
 
 def test_chance_is_the_same_for_a_seed_and_another_for_another() -> None:

@@ -14,8 +14,8 @@ from rclpy.node import Node
 from grader.exercise import Exercise, load, starter
 from grader.exercise.exercise import Topic
 from spinbook.new.command import new
-from spinbook.new.kind import KINDS, Kind
 from spinbook.new.skeleton import skeleton
+from spinbook.new.writing import KINDS, Kind
 from spinbook.problem import SpinbookError
 
 ONE_PROGRAM = [pytest.param(kind, id=kind.name) for kind in KINDS if kind.name != "several-nodes"]

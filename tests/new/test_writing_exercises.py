@@ -13,7 +13,7 @@ from grader.exercise import load, starter
 from grader.grading import Options, grading_of
 from grader.submission.reading import of_source
 from grader.workers import WorkerPool
-from spinbook.new.kind import KINDS, Kind
+from spinbook.new.writing import KINDS, Kind
 
 DOCS = Path(__file__).parents[2] / "docs"
 FENCE = re.compile(r"^```(?:python|toml)\n(.*?)^```", re.MULTILINE | re.DOTALL)

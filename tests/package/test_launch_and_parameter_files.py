@@ -82,7 +82,7 @@ def test_a_file_that_no_cell_writes_is_not_read(course: CourseFolder) -> None:
     without = CHAPTER.replace('title="config/hello.yaml"', 'title="hello.yaml"')
     said = course.write(one=without).spinbook("lint")
 
-    assert "it reads a file of parameters, which is not here" in said.stdout
+    assert "it reads a parameter file, which is missing" in said.stdout
 
 
 @pytest.mark.soak

@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 from ros2_terminal import Terminal
 
+from interface_compiler import prefixes
+
 
 def test_show_unfolds_nested_types_without_their_comments(terminal: Terminal) -> None:
     lines = terminal.ros2("interface", "show", "sensor_msgs/msg/JointState").out.splitlines()
@@ -87,3 +89,8 @@ def test_what_is_not_installed(terminal: Terminal) -> None:
     short = terminal.ros2("interface", "show", "sensor_msgs/JointState")
     assert short.err.startswith("Invalid name 'sensor_msgs/JointState'. Expected three parts separated by '/'\n")
     assert terminal.ros2("interface", "package", "nopkg").err.startswith("Unknown package 'nopkg'\n")
+    if prefixes.prefix_of("nav2_msgs", prefixes.installed()) is None:
+        assert terminal.ros2("interface", "package", "nav2_msgs").err.splitlines() == [
+            "Unknown package 'nav2_msgs'",
+            "Compile it, once: spinbook interfaces add nav2_msgs",
+        ]

@@ -7,7 +7,7 @@ import re
 import pytest
 from ros2_terminal import Robot, Terminal
 
-from spinbook.ros2.topic.statistics import Bandwidth, Delay, Rate
+from spinbook.ros2.topic.measuring import Bandwidth, Delay, Rate
 
 MS = 1_000_000
 

@@ -17,8 +17,7 @@ from grader.exercise import load, starter
 from grader.submission import read
 from grader.submission.upload import Upload, unpack
 from spinbook.problem import SpinbookError
-from spinbook.submit.check_command import check
-from spinbook.submit.command import submit
+from spinbook.submit.command import check, submit
 
 ROOT = Path(__file__).parents[2]
 SOLUTION = (ROOT / "solutions" / "joint_velocity" / "solution.py").read_text()

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from update_notebooks import Cell, cell, cells_of, notebook, ran, texts
 
 from spinbook.update.merging import content, merged
-from spinbook.update.notebook import NoNotebook, merged_notebook
+from spinbook.update.plan import NoNotebook, merged_notebook
 
 TITLE = cell("# A chapter", "title", "markdown")
 SETUP = cell("%load_ext spinbook", "spinbook-setup")

@@ -32,7 +32,7 @@ class TopicPath:
 def resolve(path: str, topics: Iterable[str]) -> TopicPath | None:
     """Split a path into one of these topics and a field. The longest topic that fits is meant, as in rqt_plot.
 
-    None where no topic fits. Raises ValueError where the rest is not a field.
+    None if no topic fits. Raises ValueError if the rest is not a field.
 
     >>> resolve('/joint_commands/position[0]', ['/joint_commands'])
     TopicPath(topic='/joint_commands', steps=('position', 0))
@@ -95,7 +95,7 @@ class Quantity:
 def quantities(path: TopicPath, message: Any, type_name: str) -> Iterator[tuple[Quantity, float]]:
     """Every number that the path leads to in this message, with what it is.
 
-    `type_name` is "package/Type". Raises LookupError where the message has no such field.
+    `type_name` is "package/Type". Raises LookupError if the message has no such field.
     """
     value: Any = message
     names: list[str] = []

@@ -1,4 +1,4 @@
-"""Records numbers from topics and prints them, one JSON array a line: a process of its own beside the kernel.
+"""Records numbers from topics and prints them, one JSON array per line, in its own process next to the kernel.
 
     python -m spinbook.kernel.plot.recorder PATH …
 

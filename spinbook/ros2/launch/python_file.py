@@ -66,7 +66,7 @@ def read(file: Path) -> LaunchDescription:
             raise CommandError(f"{file}{_line(error, file)}: {_told(error)}") from None
     if not isinstance(found, LaunchDescription):
         raise CommandError(
-            f"{file}: generate_launch_description() returned {type(found).__name__}, no LaunchDescription."
+            f"{file}: generate_launch_description() returned {type(found).__name__}, not a LaunchDescription."
         )
     return found
 

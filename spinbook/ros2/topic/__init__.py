@@ -13,7 +13,7 @@ topic = Menu(
         "find": Entry("spinbook.ros2.topic.listing:find", "The topics of a type."),
         "hz": Entry("spinbook.ros2.topic.measuring:hz", "How many messages per second arrive."),
         "info": Entry("spinbook.ros2.topic.listing:info", "Who publishes and subscribes, with which QoS."),
-        "list": Entry("spinbook.ros2.topic.listing:list_", "The topics there are."),
+        "list": Entry("spinbook.ros2.topic.listing:list_", "All topics."),
         "pub": Entry("spinbook.ros2.topic.pub:pub", "Publish messages."),
         "type": Entry("spinbook.ros2.topic.listing:type_", "The type of a topic."),
     },

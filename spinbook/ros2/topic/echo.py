@@ -26,10 +26,10 @@ LENGTH = 128
 @click.option("--once", is_flag=True, help="Print the first message and exit.")
 @click.option("--timeout", type=click.FloatRange(min=0, min_open=True), metavar="N", help="Exit after N seconds.")
 @click.option("--field", metavar="FIELD", help="Only this field, as in header.stamp")
-@click.option("--csv", is_flag=True, help="A line a message, values divided by commas.")
+@click.option("--csv", is_flag=True, help="One line per message, values separated by commas.")
 @click.option("--flow-style", is_flag=True, help="Arrays on one line.")
-@click.option("--no-arr", is_flag=True, help="Say of arrays only their type and length.")
-@click.option("--no-str", is_flag=True, help="Say of strings only their length.")
+@click.option("--no-arr", is_flag=True, help="Print only the type and length of arrays.")
+@click.option("--no-str", is_flag=True, help="Print only the length of strings.")
 @click.option("-f", "--full-length", is_flag=True, help="Print arrays and strings whole.")
 @click.option(
     "-l",
@@ -37,7 +37,7 @@ LENGTH = 128
     type=click.IntRange(min=0),
     default=LENGTH,
     show_default=True,
-    help="Elements or letters to show before '...'.",
+    help="Elements or characters to show before '...'.",
 )
 @filter_option
 @click.option("-i", "--include-message-info", is_flag=True, help="Time stamps and numbers of each message.")
@@ -110,7 +110,7 @@ def _listen(graph: Graph, topic: str, message: Any, path: list[str], profile: An
 
 
 def _printer(options: dict[str, Any]) -> Any:
-    from spinbook.ros2.message_text import Brevity, is_message, to_csv, to_yaml
+    from spinbook.ros2.messages import Brevity, is_message, to_csv, to_yaml
 
     length = None if options["full_length"] else options["truncate_length"]
     brevity = Brevity(length, options["no_arr"], options["no_str"])

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 @click.command(name="list", context_settings=CONTEXT)
 @click.option("-t", "--show-types", is_flag=True, help="Show each topic's type too.")
 @click.option("-v", "--verbose", is_flag=True, help="Count publishers and subscribers.")
-@click.option("-c", "--count-topics", is_flag=True, help="Print how many topics there are, no more.")
-@click.option("-a", "--include-hidden-topics", is_flag=True, help="Those with an underscore before a part too.")
+@click.option("-c", "--count-topics", is_flag=True, help="Print only the number of topics.")
+@click.option("-a", "--include-hidden-topics", is_flag=True, help="Also hidden topics (an underscore before a part).")
 @discovery_options
 def list_(
     show_types: bool,
@@ -28,7 +28,7 @@ def list_(
     spin_time: float | None,
     use_sim_time: bool,
 ) -> None:
-    """The topics there are.
+    """All topics.
 
     \b
       ros2 topic list -t
@@ -64,8 +64,8 @@ def _counted(title: str, topics: list[tuple[str, int]], what: str) -> str:
 
 @click.command(context_settings=CONTEXT)
 @click.argument("topic_type")
-@click.option("-c", "--count-topics", is_flag=True, help="Print how many there are, no more.")
-@click.option("-a", "--include-hidden-topics", is_flag=True, help="Those with an underscore before a part too.")
+@click.option("-c", "--count-topics", is_flag=True, help="Print only the number.")
+@click.option("-a", "--include-hidden-topics", is_flag=True, help="Also hidden topics (an underscore before a part).")
 @discovery_options
 def find(
     topic_type: str, count_topics: bool, include_hidden_topics: bool, spin_time: float | None, use_sim_time: bool
@@ -92,7 +92,7 @@ def find(
 
 @click.command(context_settings=CONTEXT)
 @click.argument("topic_name")
-@click.option("-v", "--verbose", is_flag=True, help="Each end's node, type and QoS.")
+@click.option("-v", "--verbose", is_flag=True, help="Show node, type and QoS of each publisher and subscription.")
 @discovery_options
 def info(topic_name: str, verbose: bool, spin_time: float | None, use_sim_time: bool) -> None:
     """Who publishes and subscribes, with which QoS.

@@ -25,7 +25,7 @@ CONFIRMATION = 2.0
 @click.argument("message_type")
 @click.argument("values", default="{}")
 @click.option("-1", "--once", is_flag=True, help="Publish one message and exit.")
-@click.option("-t", "--times", type=click.IntRange(min=0), default=0, help="Publish so many messages and exit.")
+@click.option("-t", "--times", type=click.IntRange(min=0), default=0, help="Publish this many messages and exit.")
 @click.option(
     "-r",
     "--rate",
@@ -67,7 +67,7 @@ def pub(topic_name: str, message_type: str, values: str, **options: Any) -> None
         node_name=options["node_name"], spin_time=options["spin_time"], use_sim_time=options["use_sim_time"]
     ) as graph:
         from spinbook.ros2.graph import absolute
-        from spinbook.ros2.message_fields import fill, read_values
+        from spinbook.ros2.messages import fill, read_values
 
         kind = interfaces.message_class(message_type)
         message = kind()

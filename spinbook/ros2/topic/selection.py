@@ -45,7 +45,7 @@ filter_option: Callable[[F], F] = click.option(
     "filter_expression",
     callback=_compile,
     metavar="EXPR",
-    help="Only messages for which this Python expression holds; the message is m.",
+    help="Only messages for which this Python expression is true; the message is m.",
 )
 
 
@@ -61,8 +61,7 @@ def field_path(text: str | None) -> list[str]:
 
 def check_path(message: Any, path: Sequence[str]) -> None:
     """Raise `CommandError` where a message class has no such field, with the fields it has."""
-    from spinbook.ros2.message_fields import field_names, type_name
-    from spinbook.ros2.message_text import is_message
+    from spinbook.ros2.messages import field_names, is_message, type_name
 
     value = message()
     for part in path:
@@ -86,7 +85,7 @@ def field(message: Any, path: Sequence[str]) -> Any:
 def type_on_graph(graph: Graph, topic: str) -> Any | None:
     """The class of a topic's messages as the graph has it now, None if nobody has the topic.
 
-    Raises `CommandError` where its ends disagree about the type, or where the type is not installed.
+    Raises `CommandError` if its ends disagree about the type, or where the type is not installed.
     """
     types = graph.topic_types(topic)
     if len(types) > 1:

@@ -20,7 +20,7 @@ OF_EVERY_NODE = {"publisher": ("/rosout", "/parameter_events"), "subscription": 
 
 @check(
     points=3,
-    hint="A timer of 2 s that begins anew with each message, and is canceled when it has fired.",
+    hint="A timer of 2 s that starts again with each message, and is canceled when it has fired.",
     depends=SORTS,
     misconception="never closes, or again and again",
     rule="since the last message on /full, it publishes closed, once.",
@@ -45,7 +45,7 @@ def test_gate_without_a_bottle(nothing: Run) -> None:
     points=2,
     hint="The sorter must not need the scale to run.",
     depends=["test_gate_closes_when_the_scale_is_silent"],
-    rule="The next message on /full is answered as usual, and the 2 s begin anew with each.",
+    rule="The next message on /full is answered as usual, and the 2 s start again with each.",
 )
 def test_scale_is_killed_and_comes_back(scale_ends: Run) -> None:
     """When the scale is killed the gate closes, and when it comes back all goes on."""

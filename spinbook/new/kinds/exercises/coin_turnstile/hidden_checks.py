@@ -35,7 +35,7 @@ def test_every_coin_counts(all_coins: Run) -> None:
     points=3,
     hint="Compare the value with the coins that there are.",
     depends=MESSAGE,
-    misconception="takes everything for a coin",
+    misconception="counts every value as a coin",
     rule="It falls through: the credit stays as it is.",
 )
 def test_what_is_no_coin_falls_through(not_coins: Run) -> None:
@@ -74,6 +74,4 @@ def test_answers_at_once(visitors: Run) -> None:
 )
 def test_node_is_as_described(visitors: Run) -> None:
     """The node has the name and the quality of service of the task."""
-    visitors.must_have_nodes()
-    visitors.must_have_interface(only=True)
-    visitors.must_have_qos()
+    visitors.must_be_as_declared()

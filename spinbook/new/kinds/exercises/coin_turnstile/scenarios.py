@@ -23,7 +23,7 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         Scenario("change", "more coins than one visit costs", change, rate=20.0),
         Scenario("all_coins", "each coin there is, with pushes between", (all_coins, pushes), rate=20.0),
         Scenario(
-            "not_coins", "values that are no coins", (not_coins, at(1.0, 2.0, 3.0, 4.0, 5.0).call("/push")), rate=20.0
+            "not_coins", "values that are not coins", (not_coins, at(1.0, 2.0, 3.0, 4.0, 5.0).call("/push")), rate=20.0
         ),
         Scenario("crowd", "five pushes at one moment", crowd, rate=20.0),
     )

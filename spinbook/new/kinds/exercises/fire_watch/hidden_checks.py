@@ -34,7 +34,7 @@ def test_reports_a_refusal(refused: Run) -> None:
 
 @check(
     points=2,
-    hint="Whatever you do with an answer belongs into the done-callback.",
+    hint="Handle an answer in the done-callback.",
     depends=REPORTS,
     rule="A sprinkler that answers late or never holds up nothing",
 )
@@ -92,6 +92,4 @@ def test_a_sprinkler_that_appears_late(late: Run, too_late: Run) -> None:
 )
 def test_node_is_as_described(fire: Run) -> None:
     """The node has the name and the quality of service of the task."""
-    fire.must_have_nodes()
-    fire.must_have_interface(only=True)
-    fire.must_have_qos()
+    fire.must_be_as_declared()

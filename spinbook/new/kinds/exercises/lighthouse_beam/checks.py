@@ -39,7 +39,7 @@ def test_beam_turns(six_seconds: Run) -> None:
 
 @check(
     points=3,
-    hint="self.get_clock().now().to_msg(), for each message anew.",
+    hint="Call self.get_clock().now().to_msg() again for each message.",
     depends=[test_publishes_the_beam],
     misconception="another clock for the stamp",
 )

@@ -119,6 +119,4 @@ def test_a_telescope_that_accepts_late(slow: Run) -> None:
 def test_node_is_as_described(one_star: Run, cloudy: Run) -> None:
     """The node has the name and the quality of service of the task."""
     for run in (one_star, cloudy):
-        run.must_have_nodes()
-        run.must_have_interface(only=True)
-        run.must_have_qos()
+        run.must_be_as_declared()

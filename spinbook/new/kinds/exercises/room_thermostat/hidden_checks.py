@@ -13,7 +13,7 @@ CHANGES = ["test_parameters_set_while_it_runs"]
     hint="A callback added with add_on_set_parameters_callback says whether values may change.",
     depends=SWITCHES,
     misconception="refuses nothing",
-    rule="A value outside of its range is refused, with a reason, and everything goes on as before.",
+    rule="A value outside of its range is refused, with a reason, and everything continues as before.",
 )
 def test_refuses_what_is_out_of_range(refused: Run) -> None:
     """It refuses values outside of their ranges, and goes on as before."""
@@ -60,8 +60,6 @@ def test_refuses_other_types(types: Run) -> None:
 )
 def test_node_is_as_described(read: Run) -> None:
     """The node has the name, the parameters and the quality of service of the task."""
-    read.must_have_nodes()
-    read.must_have_interface(only=True)
-    read.must_have_qos()
+    read.must_be_as_declared()
     read.must_have_parameter("target", 20.0)
     read.must_have_parameter("margin", 0.5)

@@ -28,8 +28,8 @@ def test_turns_towards_the_course(bench: Run) -> None:
     for one, expected in zip(bench.messages_on("/rudder"), solution, strict=False):
         angle, right = one.fields["data"], expected.fields["data"]
         if abs(right) > 0.1 and angle * right <= 0:
-            told = f"expected an angle {'above' if right > 0 else 'below'} 0, got {angle:.3g} rad."
-            bench.wrong_at(one.at, told, "/rudder", "the other sign", f"{angle:.3g} rad")
+            text = f"expected an angle {'above' if right > 0 else 'below'} 0, got {angle:.3g} rad."
+            bench.wrong_at(one.at, text, "/rudder", "the other sign", f"{angle:.3g} rad")
 
 
 @check(

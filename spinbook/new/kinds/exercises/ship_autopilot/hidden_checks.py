@@ -38,7 +38,7 @@ def test_reaches_a_course_to_the_right(right: Run) -> None:
     points=1,
     hint="A smaller gain turns more gently.",
     depends=RIGHT,
-    misconception="a gain that is too great",
+    misconception="a gain that is too large",
     rule="The ship swings past its course by 0.01 rad at most.",
 )
 def test_does_not_overshoot(left: Run, right: Run) -> None:
@@ -103,8 +103,8 @@ def test_rudder_within_its_limits(left: Run, about: Run) -> None:
     for run in (left, about):
         for one in run.messages_on("/rudder"):
             if not abs(one.fields["data"]) <= 0.6 + 1e-6:
-                told = f"the rudder goes to 0.6 rad at most, got {one.fields['data']:.3g} rad."
-                run.wrong_at(one.at, told, "/rudder", "at most 0.6 rad", one.fields["data"])
+                text = f"the rudder goes to 0.6 rad at most, got {one.fields['data']:.3g} rad."
+                run.wrong_at(one.at, text, "/rudder", "at most 0.6 rad", one.fields["data"])
 
 
 @check(
@@ -126,6 +126,4 @@ def test_amidships_without_a_course(adrift: Run) -> None:
 )
 def test_node_is_as_described(bench: Run) -> None:
     """The node has the name and the quality of service of the task."""
-    bench.must_have_nodes()
-    bench.must_have_interface(only=True)
-    bench.must_have_qos()
+    bench.must_be_as_declared()

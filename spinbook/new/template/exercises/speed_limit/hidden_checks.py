@@ -22,7 +22,7 @@ def test_too_fast_backwards(backwards: Run) -> None:
 
 @check(
     points=2,
-    hint="math.isnan(speed) tells. No comparison with it is ever true.",
+    hint="Use math.isnan(speed). No comparison with it is ever true.",
     depends=PUBLISHES,
     misconception="passes on what is not a number",
     rule="A speed that is not a number (math.isnan(speed) is true) becomes 0 m/s: the cart stops.",

@@ -1,4 +1,4 @@
-"""Takes 490 g and 510 g for wrong.
+"""Treats bottles of 490 g and 510 g as wrong.
 
 Caught by:
 - test_scale_says_which_bottles_are_full

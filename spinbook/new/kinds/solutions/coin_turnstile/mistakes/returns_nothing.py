@@ -1,4 +1,4 @@
-"""Fills in the response and does not return it: the node dies of a TypeError.
+"""Fills in the response and does not return it: the node ends with a TypeError.
 
 Caught by:
 - test_serves_push

@@ -1,4 +1,4 @@
-"""Says what there is in place of what is missing.
+"""Says what there is instead of what is missing.
 
 Caught by:
 - test_a_visitor_with_less_is_told_what_is_missing

@@ -1,4 +1,4 @@
-"""Takes whatever falls in for a coin.
+"""Counts every value as a coin.
 
 Caught by:
 - test_what_is_no_coin_falls_through

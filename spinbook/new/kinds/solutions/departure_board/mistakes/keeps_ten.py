@@ -1,4 +1,4 @@
-"""Keeps ten lines and not one: whoever comes late gets old ones, too.
+"""Keeps ten lines and not one: a late subscriber gets old ones, too.
 
 Caught by:
 - test_a_late_passenger_sees_no_older_line

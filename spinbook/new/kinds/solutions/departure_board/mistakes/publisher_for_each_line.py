@@ -1,4 +1,4 @@
-"""Creates a publisher for each line: each keeps its own, and whoever comes late gets all of them.
+"""Creates a publisher for each line: each keeps its own, and a late subscriber gets all of them.
 
 Caught by:
 - test_a_late_passenger_sees_no_older_line

@@ -1,4 +1,4 @@
-"""Publishes the board with a plain 1, which is volatile: whoever comes late sees nothing.
+"""Publishes the board with a plain 1, which is volatile: a late subscriber sees nothing.
 
 Caught by:
 - test_a_late_passenger_sees_the_line

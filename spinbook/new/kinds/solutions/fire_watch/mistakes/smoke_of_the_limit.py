@@ -1,4 +1,4 @@
-"""Takes smoke of exactly 0.3 for a fire.
+"""Treats smoke of exactly 0.3 as a fire.
 
 Caught by:
 - test_smoke_at_the_edge

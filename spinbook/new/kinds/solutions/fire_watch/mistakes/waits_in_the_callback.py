@@ -1,4 +1,4 @@
-"""Waits for the answer with call() in a callback: nobody is left to hear it, and the node hangs.
+"""Waits for the answer with call() in a callback: nothing can receive it, and the node hangs.
 
 Caught by:
 - test_siren_goes_on

@@ -1,4 +1,4 @@
-"""Takes the request to cancel for the goal's end: a goal that succeeds all the same is a miss.
+"""Treats the request to cancel as the goal's end: a goal that succeeds anyway counts as a miss.
 
 Caught by:
 - test_a_telescope_that_refuses_to_cancel

@@ -1,4 +1,4 @@
-"""Takes every result for a success.
+"""Treats every result as a success.
 
 Caught by:
 - test_a_goal_that_is_aborted

@@ -1,4 +1,4 @@
-"""Takes a star for missed as soon as it has asked to cancel.
+"""Counts a star as missed as soon as it has asked to cancel.
 
 Caught by:
 - test_clouds_cancel_the_goal

@@ -1,4 +1,4 @@
-"""Pulls a value into its range in place of refusing it.
+"""Pulls a value into its range instead of refusing it.
 
 Caught by:
 - test_refuses_what_is_out_of_range

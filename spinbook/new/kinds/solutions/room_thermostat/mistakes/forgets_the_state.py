@@ -1,4 +1,4 @@
-"""Switches the heater off between target and margin, in place of leaving it as it was.
+"""Switches the heater off between target and margin, instead of leaving it as it was.
 
 Caught by:
 - test_switches_the_heater

@@ -1,4 +1,4 @@
-"""Takes 0 for the course until there is one.
+"""Uses 0 as the course until there is one.
 
 Caught by:
 - test_amidships_without_a_course

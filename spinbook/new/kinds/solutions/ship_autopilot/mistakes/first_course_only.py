@@ -1,4 +1,4 @@
-"""Keeps the first course for ever.
+"""Keeps the first course forever.
 
 Caught by:
 - test_a_new_course

@@ -1,4 +1,4 @@
-"""Knows only hard to port and hard to starboard.
+"""Uses only full rudder, to one side or the other.
 
 Caught by:
 - test_does_not_overshoot

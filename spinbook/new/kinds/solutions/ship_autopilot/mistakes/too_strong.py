@@ -1,4 +1,4 @@
-"""Has a gain that is too great: the ship swings to and fro.
+"""Has a gain that is too large: the ship swings to and fro.
 
 Caught by:
 - test_does_not_overshoot

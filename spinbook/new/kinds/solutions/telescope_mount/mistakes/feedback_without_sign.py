@@ -1,4 +1,4 @@
-"""Gives the distance in place of the difference: the sign is lost.
+"""Gives the distance instead of the difference: the sign is lost.
 
 Caught by:
 - test_goals_one_after_another

@@ -1,4 +1,4 @@
-"""Spins with one thread: the clock stands still while execute sleeps, for ever.
+"""Spins with one thread: the clock stops while execute sleeps, forever.
 
 Caught by:
 - test_serves_a_goal

@@ -1,4 +1,4 @@
-"""Stops in place of slowing down.
+"""Stops instead of slowing down.
 
 Caught by:
 - test_too_fast_is_slowed_down

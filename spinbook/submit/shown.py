@@ -69,7 +69,7 @@ def next_step(grade: Grade, exercise: Exercise) -> str:
 def as_html(grade: Grade, exercise: Exercise) -> str:
     """A piece of HTML that needs nothing from outside and runs nothing, with everything of the student's escaped."""
     environment = Environment(
-        loader=PackageLoader("spinbook.check", "."),
+        loader=PackageLoader("spinbook.submit", "."),
         autoescape=True,
         undefined=StrictUndefined,
         finalize=_harmless,

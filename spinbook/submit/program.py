@@ -1,4 +1,4 @@
-"""Checks one cell's code: `python -m spinbook.check.program EXERCISE CODE RESULT`, the last two being files.
+"""Checks one cell's code: `python -m spinbook.submit.program EXERCISE CODE RESULT`, the last two being files.
 
 RESULT is JSON: the result by media type, or {"problem": TEXT} where there is none.
 """
@@ -35,13 +35,13 @@ def _checked(folder: Path, code: bytes) -> dict[str, str]:
         return {"problem": f"The exercise is at fault, not your code.\n{error}"}
     except HostFault as error:
         return {"problem": f"The machine or the grader is at fault, not your code: {error}"}
-    from spinbook.check.shown import as_html, as_text
+    from spinbook.submit.shown import as_html, as_text
 
     return {"text/html": as_html(grade, exercise), "text/plain": as_text(grade, exercise)}
 
 
 def _load_drawing() -> None:
-    import spinbook.check.shown  # noqa: F401
+    import spinbook.submit.shown  # noqa: F401
 
 
 if __name__ == "__main__":
