@@ -59,8 +59,8 @@ def _used(sources: Sources, needed: Sequence[str]) -> list[str]:
     """Return the packages whose types this one uses, including those inside nested types."""
     used = set(needed)
     for interface in sources.interfaces():
-        told = json.loads((sources.share / interface).with_suffix(".json").read_text(encoding="utf-8"))
-        described = told["type_description_msg"]["referenced_type_descriptions"]
+        content = json.loads((sources.share / interface).with_suffix(".json").read_text(encoding="utf-8"))
+        described = content["type_description_msg"]["referenced_type_descriptions"]
         used |= {entry["type_name"].split("/")[0] for entry in described}
     return sorted(used - {sources.package})
 

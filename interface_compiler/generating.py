@@ -122,14 +122,14 @@ class _Generators:
         self, generator: str, function: str, output: Path, includes: Sequence[str] = (), more: Sequence[Any] = ()
     ) -> None:
         arguments = self._work / f"{generator}.json"
-        told = {
+        content = {
             **self._common,
             "output_dir": str(output),
             "template_dir": str(self._templates / generator / "resource"),
             "include_paths": list(includes),
             "type_description_tuples": self._descriptions,
         }
-        arguments.write_text(json.dumps(told), encoding="utf-8")
+        arguments.write_text(json.dumps(content), encoding="utf-8")
         getattr(importlib.import_module(generator), function)(str(arguments), *more)
 
 

@@ -117,11 +117,11 @@ def keys(definitions: Sequence[Definition]) -> dict[str, str]:
 def _machine() -> str:
     """Return what decides the result besides the definitions: how it is made here, Python, and ROS's generators."""
     own = [Path(__file__).with_name(name) for name in _OWN]
-    told = [sysconfig.get_config_var("EXT_SUFFIX") or "", *(file.read_text(encoding="utf-8") for file in own)]
+    parts = [sysconfig.get_config_var("EXT_SUFFIX") or "", *(file.read_text(encoding="utf-8") for file in own)]
     for wheel in _WHEELS:
         with contextlib.suppress(metadata.PackageNotFoundError):
-            told.append(f"{wheel} {metadata.version(wheel)}")
-    return digest(*told)
+            parts.append(f"{wheel} {metadata.version(wheel)}")
+    return digest(*parts)
 
 
 @contextlib.contextmanager
@@ -154,10 +154,10 @@ def _run_compiler(prefix: Path, packages: Sequence[str]) -> None:
     done = subprocess.run(command, capture_output=True, text=True, errors="replace", env=environment, check=False)
     if done.returncode == 0:
         return
-    said = done.stderr.strip().splitlines() or [f"it ended with exit code {done.returncode}"]
-    if done.returncode == 1 and len(said) == 1:
-        raise CompileError(said[0])
-    raise CompileError(f"ROS's code generators failed on {', '.join(packages)}: {said[-1]}")
+    output = done.stderr.strip().splitlines() or [f"it ended with exit code {done.returncode}"]
+    if done.returncode == 1 and len(output) == 1:
+        raise CompileError(output[0])
+    raise CompileError(f"ROS's code generators failed on {', '.join(packages)}: {output[-1]}")
 
 
 def _python_path() -> str:

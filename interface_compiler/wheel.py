@@ -125,8 +125,8 @@ def _pip_install(files: Sequence[Path]) -> None:
     command = [sys.executable, "-m", "pip", "install", *options, *map(str, files)]
     done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
     if done.returncode:
-        said = (done.stderr.strip().splitlines() or [f"pip ended with exit code {done.returncode}"])[-1]
-        raise CompileError(f"The compiled package could not be installed with pip: {said}")
+        error = (done.stderr.strip().splitlines() or [f"pip ended with exit code {done.returncode}"])[-1]
+        raise CompileError(f"The compiled package could not be installed with pip: {error}")
 
 
 #: The earliest moment that a zip can contain.

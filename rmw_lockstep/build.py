@@ -23,7 +23,7 @@ from rmw_lockstep.library import (
     description,
     key,
     library,
-    places,
+    library_folders,
     sources,
 )
 from rmw_lockstep.ros import Ros, installed_ros
@@ -62,12 +62,12 @@ def build() -> Library | Unavailable:
         return found
     if compiler() is None:
         return _NO_COMPILER
-    place = next((place for place in places() if _writable(place)), None)
-    if place is None:
+    root = next((root for root in library_folders() if _writable(root)), None)
+    if root is None:
         return Unavailable("there is no folder for it that can be written to", "Set HOME to a folder of your own.")
-    with _turn(place):
+    with _turn(root):
         found = library()  # another process may have compiled it meanwhile
-        return found if isinstance(found, Library) else Library(_compiled(ros, place), ros.prefix)
+        return found if isinstance(found, Library) else Library(_compiled(ros, root), ros.prefix)
 
 
 def compile_into(folder: Path, ros: Ros) -> None:
@@ -89,14 +89,14 @@ def compile_into(folder: Path, ros: Ros) -> None:
     (folder / DESCRIPTION).write_text(json.dumps(description(ros), indent=1) + "\n", encoding="utf-8")
 
 
-def _compiled(ros: Ros, place: Path) -> Path:
-    target = place / key(ros)
-    with tempfile.TemporaryDirectory(prefix=".new-", dir=place, ignore_cleanup_errors=True) as temporary:
+def _compiled(ros: Ros, root: Path) -> Path:
+    target = root / key(ros)
+    with tempfile.TemporaryDirectory(prefix=".new-", dir=root, ignore_cleanup_errors=True) as temporary:
         folder = Path(temporary) / "set"
         folder.mkdir(mode=0o755)
         compile_into(folder, ros)
         folder.rename(target)
-    _forget_former(place, target)
+    _forget_former(root, target)
     return target
 
 
@@ -117,23 +117,23 @@ def _run(arguments: Sequence[str | Path]) -> None:
         raise BuildError(f"{command[0]} ended with {done.returncode}:\n{done.stderr.strip()}")
 
 
-def _writable(place: Path) -> bool:
+def _writable(root: Path) -> bool:
     with contextlib.suppress(OSError):
-        place.mkdir(parents=True, exist_ok=True)
-        return os.access(place, os.W_OK | os.X_OK)
+        root.mkdir(parents=True, exist_ok=True)
+        return os.access(root, os.W_OK | os.X_OK)
     return False
 
 
 @contextlib.contextmanager
-def _turn(place: Path) -> Iterator[None]:
+def _turn(root: Path) -> Iterator[None]:
     """Let one of several processes that want to compile do it; the others wait for it."""
-    with (place / ".lock").open("w") as lock:
+    with (root / ".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         yield
 
 
-def _forget_former(place: Path, current: Path) -> None:
-    former = [folder for folder in place.iterdir() if folder != current and not folder.name.startswith(".")]
+def _forget_former(root: Path, current: Path) -> None:
+    former = [folder for folder in root.iterdir() if folder != current and not folder.name.startswith(".")]
     for folder in sorted(former, key=lambda folder: folder.stat().st_mtime, reverse=True)[_FORMER:]:
         shutil.rmtree(folder, ignore_errors=True)
 

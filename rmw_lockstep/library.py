@@ -97,15 +97,15 @@ def library() -> Library | Unavailable:
 def _folders(ros: Ros) -> Iterator[Path]:
     if compiler():
         name = key(ros)
-        yield from (place / name for place in places())
+        yield from (root / name for root in library_folders())
     else:  # for example in a container image that was made smaller after set-up
-        compiled = (folder for place in places() if place.is_dir() for folder in sorted(place.iterdir()))
+        compiled = (folder for root in library_folders() if root.is_dir() for folder in sorted(root.iterdir()))
         yield from (folder for folder in compiled if _fits(folder, ros))
     if (prebuilt := _prebuilt()) and _fits(prebuilt, ros):
         yield prebuilt
 
 
-def places() -> Iterator[Path]:
+def library_folders() -> Iterator[Path]:
     """Yield the folders for compiled libraries, each set named by its key: the first writable one is used."""
     yield Path(sys.prefix) / "lib/rmw_lockstep"
     if cache_home := os.environ.get("XDG_CACHE_HOME"):

@@ -18,7 +18,7 @@ NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable"
 LOCAL = ("file:", "data:", "blob:", "about:")
 
 #: How long anything that has to happen in a page may take, on a busy machine (ms).
-PATIENCE_MS = 90_000
+DEADLINE_MS = 90_000
 
 #: No calls home, and no GPU that a test machine would not have.
 ARGUMENTS = ["--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
@@ -57,7 +57,7 @@ def chromium() -> Iterator[Browser]:
     if path is None:
         pytest.fail("There is no Chromium here. Install it: sudo apt-get install chromium")
     arguments = [*ARGUMENTS, "--no-sandbox"] if os.geteuid() == 0 else ARGUMENTS
-    expect.set_options(timeout=PATIENCE_MS)
+    expect.set_options(timeout=DEADLINE_MS)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=path, args=arguments)
         try:
@@ -73,7 +73,7 @@ def opened(
     """Yield the page at a file's path or a URL, loaded, in a window of `width` pixels."""
     url = where.resolve().as_uri() if isinstance(where, Path) else where
     context = browser.new_context(viewport={"width": width, "height": height}, color_scheme="dark" if dark else "light")
-    context.set_default_timeout(PATIENCE_MS)
+    context.set_default_timeout(DEADLINE_MS)
     try:
         shown = Opened(context.new_page())
         origin = "/".join(url.split("/")[:3])

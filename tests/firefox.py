@@ -18,7 +18,7 @@ from typing import Any
 
 PROGRAM = next(filter(None, map(shutil.which, ("firefox-esr", "firefox"))), None)
 #: How long it takes to start on a busy machine (s).
-PATIENCE_S = 180
+DEADLINE_S = 180
 _PREFERENCES = """\
 user_pref("marionette.port", {port});
 user_pref("browser.shell.checkDefaultBrowser", false);
@@ -36,7 +36,7 @@ class Firefox:
         self._count = 0
         self._read()
         self._call("WebDriver:NewSession", capabilities={})
-        self._call("WebDriver:SetTimeouts", script=PATIENCE_S * 1000)
+        self._call("WebDriver:SetTimeouts", script=DEADLINE_S * 1000)
 
     def _read(self) -> Any:
         length = b""
@@ -67,7 +67,7 @@ class Firefox:
 
     def wait_for(self, selector: str, text: str) -> str:
         """Return the text of the first element that this selects, once it contains `text`. Raises TimeoutError."""
-        deadline = time.monotonic() + PATIENCE_S
+        deadline = time.monotonic() + DEADLINE_S
         while text not in (found := self.evaluate(_TEXT, selector)):
             if time.monotonic() > deadline:
                 raise TimeoutError(f"{selector} shows {found!r}, not {text!r}")
@@ -115,10 +115,10 @@ def firefox(profile: Path, *preferences: str) -> Iterator[Firefox]:
 
 
 def _connected(port: int, process: subprocess.Popen[bytes]) -> socket.socket:
-    deadline = time.monotonic() + PATIENCE_S
+    deadline = time.monotonic() + DEADLINE_S
     while True:
         try:
-            return socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S + 10)
+            return socket.create_connection(("127.0.0.1", port), timeout=DEADLINE_S + 10)
         except OSError:
             assert process.poll() is None, "Firefox has ended"
             assert time.monotonic() < deadline, "Firefox does not answer"

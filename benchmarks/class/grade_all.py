@@ -71,9 +71,9 @@ def grade(
 
 def tell(made: list[Handed], results: Path, seconds: float, memory: Memory, jobs: int) -> int:
     """Say which grades are wrong; returns the exit code."""
-    wrong = {handed: told for handed in made if (told := wrong_with(handed, results))}
-    for handed, told in wrong.items():
-        print(f"WRONG {handed.student} ({handed.kind} {handed.origin}): {told}")
+    wrong = {handed: problem for handed in made if (problem := wrong_with(handed, results))}
+    for handed, problem in wrong.items():
+        print(f"WRONG {handed.student} ({handed.kind} {handed.origin}): {problem}")
     print(f"{seconds:.0f} s, {60 * len(made) / seconds:.1f} submissions a minute, load {os.getloadavg()[0]:.1f}")
     print(
         f"memory: {memory.together:.0f} MB together at most (PSS of {memory.processes} processes), "

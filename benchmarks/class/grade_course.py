@@ -49,8 +49,8 @@ def graded(exercise: str, handed: list[Handed], out: Path) -> int:
     submissions, results = out / "submissions" / exercise, out / "results" / exercise
     write(handed, submissions)
     kinds = Counter(one.kind for one in handed)
-    told = ", ".join(f"{count} {kind}" for kind, count in kinds.most_common())
-    print(f"\n{exercise}: {len(handed)} students: {told}", flush=True)
+    described = ", ".join(f"{count} {kind}" for kind, count in kinds.most_common())
+    print(f"\n{exercise}: {len(handed)} students: {described}", flush=True)
     grade(submissions, results, None, exercise=exercise)
     wrong = {one: why for one in handed if (why := wrong_with(one, results))}
     for one, why in wrong.items():

@@ -41,15 +41,15 @@ def _wrong(entry: dict[str, Any], expected: Expected) -> str:
         blocked = {name: set(v["blocked_by"]) for v in verdicts if v["status"] == "blocked" for name in [v["name"]]}
         if loose := [name for name, by in blocked.items() if not by & (failed | set(blocked))]:
             return f"blocked by nothing that fails: {loose}"
-    told = _told(grade)
-    if missing := [words for words in expected.words if not re.search(words, told, re.IGNORECASE)]:
-        return f"it is not told {missing}: {told[:200]}"
+    message = _message(grade)
+    if missing := [words for words in expected.words if not re.search(words, message, re.IGNORECASE)]:
+        return f"the feedback lacks {missing}: {message[:200]}"
     if leaked := [word for word in expected.never if word in grade["log"]]:
         return f"an attack has worked: {leaked}"
     return ""
 
 
-def _told(grade: dict[str, Any]) -> str:
+def _message(grade: dict[str, Any]) -> str:
     findings = [verdict["finding"]["text"] for verdict in grade["verdicts"] if verdict["finding"]]
     titles = [verdict["title"] for verdict in grade["verdicts"] if verdict["status"] == "failed"]
     return "\n".join([grade["message"], *findings, *titles])

@@ -58,8 +58,8 @@ class Watched:
 def _megabytes(pid: int) -> tuple[float, float]:
     """PSS and RSS of a process: proc(5), smaps_rollup. 0 if it is gone."""
     try:
-        told = Path(f"/proc/{pid}/smaps_rollup").read_text(encoding="ascii")
+        rollup = Path(f"/proc/{pid}/smaps_rollup").read_text(encoding="ascii")
     except OSError:
         return 0.0, 0.0
-    found = dict(re.findall(r"^(Pss|Rss):\s+(\d+) kB", told, re.MULTILINE))
+    found = dict(re.findall(r"^(Pss|Rss):\s+(\d+) kB", rollup, re.MULTILINE))
     return int(found.get("Pss", 0)) / 1024, int(found.get("Rss", 0)) / 1024

@@ -18,15 +18,15 @@ ASSIGNMENT = "joint_velocity"
 def lay_scenarios(grading: Grading, folder: Path) -> float:
     """Write real_time.py and scenarios.json into `folder`; how many seconds all scenarios last together."""
     runner = grading.runner
-    told: dict[str, Any] = {}
+    data: dict[str, Any] = {}
     for scenario in runner.scenarios:
         run = Run(runner.exercise, grading.references[scenario.name], grading.references[scenario.name])
-        told[scenario.name] = {
+        data[scenario.name] = {
             "messages": [{"at": (m.at - START) / SECOND, "fields": m.fields} for m in scenario.messages],
             "expected": [message.by("name", "velocity") for message in run.received],
         }
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "scenarios.json").write_text(json.dumps(told), encoding="utf-8")
+    (folder / "scenarios.json").write_text(json.dumps(data), encoding="utf-8")
     shutil.copy(HERE / "real_time.py", folder)
     return sum(scenario.seconds for scenario in runner.scenarios)
 
@@ -79,9 +79,9 @@ def hand_in_otter(folder: Path, student: str, code: str) -> Path:
 
 
 def _cell(name: str, code: str, grade: bool = False, solution: bool = False, points: int = 0) -> dict[str, Any]:
-    told: dict[str, Any] = {"grade_id": name, "grade": grade, "solution": solution, "locked": grade, "task": False}
-    told |= {"schema_version": 3, **({"points": points} if grade else {})}
-    metadata = {"nbgrader": told}
+    data: dict[str, Any] = {"grade_id": name, "grade": grade, "solution": solution, "locked": grade, "task": False}
+    data |= {"schema_version": 3, **({"points": points} if grade else {})}
+    metadata = {"nbgrader": data}
     return {
         "cell_type": "code",
         "id": name,

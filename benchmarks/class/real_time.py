@@ -21,7 +21,7 @@ def play(node_class: type, name: str) -> bool:
     from rclpy.executors import SingleThreadedExecutor
     from sensor_msgs.msg import JointState
 
-    told = json.loads(SCENARIOS.read_text(encoding="utf-8"))[name]
+    scenario = json.loads(SCENARIOS.read_text(encoding="utf-8"))[name]
     answers: list[Any] = []
     rclpy.init()
     try:
@@ -36,7 +36,7 @@ def play(node_class: type, name: str) -> bool:
         while not publisher.get_subscription_count():
             time.sleep(0.01)
         began = time.monotonic()
-        for message in told["messages"]:
+        for message in scenario["messages"]:
             time.sleep(max(0.0, began + message["at"] - time.monotonic()))
             publisher.publish(_message(JointState(), message["fields"]))
         time.sleep(0.5)
@@ -45,7 +45,7 @@ def play(node_class: type, name: str) -> bool:
     finally:
         rclpy.try_shutdown()
     got = [dict(zip(answer.name, answer.velocity, strict=False)) for answer in answers]
-    return len(got) == len(told["expected"]) and all(map(_same, got, told["expected"]))
+    return len(got) == len(scenario["expected"]) and all(map(_same, got, scenario["expected"]))
 
 
 def _same(got: dict[str, float], expected: dict[str, float]) -> bool:

@@ -161,6 +161,6 @@ def _caught_by(source: str) -> Iterator[str]:
 
 
 def _expected_of(attack: str) -> Expected:
-    told = tomllib.loads((HOSTILE / "expected.toml").read_text(encoding="utf-8"))[attack]
-    words, never = tuple(told.get("words", ())), tuple(told.get("never", ()))
-    return Expected(tuple(told["outcome"]), told["score"], None, words, never)
+    attacked = tomllib.loads((HOSTILE / "expected.toml").read_text(encoding="utf-8"))[attack]
+    words, never = tuple(attacked.get("words", ())), tuple(attacked.get("never", ()))
+    return Expected(tuple(attacked["outcome"]), attacked["score"], None, words, never)

@@ -154,8 +154,8 @@ def _round(number: int, programs: list[Program], options: argparse.Namespace) ->
         for done in [pool.submit(program.grade) for program in programs]:
             done.result()
     how = "next to busy loops" if busy else "alone"
-    told = f"round {number + 1}, {how}: {time.monotonic() - began:.0f} s, {_total(programs).plain}"
-    print(told, file=sys.stderr, flush=True)
+    summary = f"round {number + 1}, {how}: {time.monotonic() - began:.0f} s, {_total(programs).plain}"
+    print(summary, file=sys.stderr, flush=True)
 
 
 @contextlib.contextmanager

@@ -110,7 +110,7 @@ def test_canceled(never_ends: Run) -> None:
     misconception="cancels too early",
     rule="If a goal has not ended 5 s after it was accepted, ask the server to cancel it",
 )
-def test_has_patience(slow: Run, late_and_slow: Run) -> None:
+def test_waits_long_enough(slow: Run, late_and_slow: Run) -> None:
     """It does not cancel a goal that ends within 5 s after it was accepted."""
     for run in (slow, late_and_slow):
         must_not_cancel(run)

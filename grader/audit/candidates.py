@@ -213,7 +213,7 @@ def _nothing(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> l
 
 
 def _mistake(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> list[AuditProblem]:
-    said = f"the mistake {candidate.name} (“{candidate.title}”)"
+    subject = f"the mistake {candidate.name} (“{candidate.title}”)"
     known = {check.name for check in checks}
 
     def problem(about: str, found: str, fix: str) -> AuditProblem:
@@ -221,23 +221,23 @@ def _mistake(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> l
 
     if not candidate.caught_by:
         fix = "Write “Caught by:” in its docstring, and below it a line “- test_…” for each check."
-        return [problem(candidate.name, f"{said} names no check that must catch it", fix)]
+        return [problem(candidate.name, f"{subject} names no check that must catch it", fix)]
     found = []
     for name in candidate.caught_by:
         status = trial.statuses.get(name)
         fix = "Fix the check so that it fails, or take it off the list under “Caught by:”."
         if name not in known:
             fix = "Write the check (again), or take it off the list under “Caught by:”."
-            found.append(problem(name, f"{said} is to be caught by {name}: there is no such check", fix))
+            found.append(problem(name, f"{subject} is to be caught by {name}: there is no such check", fix))
         elif status == "passed":
-            found.append(problem(name, f"{name} lets {said} through", fix))
+            found.append(problem(name, f"{name} lets {subject} through", fix))
         elif status == "blocked":
             by = ", ".join(trial.failed) or "another check"
-            text = f"{name} is to catch {said}, but is blocked: it depends on {by}, which fails"
+            text = f"{name} is to catch {subject}, but is blocked: it depends on {by}, which fails"
             found.append(problem(name, text, fix))
     for name in trial.failed:
         if name not in candidate.caught_by:
-            text = f"{said} fails {name}, too, which it does not name: {trial.findings[name].text}"
+            text = f"{subject} fails {name}, too, which it does not name: {trial.findings[name].text}"
             fix = "If the check should pass here, fix it. Otherwise add it under “Caught by:”."
             found.append(problem(name, text, fix))
     return found

@@ -1,4 +1,4 @@
-"""An exercise's checks as their author wrote them, their times, and what students are told of them."""
+"""An exercise's checks as their author wrote them, their times, and what students see of them."""
 
 from __future__ import annotations
 

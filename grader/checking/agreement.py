@@ -107,11 +107,11 @@ def _missing(
     exercise: Exercise, file: Path, source: str, declared: tuple[_Declared, ...], made: tuple[Created, ...]
 ) -> Iterator[ExerciseError]:
     """What is declared, but neither created nor named anywhere in the solution."""
-    toml, said = exercise.folder / "exercise.toml", texts(source)
+    toml, written = exercise.folder / "exercise.toml", texts(source)
     computed = {one.kind for one in made if one.name is None}
     for one in declared:
         there = any((other.kind, other.name) == (one.kind, one.name) for other in made)
-        if there or one.kind in computed or one.name in _OF_LIBRARIES or {one.name, one.name.lstrip("/")} & said:
+        if there or one.kind in computed or one.name in _OF_LIBRARIES or {one.name, one.name.lstrip("/")} & written:
             continue
         verb = "declare" if one.kind == "parameter" else "create"
         found = f"{file.name} does not {verb} {_WORDS[one.kind]} {one.name}, which is declared here"

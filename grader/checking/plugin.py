@@ -135,10 +135,10 @@ class Checks:
             return Verdict(item.name, title, "failed", *common, finding=error.finding)
         if isinstance(error, AssertionError):
             return Verdict(item.name, title, "failed", *common, finding=Finding(str(error)))
-        return Verdict(item.name, title, "error", *common, error=_told(error, item.path))
+        return Verdict(item.name, title, "error", *common, error=_describe(error, item.path))
 
 
-def _told(error: BaseException, file: Path) -> str:
+def _describe(error: BaseException, file: Path) -> str:
     line = _line(error, file)
     place = f"{file}:{line}" if line else f"{file}"
     text = str(error).strip().splitlines()

@@ -198,15 +198,15 @@ def by_row(table: Path) -> Sorted:
             skipped.append(Skipped(row["file"], f"line {number} names it, but there is no such file"))
             continue
         if row.get("submitted"):
-            date, told_by = moment(row["submitted"]), "the CSV file"
+            date, date_source = moment(row["submitted"]), "the CSV file"
             if date is None:
                 given = row["submitted"]
                 raise SubmissionsError(f"{table}:{number}: submitted = {given!r}. Write it as 2026-11-22 23:59.")
         else:
-            date, told_by = date_of(path), "the file's date"
+            date, date_source = date_of(path), "the file's date"
         lms = {column: value for column, value in row.items() if column not in KNOWN}
         student = Student(student_id(row["student"]), row.get("name", ""), row.get("email", ""), lms)
-        found.append((student, File(row["file"], path, date, told_by)))
+        found.append((student, File(row["file"], path, date, date_source)))
     return Sorted(f"the files that {table.name} names", tuple(found), tuple(skipped))
 
 

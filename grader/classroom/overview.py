@@ -116,7 +116,7 @@ class Distribution:
     median: float
     full: int
     bars: tuple[Bar, ...]
-    said: str
+    description: str
 
 
 def distribution(scores: Sequence[float], most: float) -> Distribution | None:
@@ -137,7 +137,7 @@ def distribution(scores: Sequence[float], most: float) -> Distribution | None:
         median=statistics.median(scores),
         full=sum(score >= most for score in scores),
         bars=bars,
-        said=f"Histogram of {len(scores)} students' points: " + ", ".join(text) + ".",
+        description=f"Histogram of {len(scores)} students' points: " + ", ".join(text) + ".",
     )
 
 

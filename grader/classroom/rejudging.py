@@ -51,7 +51,7 @@ def rejudge(
         grade = grading.judge(submissions[who], recordings)
         graded = Graded(who, replace(grade, seconds=kept[0].grade.seconds), picture(grade, marking.exercise))
         found.append(Rejudged(one, graded, difference(kept[0].grade, grade)))
-    _tell(console, found, missing)
+    _report(console, found, missing)
     changed = sum(bool(one.changed) for one in found)
     replaced = bool(changed) and may_replace(changed)
     for new in found:
@@ -61,7 +61,7 @@ def rejudge(
         console.print("Nothing was replaced.")
 
 
-def _tell(console: Console, found: list[Rejudged], missing: list[str]) -> None:
+def _report(console: Console, found: list[Rejudged], missing: list[str]) -> None:
     for one in found:
         if one.changed:
             console.print(Text(printable(f"{one.graded.who}: {one.changed}")), soft_wrap=True)

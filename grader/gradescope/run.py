@@ -53,7 +53,7 @@ def prepare(folder: Path, isolation: str = "") -> None:
 
 
 def main(folder: Path, root: Path, isolation: str = "") -> None:
-    """Grade what is in `root/submission`. Whatever goes wrong on our side is told, without a score."""
+    """Grade what is in `root/submission`. Whatever goes wrong on our side is reported, without a score."""
     keep_beside(folder)
     try:
         text = gradescope_results(_entry(load(folder), root, isolation))

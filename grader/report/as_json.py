@@ -101,10 +101,10 @@ VISIBLE, AFTER_PUBLISHED, HIDDEN = "visible", "after_published", "hidden"
 
 
 def gradescope_results(entry: Entry) -> dict[str, Any]:
-    """What Gradescope is told: public checks visible at once, hidden ones when grades are published, stdout never.
+    """What Gradescope gets: public checks visible at once, hidden ones when grades are published, stdout never.
 
-    Of hidden checks it is told as little as the feedback page tells (`grader.report.feedback`), for once grades are
-    published students read it. A fault of ours is told with no score and no tests: Gradescope then records no score.
+    Of hidden checks it gets as little as the feedback page shows (`grader.report.feedback`), because students read it
+    once grades are published. A fault of ours has no score and no tests: Gradescope then records no score.
     """
     grade = entry.grade
     if entry.final is None:
@@ -121,7 +121,7 @@ def gradescope_results(entry: Entry) -> dict[str, Any]:
 
 
 def no_score(message: str) -> dict[str, Any]:
-    """What Gradescope is told where nothing could be graded by a fault of ours: a text, and no score."""
+    """What Gradescope gets if nothing could be graded because of a fault of ours: a text, and no score."""
     text = f"This could not be graded, and that is not your fault. Tell your instructor.\n{message}"
     return {"output": _text(text), "output_format": "text", "stdout_visibility": HIDDEN}
 

@@ -58,11 +58,11 @@ def _in_order(recording: Recording, reference: Recording) -> list[tuple[int, str
     messages += [(got.at, REFERENCE + got.topic, got.type, got.fields) for got in reference.received]
     for prefix, one in (("", recording), (REFERENCE, reference)):
         others = [event for event in one.timeline if not isinstance(event.item, (Sent, Received))]
-        messages += [(event.at, prefix + EVENTS, TEXT, {"data": _told(event)}) for event in others]
+        messages += [(event.at, prefix + EVENTS, TEXT, {"data": _as_json(event)}) for event in others]
     return sorted(messages, key=lambda message: (message[0], message[1]))
 
 
-def _told(event: Event) -> str:
+def _as_json(event: Event) -> str:
     return json.dumps({"what": event.what, **dataclasses.asdict(event.item)}, ensure_ascii=False)
 
 

@@ -139,7 +139,7 @@ def feedback_plot(grade: Grade, exercise: Exercise) -> str | None:
     return template("report/feedback_plot.svg.j2").render(
         title=quantity.field,
         unit=quantity.unit,
-        said=_said(drawn, quantity.field, quantity.element, end),
+        description=_description(drawn, quantity.field, quantity.element, end),
         panels=panels,
         width=WIDTH,
         left=LEFT,
@@ -207,7 +207,7 @@ def _marks(start: float, end: float) -> list[float]:
     return [round((first + i) * step, 6) for i in range(int((end - first * step) / step + 1e-9) + 1)]
 
 
-def _said(drawn: tuple[Curve, ...], field: str, called: str, end: float) -> str:
+def _description(drawn: tuple[Curve, ...], field: str, called: str, end: float) -> str:
     """The plot in words."""
     wrong = [curve for curve in drawn if curve.first_wrong]
     alone = drawn[0].element == field

@@ -37,7 +37,7 @@ class ReferencePublishers:
     def __init__(self, node: HubNode, scenario: Scenario) -> None:
         self._node, self._scenario = node, scenario
         self._ready: dict[tuple[str, int], Publisher] = {}
-        self._speaking: dict[str, int] = {}
+        self._current: dict[str, int] = {}
         for message in scenario.messages:
             self._add(message)
         prepared = _prepared.get(id(scenario))
@@ -52,13 +52,13 @@ class ReferencePublishers:
             given = self._scenario.qos.get(message.topic)
             offer = hub_qos(given) if given else OFFER
             self._ready[key] = self._node.publisher(message.topic, message.type, offer)
-        self._speaking.setdefault(message.topic, message.publisher)
+        self._current.setdefault(message.topic, message.publisher)
 
     def announce(self, topic: str, type_name: str) -> None:
         """Create a publisher on this topic, even if the scenario has no message for it."""
         self._add(Message(0, topic, type_name, {}))
 
-    def is_heard(self, message: Message) -> bool:
+    def has_subscriber(self, message: Message) -> bool:
         """Return whether the student's program subscribes to the message's topic."""
         publisher = self._ready.get((message.topic, message.publisher))
         return publisher is not None and bool(publisher.matched)
@@ -66,24 +66,24 @@ class ReferencePublishers:
     def publish(self, message: Message) -> int:
         """Queue a message. Return its number among everything the hub has published."""
         self._add(message)
-        former = self._speaking[message.topic]
+        former = self._current[message.topic]
         if former != message.publisher:
             self._ready.pop((message.topic, former)).close()
-            self._speaking[message.topic] = message.publisher
-        heard = self.is_heard(message)
+            self._current[message.topic] = message.publisher
+        subscribed = self.has_subscriber(message)
         publisher = self._ready[message.topic, message.publisher]
         content = self._serialized.get(id(message)) or serialized(message_class(message.type), message.fields)
         self.stages.append(publisher.publish(content))
-        self.sent.append(Sent(message.at, message.topic, message.type, message.fields, heard))
+        self.sent.append(Sent(message.at, message.topic, message.type, message.fields, subscribed))
         return self.stages[-1]
 
     def leave(self, topic: str) -> None:
         """Remove the publisher on this topic; the next message creates another one."""
         for key in [key for key in self._ready if key[0] == topic]:
             self._ready.pop(key).close()
-        self._speaking.pop(topic, None)
+        self._current.pop(topic, None)
 
     @property
-    def heard(self) -> bool:
+    def have_subscribers(self) -> bool:
         """Whether the student's program subscribes to every topic."""
         return all(publisher.matched for publisher in self._ready.values())

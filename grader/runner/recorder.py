@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from bisect import bisect_right
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -106,7 +106,7 @@ class Recorder:
         finally:
             self._paused = False
 
-    def has_heard_since(self, stage: int) -> bool:
+    def has_received_since(self, stage: int) -> bool:
         """Return whether anything has arrived since number `stage` of what the hub has published."""
         return any(heard.stage >= stage for _, heard in self._heard)
 
@@ -116,8 +116,9 @@ class Recorder:
         `stages` has the number of each message sent, among everything the hub has published; see `Heard.stage`.
         """
         found = []
-        unordered = without_order(self._heard)
-        for number, heard in in_canonical_order(self._heard):
+        several = by_several_threads(self._heard)
+        unordered = without_order(self._heard, several)
+        for number, heard in in_canonical_order(self._heard, several):
             to = self._listening[number]
             at = max(self._earliest, clocks.simulated(heard.now, heard.stage))
             after = bisect_right(stages, heard.stage)
@@ -127,12 +128,14 @@ class Recorder:
         return tuple(found)
 
 
-def in_canonical_order(heard: Sequence[tuple[int, Heard]]) -> list[tuple[int, Heard]]:
+def in_canonical_order(
+    heard: Sequence[tuple[int, Heard]], several: Collection[tuple[int, str]]
+) -> list[tuple[int, Heard]]:
     """Sort messages by their moment; at the same moment by topic and node, and within these as they were sent.
 
-    What several threads publish on one topic at the same moment has no order, so it is sorted by its bytes.
+    What `several` threads (see `by_several_threads`) publish on one topic at the same moment has no order, so it is
+    sorted by its bytes.
     """
-    several = by_several_threads(heard)
     alone = len({one.publisher.process for _, one in heard}) <= 1
 
     def key(entry: tuple[int, Heard]) -> tuple[Any, ...]:
@@ -143,9 +146,8 @@ def in_canonical_order(heard: Sequence[tuple[int, Heard]]) -> list[tuple[int, He
     return sorted(heard, key=key)
 
 
-def without_order(heard: Sequence[tuple[int, Heard]]) -> set[Moment]:
-    """Return the moments at which several threads may have published more than one message on a topic."""
-    several = by_several_threads(heard)
+def without_order(heard: Sequence[tuple[int, Heard]], several: Collection[tuple[int, str]]) -> set[Moment]:
+    """Return the moments at which `several` threads may have published more than one message on a topic."""
     counts = Counter(_moment(number, one) for number, one in heard if (number, one.node) in several)
     return {moment for moment, count in counts.items() if count > 1}
 

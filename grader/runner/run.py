@@ -40,7 +40,7 @@ ENDLESS = "Your node used {0:g} s of computing time on one message and did not f
 OUTSIDE = (
     "Your program did not go on for {0:g} s: it waits for something outside it, such as another program that sleeps."
 )
-DEAF = (
+UNRESPONSIVE = (
     "Your node started but never responds. Does your program call rclpy.spin(node), and does no callback wait or sleep?"
 )
 
@@ -110,7 +110,7 @@ class Run:
         self._asks_in_vain = False
         self._lockstep_seconds = 0.0
         hub.main = None if self._team else student.pid
-        hub.patience = self._budget.look
+        hub.on_tick = self._budget.look
         hub.before_end = self._remember_end_points
 
     def _pids(self) -> set[int]:
@@ -177,7 +177,7 @@ class Run:
         except Violation as violation:
             return Ending("over-limit", message_of_violation(violation))
         except Gone:
-            self._see_that_it_was_the_program()
+            self._check_that_it_was_the_program()
             if self._team and self._team.ended:
                 program = (self._team.ended, task.source)
             return cut_short(self._student, *program, self._is_up, self._when() if self._is_up else "before the start")
@@ -188,7 +188,7 @@ class Run:
             return f"at message {len(self._publishers.sent)}"
         return f"{(self._clocks.at - START) / SECOND:.2f} s after the start"
 
-    def _see_that_it_was_the_program(self) -> None:
+    def _check_that_it_was_the_program(self) -> None:
         """Raise if the machine ended the program."""
         exit_ = self._student.poll()
         if exit_ and exit_.limit == "wall":
@@ -210,7 +210,7 @@ class Run:
 
     def _begin(self) -> None:
         hub = self._hub
-        wait_until_up(hub, lambda: self._publishers.heard, lambda: bool(nodes(hub.graph, self._is_ours)))
+        wait_until_up(hub, lambda: self._publishers.have_subscribers, lambda: bool(nodes(hub.graph, self._is_ours)))
         self._budget.begin(STEP)
         self._sim_time = self._parameters.use_sim_time(hub.now + SOON)
         self._nodes = nodes(hub.graph, self._is_ours)
@@ -228,14 +228,14 @@ class Run:
             self._go_to(message.at)
             self._publish(message)
             self._hub.wait_until_idle()
-            self._see_that_it_listens(message)
+            self._check_that_it_listens(message)
         self._end_points = end_points(self._hub.graph, self._is_ours)
         self._go_to(self._clocks.at + AFTERWARDS)
         self._hub.wait_until_idle()
-        self._see_that_it_still_answers()
+        self._check_that_it_still_answers()
 
     def _publish(self, message: Message) -> None:
-        if not self._publishers.is_heard(message):
+        if not self._publishers.has_subscriber(message):
             self._hub.wait_until_idle()  # only then is it known whether the program subscribes
         self._clocks.set(message.at, self._hub.now, self._publishers.publish(message), message=True)
 
@@ -264,7 +264,7 @@ class Run:
         self._end_points = self._all_end_points()
         self._nodes = tuple(sorted({*self._nodes, *nodes(self._hub.graph, self._is_ours)}))
         if not scenario.servers:
-            self._see_that_it_still_answers()
+            self._check_that_it_still_answers()
 
     def _all_end_points(self) -> tuple[EndPoint, ...]:
         """Return the current end points; with several programs, also those of one that was killed."""
@@ -302,10 +302,10 @@ class Run:
     def _set_clock(self, at: int) -> None:
         self._clocks.set(at, self._hub.now, self._clock.publish(clock_message(at)))
 
-    def _see_that_it_listens(self, message: Message) -> None:
+    def _check_that_it_listens(self, message: Message) -> None:
         """Raise `Stopped` when the program neither waits in ROS 2 nor is about to go on, and answers no call either."""
         hub = self._hub
-        if hub.in_ros or self._asks_in_vain or not self._publishers.is_heard(message):
+        if hub.in_ros or self._asks_in_vain or not self._publishers.has_subscriber(message):
             return
         wakes = hub.next
         if wakes is not None and wakes - hub.now <= SOON:
@@ -313,19 +313,19 @@ class Run:
         self._ask(until=hub.now)
         self._asks_in_vain = True  # an executor with its own way of waiting, such as rclpy's EventsExecutor
 
-    def _see_that_it_still_answers(self) -> None:
+    def _check_that_it_still_answers(self) -> None:
         """Raise `Stopped` when the program has answered no message at the end, does not wait in ROS 2, and answers no
         call in the next seconds either: for example because it keeps reading the clock."""
-        heard = [
+        subscribed = [
             stage for stage, sent in zip(self._publishers.stages, self._publishers.sent, strict=True) if sent.heard
         ]
-        if heard and not self._hub.in_ros and not self._recorder.has_heard_since(heard[-1]):
+        if subscribed and not self._hub.in_ros and not self._recorder.has_received_since(subscribed[-1]):
             with self._recorder.paused():
                 self._ask(until=self._hub.now + SOON)
 
     def _ask(self, until: int) -> None:
         if not all(self._parameters.answers(node, until) for node in self._nodes):
-            raise Stopped("timed-out", DEAF)
+            raise Stopped("timed-out", UNRESPONSIVE)
 
     def _keep_pace(self, began: float, at: int) -> None:
         if self._task.pace:

@@ -30,9 +30,9 @@ class Team:
                  companions: Sequence[Start]) -> None:  # fmt: skip
         """Start the companions, and those programs that run from the beginning."""
         self._hub, self._programs = hub, programs
-        # The first one connects through the hub's own door.
-        self._paths = {name: _door(hub, folder, number) for number, name in enumerate(programs)}
-        self._doors = {name: number for number, name in enumerate(programs)}
+        # The first one connects to the hub's own socket.
+        self._paths = {name: _socket(hub, folder, number) for number, name in enumerate(programs)}
+        self._listeners = {name: number for number, name in enumerate(programs)}
         self._running: dict[str, Student] = {}
         self._stopped: list[Student] = []
         self._interrupted = False
@@ -41,7 +41,7 @@ class Team:
         self.exits: list[Recorded] = []
         later = {one.file for one in scenario.programs if one.starts > 0}
         self._companions = [
-            start(_door(hub, folder, len(programs) + number)) for number, start in enumerate(companions)
+            start(_socket(hub, folder, len(programs) + number)) for number, start in enumerate(companions)
         ]
         for name in programs:
             if name not in later:
@@ -63,7 +63,7 @@ class Team:
         exit_ = student.kill()
         self._stopped.append(student)
         self.exits.append(Recorded(now, name, exit_.code, exit_.signal, "grader"))
-        while any(link.door == self._doors[name] for link in self._hub.links):
+        while any(link.listener == self._listeners[name] for link in self._hub.links):
             self._hub.pause()
 
     def _see(self) -> None:
@@ -73,7 +73,7 @@ class Team:
     def is_companions(self, process: int) -> bool:
         """Return whether a process, by its number on the hub, is one of the author's own."""
         first = len(self._programs)
-        return any(link.number == process and link.door >= first for link in self._hub.links)
+        return any(link.number == process and link.listener >= first for link in self._hub.links)
 
     # --- as one program: see `Student`
 
@@ -131,9 +131,9 @@ class Team:
         return next(iter(exits.values()), None) or self._stopped[0].kill()
 
 
-def _door(hub: Hub, folder: Path, number: int) -> Path:
+def _socket(hub: Hub, folder: Path, number: int) -> Path:
     if not number:
         return hub.path
     own = folder / str(number)
     own.mkdir(exist_ok=True)
-    return hub.add_door(own)
+    return hub.add_listener(own)

@@ -56,8 +56,8 @@ def build(plan: Sequence[Mount], user_namespace: int, *, network: bool) -> Names
         os.write(builder.input, b"!")
     if os.read(builder.output, 1) != b"!":
         with os.fdopen(os.dup(builder.errors), "rb") as stream:
-            said = stream.read().decode(errors="replace").strip()
-        raise OSError(f"bubblewrap ended with {builder.wait()}: {said}")
+            errors = stream.read().decode(errors="replace").strip()
+        raise OSError(f"bubblewrap ended with {builder.wait()}: {errors}")
     with os.fdopen(information) as text:
         init = int(json.load(text)["child-pid"])
     own_processes = frozenset(map(int, Path(f"/proc/{init}/task/{init}/children").read_text().split()))

@@ -37,7 +37,7 @@ class Start:
 def confine(
     start: Start,
     paths: Paths,
-    processes_beside: int,
+    other_processes: int,
     output: int,
     *,
     keep_open: int,
@@ -47,7 +47,7 @@ def confine(
     Args:
         start: the program, how far to confine it, and the resources it may use.
         paths: its folders.
-        processes_beside: see `limits.apply`.
+        other_processes: see `limits.apply`.
         output: becomes its standard output and error; every other descriptor but `keep_open` is closed.
         keep_open: a descriptor that the caller still needs.
 
@@ -57,7 +57,7 @@ def confine(
     os.setsid()
     _take_output(output, keep_open)
     _reset_signals()
-    apply_limits(start.limits, processes_beside=processes_beside)
+    apply_limits(start.limits, other_processes=other_processes)
     if start.core is not None:
         os.sched_setaffinity(0, {start.core})
     os.chdir(paths.home)

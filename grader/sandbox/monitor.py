@@ -124,7 +124,7 @@ class Monitor:
         self._buffer = OutputBuffer()
         self._lock = threading.Lock()
         self._limit: str | None = None
-        self._buried_cpu_s = 0.0
+        self._reaped_cpu_s = 0.0
         self._since_s = time.monotonic()
         self._thread = threading.Thread(target=self._watch, name="monitor", daemon=True)
         self._thread.start()
@@ -145,7 +145,7 @@ class Monitor:
         """Return the CPU seconds of all processes, including those that have ended."""
         alive = (self._pid, *self.others) if self.exit is None else self.others
         orphans = processes.buried_cpu_seconds(self._init) if self._init != self._pid else 0.0
-        return self._buried_cpu_s + orphans + sum(processes.usage(pid).cpu_s for pid in alive)
+        return self._reaped_cpu_s + orphans + sum(processes.usage(pid).cpu_s for pid in alive)
 
     def at_limit(self) -> bool:
         """Return whether the program is being killed, or has been, for a limit; counts what it uses now."""
@@ -166,7 +166,7 @@ class Monitor:
             if self._pipe in ready and not self._drain():
                 poll.unregister(self._pipe)
             if self._control.fileno() in ready:
-                self._hear()
+                self._receive()
             if time.monotonic() >= next_look_s:
                 self._look()
                 next_look_s = time.monotonic() + _TICK_S
@@ -189,15 +189,15 @@ class Monitor:
             if not select.select([self._pipe], [], [], 0)[0] or not self._drain():
                 return
 
-    def _hear(self) -> None:
+    def _receive(self) -> None:
         with contextlib.suppress(OSError):
             message = self._control.recv(4096)
             if message:
-                said = json.loads(message)
-                if said["event"] == "exited":
-                    self._buried_cpu_s = said["cpu_s"]
-                    self._end(said["status"])
-                elif said["event"] == "dead":
+                report = json.loads(message)
+                if report["event"] == "exited":
+                    self._reaped_cpu_s = report["cpu_s"]
+                    self._end(report["status"])
+                elif report["event"] == "dead":
                     self._finish()
                 return
         # The supervisor is gone. With namespaces the kernel has killed everything; without, we kill what we last saw.

@@ -97,20 +97,20 @@ def build(plan: Sequence[Mount], user_namespace: int, *, network: bool) -> Names
     syscalls.unshare(flags if network else flags | syscalls.CLONE_NEWNET)
     syscalls.sethostname("student")
     os.chdir("/")
-    told_at, told_to = os.pipe()
+    status_read, status_write = os.pipe()
     init = os.fork()
     if init == 0:
-        _be_init(plan, told_to, network)
-    os.close(told_to)
-    with os.fdopen(told_at, "rb") as stream:
-        said = stream.read()
-    if said != b"ready":
+        _be_init(plan, status_write, network)
+    os.close(status_write)
+    with os.fdopen(status_read, "rb") as stream:
+        status = stream.read()
+    if status != b"ready":
         os.waitpid(init, 0)
-        raise OSError(said.decode(errors="replace") or "the first process of the namespace died")
+        raise OSError(status.decode(errors="replace") or "the first process of the namespace died")
     return Namespaces(init)
 
 
-def _be_init(plan: Sequence[Mount], told_to: int, network: bool) -> NoReturn:
+def _be_init(plan: Sequence[Mount], status_write: int, network: bool) -> NoReturn:
     """Run the first process of the pid namespace: build the root, then only reap orphans until killed."""
     try:
         syscalls.prctl(syscalls.PR_SET_PDEATHSIG, signal.SIGKILL)
@@ -123,9 +123,9 @@ def _be_init(plan: Sequence[Mount], told_to: int, network: bool) -> NoReturn:
         syscalls.prctl(syscalls.PR_SET_DUMPABLE, 0)
         if seccomp.supported():
             seccomp.install(seccomp.program(network=network))
-        os.write(told_to, b"ready")
+        os.write(status_write, b"ready")
     except BaseException as fault:
-        os.write(told_to, str(fault).encode())
+        os.write(status_write, str(fault).encode())
         os._exit(1)
     os.closerange(0, 256)
     while True:
@@ -233,32 +233,32 @@ def create_user_namespace() -> int:
         groups = users
     else:
         users, groups = f"{USER_ID} {os.geteuid()} 1\n", f"{USER_ID} {os.getegid()} 1\n"
-    told_at, told_to = os.pipe()
+    status_read, status_write = os.pipe()
     ended_at, ended_to = os.pipe()
     child = os.fork()
     if child == 0:
         try:
             os.close(ended_to)
             syscalls.unshare(syscalls.CLONE_NEWUSER)
-            os.write(told_to, b"ready")
+            os.write(status_write, b"ready")
             os.read(ended_at, 1)
         except BaseException as fault:
-            os.write(told_to, str(fault).encode())
+            os.write(status_write, str(fault).encode())
         finally:
             os._exit(0)
-    os.close(told_to)
+    os.close(status_write)
     os.close(ended_at)
     try:
-        said = os.read(told_at, 4096)
-        if said != b"ready":
-            raise OSError(f"this machine allows no user namespaces: {said.decode(errors='replace')}")
+        status = os.read(status_read, 4096)
+        if status != b"ready":
+            raise OSError(f"this machine allows no user namespaces: {status.decode(errors='replace')}")
         process = Path(f"/proc/{child}")
         (process / "setgroups").write_text("deny")
         (process / "uid_map").write_text(users)
         (process / "gid_map").write_text(groups)
         return os.open(process / "ns" / "user", os.O_RDONLY | os.O_CLOEXEC)
     finally:
-        os.close(told_at)
+        os.close(status_read)
         os.close(ended_to)
         os.waitpid(child, 0)
 

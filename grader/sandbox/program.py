@@ -137,18 +137,18 @@ class Limits:
             raise ValueError(f"processes is {self.processes}: rclpy's own threads need at least 20")
 
 
-def apply_limits(limits: Limits, *, processes_beside: int = 0) -> None:
+def apply_limits(limits: Limits, *, other_processes: int = 0) -> None:
     """Set the kernel's limits for this process and its children: setrlimit(2).
 
     Args:
         limits: what is allowed.
-        processes_beside: processes and threads of the same user that the kernel counts too: 0 in a user namespace of
+        other_processes: processes and threads of the same user that the kernel counts too: 0 in a user namespace of
         its own, on a kernel that counts for each namespace.
     """
     cpu_s = int(limits.cpu_s) + 1
     wanted = {
         resource.RLIMIT_AS: limits.memory_bytes,
-        resource.RLIMIT_NPROC: limits.processes + processes_beside,
+        resource.RLIMIT_NPROC: limits.processes + other_processes,
         resource.RLIMIT_FSIZE: limits.file_bytes,
         resource.RLIMIT_NOFILE: 1024,  # liblockstep reads three files per thread of the program
         resource.RLIMIT_CORE: 0,

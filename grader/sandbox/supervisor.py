@@ -42,32 +42,32 @@ def supervise(start: Start, control: int, output: int, runner_namespaces: Sequen
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         syscalls.prctl(syscalls.PR_SET_CHILD_SUBREAPER, 1)  # orphans of the student or bubblewrap are reaped here
         os.chdir("/")
-        beside = _tasks_beside(start)
+        other_tasks = _other_tasks(start)
         users, *runner = runner_namespaces or (-1,)
         for namespace in runner:
             _join(namespace)
         if start.program.hub:
             _admit_student_alone(start.program.hub, _owner(start.isolation))
         sandbox, paths = _build(start, users)
-        child = _fork_student(start, paths, sandbox, beside, output)
+        child = _fork_student(start, paths, sandbox, other_tasks, output)
         if isinstance(child, Request):
             return child
         os.close(output)
         started = {"event": "started", "pid": child, "folder": paths.folder}
-        _tell(control, started | {"init": sandbox.init, "own_processes": sorted(sandbox.own_processes)})
+        _report(control, started | {"init": sandbox.init, "own_processes": sorted(sandbox.own_processes)})
         reported = True
         _watch(control, child, sandbox)
-        _tell(control, {"event": "dead"})
+        _report(control, {"event": "dead"})
     except BaseException as fault:
         if not reported:
             kind = "" if isinstance(fault, OSError) else f"{type(fault).__name__}: "
-            _tell(control, {"event": "failed", "reason": f"{kind}{fault}"})
+            _report(control, {"event": "failed", "reason": f"{kind}{fault}"})
     os._exit(0)
 
 
 def refuse(control: int, reason: str) -> NoReturn:
     """Answer a runner that no student can be started, and exit."""
-    _tell(control, {"event": "failed", "reason": reason})
+    _report(control, {"event": "failed", "reason": reason})
     os._exit(0)
 
 
@@ -96,7 +96,7 @@ def _admit_student_alone(hub: Path, owner: int | None) -> None:
 
 
 def _fork_student(
-    start: Start, paths: Paths, sandbox: namespaces.Namespaces | processes.ProcessTree, beside: int, output: int
+    start: Start, paths: Paths, sandbox: namespaces.Namespaces | processes.ProcessTree, other_tasks: int, output: int
 ) -> int | Request:
     """Fork the student. Returns its pid in the parent, and what to run in the child, once it has been confined."""
     fault_at, fault_to = os.pipe()
@@ -105,7 +105,7 @@ def _fork_student(
         try:
             if isinstance(sandbox, namespaces.Namespaces):
                 sandbox.forget()
-            confine(start, paths, beside, output, keep_open=fault_to)
+            confine(start, paths, other_tasks, output, keep_open=fault_to)
         except BaseException as fault:
             os.write(fault_to, str(fault).encode() or repr(fault).encode())
             os._exit(1)
@@ -113,12 +113,12 @@ def _fork_student(
         return Request(start.program, paths)
     os.close(fault_to)
     with os.fdopen(fault_at, "rb") as stream:
-        fault_told = stream.read()
-    if fault_told:
+        fault_text = stream.read()
+    if fault_text:
         sandbox.kill()
         os.waitpid(child, 0)
         sandbox.reap()
-        raise OSError(fault_told.decode(errors="replace"))
+        raise OSError(fault_text.decode(errors="replace"))
     return child
 
 
@@ -136,7 +136,7 @@ def _watch(control: int, child: int, sandbox: namespaces.Namespaces | processes.
             alive = False
             _report_end(control, child)
         if control in ready:
-            order = _hear(control)
+            order = _receive(control)
             if order == b"interrupt":
                 if alive:
                     os.kill(child, signal.SIGINT)
@@ -150,17 +150,17 @@ def _watch(control: int, child: int, sandbox: namespaces.Namespaces | processes.
 
 def _report_end(control: int, child: int) -> None:
     _, status, usage = os.wait4(child, 0)
-    _tell(control, {"event": "exited", "status": status, "cpu_s": usage.ru_utime + usage.ru_stime})
+    _report(control, {"event": "exited", "status": status, "cpu_s": usage.ru_utime + usage.ru_stime})
 
 
-def _hear(control: int) -> bytes:
+def _receive(control: int) -> bytes:
     try:
         return os.read(control, 64)
     except OSError:
         return b""
 
 
-def _tell(control: int, message: dict[str, object]) -> None:
+def _report(control: int, message: dict[str, object]) -> None:
     with contextlib.suppress(OSError):  # the runner is gone: noticed at the next read
         os.write(control, json.dumps(message).encode())
 
@@ -174,7 +174,7 @@ def _join(namespace: int) -> None:
     syscalls.setns(namespace)
 
 
-def _tasks_beside(start: Start) -> int:
+def _other_tasks(start: Start) -> int:
     """Return how many processes of the same user RLIMIT_NPROC will count besides the student's."""
     apart = start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES)
     if apart and (os.geteuid() == 0 or limits.counts_for_each_user_namespace()):

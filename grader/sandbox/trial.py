@@ -27,10 +27,10 @@ def main(level: Isolation) -> str | None:
         program = Program("trial.py", {"trial.py": _PROGRAM.encode()}, preloaded=False)
         with ForkServer(preload=()) as fork_server, fork_server.start(program, level) as student:
             end = student.wait(20.0)
-            said = student.output().text.strip()
+            text = student.output().text.strip()
     except (OSError, SandboxError) as fault:
         return str(fault)
-    return None if said == _WORD else f"a program started in it ended with {end} and said: {said.splitlines()[-1:]}"
+    return None if text == _WORD else f"a program started in it ended with {end} and printed: {text.splitlines()[-1:]}"
 
 
 if __name__ == "__main__":

@@ -144,12 +144,12 @@ def _record(content: bytes) -> dict[str, Any]:
 def _differences(record: dict[str, Any], files: Mapping[str, bytes], damaged: list[str]) -> list[str]:
     if record.get("format") != FORMAT:
         return [f"{RECORD} can't be read, or another version of Spinbook has written it"]
-    said = record.get("files")
-    said = said if isinstance(said, dict) else {}
-    faults = [f"{name} has been added" for name in sorted(set(files) - set(said))]
-    faults += [f"{name} is missing" for name in sorted(set(said) - set(files) - set(damaged))]
+    listed = record.get("files")
+    listed = listed if isinstance(listed, dict) else {}
+    faults = [f"{name} has been added" for name in sorted(set(files) - set(listed))]
+    faults += [f"{name} is missing" for name in sorted(set(listed) - set(files) - set(damaged))]
     faults += [
-        f"{name} has been changed" for name in sorted(files) if name in said and _sha256(files[name]) != said[name]
+        f"{name} has been changed" for name in sorted(files) if name in listed and _sha256(files[name]) != listed[name]
     ]
     if record_digest(record) != record.get("digest"):
         faults.append(f"{RECORD} has been changed")

@@ -1,7 +1,7 @@
 """The hub: every process of a program is connected to it, and it alone decides what happens, and when.
 
 It listens on a socket in a folder, advances time, and knows exactly when the whole program has nothing left to do.
-It never waits for a process without a limit: `patience` is called every 20 ms while it waits, and may raise.
+It never waits for a process without a limit: `on_tick` is called every 20 ms while it waits, and may raise.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ SOCKET = "hub"
 #: The path of a Unix socket may not be longer (sun_path of unix(7), without its NUL).
 LONGEST_PATH = 107
 
-#: How often `patience` is called while the hub waits (s).
+#: How often `on_tick` is called while the hub waits (s).
 TICK_S = 0.02
 
 #: After how many of these a new process begins even if others are not idle.
-PATIENCE_TICKS = 10
+WELCOME_TICKS = 10
 
 #: How often a process may be granted time without its time advancing.
 MOST_STANDSTILLS = 100
@@ -58,7 +58,7 @@ class Hub:
         self,
         folder: Path,
         limits: Limits | None = None,
-        patience: Callable[[], None] = _do_nothing,
+        on_tick: Callable[[], None] = _do_nothing,
         begin: int = BEGIN,
         epoch: int = EPOCH,
     ) -> None:
@@ -74,7 +74,7 @@ class Hub:
         self.main: int | None = None
         self.mains: set[int] = set()
         self.before_end: Callable[[], None] = _do_nothing
-        self.patience = patience
+        self.on_tick = on_tick
         self._use = Use(limits or Limits())
         self._until, self._epoch = begin, epoch
         self._instant = begin
@@ -85,7 +85,7 @@ class Hub:
         self._ticks = 0
         self._router = Router(self._use, lambda: self._epoch + self._until, epoch)
         self._poll = select.poll()
-        self._doors = [self._listen(folder)]
+        self._listeners = [self._listen(folder)]
 
     def _listen(self, folder: Path) -> socket.socket:
         listener, path = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM), folder / SOCKET
@@ -99,9 +99,12 @@ class Hub:
 
     # --- for the owner of the hub
 
-    def add_door(self, folder: Path) -> Path:
-        """Listen in another folder, too, for another program; `Link.door` counts these from 1. Return the socket."""
-        self._doors.append(self._listen(folder))
+    def add_listener(self, folder: Path) -> Path:
+        """Listen in another folder, too, for another program, and return the socket's path.
+
+        `Link.listener` counts these from 1.
+        """
+        self._listeners.append(self._listen(folder))
         return folder / SOCKET
 
     def node(self, name: str, namespace: str = "/") -> HubNode:
@@ -191,7 +194,7 @@ class Hub:
 
     def drain(self, at_most_s: float = 1.0) -> None:
         """Take all that processes sent before they ended; to be called when the program is dead. Raises `Violation`."""
-        self.patience = _do_nothing
+        self.on_tick = _do_nothing
         deadline = time.monotonic() + at_most_s
         self._accept()
         while self.links and time.monotonic() < deadline:
@@ -202,7 +205,7 @@ class Hub:
         for link in self.links:
             link.close()
         self.links.clear()
-        for listener in self._doors:
+        for listener in self._listeners:
             path = Path(listener.getsockname())
             listener.close()
             with contextlib.suppress(FileNotFoundError):
@@ -305,19 +308,19 @@ class Hub:
         naming = [link for link in self.links if link.idle and link.idle.children]
         if not naming:
             return []
-        here = {(link.door, link.hello.pid) for link in self.links if link.hello}
+        here = {(link.listener, link.hello.pid) for link in self.links if link.hello}
         return [
             link
             for link in naming
-            if link.idle and not here.issuperset((link.door, child) for child in link.idle.children)
+            if link.idle and not here.issuperset((link.listener, child) for child in link.idle.children)
         ]
 
     def _accept(self) -> bool:
-        """Accept connections at all doors. Return whether there were any."""
-        let_in = [self._let_in(door, listener) for door, listener in enumerate(self._doors)]
-        return any(let_in)
+        """Accept connections at all sockets. Return whether there were any."""
+        accepted = [self._accept_from(number, listener) for number, listener in enumerate(self._listeners)]
+        return any(accepted)
 
-    def _let_in(self, door: int, listener: socket.socket) -> bool:
+    def _accept_from(self, number: int, listener: socket.socket) -> bool:
         found = False
         while True:
             try:
@@ -330,7 +333,7 @@ class Hub:
             except Violation:
                 connection.close()
                 raise
-            link = Link(connection, self._use.connections, self._use, door)
+            link = Link(connection, self._use.connections, self._use, number)
             link.wait_at_most(TICK_S)
             self.links.append(link)
             self._poll.register(connection, select.POLLIN)
@@ -351,7 +354,7 @@ class Hub:
         return bool(waiting)
 
     def _take(self) -> None:
-        """Wait at most 20 ms for something to arrive, and take it. Raises `Violation`, and what `patience` raises."""
+        """Wait at most 20 ms for something to arrive, and take it. Raises `Violation`, and what `on_tick` raises."""
         links = self.links
         if len(links) == 1 and not self._awaited and not links[0].unsent:
             self._read(links[0], 0)
@@ -362,11 +365,11 @@ class Hub:
             self._due = now + TICK_S
             self._ticks += 1
             self._accept()
-            if not self._ticks % PATIENCE_TICKS:
+            if not self._ticks % WELCOME_TICKS:
                 self._welcome()  # another process may compute until the new one has done something
             for link in self._missing_children():
                 link.queue(frames.ASK)
-            self.patience()
+            self.on_tick()
 
     def _take_from_any(self) -> None:
         by_number = {link.socket.fileno(): link for link in self.links}
@@ -392,7 +395,7 @@ class Hub:
         link.close()
         self._router.forget(link)
         for other in self.links:
-            if link.door != other.door:
+            if link.listener != other.listener:
                 continue
             if link.hello and other.last_idle and link.hello.pid in other.last_idle.children:
                 other.queue(frames.ASK)

@@ -24,11 +24,11 @@ _WAIT = struct.Struct("ll")
 class Link:
     """One process. `number` begins its identities; `pid` is its process id as the hub sees it.
 
-    `door` is the number of the door through which it connected: that of its program.
+    `listener` is the number of the listening socket to which it connected: that of its program.
     """
 
-    def __init__(self, sock: socket.socket, number: int, use: Use, door: int = 0) -> None:
-        self.socket, self.number, self.door = sock, number, door
+    def __init__(self, sock: socket.socket, number: int, use: Use, listener: int = 0) -> None:
+        self.socket, self.number, self.listener = sock, number, listener
         self.pid, self.uid = self._peer()
         self.hello: Hello | None = None
         self.began = self.joined = False
@@ -68,7 +68,7 @@ class Link:
     @property
     def order(self) -> tuple[int, int]:
         """Its position among all processes, the same in each run: by program, then in the order of their start."""
-        return self.door, self.pid_inside
+        return self.listener, self.pid_inside
 
     def wait_at_most(self, seconds: float) -> None:
         """Limit how long `read` waits. A blocking read with a time-out is one system call, `settimeout` needs two."""

@@ -20,7 +20,7 @@ namespace {
 
 constexpr uint32_t VERSION = 2;
 
-// While the process is not idle and no thread reports when it is, the keeper checks this often: at first, at most (ns).
+// While the process is not idle and no thread reports when it is, the listener checks this often: at first, at most (ns).
 constexpr int64_t FIRST_LOOK = 500'000, LONGEST_LOOK = 2'000'000;
 
 int open_socket(const std::string & path) {
@@ -75,24 +75,24 @@ int Core::connect(const std::string & path) {
   pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
   pthread_attr_setstacksize(&attributes, 256 * 1024);
   pthread_t thread;
-  keeper_ = 0;
-  const int fault = pthread_create(&thread, &attributes, &Core::keep_of, this);
+  listener_ = 0;
+  const int fault = pthread_create(&thread, &attributes, &Core::listener_thread, this);
   pthread_attr_destroy(&attributes);
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (fault) { lost(); return fault; }
-  while (!__atomic_load_n(&keeper_, __ATOMIC_ACQUIRE)) sched_yield();
+  while (!__atomic_load_n(&listener_, __ATOMIC_ACQUIRE)) sched_yield();
   return 0;
 }
 
-void * Core::keep_of(void * core) {
+void * Core::listener_thread(void * core) {
   prctl(PR_SET_NAME, "lockstep");
   reads_clock_freely = true;
-  static_cast<Core *>(core)->keep();
+  static_cast<Core *>(core)->listen_to_hub();
   return nullptr;
 }
 
-void Core::keep() {
-  __atomic_store_n(&keeper_, thread_number(), __ATOMIC_RELEASE);
+void Core::listen_to_hub() {
+  __atomic_store_n(&listener_, thread_number(), __ATOMIC_RELEASE);
   int64_t look = FIRST_LOOK;
   lock();
   while (connected_) {
@@ -100,14 +100,14 @@ void Core::keep() {
     if (!later_.empty()) { unlock(); lock(); continue; }
     const bool restless = restless_;
     look = restless ? std::min(look * 2, LONGEST_LOOK) : FIRST_LOOK;
-    keeper_sleeps_ = !restless;
+    listener_sleeps_ = !restless;
     const int socket = socket_, wakes = poke_;
     pthread_mutex_unlock(&mutex_);
     pollfd files[2] = {{socket, POLLIN, 0}, {wakes, POLLIN, 0}};
     const timespec timeout = real::as_timespec(look);
     real::ppoll()(files, 2, restless ? &timeout : nullptr, nullptr);
     lock();
-    keeper_sleeps_ = false;
+    listener_sleeps_ = false;
     if (files[1].revents) { uint64_t count; (void)!read(wakes, &count, sizeof count); }
     if (files[0].revents) { receive(); look = FIRST_LOOK; }
   }
@@ -115,8 +115,8 @@ void Core::keep() {
 }
 
 void Core::poke() {
-  if (!keeper_sleeps_) return;
-  keeper_sleeps_ = false;
+  if (!listener_sleeps_) return;
+  listener_sleeps_ = false;
   const uint64_t one = 1;
   (void)!write(poke_, &one, sizeof one);
 }

@@ -64,7 +64,7 @@ void Core::call_later(void (*function)(const void *, size_t), const void * data,
   later_.push_back({function, data, count});
 }
 
-// The thread that reports may fall asleep unseen by this library, so the keeper has to check.
+// The thread that reports may fall asleep unseen by this library, so the listener has to check.
 void Core::tell(const uint8_t * frame, size_t size) {
   send(frame, size);
   check_again();
@@ -138,7 +138,7 @@ bool Core::nudge(const Sleeper & sleeper) {
 Core::Idle Core::idle() {
   if (entering_ || calling_ || !later_.empty()) return Idle::look_again;
   bool holds_interpreter = false;
-  std::vector<pid_t> known{keeper_};
+  std::vector<pid_t> known{listener_};
   for (const Sleeper * sleeper : sleepers_) {
     if (sleeper->awake) { nudge(*sleeper); return Idle::look_again; }
     if (sleeper->satisfied()) return Idle::look_again;
@@ -232,7 +232,7 @@ void Core::announce() {
     next = std::min(next, sleeper->deadline);
     timed += sleeper->deadline != NEVER;
   }
-  const uint64_t runs = asked_ ? threads_.runs(keeper_) : 0;
+  const uint64_t runs = asked_ ? threads_.runs(listener_) : 0;
   std::vector<uint8_t> frame;
   {
     Writer writer(frame, 'I');

@@ -87,8 +87,8 @@ private:
   enum class Idle { yes, no, look_again };
 
   void send(const uint8_t * frame, size_t size);
-  void keep();                     // the library's own thread
-  static void * keep_of(void * core);
+  void listen_to_hub();            // the listener: the library's own thread
+  static void * listener_thread(void * core);
   void receive();
   void lost();
   void step();                     // handle what may be handled now
@@ -109,8 +109,8 @@ private:
   std::string path_;
   uint32_t process_ = 0;
   int64_t epoch_ = 0;
-  pid_t keeper_ = 0;
-  bool keeper_sleeps_ = false, restless_ = false;
+  pid_t listener_ = 0;
+  bool listener_sleeps_ = false, restless_ = false;
   const lockstep_participant * participant_ = nullptr;
   std::vector<Sleeper *> sleepers_;
   std::vector<pid_t> children_;

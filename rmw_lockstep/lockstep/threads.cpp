@@ -153,11 +153,11 @@ Threads::Look Threads::look(const std::vector<pid_t> & known, bool children) {
 }
 
 // schedstat's third number is how often a thread was given a CPU (Documentation/scheduler/sched-stats.rst).
-uint64_t Threads::runs(pid_t keeper) {
+uint64_t Threads::runs(pid_t listener) {
   uint64_t total = count();
   for (const auto & [number, thread] : threads_) {
     unsigned long long on_cpu = 0, waited = 0, times = 0;
-    if (number == keeper) continue;
+    if (number == listener) continue;
     sscanf(text_of(thread.schedule).c_str(), "%llu %llu %llu", &on_cpu, &waited, &times);
     total += static_cast<uint64_t>(number) + times;
   }

@@ -22,8 +22,8 @@ public:
   unsigned count();
   // Checks every thread except those in `known`, which are known to sleep. `children`: whether there are any.
   Look look(const std::vector<pid_t> & known, bool children);
-  // A number that differs from the last one if any thread except `keeper` has run since.
-  uint64_t runs(pid_t keeper);
+  // A number that differs from the last one if any thread except `listener` has run since.
+  uint64_t runs(pid_t listener);
   void forget();
 
 private:

@@ -91,7 +91,7 @@ class Watch:
         self._folder = folder
         self._programs: list[Program] = []
         self._deadline = time.monotonic() + LONGEST_S
-        self.hub = Hub(folder, patience=self._look)
+        self.hub = Hub(folder, on_tick=self._look)
         self.node = self.hub.node("watch")
         hears_all = Qos(history=KEEP_ALL, reliability=BEST_EFFORT)
         self._said = self.node.subscription("/said", "std_msgs/msg/String", hears_all)

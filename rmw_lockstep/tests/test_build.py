@@ -46,7 +46,8 @@ class Copy:
         """Run a module of the copy. Nothing is written into the real environment: it is considered read-only."""
         code = (
             "import runpy, sys; from pathlib import Path; from rmw_lockstep import library\n"
-            "library.places = lambda: iter([Path(__import__('os').environ['XDG_CACHE_HOME']) / 'rmw_lockstep'])\n"
+            "folder = Path(__import__('os').environ['XDG_CACHE_HOME']) / 'rmw_lockstep'\n"
+            "library.library_folders = lambda: iter([folder])\n"
             f"sys.argv = {[module, *arguments]!r}; runpy.run_module({module!r}, run_name='__main__')"
         )
         return subprocess.run(
@@ -95,7 +96,7 @@ def test_the_library_for_the_wheels_has_the_name_that_they_are_linked_to(copy: C
     assert "SONAME" in names["librmw_lockstep_cpp.so"]
     assert "[librmw_lockstep_cpp.so]" in names["librmw_lockstep_cpp.so"]
     assert "[librmw_fastrtps_cpp.so]" in names["wheels/librmw_fastrtps_cpp.so"]
-    assert all("[liblockstep.so]" in told for told in names.values())
+    assert all("[liblockstep.so]" in dependencies for dependencies in names.values())
     assert "libstdc++" not in _dynamic(folder / "liblockstep.so")
 
 

@@ -97,7 +97,7 @@ def test_the_first_frame_has_to_be_a_hello_of_this_version(hub: Hub, raw: Raw, s
     assert reason(hub)[0] == "protocol"
 
 
-def test_a_message_that_is_too_long_is_told_by_its_length_before_it_is_read(hub: Hub, raw: Raw) -> None:
+def test_a_message_that_is_too_long_is_reported_by_its_length_before_it_is_read(hub: Hub, raw: Raw) -> None:
     begin(raw, hub)
     busy(hub)
     raw.send(struct.pack("<IB", 500_000_000, ord("D")))
@@ -236,7 +236,7 @@ def test_half_a_frame_and_nothing_more_is_waited_for_only_as_long_as_the_owner_l
     begin(raw, hub)
     busy(hub)
     raw.send(struct.pack("<IB", 1_000, ord("D")))
-    hub.patience = enough
+    hub.on_tick = enough
     with pytest.raises(Enough):
         hub.wait_until_idle()
 

@@ -88,7 +88,7 @@ def test_another_process_that_joins_late_gets_it_too(watch: Watch) -> None:
     assert [said for _, said in watch.said()] == ["kept"]
 
 
-def test_ends_that_do_not_match_are_not_connected_and_both_are_told_the_policy(watch: Watch) -> None:
+def test_ends_that_do_not_match_are_not_connected_and_both_are_reported_the_policy(watch: Watch) -> None:
     watch.start("""
         from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
         policy = lambda end: lambda event: say(f'{end} {event.last_policy_kind.name}')

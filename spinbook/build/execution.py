@@ -239,14 +239,14 @@ def _run(job: Job, raw: Path, on_progress: Callable[[Progress], None], given_up:
     argv = [sys.executable, "-m", "spinbook.build.run_notebook", str(job.notebook), str(raw), str(job.deadline_s)]
     process = KeptProcess(argv, {**os.environ, **private}, job.folder)
     deadline = time.monotonic() + job.deadline_s + _TO_SAY_SO_S
-    cells, ended, rest, said = 0, {"crashed": ""}, "", ""
+    cells, ended, rest, output = 0, {"crashed": ""}, "", ""
     try:
         while True:
             data, _ = process.read()
             *lines, rest = (rest + data.decode(errors="replace")).split("\n")
             for line in lines:
                 if not line.startswith("{"):
-                    said += f"{line}\n"
+                    output += f"{line}\n"
                     continue
                 message = json.loads(line)
                 cells = message.get("cells", cells)
@@ -254,7 +254,7 @@ def _run(job: Job, raw: Path, on_progress: Callable[[Progress], None], given_up:
                 if not {"cells", "done"} & set(message):
                     ended = message
             if process.status.exit is not None:
-                return ended if ended != {"crashed": ""} else {"crashed": said}
+                return ended if ended != {"crashed": ""} else {"crashed": output}
             if time.monotonic() > deadline or given_up.is_set():
                 return {"timed_out": None}
             time.sleep(0.05)

@@ -102,14 +102,14 @@ class GraphWatch:
     async def cell_begins(self, source: str) -> None:
         """A cell is about to run."""
         if self._domain and source.startswith(COUNTED_CELLS):
-            self._tell("count")
+            self._send("count")
 
     async def cell_ends(self, cell: str) -> None:
         """The cell with this id has run: what is there now belongs to it."""
         if not self._follow() or self._observer is None or self._observer.stdout is None:
             return
         try:
-            self._tell("look")
+            self._send("look")
             line = await asyncio.wait_for(self._observer.stdout.readline(), _TIME_LIMIT_S)
             self._history.add(cell, NodeGraph.from_json(line.decode()))
         except (ValueError, OSError, asyncio.TimeoutError):
@@ -121,10 +121,10 @@ class GraphWatch:
             domain = self._note.read_text(encoding="utf-8")
             if domain != self._domain:
                 self._domain = domain
-                self._tell(f"domain {domain}")
+                self._send(f"domain {domain}")
         return bool(self._domain)
 
-    def _tell(self, word: str) -> None:
+    def _send(self, word: str) -> None:
         if self._observer is not None and self._observer.stdin is not None:
             self._observer.stdin.write(f"{word}\n".encode())
 
@@ -160,12 +160,12 @@ class ThisPython(KernelSpecManager):
         return KernelSpec(argv=argv, display_name="Python 3", language="python")
 
 
-def _tell(**what: Any) -> None:
+def _report(**what: Any) -> None:
     print(json.dumps(what), flush=True)
 
 
 async def run(notebook: Any, folder: Path, deadline_s: float, watch: GraphWatch) -> None:
-    """Run the cells of `notebook` in place, in `folder`, failing ones too, and tell how it ended."""
+    """Run the cells of `notebook` in place, in `folder`, failing ones too, and report how it ended."""
     current = 0
 
     async def on_start(cell: Any, cell_index: int) -> None:
@@ -174,7 +174,7 @@ async def run(notebook: Any, folder: Path, deadline_s: float, watch: GraphWatch)
         await watch.cell_begins(cell.source)
 
     async def on_executed(cell: Any, cell_index: int, execute_reply: Any) -> None:
-        _tell(done=cell_index + 1)
+        _report(done=cell_index + 1)
         await watch.cell_ends(cell.id)
 
     client = NotebookClient(
@@ -188,22 +188,22 @@ async def run(notebook: Any, folder: Path, deadline_s: float, watch: GraphWatch)
         on_cell_execute=on_start,
         on_cell_executed=on_executed,
     )
-    _tell(cells=len(notebook.cells))
+    _report(cells=len(notebook.cells))
     await watch.start()
     running = asyncio.ensure_future(client.async_execute())
     done, _ = await asyncio.wait([running], timeout=deadline_s)
     await watch.close()
     if not done:
-        _tell(timed_out=current)
+        _report(timed_out=current)
         running.cancel()
         await asyncio.wait([running], timeout=_FAREWELL_S)
         return
     try:
         running.result()
     except DeadKernelError:
-        _tell(died=current)
+        _report(died=current)
     else:
-        _tell(finished=True)
+        _report(finished=True)
 
 
 def _kernel_manager() -> Any:

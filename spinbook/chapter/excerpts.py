@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 from spinbook.chapter.classify import CellKind, Classified
 from spinbook.chapter.fence import Fence
 from spinbook.chapter.python_code import CodeError, inspect
 
 
-def excerpts(fences: Iterable[Fence]) -> dict[int, str]:
-    """Line of a fence whose lines stand one after another in a longer program -> whether that is "above" or "below"."""
-    code = {fence.line: _lines(fence.code) for fence in fences if fence.is_python and not fence.attributes}
-    programs = {fence.line: _lines(fence.code) for fence in fences if fence.is_python and _is_whole(fence.code)}
+def excerpts(fences: Sequence[Fence]) -> dict[int, str]:
+    """Line of a fence whose lines are consecutive in a longer program -> whether that program is "above" or "below"."""
+    python = [fence for fence in fences if fence.is_python]
+    code = {fence.line: _lines(fence.code) for fence in python}
+    programs = {fence.line: code[fence.line] for fence in python if _is_whole(fence.code)}
     found: dict[int, str] = {}
-    for line, lines in code.items():
-        places = [at for at, whole in programs.items() if at != line and len(lines) < len(whole) and lines in whole]
-        if lines.strip() and places:
-            found[line] = "above" if min(places) < line else "below"
+    for line in (fence.line for fence in python if not fence.attributes):
+        lines = code[line]
+        within = [at for at, whole in programs.items() if at != line and len(lines) < len(whole) and lines in whole]
+        if lines.strip() and within:
+            found[line] = "above" if min(within) < line else "below"
     return found
 
 

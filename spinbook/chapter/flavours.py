@@ -77,7 +77,7 @@ def _line(state: StateBlock, start: int, end: int, silent: bool) -> bool:
     text = _text(state, start)
     if not text or text[0] not in "{!?(-ie" or _is_code(state, start):
         return False
-    kind, name, info = _told(text)
+    kind, name, info = _parse(text)
     if not kind:
         return False
     # Prose may begin with such words; only a paragraph's first line says it to the tool.
@@ -92,7 +92,7 @@ def _line(state: StateBlock, start: int, end: int, silent: bool) -> bool:
     return True
 
 
-def _told(text: str) -> tuple[str, str, str]:
+def _parse(text: str) -> tuple[str, str, str]:
     """(kind, name, rest) of such a line; ("", "", "") for any other."""
     if match := _LIQUID.match(text):
         return "liquid", match[1], match[2]

@@ -145,8 +145,8 @@ def _files_in(text: str) -> list[str]:
     if ".py" not in text:
         return []
     tokens = MarkdownIt("commonmark").parse(text)
-    said = [child.content for token in tokens for child in token.children or []]
-    return [match for content in said for match in _PY_FILE.findall(content)]
+    contents = [child.content for token in tokens for child in token.children or []]
+    return [match for content in contents for match in _PY_FILE.findall(content)]
 
 
 def _edited(fence: Fence) -> list[str]:

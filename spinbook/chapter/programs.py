@@ -17,13 +17,13 @@ from spinbook.problem import Problem, Severity
 class Programs:
     """The Python of one chapter, decided fence by fence in order.
 
-    `own` are the packages that are not installed but made by the course, each with its modules; `told` says which
-    file the text before a fence names, by the fence's line; `interfaces` are those that the course defines.
+    `own` are the packages that are not installed but made by the course, each with its modules; `named_files` has the
+    file that the text before a fence names, by the fence's line; `interfaces` are those that the course defines.
     """
 
     file: Path
     own: Mapping[str, frozenset[str]]
-    told: Mapping[int, str]
+    named_files: Mapping[int, str]
     interfaces: frozenset[str] = frozenset()
     problems: list[Problem] = field(default_factory=list)
     _pieces: list[int] = field(default_factory=list)
@@ -147,7 +147,7 @@ class Programs:
 
     def _name(self, item: Classified) -> tuple[str, bool]:
         """A name for a node's cell; a file that is shown again, changed, keeps its own."""
-        name, named, problems = node_name(item, self.told.get(item.fence.line, ""), self.file)
+        name, named, problems = node_name(item, self.named_files.get(item.fence.line, ""), self.file)
         self.problems += problems
         wanted, count = name, 1
         while not named and name in self._names:

@@ -148,7 +148,13 @@ def _classify(parsed: _Parsed, file: Path, surroundings: Surroundings) -> tuple[
     modules = surroundings.modules | {item.name for item in items if item.kind is CellKind.NODE and item.name}
     exercise = any(block.kind is Kind.EXERCISE for top in parsed.blocks for block in top.walk())
     shells = Shells(
-        file, surroundings.package, modules, packages, programs.told, exercise, interfaces=surroundings.interfaces
+        file,
+        surroundings.package,
+        modules,
+        packages,
+        programs.named_files,
+        exercise,
+        interfaces=surroundings.interfaces,
     )
     items = shells.decide(items)
     return items, problems + programs.problems + shells.problems

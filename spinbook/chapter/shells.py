@@ -65,15 +65,15 @@ _TURTLESIM += "teleport_relative rotate_absolute background_r background_g backg
 class Shells:
     """The shell fences of one chapter.
 
-    `package` is the course's own, `modules` what the course's node cells make, `own` the chapter's packages, `told`
-    which file the text before a fence names, `interfaces` the course's own.
+    `package` is the course's own, `modules` what the course's node cells make, `own` the chapter's packages,
+    `named_files` the file that the text before a fence names, `interfaces` the course's own.
     """
 
     file: Path
     package: str
     modules: frozenset[str]
     own: OwnPackages
-    told: Mapping[int, str] = field(default_factory=dict)
+    named_files: Mapping[int, str] = field(default_factory=dict)
     has_exercise: bool = False
     interfaces: frozenset[str] = frozenset()
     problems: list[Problem] = field(default_factory=list)
@@ -100,7 +100,7 @@ class Shells:
             if item.kind is CellKind.FILE:
                 self._files.add((item.name or "").rpartition("/")[2])
             if item.code is not None and item.code.is_launch_file:
-                name = item.fence.title or self.told.get(item.fence.line) or f"launch file {number}"
+                name = item.fence.title or self.named_files.get(item.fence.line) or f"launch file {number}"
                 self._launch_files[name.rsplit("/", 1)[-1]] = item.fence.code
             if item.kind is CellKind.NODE:
                 self._said.add(item.whole)

@@ -59,7 +59,7 @@ def in_words(shown: Iterable[Drawing]) -> str:
     """What the picture shows, a sentence an arrow, for those who can't see it."""
     sentences = []
     for drawing in shown:
-        about = {box.name: box.about or _told(box.label, box.small) for box in drawing.topics}
+        about = {box.name: box.about or _describe(box.label, box.small) for box in drawing.topics}
         for node in drawing.nodes:
             own = [arrow for arrow in drawing.arrows if arrow.node == node.name]
             for publishes, verb in ((True, "publishes"), (False, "subscribes to")):
@@ -75,7 +75,7 @@ def in_words(shown: Iterable[Drawing]) -> str:
     return " ".join(sentences) or "No nodes."
 
 
-def _told(label: str, small: tuple[str, ...]) -> str:
+def _describe(label: str, small: tuple[str, ...]) -> str:
     return f"{label} ({', '.join(small)})" if small else label
 
 

@@ -179,7 +179,7 @@ class GraphWatcher(Graph):
             kind = message_class(publishers[0].topic_type)
         except CommandError:
             return  # a type that is not installed here
-        subscription = self.node.create_subscription(kind, name, _ear(counted), _HEARS_ALL, raw=True)
+        subscription = self.node.create_subscription(kind, name, _callback(counted), _HEARS_ALL, raw=True)
         self._counting[name] = (subscription, counted, time.monotonic() + _COUNTING_S)
 
     def _conclude(self, name: str, counted: Counted) -> None:
@@ -195,13 +195,13 @@ class GraphWatcher(Graph):
             self._conclude(name, counted)
 
 
-def _ear(counted: Counted) -> Any:
+def _callback(counted: Counted) -> Any:
     """A callback of the form to which rclpy passes the message's information, too: rclpy looks at the parameters."""
 
-    def hear(data: bytes, information: dict[str, int]) -> None:
+    def callback(data: bytes, information: dict[str, int]) -> None:
         counted.heard(information["publication_sequence_number"], information["source_timestamp"])
 
-    return hear
+    return callback
 
 
 def _is_shown(topic: str) -> bool:

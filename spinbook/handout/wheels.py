@@ -59,9 +59,9 @@ def _built(source: Path) -> dict[str, bytes]:
         )
         wheels = list(out.glob("*.whl"))
         if done.returncode or not wheels:
-            said = (done.stderr.strip().splitlines() or ["setuptools said nothing"])[-1]
+            error = (done.stderr.strip().splitlines() or ["setuptools said nothing"])[-1]
             fix = 'It is built with setuptools: pip install "setuptools>=77,<80"'
-            raise SpinbookError(Problem(source, None, f"the wheel of Spinbook could not be built: {said}", fix))
+            raise SpinbookError(Problem(source, None, f"the wheel of Spinbook could not be built: {error}", fix))
         with zipfile.ZipFile(wheels[0]) as archive:
             return {name: archive.read(name) for name in archive.namelist() if not name.endswith("/")}
 

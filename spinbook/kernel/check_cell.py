@@ -120,21 +120,21 @@ def checked(exercise: Path, code: str, seconds: float) -> dict[str, str]:
                     "for a long time before it spins its node? If not, this machine may be very busy: try again, or "
                     f"allow more time, as in %check {exercise.name} --seconds {2 * seconds:g}"
                 )
-            said = process.read_all()[0].decode(errors="replace")
+            output = process.read_all()[0].decode(errors="replace")
         except KeyboardInterrupt:
             raise CellFailed("The check was interrupted, so there is no result.") from None
         finally:
             if process.status.running:
                 process.stop(_GRACE)
             process.close()
-        return _result(folder / "result", said)
+        return _result(folder / "result", output)
 
 
-def _result(file: Path, said: str) -> dict[str, str]:
+def _result(file: Path, output: str) -> dict[str, str]:
     try:
         result: dict[str, str] = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError):
-        last = "\n".join(said.strip().splitlines()[-3:])
+        last = "\n".join(output.strip().splitlines()[-3:])
         raise CellFailed(f"The check itself failed, which is not your fault:\n{last}") from None
     if "problem" in result:
         raise CellFailed(result["problem"])

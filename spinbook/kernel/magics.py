@@ -187,8 +187,8 @@ class SpinbookMagics(Magics):
             running = ", ".join(self.session.nodes.names()) or "none"
             raise CellFailed(f"Which one? %stop NAME, or %stop --all. Started: {running}.")
         for stopped in self.session.stop(None if given.all else given.names):
-            if not stopped.had_ended and stopped.status.exit not in (0, None) and stopped.said.strip():
-                print(stopped.said.rstrip())
+            if not stopped.had_ended and stopped.status.exit not in (0, None) and stopped.output.strip():
+                print(stopped.output.rstrip())
             print(stopped.in_words)
 
     @no_var_expand

@@ -30,13 +30,13 @@ def show_graph(seconds: float) -> None:
     process = KeptProcess([sys.executable, "-m", "spinbook.graph.watcher", "now", str(seconds)], os.environ, Path.cwd())
     try:
         status = process.wait(seconds + _GRAPH_LIMIT_S)
-        said = process.read_all()[0].decode(errors="replace")
+        output = process.read_all()[0].decode(errors="replace")
     finally:
         process.close()
     try:
-        graph = NodeGraph.from_json(said[said.index("{") :])
+        graph = NodeGraph.from_json(output[output.index("{") :])
     except ValueError:
-        raise CellFailed(said.strip() or f"The graph could not be looked at (exit code {status.exit}).") from None
+        raise CellFailed(output.strip() or f"The graph could not be looked at (exit code {status.exit}).") from None
     if not graph.nodes:
         print("No nodes. Run a cell that begins with %%node.")
         return
@@ -57,11 +57,11 @@ def show_turtle() -> None:
         process = KeptProcess(argv, os.environ, Path.cwd())
         try:
             status = process.wait(_TURTLE_LIMIT_S)
-            said = process.read_all()[0].decode(errors="replace").strip()
+            output = process.read_all()[0].decode(errors="replace").strip()
         finally:
             process.close()
         if status.exit != 0 or not file.exists():
-            raise CellFailed(said or "turtlesim did not answer. Is it running? ros2 run turtlesim turtlesim_node")
+            raise CellFailed(output or "turtlesim did not answer. Is it running? ros2 run turtlesim turtlesim_node")
         alt = "turtlesim's window: the turtle and the trail it has drawn"
         bundle = {"image/png": base64.b64encode(file.read_bytes()).decode("ascii"), "text/plain": alt}
         if moving.exists():

@@ -32,11 +32,11 @@ class RunningNode:
 
 @dataclass(frozen=True)
 class Stopped:
-    """How a node ended when it was asked to. `said` is what it printed after that."""
+    """How a node ended when it was asked to. `output` is what it printed after that."""
 
     name: str
     status: Status
-    said: str
+    output: str
     had_ended: bool
 
     @property
@@ -95,9 +95,9 @@ class NodeRegistry:
         stopped = []
         for node, ended in zip(chosen, had_ended, strict=True):
             status = node.process.wait(sum(STOP_GRACE) + 5)
-            said, _ = node.process.read()
+            output, _ = node.process.read()
             node.process.close()
-            stopped.append(Stopped(node.name, status, said.decode(errors="replace"), ended))
+            stopped.append(Stopped(node.name, status, output.decode(errors="replace"), ended))
         return stopped
 
 

@@ -71,9 +71,9 @@ class TimelineRecorder(Node):
                 kind, type_name = found
                 getattr(self, f"_follow_{kind}")(name, type_name)
                 write_line("found", name, kind)
-        for take, tell in self._polled:
+        for take, record in self._polled:
             for sent, message in take():
-                tell(sent, message)
+                record(sent, message)
 
     def _is_known(self, name: str, kind: str) -> bool:
         """Whether it is known who else uses what has been found: a service's clients may not be heard of yet."""
@@ -96,10 +96,10 @@ class TimelineRecorder(Node):
     # Topics
 
     def _follow_topic(self, name: str, type_name: str) -> None:
-        self._hear(message_class(type_name), name, _HEARS_ALL, partial(_event, name, "message"))
+        self._subscribe(message_class(type_name), name, _HEARS_ALL, partial(_event, name, "message"))
 
-    def _hear(self, kind: Any, topic: str, qos: QoSProfile, tell: Callable[..., None]) -> None:
-        self._kept.append(self.create_subscription(kind, topic, _ear(tell), qos))
+    def _subscribe(self, kind: Any, topic: str, qos: QoSProfile, record: Callable[..., None]) -> None:
+        self._kept.append(self.create_subscription(kind, topic, _callback(record), qos))
 
     # Services
 
@@ -153,16 +153,16 @@ class TimelineRecorder(Node):
                 "event", at, name, "cancel answered", "", f"{len(answer.goals_canceling)} to be canceled"
             ),
         )
-        self._hear(
+        self._subscribe(
             kind.FeedbackMessage,
             f"{own}/feedback",
             _FEEDBACK,
             lambda at, message: _event(name, "feedback", at, message.feedback, _number(message.goal_id)),
         )
-        self._hear(kind.GoalStatusMessage, f"{own}/status", _STATUS, partial(self._hear_status, name))
+        self._subscribe(kind.GoalStatusMessage, f"{own}/status", _STATUS, partial(self._on_status, name))
 
-    def _hear_status(self, name: str, at: float, message: Any) -> None:
-        """The states of all goals; those that have changed are told."""
+    def _on_status(self, name: str, at: float, message: Any) -> None:
+        """The states of all goals; those that have changed are written."""
         for goal in message.status_list:
             number = _number(goal.goal_info.goal_id)
             if self._states.get(number) != goal.status:
@@ -178,13 +178,13 @@ _STATES = {
 }
 
 
-def _ear(tell: Callable[..., None]) -> Any:
+def _callback(record: Callable[..., None]) -> Any:
     """A callback of the form that rclpy gives the information besides a message to: it looks at the parameters."""
 
-    def hear(message: Any, information: dict[str, int]) -> None:
-        tell(information["source_timestamp"] / 1e9, message)
+    def callback(message: Any, information: dict[str, int]) -> None:
+        record(information["source_timestamp"] / 1e9, message)
 
-    return hear
+    return callback
 
 
 def _number(goal_id: Any) -> str:
@@ -212,7 +212,7 @@ def in_short(message: Any) -> str:
 _MAY_WAIT = 300
 
 
-def _told_to_stop() -> threading.Event:
+def _stop_event() -> threading.Event:
     """An event that SIGINT and SIGTERM set. ROS continues: what has arrived by then is still to be read."""
     text = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -220,9 +220,9 @@ def _told_to_stop() -> threading.Event:
     return text
 
 
-def record(recorder: TimelineRecorder, told_to_stop: threading.Event) -> None:
+def record(recorder: TimelineRecorder, stop_requested: threading.Event) -> None:
     """Record until told to stop, and then take in what had arrived before: on a busy machine that may be much."""
-    while not told_to_stop.is_set():
+    while not stop_requested.is_set():
         rclpy.spin_once(recorder, timeout_sec=_LOOK_S)
         recorder.look()
     for _ in range(_MAY_WAIT):
@@ -232,13 +232,13 @@ def record(recorder: TimelineRecorder, told_to_stop: threading.Event) -> None:
 
 def main() -> None:
     """Record until told to stop."""
-    told_to_stop = _told_to_stop()
+    stop_requested = _stop_event()
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     try:
         with errors_written():
             recorder: TimelineRecorder = TimelineRecorder(sys.argv[1:])
             try:
-                record(recorder, told_to_stop)
+                record(recorder, stop_requested)
             finally:
                 recorder.destroy_node()  # type: ignore[no-untyped-call]
     finally:

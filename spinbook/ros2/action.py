@@ -136,7 +136,7 @@ def send_goal(
         news = _News()
         if feedback:
             # The client's own call-back for feedback is dropped as soon as the result has come, with what is under way.
-            graph.node.create_subscription(kind.Impl.FeedbackMessage, f"{name}/_action/feedback", news.hear, 10)
+            graph.node.create_subscription(kind.Impl.FeedbackMessage, f"{name}/_action/feedback", news.on_feedback, 10)
         client = ActionClient(graph.node, kind, name)
         print("Waiting for an action server to become available...", flush=True)
         _wait_for_server(graph, client, name, interfaces.full_name(action_type, "action"))
@@ -171,7 +171,7 @@ class _News:
         self.goal_id = UUID(uuid=list(uuid.uuid4().bytes))
         self._held: list[Any] | None = []
 
-    def hear(self, message: Any) -> None:
+    def on_feedback(self, message: Any) -> None:
         """Called with each feedback message of the action's, on whatever goal."""
         if message.goal_id != self.goal_id:
             return

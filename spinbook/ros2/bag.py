@@ -81,15 +81,15 @@ class _Recording:
     def __init__(self, graph: Graph, writer: Any, wanted: set[str]) -> None:
         self._graph, self._writer, self._wanted = graph, writer, wanted
         self._types = _types()
-        self._heard: set[str] = set()
+        self._subscribed: set[str] = set()
         self.count = 0
 
     def look(self) -> None:
         """Subscribe to what is wanted and not heard yet."""
         for topic in self._graph.topics():
             is_wanted = topic.name in self._wanted if self._wanted else "/_" not in topic.name
-            if is_wanted and topic.name not in self._heard and len(topic.types) == 1:
-                self._heard.add(topic.name)
+            if is_wanted and topic.name not in self._subscribed and len(topic.types) == 1:
+                self._subscribed.add(topic.name)
                 self._subscribe(topic.name, topic.types[0])
 
     def _subscribe(self, topic: str, kind: str) -> None:

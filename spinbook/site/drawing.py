@@ -203,8 +203,8 @@ def in_words(code: str) -> str:
 
     "" where it is no flowchart, or one whose edges can't be read.
     """
-    if said := _SAYS.findall(code):
-        return ". ".join(line.strip().rstrip(".") for line in said) + "."
+    if titles := _SAYS.findall(code):
+        return ". ".join(line.strip().rstrip(".") for line in titles) + "."
     steps = [f"{start} to {end}" for start, end in _edges(code)]
     return f"Drawing: {'; '.join(steps)}." if steps else ""
 

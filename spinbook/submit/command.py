@@ -64,7 +64,7 @@ def submit(
     name = _student(student, folder)
     checked = SelfCheck(None, "It was left out.") if no_check else self_check(wanted, chosen.submission)
     console = Console(soft_wrap=False, highlight=False)
-    tell(checked, wanted, console)
+    print_result(checked, wanted, console)
     target = output or default_target(wanted, folder)
     try:
         write_upload(HandIn(wanted, chosen, name, checked), target)
@@ -83,7 +83,7 @@ def submit(
     console.print(f"Upload this file: {_shown(target)}", style="bold", markup=False, soft_wrap=True)
 
 
-def tell(checked: SelfCheck, exercise: Exercise, console: Console) -> None:
+def print_result(checked: SelfCheck, exercise: Exercise, console: Console) -> None:
     """Print what the self-check found, or why there was none."""
     if checked.grade:
         show(checked.grade, exercise, console)

@@ -131,10 +131,10 @@ def _row(check: ShownCheck, grade: Grade, exercise: Exercise) -> Row:
 
 def _facts(finding: Finding, grade: Grade, element: str) -> tuple[tuple[tuple[str, str], ...], str]:
     """What is wrong as label and value, and what of the finding's text they leave out."""
-    said = f"got {finding.got}."
-    if not (finding.expected and finding.got and said in finding.text):
+    phrase = f"got {finding.got}."
+    if not (finding.expected and finding.got and phrase in finding.text):
         return (), finding.text
-    before, _, after = finding.text.partition(said)
+    before, _, after = finding.text.partition(phrase)
     facts = [("expected", finding.expected), ("got", finding.got)]
     if finding.message is not None:
         recording = grade.recordings.get(finding.scenario)

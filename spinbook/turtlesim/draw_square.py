@@ -54,7 +54,7 @@ class DrawSquare:
         self._twists = self.node.create_publisher(Twist, "turtle1/cmd_vel", 1)
         self._reset = self.node.create_client(Empty, "reset")
         self._reset_answer: Any = None
-        self.node.create_subscription(Pose, "turtle1/pose", self._hear, 1)
+        self.node.create_subscription(Pose, "turtle1/pose", self._on_pose, 1)
         self.node.create_timer(DT, self._step)
 
     def _step(self) -> None:
@@ -64,7 +64,7 @@ class DrawSquare:
         elif self._reset_answer.done() and self._pose is not None:
             self._drive(self._pose)
 
-    def _hear(self, pose: Pose) -> None:
+    def _on_pose(self, pose: Pose) -> None:
         if self._reset_answer is not None and self._reset_answer.done():
             self._pose = pose
             self._resting = max(abs(pose.linear_velocity), abs(pose.angular_velocity)) < AT_REST

@@ -151,13 +151,13 @@ class Heard:
     def look(self) -> None:
         """Listen as soon as somebody publishes poses."""
         if not self._listening and POSE in self._published_types():
-            self._node.create_subscription(Pose, self.topic, self._hear, 50)
+            self._node.create_subscription(Pose, self.topic, self._on_pose, 50)
             self._listening = True
 
     def _published_types(self) -> list[str]:
         return sorted({each.topic_type for each in self._node.get_publishers_info_by_topic(self.topic)})
 
-    def _hear(self, pose: Pose) -> None:
+    def _on_pose(self, pose: Pose) -> None:
         here: Point = (pose.x, pose.y)
         before = here if self._last is None else (self._last.x, self._last.y)
         if here != before:

@@ -17,7 +17,7 @@ Color = tuple[int, int, int]
 #: The window's colour where no parameter says otherwise.
 BLUE: Color = (69, 86, 255)
 #: More turtles than this are not described one by one.
-_TOLD = 2
+_MOST_DESCRIBED = 2
 #: Digits after the point in what the node tells: 1/200 of a pixel.
 _DIGITS = 4
 #: In tracks: half a tenth of a pixel.
@@ -94,7 +94,7 @@ class WorldPicture:
                 for stroke in self.trails
             ],
             "incomplete": self.incomplete,
-            "tracks": [_told_track(track) for track in self.tracks],
+            "tracks": [_track_as_json(track) for track in self.tracks],
         }
         return json.dumps(text, separators=(",", ":"))
 
@@ -145,14 +145,14 @@ def caption(world: WorldPicture) -> str:
     """Where the turtles are, in words; and what the picture lacks."""
     if not world.turtles:
         text = "no turtle"
-    elif len(world.turtles) > _TOLD:
+    elif len(world.turtles) > _MOST_DESCRIBED:
         text = f"{len(world.turtles)} turtles"
     else:
-        text = "     ".join(_told(turtle) for turtle in world.turtles)
+        text = "     ".join(_describe(turtle) for turtle in world.turtles)
     return f"{text}   ({world.incomplete})" if world.incomplete else text
 
 
-def _told(turtle: TurtlePicture) -> str:
+def _describe(turtle: TurtlePicture) -> str:
     return f"{turtle.name}:  x {turtle.x:.2f}   y {turtle.y:.2f}   heading {math.degrees(turtle.theta):.0f}°"
 
 
@@ -174,7 +174,7 @@ def _stroke(text: dict[str, Any]) -> StrokePicture:
     return StrokePicture(str(text["turtle"]), _color(text["color"]), _byte(text["width"]), points)
 
 
-def _told_track(track: TrackPicture) -> dict[str, Any]:
+def _track_as_json(track: TrackPicture) -> dict[str, Any]:
     """A track as plain data; its pens stand by themselves, and samples name them by number."""
     pens = list(dict.fromkeys(sample.pen for sample in track.samples if sample.pen is not None))
     samples = [

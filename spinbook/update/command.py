@@ -43,7 +43,7 @@ def update(new_handout: Path | None, dry_run: bool) -> None:
     new = read_handout(source)
     refuse_another_course(source, new, folder)
     made = plan(folder, new)
-    _tell(made)
+    _print_plan(made)
     if not made.writes:
         if not dry_run and (made.base or made.forgotten):
             carry_out(made, folder)
@@ -92,7 +92,7 @@ def _is_handout(file: Path) -> bool:
         return False
 
 
-def _tell(made: Plan) -> None:
+def _print_plan(made: Plan) -> None:
     for path, lines in sorted(made.report.items()):
         for line in lines:
             click.echo(f"{path}: {line}")

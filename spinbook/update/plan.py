@@ -99,7 +99,7 @@ _NOT_LOOKED_IN = {".spinbook", ".ipynb_checkpoints", ".venv", "backups", "build"
 
 @dataclass
 class Plan:
-    """Files to write, what to tell of each, and entries of the base that are out of date.
+    """Files to write, what to report about each, and entries of the base that are out of date.
 
     `report` has a line or more for each file, by the file's path; `notebooks` what became of cells.
     """
@@ -110,7 +110,7 @@ class Plan:
     base: Files = field(default_factory=dict)
     forgotten: list[PurePosixPath] = field(default_factory=list)
 
-    def tell(self, path: PurePosixPath, line: str) -> None:
+    def add(self, path: PurePosixPath, line: str) -> None:
         """Add a line for the student about one file."""
         self.report.setdefault(path, []).append(line)
 
@@ -133,7 +133,7 @@ def plan(folder: Path, handout: Mapping[PurePosixPath, bytes]) -> Plan:
     for path in sorted(set(base) - set(handout)):
         made.forgotten.append(BASE / path)
         if (folder / path).exists():
-            made.tell(path, "is no longer part of the handout. Yours stays.")
+            made.add(path, "is no longer part of the handout. Yours stays.")
     return made
 
 
@@ -158,10 +158,10 @@ def _file(made: Plan, folder: Path, path: PurePosixPath, base: bytes | None, new
         return
     if mine is None:
         made.writes[path] = new
-        made.tell(path, "is new." if base is None else "was deleted here and has changed in the handout: it is back.")
+        made.add(path, "is new." if base is None else "was deleted here and has changed in the handout: it is back.")
     elif mine == base or not is_remembered(path) or (base is None and path.suffix != ".py"):
         made.writes[path] = new
-        made.tell(path, "has changed in the handout: the new one is taken.")
+        made.add(path, "has changed in the handout: the new one is taken.")
     else:
         _beside(made, folder, path, new, "You have changed it and so has the handout. Yours is kept")
 
@@ -173,12 +173,12 @@ def _notebook(made: Plan, folder: Path, path: PurePosixPath, base: bytes | None,
     mine = _content(folder / where)
     if mine is None:
         made.writes[path] = new
-        made.tell(path, "is new." if base is None else "was deleted here and has changed in the handout: it is back.")
+        made.add(path, "is new." if base is None else "was deleted here and has changed in the handout: it is back.")
         return
     if mine in (base, new):
         if mine != new:
             made.writes[where] = new
-            made.tell(where, "has changed in the handout, and not here: the new one is taken.")
+            made.add(where, "has changed in the handout, and not here: the new one is taken.")
         return
     try:
         data, report = merged_notebook(base, mine, new)
@@ -218,7 +218,7 @@ def _beside(made: Plan, folder: Path, path: PurePosixPath, new: bytes, why: str)
     beside = path.with_name(f"{path.stem}.new{path.suffix}")
     if _content(folder / beside) != new:
         made.writes[beside] = new
-    made.tell(path, f"{why}; the new one is next to it: {beside.name}")
+    made.add(path, f"{why}; the new one is next to it: {beside.name}")
 
 
 def _content(file: Path) -> bytes | None:

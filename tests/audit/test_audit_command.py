@@ -71,7 +71,7 @@ def test_an_exercise_that_can_not_be_audited_ends_with_1_and_says_why(small: Sma
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "output"),
     [
         (("tripler",), "There are: doubler"),
         (("--no",), "No such option"),
@@ -79,10 +79,10 @@ def test_an_exercise_that_can_not_be_audited_ends_with_1_and_says_why(small: Sma
         (("--json", "exercises"), "that is a folder"),
     ],
 )
-def test_wrong_usage_ends_with_2(arguments: tuple[str, ...], told: str) -> None:
+def test_wrong_usage_ends_with_2(arguments: tuple[str, ...], output: str) -> None:
     done = run(*arguments)
     assert done.exit_code == 2
-    assert told in done.stderr
+    assert output in done.stderr
 
 
 def test_outside_a_course_it_says_where_to_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -100,8 +100,8 @@ def test_ctrl_c_ends_it_at_once_and_leaves_nothing_running(small: SmallExercise,
     assert running.stderr
     assert "doubler: " in running.stderr.readline(), "it tells how far it is"
     running.send_signal(signal.SIGINT)
-    _, told = running.communicate(timeout=120)
+    _, output = running.communicate(timeout=120)
     assert running.returncode == 130
-    assert "Stopped. The results so far are kept" in told
-    assert "Traceback" not in told
+    assert "Stopped. The results so far are kept" in output
+    assert "Traceback" not in output
     process_mark.wait_until_none()

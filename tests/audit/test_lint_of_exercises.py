@@ -35,15 +35,15 @@ def linted(small: SmallExercise) -> tuple[int, str]:
 
 
 def test_an_exercise_without_faults(small: SmallExercise) -> None:
-    code, told = linted(small)
-    assert (code, "0 errors" in told) == (0, True), told
+    code, output = linted(small)
+    assert (code, "0 errors" in output) == (0, True), output
 
 
-def test_every_fault_is_told_with_file_and_line(small: SmallExercise) -> None:
+def test_every_fault_is_reported_with_file_and_line(small: SmallExercise) -> None:
     small.change("exercises/doubler/checks.py", "def test_once(", "def test_twice_the_number(")
     small.change("solutions/doubler/mistakes/adds_two.py", "- test_twice_the_number", "- test_no_such_check")
     small.change("solutions/doubler/solution.py", "        # END SOLUTION\n", "")
-    code, told = linted(small)
+    code, output = linted(small)
     assert code == 1
     for fault in (
         "exercises/doubler/checks.py:20: error: there are two checks called test_twice_the_number; the other is in lin",
@@ -52,26 +52,26 @@ def test_every_fault_is_told_with_file_and_line(small: SmallExercise) -> None:
         "exercises/doubler/exercise.toml:3: error: the checks give 7 points together (checks.py 5, hidden_checks.py 2)",
         "twice.py:4: error: it is to be caught by test_once",
     ):
-        assert fault in told, told
+        assert fault in output, output
 
 
-def test_a_scenario_that_is_not_there_is_told_with_those_that_are(small: SmallExercise) -> None:
+def test_a_scenario_that_is_not_there_is_reported_with_those_that_are(small: SmallExercise) -> None:
     small.change("exercises/doubler/hidden_checks.py", "(negative: Run)", "(negativ: Run)")
-    code, told = linted(small)
+    code, output = linted(small)
     assert code == 1
-    assert "test_nothing_below_zero asks for the scenario negativ, which scenarios.py does not have" in told
-    assert "Its scenarios are: positive, negative, any." in told
+    assert "test_nothing_below_zero asks for the scenario negativ, which scenarios.py does not have" in output
+    assert "Its scenarios are: positive, negative, any." in output
 
 
-def test_a_rule_that_the_task_does_not_state_is_told_with_its_line(small: SmallExercise) -> None:
+def test_a_rule_that_the_task_does_not_state_is_reported_with_its_line(small: SmallExercise) -> None:
     hidden = small.course / "exercises" / "doubler" / "hidden_checks.py"
     [line] = [number for number, text in enumerate(hidden.read_text().splitlines(), 1) if RULE in text]
     small.change("exercises/doubler/task.md", "Publish nothing on `/numbers` or `/clock`.", "Quite another sentence.")
 
-    code, told = linted(small)
+    code, output = linted(small)
 
     assert code == 1
-    assert f"hidden_checks.py:{line}: error: a check is based on a sentence that is not in task.md: “{RULE}”" in told
+    assert f"hidden_checks.py:{line}: error: a check is based on a sentence that is not in task.md: “{RULE}”" in output
 
 
 @pytest.mark.parametrize("folder", sorted(EXERCISES.iterdir()), ids=lambda folder: folder.name)

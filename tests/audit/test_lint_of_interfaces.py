@@ -40,7 +40,7 @@ node.declare_parameter('speed', Parameter.Type.DOUBLE)
 """
 
 
-def told(small: SmallExercise) -> list[str]:
+def reported(small: SmallExercise) -> list[str]:
     """What there is to fix, with the file's name and the line."""
     problems = [error.problem for error in disagreements(load(small.folder))]
     return [f"{problem.file.name}:{problem.line}: {problem.found}" for problem in problems]
@@ -80,16 +80,16 @@ def test_what_a_program_creates_is_read_as_far_as_it_is_literal() -> None:
         ),
     ],
 )
-def test_an_end_that_is_not_as_declared_is_told_with_its_line(small: SmallExercise, instead: str, found: str) -> None:
+def test_an_end_not_as_declared_is_reported_with_its_line(small: SmallExercise, instead: str, found: str) -> None:
     small.change(SOLUTION, PUBLISHER, instead)
-    first = told(small)[0]
+    first = reported(small)[0]
     assert first.startswith("solution.py:13: the solution ")
     assert found in first
 
 
-def test_another_type_is_told(small: SmallExercise) -> None:
+def test_another_type_is_reported(small: SmallExercise) -> None:
     small.change(SOLUTION, "import Float64", "import Float32 as Float64")
-    assert 'with type = "std_msgs/msg/Float32"; exercise.toml has type = "std_msgs/msg/Float64"' in told(small)[0]
+    assert 'with type = "std_msgs/msg/Float32"; exercise.toml has type = "std_msgs/msg/Float64"' in reported(small)[0]
 
 
 def test_what_stands_outside_the_markers_is_the_starters(small: SmallExercise) -> None:
@@ -97,13 +97,13 @@ def test_what_stands_outside_the_markers_is_the_starters(small: SmallExercise) -
         SOLUTION, "        # BEGIN SOLUTION\n", "        self.create_timer(1, print)\n        # BEGIN SOLUTION\n"
     )
     small.change(SOLUTION, "self.create_timer(1, print)", "self.create_publisher(Float64, '/twice', 10)")
-    [found] = told(small)
+    [found] = reported(small)
     assert found.startswith("solution.py:12: the starter creates a publisher on /twice, which exercise.toml does not")
 
 
-def test_an_end_that_the_solution_lacks_is_told_where_it_is_declared(small: SmallExercise) -> None:
+def test_an_end_that_the_solution_lacks_is_reported_where_it_is_declared(small: SmallExercise) -> None:
     small.change(SOLUTION, PUBLISHER, "None")
-    [found] = told(small)
+    [found] = reported(small)
     line = (small.course / TOML).read_text().splitlines().index("[[publish]]") + 1
     assert found == f"exercise.toml:{line}: solution.py does not create a publisher on /doubled, which is declared here"
 
@@ -111,19 +111,19 @@ def test_an_end_that_the_solution_lacks_is_told_where_it_is_declared(small: Smal
 @pytest.mark.parametrize("instead", ["self.create_publisher(Float64, name, 10)", "Sender(self, '/doubled')"])
 def test_nothing_is_said_of_what_is_computed_or_left_to_a_library(small: SmallExercise, instead: str) -> None:
     small.change(SOLUTION, PUBLISHER, instead)
-    assert told(small) == []
+    assert reported(small) == []
 
 
 def test_parameters_are_compared_by_type_and_default(small: SmallExercise) -> None:
     with (small.course / TOML).open("a") as file:
         file.write('\n[[parameter]]\nname = "gain"\ntype = "double"\ndefault = 2.0\n')
-    assert "solution.py does not declare the parameter gain, which is declared here" in told(small)[0]
+    assert "solution.py does not declare the parameter gain, which is declared here" in reported(small)[0]
     small.change(SOLUTION, PUBLISHER, "self.declare_parameter('gain', 2); " + PUBLISHER)
-    [found] = told(small)
+    [found] = reported(small)
     assert found.startswith("solution.py:13: the solution declares the parameter gain with type = ")
     assert found.endswith('"integer"; exercise.toml has type = "double"')
     small.change(SOLUTION, "'gain', 2", "'gain', 3.0")
-    assert "with default = 3.0; exercise.toml has default = 2.0" in told(small)[0]
+    assert "with default = 3.0; exercise.toml has default = 2.0" in reported(small)[0]
 
 
 def test_lint_tells_it(small: SmallExercise) -> None:

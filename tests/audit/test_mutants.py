@@ -244,7 +244,7 @@ def test_what_becomes_of_a_mutant(small: SmallExercise, mutants: tuple[Mutant, .
     assert score_of(results) == pytest.approx(1 / 3), "what does not differ does not count"
 
 
-def test_survivors_that_the_author_has_judged_are_told_when_they_hold_no_longer(small: SmallExercise) -> None:
+def test_survivors_that_the_author_has_judged_are_reported_when_they_hold_no_longer(small: SmallExercise) -> None:
     file = small.folder / "survivors.toml"
     ids = ("holds", "caught", "equal", "gone")
     file.write_text("".join(f'[[survivor]]\nmutant = "{id_}"\nreason = "It is right."\n\n' for id_ in ids))

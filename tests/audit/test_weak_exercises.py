@@ -14,7 +14,7 @@ CHECKS = "exercises/doubler/checks.py"
 HIDDEN = "exercises/doubler/hidden_checks.py"
 
 
-def told(result: Audit, about: str) -> list[str]:
+def advice(result: Audit, about: str) -> list[str]:
     """Return what the audit found about a check, a mistake or a mutant."""
     return [problem.found for problem in result.problems if problem.about == about]
 
@@ -28,7 +28,7 @@ def test_a_sound_exercise_has_nothing_to_fix(small: SmallExercise, audited: Audi
     }  # fmt: skip
 
 
-def test_a_weak_copy_is_told_so_check_by_check(small: SmallExercise, audited: Auditing) -> None:
+def test_a_weak_copy_is_reported_check_by_check(small: SmallExercise, audited: Auditing) -> None:
     removed = {
         (CHECKS, "test_once"): "mistakes/twice.py",
         (CHECKS, "test_ends_on_ctrl_c"): "mistakes/no_end.py",
@@ -47,8 +47,8 @@ def test_a_weak_copy_is_told_so_check_by_check(small: SmallExercise, audited: Au
     )
     result = audited(small, quick=False, most=24)
     for (_, check), mistake in removed.items():
-        assert any(mistake in found and "there is no such check" in found for found in told(result, check)), check
-    assert told(result, "test_any_answer") == ["no mutant and no mistake fails test_any_answer: can it fail at all?"]
+        assert any(mistake in found and "there is no such check" in found for found in advice(result, check)), check
+    assert advice(result, "test_any_answer") == ["no mutant and no mistake fails test_any_answer: can it fail at all?"]
     survivors = [problem for problem in result.problems if problem.diff]
     assert survivors, "what the removed checks caught survives now"
     assert all("Is this a right solution? Then list it" in problem.fix for problem in survivors)
@@ -57,14 +57,14 @@ def test_a_weak_copy_is_told_so_check_by_check(small: SmallExercise, audited: Au
 
 def test_a_mistake_that_fails_another_check_too(small: SmallExercise, audited: Auditing) -> None:
     small.change(CHECKS, "    positive.must_answer()", "    positive.must_answer()\n    positive.must_match('data')")
-    (found,) = told(audited(small), "test_once")
+    (found,) = advice(audited(small), "test_once")
     assert "mistakes/adds_two.py" in found
     assert "which it does not name" in found
 
 
 def test_points_for_nothing(small: SmallExercise, audited: Auditing) -> None:
     small.change(HIDDEN, 'depends=["test_publishes"],\n       rule', "rule")
-    found = told(audited(small), "test_leaves_other_topics_alone")
+    found = advice(audited(small), "test_leaves_other_topics_alone")
     assert [text.partition(" passes")[0] for text in found] == ["the starter", "a node that does nothing"]
 
 
@@ -76,7 +76,7 @@ def test_a_right_solution_that_a_check_refuses_with_some_numbers_only(small: Sma
     )
     result = audited(small, quick=False, seeds=6)
     assert (result.seeds, result.randomised) == (6, ("any",))
-    found = told(result, "test_leaves_other_topics_alone")
+    found = advice(result, "test_leaves_other_topics_alone")
     assert found
     assert all(re.search(r"right solution solution\.py fails .* with --seed \d+", text) for text in found)
 
@@ -99,7 +99,7 @@ def test_what_an_exercise_has_to_tell_and_what_it_may_not(small: SmallExercise, 
         small.change(file, old, new)
     result = audited(small)
     for _, _, _, about, words in SPOILT:
-        assert any(words in found for found in told(result, about)), (about, words)
+        assert any(words in found for found in advice(result, about)), (about, words)
 
 
 def test_a_check_that_breaks_on_what_a_node_publishes(small: SmallExercise, audited: Auditing) -> None:
@@ -123,7 +123,7 @@ def test_two_checks_that_always_fail_together(small: SmallExercise, audited: Aud
         '@check(points=1, hint="One publish',
     )
     result = audited(small, quick=False, most=6)
-    assert any("test_twice_the_number and test_double always fail together" in t for t in told(result, "test_double"))
+    assert any("test_twice_the_number and test_double always fail together" in t for t in advice(result, "test_double"))
 
 
 def test_what_is_known_is_not_tried_again(small: SmallExercise, audited: Auditing) -> None:

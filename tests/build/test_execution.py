@@ -74,7 +74,9 @@ def test_what_has_not_changed_is_not_run_again(course: CourseFolder) -> None:
     assert course.spinbook("build", "--execute", "--again").stdout.count("ran in") == 1
 
 
-def test_a_cell_that_fails_is_told_by_chapter_and_line_with_its_log_and_the_rest_is_run(course: CourseFolder) -> None:
+def test_a_failing_cell_is_reported_by_chapter_and_line_with_its_log_and_the_rest_is_run(
+    course: CourseFolder,
+) -> None:
     crash = '```python title="crash.py"\nimport rclpy\n\nprint("so far so good")\nrclpy.spin(1 / 0)\n```\n'
     course.write(
         bad=f"# Bad\n\n{crash}\n```python\na = 1\nundefined = a.b\n```\n\n```python\n'still here'\n```\n",
@@ -179,7 +181,7 @@ time.sleep(1000)
 """
 
 
-def test_misbehaving_nodes_are_told_in_their_cells_and_nothing_is_left_behind(
+def test_misbehaving_nodes_are_reported_in_their_cells_and_nothing_is_left_behind(
     course: CourseFolder, process_mark: ProcessMark
 ) -> None:
     course.write(one=HOSTILE)
@@ -217,7 +219,7 @@ def test_the_deadline_ends_a_notebook_and_its_nodes_and_says_where(
     process_mark.wait_until_none()
 
 
-def test_a_killed_kernel_is_told_and_takes_its_nodes_along(course: CourseFolder, process_mark: ProcessMark) -> None:
+def test_a_killed_kernel_is_reported_and_takes_its_nodes_along(course: CourseFolder, process_mark: ProcessMark) -> None:
     course.write(one=f"# One\n\n{TALKER}\n```python\nimport os, signal\nos.kill(os.getpid(), signal.SIGKILL)\n```\n")
 
     said = course.spinbook("build", "--execute")

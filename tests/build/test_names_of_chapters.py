@@ -34,7 +34,7 @@ def test_chapters_with_dots_in_their_names_keep_their_own_outputs(course: Course
     assert graphs in ([], ["1.one.graph.json", "1.two.graph.json"])
 
 
-def test_a_name_that_no_chapter_has_is_told_and_fails(course: CourseFolder) -> None:
+def test_a_name_that_no_chapter_has_is_reported_and_fails(course: CourseFolder) -> None:
     said = course.write(nodes="# Nodes\n").spinbook("build", "--execute", "node")
 
     assert said.returncode == 1

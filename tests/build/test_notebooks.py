@@ -134,7 +134,7 @@ def test_a_deleted_notebook_is_built_again(course: CourseFolder) -> None:
     assert course.notebook("one").cells
 
 
-def test_warnings_are_told_again_while_the_chapter_stays_as_it_is(course: CourseFolder) -> None:
+def test_warnings_are_reported_again_while_the_chapter_stays_as_it_is(course: CourseFolder) -> None:
     course.write(one=b"# One\r\n")
 
     assert course.spinbook("build").stdout.replace("1 built, 0 un", "0 built, 1 un") == course.spinbook("build").stdout

@@ -134,16 +134,16 @@ def name_of(fault: str) -> str:
 
 
 @pytest.mark.parametrize("fault", FAULTS)
-def test_a_fault_is_told_with_file_and_line_and_what_to_do(faulty: Built, fault: str) -> None:
+def test_a_fault_is_reported_with_file_and_line_and_what_to_do(faulty: Built, fault: str) -> None:
     _, line, words, severity = FAULTS[fault]
     name = name_of(fault)
 
     # What is reported for this chapter: from its name to the name of the next.
-    told = [part for part in re.split(r"^(?=chapters/)", faulty.said, flags=re.MULTILINE) if f"/{name}.md:" in part]
+    reported = [part for part in re.split(r"^(?=chapters/)", faulty.said, flags=re.MULTILINE) if f"/{name}.md:" in part]
 
-    assert any(part.startswith(f"chapters/{name}.md:{line}: {severity}:") for part in told)
+    assert any(part.startswith(f"chapters/{name}.md:{line}: {severity}:") for part in reported)
     for word in words:
-        assert word in "".join(told)
+        assert word in "".join(reported)
     assert (faulty.course.root / f"build/notebooks/{name}.ipynb").exists() is (severity != ERROR)
 
 
@@ -151,7 +151,7 @@ def test_chapters_beside_a_faulty_one_are_built_all_the_same(faulty: Built) -> N
     assert faulty.course.notebook("good").cells
 
 
-def test_what_cannot_run_stops_nothing_and_is_told_once_with_what_would_help(course: CourseFolder) -> None:
+def test_what_cannot_run_stops_nothing_and_is_reported_once_with_what_would_help(course: CourseFolder) -> None:
     fence = "```python\nimport no_such_package\n```\n"
 
     said = course.write(one=f"# A\n\n{fence}\n{fence}", two=f"# B\n\n{fence}").spinbook("build")
@@ -182,10 +182,10 @@ def test_a_chapter_that_breaks_keeps_its_last_good_notebook(course: CourseFolder
 
     assert said.returncode == 1
     assert (course.root / "build/notebooks/one.ipynb").read_bytes() == before
-    assert course.spinbook("build", "--strict").stdout == said.stdout, "told again until it is fixed"
+    assert course.spinbook("build", "--strict").stdout == said.stdout, "reported again until it is fixed"
 
 
-def test_a_missing_chapter_is_told(course: CourseFolder) -> None:
+def test_a_missing_chapter_is_reported(course: CourseFolder) -> None:
     course.write(one=GOOD)
     (course.root / "chapters/one.md").unlink()
 
@@ -207,7 +207,7 @@ def test_a_missing_chapter_is_told(course: CourseFolder) -> None:
         ('title = "x"\nchapters = ["a.md"]\n[package]\nname = "robot"\nnmae = "y"', ["unknown keys: nmae"]),
     ],
 )
-def test_a_faulty_course_toml_is_told(
+def test_a_faulty_course_toml_is_reported(
     course: CourseFolder,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],

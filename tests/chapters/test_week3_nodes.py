@@ -48,7 +48,7 @@ LIMITS = {
     "right_elbow": (0.0, 2.356),
 }
 STEP = 100_000_000  # ns between two messages of a node at 10 Hz
-PATIENCE = 60.0  # s until a test gives up; far more than anything here takes
+DEADLINE_S = 60.0  # s until a test gives up; far more than anything here takes
 
 
 class Program:
@@ -81,7 +81,7 @@ class Program:
 
     def wait_for_log(self, text: str) -> str:
         """Return the next line that contains `text`."""
-        deadline = time.monotonic() + PATIENCE
+        deadline = time.monotonic() + DEADLINE_S
         with suppress(queue.Empty):
             while line := self._unread.get(timeout=max(0.0, deadline - time.monotonic())):
                 self.log.append(line)
@@ -97,7 +97,7 @@ class Program:
         """
         process = psutil.Process(self.process.pid)
         quiet, before = 0, -1
-        for _ in range(round(PATIENCE / 0.02)):
+        for _ in range(round(DEADLINE_S / 0.02)):
             now = process.num_ctx_switches().voluntary
             quiet = quiet + 1 if now == before and process.status() == psutil.STATUS_SLEEPING else 0
             if quiet == 10:
@@ -113,11 +113,11 @@ class Program:
         sees nothing new after SIGTERM, and waits for its next timer or message. `wake` sends it one.
         """
         self.process.send_signal(number)
-        deadline = time.monotonic() + PATIENCE
+        deadline = time.monotonic() + DEADLINE_S
         while self._still_runs() and time.monotonic() < deadline:
             wake()
         code = self.process.wait(1)
-        self._reader.join(PATIENCE)
+        self._reader.join(DEADLINE_S)
         while line := self._unread.get_nowait():
             self.log.append(line)
         return code
@@ -149,9 +149,9 @@ class Partner:
         self.executor.add_node(self.node)
 
     def spin_until(self, condition: Callable[[], bool], what: str) -> None:
-        deadline = time.monotonic() + PATIENCE
+        deadline = time.monotonic() + DEADLINE_S
         while not condition():
-            assert time.monotonic() < deadline, f"waited {PATIENCE:.0f} s for {what}"
+            assert time.monotonic() < deadline, f"waited {DEADLINE_S:.0f} s for {what}"
             self.executor.spin_once(timeout_sec=0.05)
 
     def close(self) -> None:

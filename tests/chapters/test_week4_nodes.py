@@ -27,7 +27,7 @@ from test_msgs.action import Fibonacci
 CHAPTER = Path(__file__).parents[2] / "chapters" / "04-services-and-actions.md"
 NODE_FENCE = re.compile(r'^```python title="(\w+\.py)"[^\n]*\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 CODE = dict(NODE_FENCE.findall(CHAPTER.read_text(encoding="utf-8")))
-PATIENCE = 60.0  # s until a test gives up; far more than anything here takes
+DEADLINE_S = 60.0  # s until a test gives up; far more than anything here takes
 
 
 class Partner:
@@ -41,9 +41,9 @@ class Partner:
         self.executor.add_node(self.node)
 
     def spin_until(self, condition: Callable[[], bool], what: str) -> None:
-        deadline = time.monotonic() + PATIENCE
+        deadline = time.monotonic() + DEADLINE_S
         while not condition():
-            assert time.monotonic() < deadline, f"waited {PATIENCE:.0f} s for {what}"
+            assert time.monotonic() < deadline, f"waited {DEADLINE_S:.0f} s for {what}"
             self.executor.spin_once(timeout_sec=0.05)
 
     def done(self, future: Any, what: str) -> Any:

@@ -41,17 +41,17 @@ def test_a_cell_that_was_not_run_is_asked_for(kernel: Kernel) -> None:
 def test_the_starter_gets_no_points_and_is_told_what_to_fix_first(kernel: Kernel) -> None:
     text, html = texts(shown_of(kernel, starter(solution())))
 
-    for told in (text, html):
-        assert re.search(rf"\b0 of {PUBLIC} public checks, 0 of \d+ points", told)
-        assert re.search(r"\d+ hidden checks \(\d+ points\) will be judged after you hand in\.", told)
-        assert "This is a self-check, not your grade." in told
-        assert "Next:" in told
-        assert "fix the first ✗, run the cell that begins with %%node joint_velocity, then this one again." in told
+    for message in (text, html):
+        assert re.search(rf"\b0 of {PUBLIC} public checks, 0 of \d+ points", message)
+        assert re.search(r"\d+ hidden checks \(\d+ points\) will be judged after you hand in\.", message)
+        assert "This is a self-check, not your grade." in message
+        assert "Next:" in message
+        assert "fix the first ✗, run the cell that begins with %%node joint_velocity, then this one again." in message
     assert text.count("Can't be judged before this is right: It subscribes to /joint_commands") == PUBLIC - 1
     assert html.count('class="sb-failed"') == 1
     assert html.count('class="sb-blocked"') == PUBLIC - 1
     waiting = f"The next {PUBLIC - 1} checks can&#39;t be judged before this is right: It subscribes to /joint_commands"
-    assert html.count(waiting) == 1, "what all wait for is told once"
+    assert html.count(waiting) == 1, "what all wait for is said once"
 
 
 def test_a_right_cell_passes_every_public_check(kernel: Kernel) -> None:
@@ -63,7 +63,7 @@ def test_a_right_cell_passes_every_public_check(kernel: Kernel) -> None:
     assert "Next: hand in. Type %submit joint_velocity into a new cell" in text
 
 
-def test_a_mistake_is_told_with_what_was_expected_what_came_when_and_which_joint(kernel: Kernel) -> None:
+def test_a_mistake_is_reported_with_what_was_expected_what_came_when_and_which_joint(kernel: Kernel) -> None:
     text, html = texts(shown_of(kernel, (SOLUTIONS / "mistakes" / "degrees.py").read_text(encoding="utf-8")))
 
     assert "Message 2 of 100 (0.10 s after the start" in text
@@ -84,10 +84,10 @@ def test_a_mistake_is_told_with_what_was_expected_what_came_when_and_which_joint
 def test_a_misspelled_topic_is_named_and_nothing_that_the_grader_itself_brings(kernel: Kernel) -> None:
     text, html = texts(shown_of(kernel, solution().replace("/joint_commands", "/joint_comands")))
 
-    for told in (text, html):
-        assert "Is /joint_comands a misspelling of /joint_commands?" in told
-        assert "Create the subscription and the publisher in __init__" in told
-        assert "/clock" not in told
+    for message in (text, html):
+        assert "Is /joint_comands a misspelling of /joint_commands?" in message
+        assert "Create the subscription and the publisher in __init__" in message
+        assert "/clock" not in message
 
 
 def test_nothing_of_the_students_becomes_markup(kernel: Kernel) -> None:
@@ -102,15 +102,15 @@ def test_nothing_of_the_students_becomes_markup(kernel: Kernel) -> None:
     assert "<img src=x" not in html
 
 
-def test_a_program_that_can_not_start_is_told_with_its_line(kernel: Kernel) -> None:
+def test_a_program_that_can_not_start_is_reported_with_its_line(kernel: Kernel) -> None:
     broken = solution().replace("def main", "def main(:\n    pass\n\n\ndef other", 1)
 
     text, html = texts(shown_of(kernel, broken))
 
     line = 1 + next(i for i, line in enumerate(broken.split("\n"), start=1) if "def main(:" in line)
-    for told in (text, html):
-        assert "Your program did not start: SyntaxError" in told
-        assert f"line {line}" in told, "lines are counted as in the cell, the one with %%node included"
+    for message in (text, html):
+        assert "Your program did not start: SyntaxError" in message
+        assert f"line {line}" in message, "lines are counted as in the cell, the one with %%node included"
 
 
 def test_lines_are_those_of_the_cell_files_have_their_own_names_and_what_was_printed_is_shown(kernel: Kernel) -> None:
@@ -119,38 +119,38 @@ def test_lines_are_those_of_the_cell_files_have_their_own_names_and_what_was_pri
     text, html = texts(shown_of(kernel, broken))
 
     line = 1 + next(i for i, line in enumerate(broken.split("\n"), start=1) if "1 / 0" in line)
-    for told in (text, html.replace("&#34;", '"')):
-        assert "What your program printed" in told
-        assert "one two three" in told
-        assert f'File "joint_velocity.py", line {line}, in main' in told
-        assert "/submission" not in told
+    for message in (text, html.replace("&#34;", '"')):
+        assert "What your program printed" in message
+        assert "one two three" in message
+        assert f'File "joint_velocity.py", line {line}, in main' in message
+        assert "/submission" not in message
 
 
 @pytest.mark.soak
 @pytest.mark.parametrize(
-    ("before", "told"),
+    ("before", "message"),
     [
         ("    rclpy.spin(node)", "Your program created its node, then computed for 6 s and did not spin it."),
         ("    rclpy.init()", "Your program computed for 6 s and created no node. Is there an endless loop before it?"),
     ],
 )
-def test_a_loop_before_the_spin_is_named_as_such(kernel: Kernel, before: str, told: str) -> None:
+def test_a_loop_before_the_spin_is_named_as_such(kernel: Kernel, before: str, message: str) -> None:
     line = next(line for line in solution().split("\n") if line.strip() == before.strip())
     looping = solution().replace(line, line.replace(before.strip(), f"while True: pass\n{line}"), 1)
 
     text, _ = texts(shown_of(kernel, looping))
 
-    assert told in text
+    assert message in text
 
 
-def test_a_loop_without_end_is_told_and_the_kernel_goes_on(kernel: Kernel) -> None:
+def test_a_loop_without_end_is_reported_and_the_kernel_goes_on(kernel: Kernel) -> None:
     looping = solution().replace("answer = JointState()", "while True: pass")
     assert looping != solution()
 
     text, html = texts(shown_of(kernel, looping))
 
-    for told in (text, html):
-        assert "Is there an endless loop?" in told
+    for message in (text, html):
+        assert "Is there an endless loop?" in message
     assert kernel.run("print(6 * 7)").text == "42\n"
 
 
@@ -214,18 +214,18 @@ def command_of(process: psutil.Process) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    ("line", "told"),
+    ("line", "message"),
     [
         ("%check", "the following arguments are required: exercise"),
         ("%check no_such", "There is no exercise 'no_such' here. There are: joint_velocity."),
         ("%check joint_velocity --seconds soon", "invalid float value: 'soon'"),
     ],
 )
-def test_bad_usage_is_told_in_words(kernel: Kernel, line: str, told: str) -> None:
-    assert told in kernel.run(line).error
+def test_bad_usage_is_reported_in_words(kernel: Kernel, line: str, message: str) -> None:
+    assert message in kernel.run(line).error
 
 
-def test_an_exercise_that_is_damaged_is_told_as_such(kernel: Kernel, handed_out: Path) -> None:
+def test_an_exercise_that_is_damaged_is_reported_as_such(kernel: Kernel, handed_out: Path) -> None:
     public = load(handed_out / "exercises" / "joint_velocity").public_file
     content = public.read_bytes()
     try:

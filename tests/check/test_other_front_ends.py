@@ -72,7 +72,7 @@ def test_vs_code_the_notebooks_own_folder_counts_and_the_saved_cell_where_none_w
     assert "0 of 41 points" in texts(shown)[0]
 
 
-def test_a_cell_that_was_changed_since_it_was_run_is_told_and_one_that_was_not_saved_yet_is_not(
+def test_a_cell_that_was_changed_since_it_was_run_is_reported_and_one_that_was_not_saved_yet_is_not(
     elsewhere: Kernel, place: Path
 ) -> None:
     elsewhere.run(f"{VS_CODE} = {os.fspath(place / 'week3.ipynb')!r}")

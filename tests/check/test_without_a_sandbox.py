@@ -34,8 +34,8 @@ def test_a_students_own_code_is_checked_and_the_check_says_so(handed_out: Path, 
     grade = grading_of(exercise, Options(), workers).grade(of_source("your cell", solution().encode(), exercise))
 
     assert (grade.full_marks, grade.isolation, grade.self_check) == (True, "none", True)
-    for told in (as_text(grade, exercise), as_html(grade, exercise)):
-        assert "Your code ran without a sandbox, and no grade of record is made that way." in told
+    for message in (as_text(grade, exercise), as_html(grade, exercise)):
+        assert "Your code ran without a sandbox, and no grade of record is made that way." in message
 
 
 @pytest.mark.usefixtures("no_sandbox")

@@ -76,7 +76,7 @@ def test_execute_raises() -> None:
 
 
 @pytest.mark.parametrize(
-    ("mine", "told"),
+    ("mine", "message"),
     [
         (goal(*BEGIN, (3.0, "succeeded"), cancels=(replace(ASKED[0], accepted=False, code=0),)),
          "got succeeded. Your node rejected the request to cancel: without a cancel callback, a server rejects every"),
@@ -95,8 +95,8 @@ def test_execute_raises() -> None:
     ],
     ids=["rejected", "succeed all the same", "answered late", "slow", "ignored", "single-threaded", "over", "feedback"],
 )  # fmt: skip
-def test_a_request_to_cancel_that_is_not_obeyed(mine: Recording, told: str) -> None:
-    assert told in says(lambda: run(mine, CANCELED).must_cancel(within=0.5))
+def test_a_request_to_cancel_that_is_not_obeyed(mine: Recording, message: str) -> None:
+    assert message in says(lambda: run(mine, CANCELED).must_cancel(within=0.5))
 
 
 def test_a_goal_that_never_ends_or_ends_late() -> None:
@@ -122,7 +122,7 @@ def test_no_answer_to_a_goal() -> None:
 
 
 @pytest.mark.parametrize(
-    ("feedback", "told"),
+    ("feedback", "message"),
     [
         ((), "expected 2 feedback messages, got 0. Your node never publishes feedback."),
         ((Feedback(ns(1.5), {"left": 2}),), "expected 2 feedback messages, got 1."),
@@ -134,8 +134,8 @@ def test_no_answer_to_a_goal() -> None:
         ),
     ],
 )
-def test_feedback(feedback: tuple[Feedback, ...], told: str) -> None:
-    assert told in says(lambda: run(changed(RIGHT, feedback=feedback), RIGHT).must_match_feedback("left", time=0.05))
+def test_feedback(feedback: tuple[Feedback, ...], message: str) -> None:
+    assert message in says(lambda: run(changed(RIGHT, feedback=feedback), RIGHT).must_match_feedback("left", time=0.05))
 
 
 def test_results() -> None:
@@ -151,9 +151,9 @@ def test_results() -> None:
 def test_what_execute_raised_is_quoted_from_the_log() -> None:
     log = "[ERROR] [1.0] [worker.action_server]: Error raised in execute callback: no joint\nTraceback\n"
     raised = replace(goal(*BEGIN, (1.5, "aborted"), result={"sequence": []}), log=log)
-    told = "Your execute callback raised an exception: no joint."
-    assert says(lambda: run(raised, RIGHT).must_end("succeeded")).endswith(told)
-    assert says(lambda: run(raised, RIGHT).must_match_results()).endswith(told)
+    message = "Your execute callback raised an exception: no joint."
+    assert says(lambda: run(raised, RIGHT).must_end("succeeded")).endswith(message)
+    assert says(lambda: run(raised, RIGHT).must_match_results()).endswith(message)
     unasked = replace(raised, log=log.replace("no joint", "invalid transition with event CANCELED, at ./a/b.c:100"))
     assert says(lambda: run(unasked, RIGHT).must_match_results()).endswith(
         "invalid transition with event CANCELED. canceled() is only for a goal that somebody asked to cancel; "
@@ -183,7 +183,7 @@ def test_goals_of_a_client() -> None:
     )
 
 
-def test_an_author_who_asks_for_a_goal_or_a_cancel_that_is_not_there_is_told_so() -> None:
+def test_an_author_who_asks_for_a_goal_or_a_cancel_that_is_not_there_is_reported() -> None:
     with pytest.raises(ValueError, match="there is no goal 2: the scenario plain sends fewer"):
         run(RIGHT).must_accept(2)
     with pytest.raises(ValueError, match="the scenario plain never asks to cancel goal 1"):

@@ -43,7 +43,7 @@ def right(number: int) -> float:
 REFERENCE = recording(*(answer(n, right(n)) for n in range(1, COUNT + 1)))
 
 
-def told(received: list[Received], check: Callable[[Run], None]) -> str:
+def message(received: list[Received], check: Callable[[Run], None]) -> str:
     """Return what a check says about this."""
     with pytest.raises(Wrong) as caught:
         check(Run(EXERCISE, recording(*received), REFERENCE))
@@ -55,20 +55,20 @@ def matches(run: Run) -> None:
 
 
 @pytest.mark.parametrize("check", [Run.must_answer, matches])
-def test_an_answer_that_comes_later_is_told_with_its_delay(check: Callable[[Run], None]) -> None:
+def test_an_answer_that_comes_later_is_reported_with_its_delay(check: Callable[[Run], None]) -> None:
     received = [answer(n, right(n), later=0.45) for n in range(1, 5)]
-    assert "an answer was expected at once; it arrived 0.45 s later." in told(received, check)
+    assert "an answer was expected at once; it arrived 0.45 s later." in message(received, check)
 
 
-def test_an_answer_that_comes_with_the_next_message_is_told_as_one_message_late() -> None:
+def test_an_answer_that_comes_with_the_next_message_is_reported_as_one_message_late() -> None:
     received = [answer(n, right(n), later=0.1) for n in range(1, COUNT)]
-    assert "Message 1 of 8" in told(received, Run.must_answer)
-    assert "it arrived one message late." in told(received, Run.must_answer)
+    assert "Message 1 of 8" in message(received, Run.must_answer)
+    assert "it arrived one message late." in message(received, Run.must_answer)
 
 
-def test_where_each_answer_is_the_one_to_the_message_before_that_is_told() -> None:
+def test_where_each_answer_is_the_one_to_the_message_before_that_is_reported() -> None:
     received = [answer(1, 0.0), *(answer(n, right(n - 1)) for n in range(2, COUNT + 1))]
-    assert "expected data 1 m, got 0 m. Every answer is one message late" in told(received, matches)
+    assert "expected data 1 m, got 0 m. Every answer is one message late" in message(received, matches)
 
 
 def test_an_answer_that_is_right_for_its_own_message_is_no_late_answer() -> None:
@@ -81,20 +81,20 @@ def test_an_answer_that_is_right_for_its_own_message_is_no_late_answer() -> None
 
 
 @pytest.mark.parametrize("factor", [0.8, 1.25])
-def test_a_measurement_by_the_computers_clock_is_told_by_its_factor(factor: float) -> None:
+def test_a_measurement_by_the_computers_clock_is_reported_by_its_factor(factor: float) -> None:
     received = [answer(n, factor * right(n)) for n in range(1, COUNT + 1)]
     assert f"Every data is {factor:g} times what it should be: your node measures time with the computer's clock" in (
-        told(received, matches)
+        message(received, matches)
     )
 
 
 def test_another_factor_is_no_sign_of_a_clock() -> None:
     received = [answer(n, 3 * right(n)) for n in range(1, COUNT + 1)]
-    assert told(received, matches).endswith("Every data is 3 times what it should be.")
+    assert message(received, matches).endswith("Every data is 3 times what it should be.")
 
 
 @pytest.mark.parametrize(
-    ("durability", "told"),
+    ("durability", "message"),
     [
         (
             "transient_local",
@@ -103,10 +103,10 @@ def test_another_factor_is_no_sign_of_a_clock() -> None:
         ("volatile", "Your node did not subscribe to /in yet: create the subscription in __init__."),
     ],
 )
-def test_no_answer_at_all_is_explained_by_the_subscription(durability: Durability, told: str) -> None:
+def test_no_answer_at_all_is_explained_by_the_subscription(durability: Durability, message: str) -> None:
     silent = recording()
     end = EndPoint("/doubler", "subscription", "/in", FLOAT, "reliable", durability)
     unheard = replace(silent, sent=tuple(replace(one, heard=False) for one in silent.sent), end_points=(end,))
     with pytest.raises(Wrong) as caught:
         Run(EXERCISE, unheard, REFERENCE).must_match("data")
-    assert told in caught.value.finding.text
+    assert message in caught.value.finding.text

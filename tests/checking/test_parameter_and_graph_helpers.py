@@ -40,15 +40,17 @@ def test_parameters_that_are_taken_or_refused_wrongly() -> None:
         "At 1.00 s (as usual), parameter gain: the value -1.0 must be refused, but your node took it. "
         "Your node takes every value. Did you add an on-set callback?"
     )
-    told = says(lambda: run(refuses, right).must_take_and_refuse_as_the_solution())
-    assert "the value 3.0 must be taken, but your node refused it. It said: too small. Your node refuses every" in told
+    message = says(lambda: run(refuses, right).must_take_and_refuse_as_the_solution())
+    assert (
+        "the value 3.0 must be taken, but your node refused it. It said: too small. Your node refuses every" in message
+    )
     undeclared = replace(EMPTY, parameters=(replace(refuses.parameters[0], reason="access to undeclared parameter"),))
     assert "your node does not have it. Declare it" in says(lambda: run(undeclared, right).must_take("gain", 3.0))
     assert "your node did not answer." in says(lambda: run(mute, right).must_take("gain"))
 
 
 @pytest.mark.parametrize(
-    ("mine", "told"),
+    ("mine", "message"),
     [
         (read(3.0), "parameter gain: expected 2 1/s, got 3 1/s."),
         (read(2), "expected 2.0, a double, got 2, an integer."),
@@ -56,11 +58,11 @@ def test_parameters_that_are_taken_or_refused_wrongly() -> None:
         (read(None, answered=False), "your node did not answer."),
     ],
 )
-def test_readings(mine: Recording, told: str) -> None:
-    assert told in says(lambda: run(mine, read(2.0)).must_have_parameter("gain"))
+def test_readings(mine: Recording, message: str) -> None:
+    assert message in says(lambda: run(mine, read(2.0)).must_have_parameter("gain"))
 
 
-def test_an_author_who_asks_for_a_parameter_that_the_scenario_does_not_is_told_so() -> None:
+def test_an_author_who_asks_for_a_parameter_that_the_scenario_does_not_is_reported() -> None:
     with pytest.raises(ValueError, match=r"sets gain to 3, never to 4\.0"):
         run(set_to((3.0, True))).must_take("gain", 4.0)
     with pytest.raises(ValueError, match="never asks for the parameter gain"):
@@ -77,7 +79,7 @@ def test_a_right_program_passes() -> None:
 
 
 @pytest.mark.parametrize(
-    ("number", "fields", "told"),
+    ("number", "fields", "message"),
     [
         (0, {"topic": "/inn"}, "Your node does not subscribe to /in. It subscribes to: /inn."),
         (1, {"topic": "/outt"}, "Your node does not publish on /out. It publishes on: /outt."),
@@ -90,9 +92,9 @@ def test_a_right_program_passes() -> None:
         (3, {"kind": "publisher"}, "Your node does not have an action /count. Its actions are: none."),
     ],
 )
-def test_an_end_point_that_is_missing(number: int, fields: dict[str, Any], told: str) -> None:
+def test_an_end_point_that_is_missing(number: int, fields: dict[str, Any], message: str) -> None:
     ends = tuple(replace(end, **fields) if i == number else end for i, end in enumerate(ENDS))
-    assert says(run(replace(EMPTY, end_points=ends)).must_have_interface).startswith(told)
+    assert says(run(replace(EMPTY, end_points=ends)).must_have_interface).startswith(message)
 
 
 def test_end_points_that_are_too_many() -> None:
@@ -112,8 +114,8 @@ def test_each_of_several_programs_may_have_one_end_of_a_topic() -> None:
     both = replace(EMPTY, end_points=(*ENDS, replace(ENDS[1], node="/other")), nodes=("/other", "/worker"))
     run(both, exercise=two).must_be_as_declared()
     twice = replace(both, end_points=(*both.end_points, replace(ENDS[1], node="/other")))
-    told = "Your node has 2 publishers on /out. Expected 1."
-    assert says(lambda: run(twice, exercise=two).must_be_as_declared()) == told
+    message = "Your node has 2 publishers on /out. Expected 1."
+    assert says(lambda: run(twice, exercise=two).must_be_as_declared()) == message
 
 
 def test_a_program_must_be_as_exercise_toml_declares_it() -> None:

@@ -36,13 +36,13 @@ def test_a_right_publisher_passes_everything() -> None:
 
 
 def test_a_node_that_never_publishes() -> None:
-    told = "In “as usual”: your node has a publisher on /out, but never published anything."
+    message = "In “as usual”: your node has a publisher on /out, but never published anything."
     for check in (
         lambda: run(SILENT, RIGHT).must_publish(),
         lambda: run(SILENT, RIGHT).must_match_series("data"),
         lambda: run(SILENT, RIGHT).must_keep_rate(10.0),
     ):
-        assert says(check) == told
+        assert says(check) == message
     other = replace(SILENT, end_points=(replace(ENDS[1], topic="/outt"),))
     assert says(lambda: run(other, RIGHT).must_publish()).endswith(
         "your node does not publish on /out. It publishes on: /outt."
@@ -50,24 +50,24 @@ def test_a_node_that_never_publishes() -> None:
 
 
 @pytest.mark.parametrize(
-    ("period", "told"),
+    ("period", "message"),
     [
         (0.2, "expected 10 messages per second on /out, got 5."),
         (0.08, "got 12.5. Either its period is wrong, or your node waits by the computer's clock (time.sleep"),
         (10.0, "got 0.1. It publishes every 10 s: a timer takes the period in seconds, not the rate."),
     ],
 )
-def test_another_rate(period: float, told: str) -> None:
+def test_another_rate(period: float, message: str) -> None:
     times = [period * i for i in range(20)]
-    assert told in says(lambda: run(published(times, times), RIGHT).must_keep_rate(10.0))
+    assert message in says(lambda: run(published(times, times), RIGHT).must_keep_rate(10.0))
 
 
 def test_the_first_gap_of_a_timer_that_was_created_before_the_clock_started_does_not_count() -> None:
     """A timer of 0.252 s fires when the clock starts at 100 s, and then at the multiples of its period."""
     period = 0.252
     times = [0.0, *(period * i - 100 for i in range(397, 420))]
-    told = says(lambda: run(published(times, times), RIGHT).must_keep_rate(10.0))
-    assert "expected 10 messages per second on /out, got 3.968." in told
+    message = says(lambda: run(published(times, times), RIGHT).must_keep_rate(10.0))
+    assert "expected 10 messages per second on /out, got 3.968." in message
     run(published(times, times)).must_keep_rate(1 / period, tolerance=0.001)
 
 
@@ -75,7 +75,7 @@ def test_a_message_too_many_at_the_start_counts() -> None:
     assert "got 4.2." in says(lambda: run(published([0.0, *TIMES_OF_4_HZ], [0.0] * 22), RIGHT).must_keep_rate(4.0))
 
 
-def test_the_rate_of_two_messages_is_told_by_the_gap_between_them() -> None:
+def test_the_rate_of_two_messages_is_reported_by_the_gap_between_them() -> None:
     assert "got 2." in says(lambda: run(published([0.1, 0.6], [1.0, 2.0]), RIGHT).must_keep_rate(10.0))
 
 
@@ -86,7 +86,7 @@ def test_a_publisher_that_stops() -> None:
     )
 
 
-def test_a_gap_is_told_with_its_beginning() -> None:
+def test_a_gap_is_reported_with_its_beginning() -> None:
     mine = run(published([*TIMES[:10], *TIMES[14:]], [*VALUES[:10], *VALUES[14:]]), RIGHT)
     assert says(lambda: mine.must_have_no_gap(0.15)) == (
         "At 1.00 s (as usual): nothing was published on /out for 0.50 s, from 1.00 s on. "
@@ -97,7 +97,7 @@ def test_a_gap_is_told_with_its_beginning() -> None:
 
 
 @pytest.mark.parametrize(
-    ("stamps", "told"),
+    ("stamps", "message"),
     [
         ((100.0, 100.1, 100.15), "message 3 on /out: expected header.stamp 100.200000000, the time when it was publ"),
         ((0.0, 0.0, 0.0), "got 0.000000000. Every stamp is 0: your node never fills it in."),
@@ -105,12 +105,12 @@ def test_a_gap_is_told_with_its_beginning() -> None:
         ((99.0, 99.0, 99.0), "Every stamp is the same."),
     ],
 )
-def test_stamps(stamps: tuple[float, ...], told: str) -> None:
-    assert told in says(lambda: run(stamped(*stamps)).must_stamp())
+def test_stamps(stamps: tuple[float, ...], message: str) -> None:
+    assert message in says(lambda: run(stamped(*stamps)).must_stamp())
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "message"),
     [
         (lambda v: v + (5.0 if v == 9.0 else 0.0), "message 3 on /out: expected data 9 m, got 14 m."),
         (lambda v: -v, "expected data 1 m, got -1 m. Every value has the wrong sign."),
@@ -120,9 +120,9 @@ def test_stamps(stamps: tuple[float, ...], told: str) -> None:
         (lambda v: 4.0, "Every data is 4."),
     ],
 )
-def test_a_series_with_other_values(change: Callable[[float], float], told: str) -> None:
+def test_a_series_with_other_values(change: Callable[[float], float], message: str) -> None:
     mine = published(TIMES, [change(value) for value in VALUES])
-    assert told in says(lambda: run(mine, RIGHT).must_match_series("data"))
+    assert message in says(lambda: run(mine, RIGHT).must_match_series("data"))
 
 
 def test_a_series_that_is_one_message_late_or_early() -> None:
@@ -143,8 +143,8 @@ def test_a_series_that_comes_too_late_or_ends_too_early() -> None:
     short = published(TIMES[:40], VALUES[:40])
     assert "expected 50 messages on /out, got 40." in says(lambda: run(short, RIGHT).must_match_series("data"))
     stopped = published(TIMES[:30], VALUES[:30])
-    told = says(lambda: run(stopped, RIGHT).must_match_series("data"))
-    assert told.endswith(f"expected 50 messages on /out, got 30. The last one came at {TIMES[29]:.2f} s.")
+    message = says(lambda: run(stopped, RIGHT).must_match_series("data"))
+    assert message.endswith(f"expected 50 messages on /out, got 30. The last one came at {TIMES[29]:.2f} s.")
 
 
 def test_what_several_threads_publish_at_one_moment_may_come_in_any_order() -> None:

@@ -37,7 +37,7 @@ def test_a_right_server_passes() -> None:
 
 
 @pytest.mark.parametrize(
-    ("mine", "told"),
+    ("mine", "message"),
     [
         (calls(2, 9, 4, 5), "At 2.00 s (as usual), request 2 to /add (a 2, b 1): expected sum 3 m, got 9 m."),
         (calls(-2, -3, -4, -5), "expected sum 2 m, got -2 m. Every value has the wrong sign."),
@@ -46,8 +46,8 @@ def test_a_right_server_passes() -> None:
         (calls(None, None, None, None), "got none. Your node never responds. Does the callback return the response"),
     ],
 )
-def test_wrong_responses(mine: Recording, told: str) -> None:
-    assert told in says(lambda: run(mine, RIGHT).must_match_responses("sum"))
+def test_wrong_responses(mine: Recording, message: str) -> None:
+    assert message in says(lambda: run(mine, RIGHT).must_match_responses("sum"))
 
 
 def test_responses_that_come_late() -> None:
@@ -84,11 +84,11 @@ def test_a_client_that_does_nothing_after_its_request_is_asked_whether_it_waits(
         return replace(asked, received=published(ticks, ticks).received)
 
     right, waits = client(4, 5.0), client(1, 0.9)
-    told = "Your node sent a request to /add at 1.00 s, and did nothing from then on. Does a callback wait"
+    message = "Your node sent a request to /add at 1.00 s, and did nothing from then on. Does a callback wait"
     mine = run(waits, right, CLIENT)
-    assert told in says(lambda: mine.must_match_requests("a"))
-    assert told in says(lambda: mine.must_keep_rate(2.0, "/out"))
-    assert told in says(lambda: mine.must_match_series("data", "/out"))
+    assert message in says(lambda: mine.must_match_requests("a"))
+    assert message in says(lambda: mine.must_keep_rate(2.0, "/out"))
+    assert message in says(lambda: mine.must_match_series("data", "/out"))
     goes_on = run(client(1, 5.0), right, CLIENT)
     assert says(lambda: goes_on.must_match_requests("a")).endswith("expected 4 requests to /add, got 1.")
 
@@ -102,6 +102,6 @@ def test_requests_that_come_too_late() -> None:
     )
 
 
-def test_an_author_who_has_to_name_the_service_is_told_so() -> None:
+def test_an_author_who_has_to_name_the_service_is_reported() -> None:
     with pytest.raises(ValueError, match=r"name the client: exercise.toml has none under \[\[client\]\]"):
         run(RIGHT).must_call()

@@ -10,18 +10,18 @@ from grader.checking.verdict import Finding, Verdict
 TOPICS, NODE = ("/joint_commands", "/joint_velocities"), "/joint_velocity"
 
 
-def told(text: str) -> str:
+def hinted(text: str) -> str:
     """Return what a student reads instead of this finding."""
     finding = with_spelling(Verdict("test_a", "a", "failed", 1.0, finding=Finding(text)), TOPICS, NODE).finding
     assert finding
     return finding.text
 
 
-def test_a_slip_is_told() -> None:
+def test_a_slip_is_reported() -> None:
     text = "Nothing came on /joint_velocitys."
-    assert told(text) == f"{text} Is /joint_velocitys a misspelling of /joint_velocities?"
+    assert hinted(text) == f"{text} Is /joint_velocitys a misspelling of /joint_velocities?"
 
 
 @pytest.mark.parametrize("text", ["Expected /joint_velocity, got /joint_velocity, /log.", "Nothing came on /scan."])
 def test_the_exercises_own_names_and_quite_other_ones_are_no_slips(text: str) -> None:
-    assert told(text) == text
+    assert hinted(text) == text

@@ -18,7 +18,7 @@ def test_a_right_way_passes() -> None:
 
 
 @pytest.mark.parametrize(
-    ("mine", "told"),
+    ("mine", "message"),
     [
         (moved(START, (1.0, 0.0, 0.0)), "the closest it got was 5. It never moved."),
         (moved(START, (1.0, -4.0, -3.0)), "the closest it got was 5. It moves away from there: is a sign wrong?"),
@@ -31,8 +31,8 @@ def test_a_right_way_passes() -> None:
         (moved(START, (2.0, 4.0, 3.0), (3.0, 3.0, 3.0)), "it reached x = 4, y = 3 at 2.00 s, but did not stay there."),
     ],
 )
-def test_a_way_that_is_wrong(mine: Recording, told: str) -> None:
-    assert told in says(lambda: run(mine).must_reach("/pose", PLACE, tolerance=0.1, within=2.0, overshoot=0.5))
+def test_a_way_that_is_wrong(mine: Recording, message: str) -> None:
+    assert message in says(lambda: run(mine).must_reach("/pose", PLACE, tolerance=0.1, within=2.0, overshoot=0.5))
 
 
 def test_what_need_not_stay() -> None:
@@ -41,8 +41,8 @@ def test_what_need_not_stay() -> None:
 
 def test_what_must_stay_between_two_values() -> None:
     run(RIGHT).must_stay_between("/pose", "x", 0.0, 4.05)
-    told = says(lambda: run(RIGHT).must_stay_between("/pose", "x", 0.0, 4.0))
-    assert told == "At 3.00 s (as usual), /pose: expected x from 0 to 4, got 4.05."
+    message = says(lambda: run(RIGHT).must_stay_between("/pose", "x", 0.0, 4.0))
+    assert message == "At 3.00 s (as usual), /pose: expected x from 0 to 4, got 4.05."
 
 
 def test_a_topic_without_messages_is_the_authors_fault() -> None:

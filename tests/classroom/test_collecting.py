@@ -161,17 +161,17 @@ def test_a_table_that_names_files(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("name,student\nx,y\n", "class.csv:1: there is no column 'file'"),
         ("file,student\na.py,\n", "class.csv:2: file = 'a.py', student = ''"),
         ("file,student,submitted\na.py,anna,yesterday\n", "class.csv:2: submitted = 'yesterday'"),
     ],
 )
-def test_a_mistake_in_a_table_is_told_with_its_line(tmp_path: Path, text: str, told: str) -> None:
+def test_a_mistake_in_a_table_is_reported_with_its_line(tmp_path: Path, text: str, message: str) -> None:
     table = written(tmp_path / "s", "a.py") / "class.csv"
     table.write_text(text)
-    with pytest.raises(SubmissionsError, match=told.replace("(", r"\(")):
+    with pytest.raises(SubmissionsError, match=message.replace("(", r"\(")):
         taken(table, tmp_path)
 
 
@@ -232,7 +232,7 @@ def test_a_zip_of_too_many_files_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("content", [b"", b"no zip", zipfile.stringEndArchive + bytes(10)])
-def test_what_is_no_zip_is_told(tmp_path: Path, content: bytes) -> None:
+def test_what_is_no_zip_is_reported(tmp_path: Path, content: bytes) -> None:
     source = tmp_path / "class.zip"
     source.write_bytes(content)
     with pytest.raises(SubmissionsError, match=r"class\.zip"):
@@ -258,7 +258,7 @@ def test_links_in_a_folder_are_not_followed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("names", [(), ("notes.txt",)])
-def test_nothing_to_grade_is_told(tmp_path: Path, names: tuple[str, ...]) -> None:
+def test_nothing_to_grade_is_reported(tmp_path: Path, names: tuple[str, ...]) -> None:
     root = tmp_path / "s"
     root.mkdir()
     with pytest.raises(SubmissionsError, match="There is no submission in it"):

@@ -71,7 +71,7 @@ def test_a_due_date_may_be_a_day_and_a_rule_may_be_by_the_hour(exercise: Exercis
 
 
 @pytest.mark.parametrize(
-    ("lines", "told"),
+    ("lines", "message"),
     [
         (['penalty = "10 % a day"'], "has no due"),
         (['due = "tomorrow"'], "due = 'tomorrow'"),
@@ -82,11 +82,11 @@ def test_a_due_date_may_be_a_day_and_a_rule_may_be_by_the_hour(exercise: Exercis
     ],
 )
 def test_what_can_not_be_understood_names_the_file_and_what_to_write(
-    exercise: Exercise, lines: list[str], told: str
+    exercise: Exercise, lines: list[str], message: str
 ) -> None:
     with pytest.raises(ExerciseError, match=r"exercise\.toml") as error:
         saying(exercise, *lines)
-    assert told in str(error.value)
+    assert message in str(error.value)
 
 
 def adjusting(tmp_path: Path, *rows: str) -> Adjusting:
@@ -95,7 +95,7 @@ def adjusting(tmp_path: Path, *rows: str) -> Adjusting:
     return Adjusting(Deadline(DUE, percent=10.0), overrides_in(file, {"ada", "ben"}))
 
 
-def test_lateness_is_that_of_the_hand_in_and_told_with_its_source(tmp_path: Path) -> None:
+def test_lateness_is_that_of_the_hand_in_and_reported_with_its_source(tmp_path: Path) -> None:
     late = plain.entry(plain.HALF, submitted=after(days=1, hours=3), submitted_from="timestamp.txt")
     [found] = adjusting(tmp_path)(late)
     assert (found.kind, found.points) == ("late", -1.2)
@@ -129,7 +129,7 @@ def test_nobody_gets_less_than_nothing(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("row", "told"),
+    ("row", "message"),
     [
         ("eve,5,,why", "no student is called 'eve'"),
         ("ada,5,,", "the reason is missing"),
@@ -139,7 +139,7 @@ def test_nobody_gets_less_than_nothing(tmp_path: Path) -> None:
         ("ada,,soon,why", "due = 'soon'"),
     ],
 )
-def test_a_row_with_a_mistake_is_told_with_its_line(tmp_path: Path, row: str, told: str) -> None:
+def test_a_row_with_a_mistake_is_reported_with_its_line(tmp_path: Path, row: str, message: str) -> None:
     with pytest.raises(OverridesError, match=r"overrides.csv:2: ") as error:
         adjusting(tmp_path, row)
-    assert told in str(error.value)
+    assert message in str(error.value)

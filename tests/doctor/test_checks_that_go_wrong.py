@@ -28,7 +28,7 @@ def check(folder: Path, word: str, does: str, seconds: float = 60.0, needs: tupl
 
 
 @pytest.mark.parametrize(
-    ("does", "told"),
+    ("does", "message"),
     [
         ("sys.stderr.write('no such rmw\\n'); os._exit(102)", "the check ended with exit code 102: no such rmw"),
         ("os.kill(os.getpid(), signal.SIGSEGV)", "the check ended with signal 11"),
@@ -36,9 +36,9 @@ def check(folder: Path, word: str, does: str, seconds: float = 60.0, needs: tupl
     ],
     ids=["exits", "crashes", "raises"],
 )
-def test_a_check_that_ends_its_process_is_told(folder: Path, does: str, told: str) -> None:
+def test_a_check_that_ends_its_process_is_reported(folder: Path, does: str, message: str) -> None:
     finding = examine(check(folder, "broken", does))
-    assert (finding.name, finding.state, finding.found) == ("Broken", State.MISSING, told)
+    assert (finding.name, finding.state, finding.found) == ("Broken", State.MISSING, message)
     assert finding.fix
 
 
@@ -59,7 +59,7 @@ def test_what_libraries_print_is_not_taken_for_the_finding(folder: Path) -> None
     assert examine(check(folder, "chatty", does)) == Finding("Chatty", State.OK, "works")
 
 
-def test_the_others_are_told_in_their_order(folder: Path) -> None:
+def test_the_others_are_reported_in_their_order(folder: Path) -> None:
     checks = [
         check(folder, "slow", "time.sleep(0.5); return ok(name, 'works')"),
         check(folder, "broken", "os.abort()"),
@@ -75,7 +75,7 @@ def test_the_others_are_told_in_their_order(folder: Path) -> None:
     assert sorted(seen) == ["Broken", "Good", "Slow"]
 
 
-def test_what_can_only_fail_is_not_tried_so_a_cause_is_told_once(folder: Path) -> None:
+def test_what_can_only_fail_is_not_tried_so_a_cause_is_reported_once(folder: Path) -> None:
     checks = [
         check(folder, "cause", "return missing(name, 'is gone', 'get it')"),
         check(folder, "effect", f"open({os.fspath(folder / 'tried')!r}, 'w')", needs=("cause",)),

@@ -39,7 +39,7 @@ def test_help_names_every_check_and_the_exit_code() -> None:
     assert "Exit code: 0" in text
 
 
-def told(*findings: Finding) -> str:
+def shown(*findings: Finding) -> str:
     console = Console(width=100, color_system=None, highlight=False)
     with console.capture() as captured:
         show(console, findings)
@@ -52,7 +52,7 @@ def test_what_is_missing_makes_it_unable_and_a_warning_does_not() -> None:
 
 
 def test_the_fixes_follow_the_list_each_with_its_name() -> None:
-    text = told(
+    text = shown(
         ok("One", "works"), warning("Two", "is odd", "do this\nand that"), missing("Three", "is gone", "get it")
     )
     assert [line.rstrip() for line in text.splitlines()] == [
@@ -72,4 +72,4 @@ def test_the_fixes_follow_the_list_each_with_its_name() -> None:
 
 
 def test_square_brackets_in_what_was_found_are_no_markup() -> None:
-    assert "[red]/opt[/red]" in told(ok("One", "[red]/opt[/red]"))
+    assert "[red]/opt[/red]" in shown(ok("One", "[red]/opt[/red]"))

@@ -45,7 +45,7 @@ def test_a_middleware_that_is_not_installed_is_named_and_what_needs_it_is_not_tr
 
 
 @with_wheels
-def test_a_guard_that_outlived_its_library_path_is_the_cause_that_is_told() -> None:
+def test_a_guard_that_outlived_its_library_path_is_the_cause_that_is_reported() -> None:
     run = doctor("--json", "libraries", "ros", **{GUARD: "1", "LD_LIBRARY_PATH": None})
     libraries, ros = json.loads(run.stdout)["findings"]
     assert libraries["state"] == "missing"

@@ -43,7 +43,7 @@ def test_what_is_blocked_says_what_to_fix_first(graded: dict[str, Grade], exerci
     assert "can't be judged before this is right: Each joint's velocity is its change of position" in shown
 
 
-def test_of_a_hidden_check_only_title_points_outcome_and_hint_are_told(
+def test_of_a_hidden_check_only_title_points_outcome_and_hint_are_reported(
     graded: dict[str, Grade], exercise: Exercise
 ) -> None:
     grade = graded["joints_by_index"]
@@ -77,7 +77,7 @@ def test_the_plot_says_in_words_where_it_first_goes_wrong(graded: dict[str, Grad
     assert said in text(page)
 
 
-def test_full_marks_are_told_with_joy(graded: dict[str, Grade], exercise: Exercise) -> None:
+def test_full_marks_are_celebrated(graded: dict[str, Grade], exercise: Exercise) -> None:
     shown = text(page_of(graded["solution"], exercise))
     assert "Everything is right" in shown
     assert "100 of 100 points" in shown
@@ -110,7 +110,7 @@ def test_a_fault_of_ours_is_no_zero(graded: dict[str, Grade], exercise: Exercise
     assert "worker process" not in shown, "that is for the instructor"
 
 
-def test_adjustments_are_told_with_their_reasons(graded: dict[str, Grade], exercise: Exercise) -> None:
+def test_adjustments_are_reported_with_their_reasons(graded: dict[str, Grade], exercise: Exercise) -> None:
     grade = graded["fixed_dt"]
     shown = text(feedback_page(entry(grade, adjustments=(LATE, EXTRA)), exercise, None))
     counts = f"{grade.score - 5.1:.1f}"

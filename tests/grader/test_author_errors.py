@@ -53,7 +53,7 @@ def test_a_missing_solution(course: Path, workers: WorkerPool) -> None:
 
 
 @pytest.mark.parametrize(
-    ("file", "old", "new", "told"),
+    ("file", "old", "new", "message"),
     [
         ("exercise.toml", "points = 41", "points = 40",
          r"give 41 points together \(checks.py 41, hidden_checks.py 0\), but points = 40"),
@@ -75,18 +75,18 @@ def test_a_missing_solution(course: Path, workers: WorkerPool) -> None:
     ids=["points", "fails", "breaks", "fixture", "twice", "text", "title", "import", "depends", "mark", "scenario",
          "topic"],
 )  # fmt: skip
-def test_what_is_wrong_is_told_with_its_file(
-    course: Path, workers: WorkerPool, file: str, old: str, new: str, told: str
+def test_what_is_wrong_is_reported_with_its_file(
+    course: Path, workers: WorkerPool, file: str, old: str, new: str, message: str
 ) -> None:
     change(course / "exercises" / "small" / file, old, new)
     problem = problem_of(course, workers)
     assert problem.file.name == file
-    assert re.search(told, problem.found), problem.found
+    assert re.search(message, problem.found), problem.found
     assert problem.fix
 
 
 @pytest.mark.parametrize("broken", ["def test_(:\n", "no_such_name\n", "import no_such_module\n"])
-def test_checks_that_can_not_be_imported_are_told_with_their_line(
+def test_checks_that_can_not_be_imported_are_reported_with_their_line(
     course: Path, workers: WorkerPool, broken: str
 ) -> None:
     file = course / "exercises" / "small" / "checks.py"

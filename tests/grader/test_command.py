@@ -21,15 +21,15 @@ def grade(*arguments: str, cwd: Path = ROOT, **environment: str) -> subprocess.C
     )  # fmt: skip
 
 
-def test_a_mistake_is_told_with_when_and_where_drawn_and_recorded(tmp_path: Path) -> None:
+def test_a_mistake_is_reported_with_when_and_where_drawn_and_recorded(tmp_path: Path) -> None:
     done = grade(
         "joint_velocity", str(SOLUTIONS / "mistakes" / "joints_by_index.py"),
         "--plot", str(tmp_path / "out.svg"), "--bag", str(tmp_path / "bags"), "--verbose",
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (1, "")
     text = " ".join(done.stdout.split())
-    for told in ("90 of 100 points", "Message 2 of 20 (0.10 s", "left_shoulder_roll", "expected velocity", "Hint:"):
-        assert told in text
+    for message in ("90 of 100 points", "Message 2 of 20 (0.10 s", "left_shoulder_roll", "expected velocity", "Hint:"):
+        assert message in text
     svg = (tmp_path / "out.svg").read_text()
     assert "first wrong" in svg
     assert all(joint in svg for joint in ("left_elbow", "right_shoulder_pitch"))

@@ -106,9 +106,9 @@ def test_advice_on_an_exception_comes_from_exercise_toml() -> None:
     exercise = load(ROOT / "exercises" / "joint_velocity")
     message = "Your program ended by itself: KeyError: 'left_elbow' in line 12."
 
-    told = message_of(Ending("crashed", message), exercise)
+    shown = message_of(Ending("crashed", message), exercise)
 
-    assert told == f"{message} What if a joint is in this message and was not in the one before?"
+    assert shown == f"{message} What if a joint is in this message and was not in the one before?"
     assert "joint" not in message_of(Ending("crashed", message), replace(exercise, advice={}))
 
 

@@ -107,36 +107,36 @@ def graded(folder: Path, names: str, interface: str, scenario: str, check: str, 
 @pytest.mark.timeout(120)
 def test_arguments_reach_the_program(tmp_path: Path) -> None:
     solution = SAID.replace("NODE", "speaker").replace("TOPIC", "/said")
-    told = graded(
+    message = graded(
         tmp_path, ONE_PROGRAM.format("speaker"), SPEAKS, 'duration=1.2, arguments=("left", "right")',
         'plain.must_match_series("data")', solution, solution.replace("[1:]", "[2:]"),
     )  # fmt: skip
-    assert "0 of 4 points" in told
-    assert "left right" in told
+    assert "0 of 4 points" in message
+    assert "left right" in message
 
 
 @pytest.mark.timeout(120)
 def test_a_submission_may_have_several_programs(tmp_path: Path) -> None:
     speaker = SAID.replace("NODE", "speaker").replace("TOPIC", "/said")
     solution = f"# file: speaker.py\n{speaker}\n\n# file: hearer.py\n{HEARD}"
-    told = graded(
+    message = graded(
         tmp_path, TWO_PROGRAMS, f'{SPEAKS}\n[[publish]]\ntopic = "/heard"\ntype = "std_msgs/msg/String"\n',
         'duration=1.2, arguments=("up",)', 'plain.must_match_series("data", topic="/heard")', solution,
         solution.replace("upper()", "lower()"),
     )  # fmt: skip
-    assert "0 of 4 points" in told
-    assert "UP" in told
+    assert "0 of 4 points" in message
+    assert "UP" in message
 
 
 @pytest.mark.timeout(120)
 def test_two_goals_at_once_are_served_side_by_side(tmp_path: Path) -> None:
     wait = "    node.get_clock().sleep_for(Duration(seconds=1))"
-    told = graded(
+    message = graded(
         tmp_path, ONE_PROGRAM.format("waiter"),
         '[[action]]\nname = "/wait"\ntype = "example_interfaces/action/Fibonacci"\n',
         'at(0.5, 0.5).send_goal("/wait", order=3), duration=4.0',
         '[plain.must_end("succeeded", goal=goal, within=1.2) for goal in (1, 2)]', WAITS,
         WAITS.replace(wait, f"    with lock:\n    {wait}"),
     )  # fmt: skip
-    assert "0 of 4 points" in told
-    assert "Goal 2" in told or "goal 2" in told
+    assert "0 of 4 points" in message
+    assert "Goal 2" in message or "goal 2" in message

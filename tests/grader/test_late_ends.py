@@ -40,16 +40,16 @@ def test_a_publisher_made_in_the_callback_is_heard_from_its_first_message_on(gra
     assert grade.full_marks, [v for v in grade.verdicts if v.status != "passed"]
 
 
-def test_a_subscription_made_after_a_while_is_told_as_that(grading: Grading) -> None:
+def test_a_subscription_made_after_a_while_is_reported_as_that(grading: Grading) -> None:
     begin = (
         "    def begin(self):\n        self.ticks += 1\n        if self.ticks == 3:\n"
         f"    {SUBSCRIPTION}            self.timer.cancel()\n\n"
     )
     timer = "        self.ticks = 0\n        self.timer = self.create_timer(1.0, self.begin)\n"
     grade = grade_with(grading, (SUBSCRIPTION, timer), (CALLBACK, begin + CALLBACK))
-    told = {verdict.name: verdict.finding.text for verdict in grade.verdicts if verdict.finding}
-    assert "Message 2 of 100" in told["test_answers_each_message_once"]
-    assert "did not subscribe to /joint_commands yet" in told["test_answers_each_message_once"]
+    findings = {verdict.name: verdict.finding.text for verdict in grade.verdicts if verdict.finding}
+    assert "Message 2 of 100" in findings["test_answers_each_message_once"]
+    assert "did not subscribe to /joint_commands yet" in findings["test_answers_each_message_once"]
 
 
 def test_however_many_answers_come_at_once_each_is_filed_under_its_message(grading: Grading) -> None:

@@ -39,7 +39,7 @@ def grade_of(grading: Grading, source: str) -> Grade:
 
 
 @pytest.mark.parametrize(
-    ("source", "outcome", "told"),
+    ("source", "outcome", "words"),
     [
         ("import rclpy\ndef main(:\n", "did-not-start", ["SyntaxError", "line 2"]),
         ("import rclpy\nimport tensorflow\n", "did-not-start", ["tensorflow", "line 2", "numpy"]),
@@ -56,11 +56,11 @@ def grade_of(grading: Grading, source: str) -> Grade:
     ids=lambda value: value if isinstance(value, str) and len(value) < 15 else None,
 )
 def test_a_broken_submission_is_told_what_is_wrong(
-    grading: Grading, source: str, outcome: str, told: list[str]
+    grading: Grading, source: str, outcome: str, words: list[str]
 ) -> None:
     grade = grade_of(grading, source)
     assert grade.outcome == outcome, grade.message
-    assert all(word in grade.message for word in told), grade.message
+    assert all(word in grade.message for word in words), grade.message
     assert grade.score == 0
     assert all(verdict.status in ("failed", "blocked") for verdict in grade.verdicts)
     assert len(grade.verdicts) > 20

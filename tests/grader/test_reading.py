@@ -70,7 +70,7 @@ def test_a_notebook_of_a_hundred_thousand_cells_is_read(tmp_path: Path, exercise
     assert "JointVelocity" in submission.source
 
 
-def test_a_file_too_large_is_told(tmp_path: Path, exercise: Exercise) -> None:
+def test_a_file_too_large_is_reported(tmp_path: Path, exercise: Exercise) -> None:
     file = tmp_path / "large.py"
     file.write_bytes(b"#" * 2_000_000)
     assert "larger" in read(str(file), exercise).problem
@@ -98,7 +98,7 @@ def test_what_is_not_there_is_a_matter_of_usage(given: str, exercise: Exercise) 
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "message"),
     [
         ("import rclpy\n".encode("utf-16"), "Your file is saved as UTF-16, which Python can't read."),
         (b"import rclpy\nx = 1\0\n", "Line 2 of your file holds a NUL byte, so it is not a text file."),
@@ -107,11 +107,11 @@ def test_what_is_not_there_is_a_matter_of_usage(given: str, exercise: Exercise) 
     ],
     ids=["UTF-16", "NUL", "signs", "sum"],
 )
-def test_what_python_can_not_read_is_named(tmp_path: Path, exercise: Exercise, content: bytes, told: str) -> None:
+def test_what_python_can_not_read_is_named(tmp_path: Path, exercise: Exercise, content: bytes, message: str) -> None:
     (tmp_path / "node.py").write_bytes(content)
     submission = read(str(tmp_path / "node.py"), exercise)
     assert submission.program is None
-    assert submission.problem.startswith(told)
+    assert submission.problem.startswith(message)
 
 
 def test_a_long_line_of_data_is_read(tmp_path: Path, exercise: Exercise) -> None:

@@ -114,7 +114,7 @@ def scenario_of(folder: Path, step: str = "", more: str = "") -> Scenario:
 
 
 @pytest.mark.parametrize(
-    ("step", "told"),
+    ("step", "message"),
     [
         ('at(0.5).publish("/in", data=1)', r"/in: 1 \(int\) is given for data, which is double.*1\.0"),
         ('at(0.5).publish("/in", value=1.0)', "has no field 'value'.*Its fields: data"),
@@ -136,15 +136,15 @@ def scenario_of(folder: Path, step: str = "", more: str = "") -> Scenario:
         ("Message(0, '/in', 'std_msgs/msg/Float64', {'data': None})", "which is double"),
     ],
 )
-def test_a_step_that_can_not_be_is_told_with_its_line(tmp_path: Path, step: str, told: str) -> None:
+def test_a_step_that_can_not_be_is_reported_with_its_line(tmp_path: Path, step: str, message: str) -> None:
     with pytest.raises(ExerciseError) as caught:
         scenario_of(tmp_path, step)
     assert (caught.value.problem.file.name, caught.value.problem.line) == ("scenarios.py", STEP_LINE)
-    assert re.search(told, f"{caught.value.problem.found} {caught.value.problem.fix}"), str(caught.value)
+    assert re.search(message, f"{caught.value.problem.found} {caught.value.problem.fix}"), str(caught.value)
 
 
 @pytest.mark.parametrize(
-    ("more", "told"),
+    ("more", "message"),
     [
         ('servers=Server("/lamp", replies=reply(success=1))', "success, which is boolean"),
         ('servers=Server("/lamp", replies=lambda request: {})', "lambda.*not a function"),
@@ -159,17 +159,17 @@ def test_a_step_that_can_not_be_is_told_with_its_line(tmp_path: Path, step: str,
         ("parameters={'gain': None}", "the parameter gain is NoneType"),
     ],
 )
-def test_so_is_what_is_wrong_with_a_peer(tmp_path: Path, more: str, told: str) -> None:
-    if not told:
+def test_so_is_what_is_wrong_with_a_peer(tmp_path: Path, more: str, message: str) -> None:
+    if not message:
         assert scenario_of(tmp_path, more=more)
         return
     with pytest.raises(ExerciseError) as caught:
         scenario_of(tmp_path, more=more)
     assert caught.value.problem.line
-    assert re.search(told, f"{caught.value.problem.found} {caught.value.problem.fix}"), str(caught.value)
+    assert re.search(message, f"{caught.value.problem.found} {caught.value.problem.fix}"), str(caught.value)
 
 
-def test_one_name_for_two_scenarios_is_told_with_the_line_of_the_second(tmp_path: Path) -> None:
+def test_one_name_for_two_scenarios_is_reported_with_the_line_of_the_second(tmp_path: Path) -> None:
     folder = exercise_in(tmp_path)
     with (folder / "scenarios.py").open("a") as file:
         file.write("\n\nfirst = scenarios\n\n\ndef scenarios(seed):\n    return (*first(seed), *first(seed))\n")
@@ -257,7 +257,7 @@ def test_an_interface_is_written_as_it_was_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "line", "told"),
+    ("old", "new", "line", "message"),
     [
         ("points = 10", "points = 10\nclas = 'A'", 3, "'clas' is not known"),
         ('title = "Any kind"\n', "", None, "title is missing"),
@@ -278,11 +278,11 @@ def test_an_interface_is_written_as_it_was_read(tmp_path: Path) -> None:
         ("elements = { called", "elements = { calld", 18, "elements ="),
     ],
 )
-def test_what_is_wrong_in_exercise_toml_is_told_with_its_line(
-    tmp_path: Path, old: str, new: str, line: int | None, told: str
+def test_what_is_wrong_in_exercise_toml_is_reported_with_its_line(
+    tmp_path: Path, old: str, new: str, line: int | None, message: str
 ) -> None:
     assert old in TOML
     with pytest.raises(ExerciseError) as caught:
         load(exercise_in(tmp_path, toml=TOML.replace(old, new, 1)))
     assert (caught.value.problem.file.name, caught.value.problem.line) == ("exercise.toml", line), str(caught.value)
-    assert re.search(told, f"{caught.value.problem.found} {caught.value.problem.fix}"), str(caught.value)
+    assert re.search(message, f"{caught.value.problem.found} {caught.value.problem.fix}"), str(caught.value)

@@ -37,7 +37,7 @@ def test_two_blocks_in_one_body_leave_one_pass() -> None:
         ("a = 1\n", 1),
     ],
 )
-def test_marks_that_do_not_pair_up_are_told_with_their_line(source: str, line: int) -> None:
+def test_markers_that_do_not_pair_up_are_reported_with_their_line(source: str, line: int) -> None:
     with pytest.raises(MarkerError) as caught:
         starter(source)
     assert caught.value.line == line

@@ -27,15 +27,15 @@ from grader.report.as_json import gradescope_results as results
 
 
 def test_public_checks_are_seen_at_once_and_hidden_ones_when_grades_are_published() -> None:
-    told = results(plain.entry(plain.HALF))
-    assert told["score"] == 6
-    assert told["stdout_visibility"] == "hidden"
-    public, hidden = told["tests"]
+    shown = results(plain.entry(plain.HALF))
+    assert shown["score"] == 6
+    assert shown["stdout_visibility"] == "hidden"
+    public, hidden = shown["tests"]
     assert (public["visibility"], public["score"], public["max_score"], public["status"]) == ("visible", 6, 6, "passed")
     assert (hidden["visibility"], hidden["score"], hidden["status"]) == ("after_published", 0, "failed")
 
 
-def test_of_a_hidden_check_no_name_scenario_or_number_is_told() -> None:
+def test_of_a_hidden_check_no_name_scenario_or_number_is_reported() -> None:
     text = json.dumps(results(plain.entry(plain.HALF)))
     assert "Think of stamps." in text
     for secret in ("test_secret_gap", "31.40", "expected 2.5", '"gap"'):
@@ -43,16 +43,16 @@ def test_of_a_hidden_check_no_name_scenario_or_number_is_told() -> None:
 
 
 def test_late_work_counts_there_too() -> None:
-    told = results(plain.entry(plain.HALF, adjustments=(Adjustment("late", -1.0, "handed in 1 h late"),)))
-    assert told["score"] == 5
-    assert "-1 points: handed in 1 h late" in told["output"]
+    shown = results(plain.entry(plain.HALF, adjustments=(Adjustment("late", -1.0, "handed in 1 h late"),)))
+    assert shown["score"] == 5
+    assert "-1 points: handed in 1 h late" in shown["output"]
 
 
 def test_a_fault_of_ours_has_no_score() -> None:
-    told = results(plain.entry(plain.FAULT))
-    assert "score" not in told
-    assert "tests" not in told
-    assert "not your fault" in told["output"]
+    shown = results(plain.entry(plain.FAULT))
+    assert "score" not in shown
+    assert "tests" not in shown
+    assert "not your fault" in shown["output"]
 
 
 @pytest.fixture(autouse=True)
@@ -82,8 +82,8 @@ def graded(root: Path, source: str) -> dict[str, object]:
         json.dumps({"created_at": "2026-11-20T23:41:07.000000-08:00", "users": [{"id": 7, "name": "Ada"}]})
     )
     subprocess.run(["bash", str(root / "run_autograder")], check=True, timeout=280, stdout=subprocess.DEVNULL)
-    told: dict[str, object] = json.loads((root / "results" / "results.json").read_text(encoding="utf-8"))
-    return told
+    shown: dict[str, object] = json.loads((root / "results" / "results.json").read_text(encoding="utf-8"))
+    return shown
 
 
 def test_the_zip_holds_the_two_scripts_and_of_the_solutions_only_one(autograder: Path) -> None:
@@ -125,11 +125,11 @@ def test_an_autograder_that_is_broken_gives_no_score(autograder: Path) -> None:
     text = checks.read_text(encoding="utf-8")
     checks.write_text("points = ", encoding="utf-8")
     try:
-        told = graded(autograder, "pass\n")
+        shown = graded(autograder, "pass\n")
     finally:
         checks.write_text(text, encoding="utf-8")
-    assert "score" not in told
-    assert "not your fault" in str(told["output"])
+    assert "score" not in shown
+    assert "not your fault" in str(shown["output"])
 
 
 @pytest.fixture(scope="module")

@@ -117,7 +117,7 @@ def test_a_topic_has_its_ends_and_those_that_do_not_fit_are_told_apart(seen: See
     assert unheard.subscriptions == ()
 
 
-def test_a_rate_is_told_where_somebody_listens(seen: Seen) -> None:
+def test_a_rate_is_reported_where_somebody_listens(seen: Seen) -> None:
     (chatter, unheard) = seen.graph.topics
 
     # It is 10, if the machine is not so busy that the timer is late.
@@ -144,7 +144,7 @@ def test_the_graph_is_kept_with_the_outputs_of_a_good_run(seen: Seen) -> None:
 
 
 def test_the_file_tells_no_time_and_no_process(seen: Seen) -> None:
-    told = json.loads((seen.folder.root / "build/executed/one.graph.json").read_text())
+    recorded = json.loads((seen.folder.root / "build/executed/one.graph.json").read_text())
 
-    assert set(told) == {"nodes", "topics"}
-    assert {key for node in told["nodes"] for key in node} == {"name", "first_cell", "last_cell"}
+    assert set(recorded) == {"nodes", "topics"}
+    assert {key for node in recorded["nodes"] for key in node} == {"name", "first_cell", "last_cell"}

@@ -49,7 +49,7 @@ def test_nodes_topics_types_and_rates_are_written() -> None:
         assert written in text
 
 
-def test_it_is_told_in_words() -> None:
+def test_it_is_reported_in_words() -> None:
     svg = node_graph_svg(ARM)
 
     assert "joint_command_publisher publishes /joint_commands (sensor_msgs/msg/JointState, 10 Hz)." in svg

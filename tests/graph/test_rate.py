@@ -48,11 +48,11 @@ def test_too_few_messages_tell_no_rate(streams: list[tuple[int, float, int]]) ->
 
 
 @pytest.mark.parametrize(
-    ("measured", "told"),
+    ("measured", "shown"),
     [
         (9.99, 10), (10.01, 10), (9.94, 10), (10.3, 10), (62.4, 62.5), (62.9, 62.5), (0.499, 0.5), (30.4, 30),
         (99.1, 100), (14.9, 15), (1003.2, 1000), (17.3, 17), (0, 0), (33.33, 33), (4.9, 5),
     ],
 )  # fmt: skip
-def test_rates_of_the_same_timer_are_told_alike(measured: float, told: float) -> None:
-    assert rounded(measured) == told
+def test_rates_of_the_same_timer_are_reported_alike(measured: float, shown: float) -> None:
+    assert rounded(measured) == shown

@@ -17,7 +17,7 @@ from pathlib import Path
 from playwright.sync_api import Browser, Locator, Page, expect
 
 #: How long anything on the page may take, on a busy machine (ms).
-LONG = 90_000
+DEADLINE_MS = 90_000
 
 #: JupyterLab of the environment that runs the tests.
 HERE = (sys.executable, "-m", "jupyterlab")
@@ -52,7 +52,7 @@ def a_new_terminal() -> dict[str, str]:
 
 
 def _address(server: subprocess.Popen[bytes], log: Path) -> str:
-    deadline = time.monotonic() + LONG / 1000
+    deadline = time.monotonic() + DEADLINE_MS / 1000
     while time.monotonic() < deadline and server.poll() is None:
         if found := re.search(r"http://127\.0\.0\.1:(\d+)/", log.read_text(errors="replace")):
             return found[0]
@@ -107,7 +107,7 @@ def opened_notebook(browser: Browser, url: str, name: str) -> Iterator[Notebook]
     context = browser.new_context(viewport={"width": 1280, "height": 2600})
     try:
         page = context.new_page()
-        page.set_default_timeout(LONG)
+        page.set_default_timeout(DEADLINE_MS)
         page.goto(url.format(name))
         page.locator(".jp-Notebook .jp-CodeCell").first.wait_for()
         # The notebook's own status is green before there is a kernel; a cell run then would be lost.

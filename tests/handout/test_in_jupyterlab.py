@@ -18,7 +18,7 @@ from playwright.sync_api import Browser, expect
 
 from grader.submission.upload import unpack
 from handout.conftest import CHAPTER, HandedOut, copy_course, hand_out, solution
-from handout.jupyter_lab import HERE, LONG, a_new_terminal, jupyter_lab, opened_notebook
+from handout.jupyter_lab import DEADLINE_MS, HERE, a_new_terminal, jupyter_lab, opened_notebook
 
 UPLOAD = "joint_velocity-submission.zip"
 
@@ -31,17 +31,22 @@ def unpacked(handed_out: HandedOut, place: Path) -> Path:
 
 
 def works_through(
-    browser: Browser, folder: Path, name: str, pictures: Path, command: Sequence[str] = HERE, patience: int = LONG
+    browser: Browser,
+    folder: Path,
+    name: str,
+    pictures: Path,
+    command: Sequence[str] = HERE,
+    timeout_ms: int = DEADLINE_MS,
 ) -> None:
     """Open the notebook, run all, fail the check with the starter, write the solution, pass, submit, save.
 
-    Pictures of each step are saved in `pictures`; `patience` is for running all cells (ms).
+    Pictures of each step are saved in `pictures`; `timeout_ms` is for running all cells.
     """
     with jupyter_lab(folder, pictures / "state", command) as url, opened_notebook(browser, url, name) as notebook:
         notebook.page.screenshot(path=pictures / "1-opened.png")
         notebook.run_all()
         check = notebook.cell("%check joint_velocity").locator(".spinbook-check")
-        check.wait_for(state="attached", timeout=patience)
+        check.wait_for(state="attached", timeout=timeout_ms)
         expect(check).to_contain_text(re.compile(r"\b0 of \d+ public checks, 0 of \d+ points"))
         expect(check.locator(".sb-failed")).to_have_count(1)
         expect(check).to_contain_text("Hint: Create the subscription and the publisher in __init__")
@@ -54,13 +59,15 @@ def works_through(
         notebook.type_into("%%node joint_velocity", f"%%node joint_velocity\n{solution()}")
         notebook.run("%%node joint_velocity")
         notebook.run("%check joint_velocity")
-        expect(check).to_contain_text(re.compile(r"\b(\d+) of \1 public checks, (\d+) of \2 points"), timeout=LONG)
+        expect(check).to_contain_text(
+            re.compile(r"\b(\d+) of \1 public checks, (\d+) of \2 points"), timeout=DEADLINE_MS
+        )
         expect(check.locator(".sb-failed, .sb-blocked")).to_have_count(0)
         check.screenshot(path=pictures / "3-solved.png")
 
         notebook.add_below("%check joint_velocity", "%submit joint_velocity --student 'Ada L'")
         submit = notebook.cell("%submit joint_velocity --student")
-        expect(submit).to_contain_text(f"Upload this file: {UPLOAD}", timeout=LONG)
+        expect(submit).to_contain_text(f"Upload this file: {UPLOAD}", timeout=DEADLINE_MS)
         submit.screenshot(path=pictures / "4-handed-in.png")
         notebook.save()
 

@@ -46,7 +46,7 @@ def grading() -> Iterator[Grading]:
         yield grading_of(load(EXERCISE), Options(), workers)
 
 
-def told(grade: Grade) -> str:
+def shown(grade: Grade) -> str:
     """Return everything that the student is told."""
     findings = [verdict.finding.text for verdict in grade.verdicts if verdict.finding]
     titles = [verdict.title for verdict in grade.verdicts if verdict.status == "failed"]
@@ -61,12 +61,12 @@ def test_the_grade_is_the_expected_one(grading: Grading, name: str) -> None:
     right = {"zero": grade.score == 0, "full": grade.full_marks, "less": not grade.full_marks, "any": True}
     assert right[expected["score"]], [v for v in grade.verdicts if v.status != "passed"]
     for words in expected.get("words", []):
-        assert re.search(words, told(grade), re.IGNORECASE), told(grade)
+        assert re.search(words, shown(grade), re.IGNORECASE), shown(grade)
     logs = "\n".join(recording.log for recording in grade.recordings.values())
     for word in expected.get("never", []):
         assert word not in logs
     if not grade.full_marks:
-        assert told(grade).strip(), "the student has to be told something"
+        assert shown(grade).strip(), "the student has to be told something"
 
 
 @pytest.mark.parametrize("odd", [pytest.param(odd, id=odd.name) for odd in ODD_FILES])

@@ -84,12 +84,12 @@ def test_what_the_image_copies_and_starts_is_there() -> None:
 
 
 def test_the_dev_container_is_the_image() -> None:
-    told = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text())
+    content = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text())
 
-    assert (ROOT / ".devcontainer" / told["build"]["dockerfile"]).resolve() == ROOT / "Dockerfile"
-    assert told["remoteUser"] == "student"
-    assert told["workspaceFolder"] == "/course"
-    assert f"{told['workspaceFolder']}\n" in (ROOT / "Dockerfile").read_text()
+    assert (ROOT / ".devcontainer" / content["build"]["dockerfile"]).resolve() == ROOT / "Dockerfile"
+    assert content["remoteUser"] == "student"
+    assert content["workspaceFolder"] == "/course"
+    assert f"{content['workspaceFolder']}\n" in (ROOT / "Dockerfile").read_text()
 
 
 def test_a_courses_requirements_that_are_no_utf8_name_no_other_place_for_spinbook(tmp_path: Path) -> None:

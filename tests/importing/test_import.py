@@ -193,7 +193,7 @@ def test_a_course_is_not_overwritten(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["nav: [", "const x = {", ""])
-def test_a_broken_or_empty_table_of_contents_is_told(tmp_path: Path, text: str) -> None:
+def test_a_broken_or_empty_table_of_contents_is_reported(tmp_path: Path, text: str) -> None:
     root = tmp_path / "robots"
     root.mkdir()
     (root / "mkdocs.yml").write_text(text)

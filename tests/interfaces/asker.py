@@ -15,7 +15,7 @@ from peer import load
 from rclpy.action import ActionClient
 from rclpy.node import Node
 
-WAIT_S = 60.0
+DEADLINE_S = 60.0
 
 
 def fill(message: Any, values: dict[str, Any]) -> Any:
@@ -32,9 +32,9 @@ def fill(message: Any, values: dict[str, Any]) -> Any:
 
 
 def wait(node: Node, future: Any, what: str) -> Any:
-    rclpy.spin_until_future_complete(node, future, timeout_sec=WAIT_S)
+    rclpy.spin_until_future_complete(node, future, timeout_sec=DEADLINE_S)
     if not future.done():
-        raise SystemExit(f"{what}: no answer within {WAIT_S} s")
+        raise SystemExit(f"{what}: no answer within {DEADLINE_S} s")
     return future.result()
 
 
@@ -54,7 +54,7 @@ def ask_message(node: Node, number: int, kind: Any, values: dict[str, Any]) -> N
 def ask_service(node: Node, number: int, kind: Any, values: dict[str, Any]) -> None:
     request = fill(kind.Request(), values)
     client = node.create_client(kind, f"/ask_{number}")
-    if not client.wait_for_service(WAIT_S):
+    if not client.wait_for_service(DEADLINE_S):
         raise SystemExit(f"{kind.__name__}: there is no such service")
     response = wait(node, client.call_async(request), kind.__name__)
     expected = fill(
@@ -69,13 +69,13 @@ def ask_service(node: Node, number: int, kind: Any, values: dict[str, Any]) -> N
 
 def ask_action(node: Node, number: int, kind: Any, values: dict[str, Any]) -> None:
     client = ActionClient(node, kind, f"/do_{number}")
-    if not client.wait_for_server(WAIT_S):
+    if not client.wait_for_server(DEADLINE_S):
         raise SystemExit(f"{kind.__name__}: there is no such action")
     step: Any = rclpy.task.Future()
     goal = wait(
         node,
         client.send_goal_async(
-            kind.Goal(**values), feedback_callback=lambda told: step.done() or step.set_result(told.feedback)
+            kind.Goal(**values), feedback_callback=lambda arrived: step.done() or step.set_result(arrived.feedback)
         ),
         "goal",
     )

@@ -129,11 +129,11 @@ def test_two_who_want_the_same_wait_for_one_another(tmp_path: Path) -> None:
     assert sorted(process.communicate(timeout=120)[0] for process in both) == ["False\n", "True\n"]
 
 
-def test_wrong_definitions_are_told_and_nothing_is_kept(tmp_path: Path) -> None:
-    with pytest.raises(DefinitionError) as told:
+def test_wrong_definitions_are_reported_and_nothing_is_kept(tmp_path: Path) -> None:
+    with pytest.raises(DefinitionError) as caught:
         ensure([definition("msg/Point.msg", "float x\n")], tmp_path)
 
-    assert "interfaces/robot_interfaces/msg/Point.msg:1: `float` is not a type." in str(told.value)
+    assert "interfaces/robot_interfaces/msg/Point.msg:1: `float` is not a type." in str(caught.value)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -144,10 +144,10 @@ def test_without_a_compiler_one_sentence_names_the_package_to_install(
     (tmp_path / "bin" / "apt-get").touch(mode=0o755)
     monkeypatch.setenv("PATH", str(tmp_path / "bin"))
 
-    with pytest.raises(CompileError) as told:
+    with pytest.raises(CompileError) as caught:
         ensure([POINT], tmp_path / "store")
 
-    assert str(told.value).splitlines() == [
+    assert str(caught.value).splitlines() == [
         "Interfaces are compiled with gcc and g++, not found here: sudo apt-get install g++"
     ]
 
@@ -159,7 +159,7 @@ def test_without_python_h_one_sentence_says_what_to_install(tmp_path: Path, monk
         ensure([POINT], tmp_path / "store")
 
 
-def test_a_compiler_that_fails_is_told_in_its_own_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_compiler_that_fails_is_reported_in_its_own_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "bin").mkdir()
     for name in ("gcc", "g++"):
         file = tmp_path / "bin" / name

@@ -345,14 +345,14 @@ def test_a_student_without_a_package_is_told_to_install_what_came_with_the_hando
         (tmp_path / name).write_text(text.replace("robot_interfaces", "absent_interfaces"))
     (tmp_path / "exercises" / "width" / "public.json").write_text("{}")
 
-    with pytest.raises(ExerciseError) as told:
+    with pytest.raises(ExerciseError) as caught:
         load(tmp_path / "exercises" / "width")
 
-    assert "the package absent_interfaces is not installed here" in str(told.value)
+    assert "the package absent_interfaces is not installed here" in str(caught.value)
     assert "It comes with the handout. In the handout's folder: .venv/bin/pip install -r requirements.txt." in str(
-        told.value
+        caught.value
     )
-    assert "spinbook build" not in str(told.value)
+    assert "spinbook build" not in str(caught.value)
 
 
 def test_what_asks_for_an_interface_that_the_course_lacks_is_shown_with_the_remedy(tmp_path: Path) -> None:

@@ -62,7 +62,7 @@ def faults(*definitions: Definition) -> list[Fault]:
         ("----", "is not a separator", "three dashes"),
     ],
 )
-def test_a_wrong_line_is_told_with_its_number_and_the_remedy(line: str, found: str, fix: str) -> None:
+def test_a_wrong_line_is_reported_with_its_number_and_the_remedy(line: str, found: str, fix: str) -> None:
     (fault,) = faults(definition("msg/Thing.msg", f"# A thing\nint32 fine\n{line}\n"))
 
     assert (str(fault.file), fault.line) == ("interfaces/robot_interfaces/msg/Thing.msg", 3)
@@ -99,7 +99,7 @@ def test_request_and_response_may_have_the_same_field() -> None:
         ("msg/joint_limits.msg", "int32 a\n", "`joint_limits` can't be an interface's name."),
     ],
 )
-def test_a_definition_of_the_wrong_shape_is_told(path: str, text: str, found: str) -> None:
+def test_a_definition_of_the_wrong_shape_is_reported(path: str, text: str, found: str) -> None:
     (fault,) = faults(definition(path, text))
 
     assert fault.found == found
@@ -120,14 +120,14 @@ def test_a_bad_name_in_a_chapter_is_on_the_line_with_the_fences_title() -> None:
     assert str(fault).startswith("chapters/04.md:39: `joint_limits` can't be an interface's name.")
 
 
-def test_a_message_that_contains_itself_is_told_with_the_circle() -> None:
+def test_a_message_that_contains_itself_is_reported_with_the_circle() -> None:
     (fault,) = faults(definition("msg/A.msg", "int32 x\nB b\n"), definition("msg/B.msg", "A[] a\n"))
 
     assert fault.line in (1, 2)
     assert "contains itself: robot_interfaces/" in fault.found
 
 
-def test_each_circle_is_told() -> None:
+def test_each_circle_is_reported() -> None:
     found = faults(
         definition("msg/A.msg", "B b\n"), definition("msg/B.msg", "A[] a\n"), definition("msg/C.msg", "C[] parts\n")
     )
@@ -144,7 +144,7 @@ def test_a_message_named_like_a_number_is_one() -> None:
     assert faults(own, definition("msg/Pair.msg", "Float64 first\nFloat64 second\n")) == []
 
 
-def test_packages_that_need_one_another_are_told() -> None:
+def test_packages_that_need_one_another_are_reported() -> None:
     (fault,) = faults(
         definition("msg/A.msg", "two_interfaces/B b\n", "one_interfaces"),
         definition("msg/B.msg", "one_interfaces/C c\n", "two_interfaces"),
@@ -154,7 +154,7 @@ def test_packages_that_need_one_another_are_told() -> None:
     assert "packages that need one another" in fault.found
 
 
-def test_two_texts_for_one_name_are_told() -> None:
+def test_two_texts_for_one_name_are_reported() -> None:
     (fault,) = faults(definition("msg/A.msg", "int32 x\n"), definition("msg/A.msg", "int32 y\n"))
 
     assert "is defined in interfaces/robot_interfaces/msg/A.msg:1 too" in fault.found
@@ -168,7 +168,7 @@ def test_lines_are_the_chapters_where_a_definition_is_a_fence_of_one() -> None:
     assert str(fault).startswith("chapters/04.md:41: the name `x` is already taken in line 40.")
 
 
-def test_every_fault_is_told_at_once_in_order() -> None:
+def test_every_fault_is_reported_at_once_in_order() -> None:
     found = faults(definition("msg/A.msg", "float x\nint y\nPose p\n"))
 
     assert [fault.line for fault in found] == [1, 2, 3]
@@ -178,7 +178,7 @@ def test_right_definitions_have_no_faults() -> None:
     assert faults(*robot()) == []
 
 
-def test_files_in_the_wrong_folder_or_encoding_are_told(tmp_path: Path) -> None:
+def test_files_in_the_wrong_folder_or_encoding_are_reported(tmp_path: Path) -> None:
     folder = tmp_path / "interfaces"
     (folder / "my_interfaces" / "msg").mkdir(parents=True)
     (folder / "my_interfaces" / "msg" / "Go.srv").write_text("---\n")

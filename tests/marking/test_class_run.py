@@ -73,7 +73,7 @@ def test_what_is_unchanged_is_not_graded_again(done: SmallClass) -> None:
     assert {file: file.read_bytes() for file in (done.folder / "results").rglob("*") if file.is_file()} == before
 
 
-def test_what_changed_is_graded_again_and_the_difference_is_told(done: SmallClass) -> None:
+def test_what_changed_is_graded_again_and_the_difference_is_reported(done: SmallClass) -> None:
     done.hand_in("carl", (done.submissions / "ana.py").read_text(encoding="utf-8") + "# carl\n")
     code, printed = done.grade()
     assert code == 0, printed
@@ -159,7 +159,7 @@ def test_late_work_loses_and_a_changed_due_date_needs_no_grading(done: SmallClas
     assert "was ill" in (done.folder / "results" / "students" / "ana" / "feedback.html").read_text(encoding="utf-8")
 
 
-def test_a_mistake_in_the_overrides_is_told_with_its_line(done: SmallClass) -> None:
+def test_a_mistake_in_the_overrides_is_reported_with_its_line(done: SmallClass) -> None:
     wishes = done.folder / "overrides.csv"
     wishes.write_text("student,points,reason\nana,18,\n")
     code, printed = done.grade("--overrides", str(wishes))

@@ -69,7 +69,7 @@ def test_a_worker_dies_while_it_grades_and_the_grades_are_those_of_one_machine(
     assert without_timings(small.folder / "results") == without_timings(graded[0].folder / "results")
 
 
-def test_a_scheduler_that_does_not_answer_is_told_in_a_sentence(small_class: SmallClass, cache: Path) -> None:
+def test_a_scheduler_that_does_not_answer_is_reported_in_a_sentence(small_class: SmallClass, cache: Path) -> None:
     code, printed = small_class.grade("--scheduler", "tcp://127.0.0.1:9")
     assert code == 2, printed
     assert "no Dask scheduler answers there" in printed

@@ -62,7 +62,7 @@ RIGHT = {"name": "test_a", "title": "A.", "status": "passed", "points": 6, "find
 WRONG = {**RIGHT, "name": "test_b", "status": "failed", "points": 4, "finding": {"text": "expected 1, got 2"}}
 
 
-def told_of(tmp_path: Path, expected: students.Expected, *verdicts: dict[str, Any], **fields: Any) -> str:
+def problem_of(tmp_path: Path, expected: students.Expected, *verdicts: dict[str, Any], **fields: Any) -> str:
     score = sum(verdict["points"] for verdict in verdicts if verdict["status"] == "passed")
     grade = {"outcome": "graded", "message": "", "score": score, "points": 10, "log": "", "verdicts": verdicts}
     (tmp_path / "students" / "Ada_Abe").mkdir(parents=True, exist_ok=True)
@@ -76,23 +76,23 @@ FAILS_B = students.Expected(("graded",), "less", frozenset({"test_b"}))
 
 
 @pytest.mark.parametrize(
-    ("expected", "verdicts", "fields", "told"),
+    ("expected", "verdicts", "fields", "message"),
     [
         (FAILS_B, [RIGHT, WRONG], {}, ""),
         (FAILS_B, [RIGHT, {**WRONG, "status": "passed"}], {}, "not less"),
         (FAILS_B, [{**RIGHT, "status": "failed"}, WRONG], {}, "not ['test_b']"),
         (FAILS_B, [RIGHT, WRONG], {"score": 7}, "the checks that it passes give 6"),
         (FAILS_B, [RIGHT, WRONG], {"outcome": "crashed"}, "crashed, not graded"),
-        (students.Expected(words=("line 4",), score="less"), [RIGHT, WRONG], {}, "it is not told ['line 4']"),
+        (students.Expected(words=("line 4",), score="less"), [RIGHT, WRONG], {}, "the feedback lacks ['line 4']"),
         (students.Expected(never=("FOUND",), score="any"), [RIGHT], {"log": "FOUND it"}, "an attack has worked"),
     ],
 )
 def test_a_grade_that_is_not_what_it_must_be_is_seen(
-    tmp_path: Path, expected: students.Expected, verdicts: list[dict[str, Any]], fields: dict[str, Any], told: str
+    tmp_path: Path, expected: students.Expected, verdicts: list[dict[str, Any]], fields: dict[str, Any], message: str
 ) -> None:
-    found = told_of(tmp_path, expected, *verdicts, **fields)
-    assert told in found
-    assert bool(found) == bool(told)
+    found = problem_of(tmp_path, expected, *verdicts, **fields)
+    assert message in found
+    assert bool(found) == bool(message)
 
 
 def test_a_grade_that_is_missing_is_seen(tmp_path: Path) -> None:

@@ -52,9 +52,9 @@ def test_another_message_joint_and_number_is_the_same_mistake() -> None:
 
 
 def test_another_moment_of_a_goal_is_the_same_mistake() -> None:
-    told = "it was expected to end as canceled, got succeeded. Your node accepted the request to cancel."
+    message = "it was expected to end as canceled, got succeeded. Your node accepted the request to cancel."
     kinds = {
-        failure_of(Finding(f"{where}: {told}", "cancelled", None, 2.0, "", "canceled", "succeeded")).kind
+        failure_of(Finding(f"{where}: {message}", "cancelled", None, 2.0, "", "canceled", "succeeded")).kind
         for where in (
             "At 2.00 s (a goal, canceled), goal 1 for /count (order 3)",
             "At 4.50 s (two goals), goal 2 for /count (order 7)",
@@ -94,7 +94,7 @@ def test_two_mistakes_that_fail_alike_are_told_apart_or_neither_is_named() -> No
     assert mistakes_in({"test_first": failure_of(SILENT)}, set(), twins) == []
 
 
-def test_a_value_that_came_is_told_from_another_one() -> None:
+def test_a_value_that_came_is_distinguished_from_another_one() -> None:
     mistake = signature("late", test_first=BARE)
     other = finding(
         "Message 3 of 16 (0.30 s), left_elbow: expected velocity 0.489 rad/s, got 0.611 rad/s.", got="0.611 rad/s"

@@ -87,7 +87,7 @@ def test_its_own_tests_prove_the_exercise(course: Path) -> None:
     assert "3 passed" in done.stdout
 
 
-def test_a_mistake_is_told_with_units(course: Path) -> None:
+def test_a_mistake_is_reported_with_units(course: Path) -> None:
     mistake = "solutions/gripper_force/mistakes/only_forwards.py"
     done = run("spinbook", "grade", "gripper_force", mistake, cwd=course)
     assert done.returncode == 1

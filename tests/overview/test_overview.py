@@ -16,7 +16,7 @@ def test_ten_bars_tell_how_the_points_are_spread() -> None:
     assert [bar.count for bar in found.bars] == [2, 1, 0, 0, 0, 1, 0, 0, 0, 3]
     assert (found.count, found.full, found.median) == (7, 3, 55)
     assert (
-        found.said
+        found.description
         == "Histogram of 7 students' points: 2 from 0 to 10, 1 from 10 to 20, 1 from 50 to 60, 3 from 90 to 100."
     )
 

@@ -150,7 +150,7 @@ def test_it_is_a_few_kilobytes_of_xml_without_script_and_the_same_each_time() ->
     assert f"within {PLACE_TOLERANCE:g}".replace("0.", ".") in svg
 
 
-def test_ten_minutes_of_driving_are_thinned_and_the_error_is_told() -> None:
+def test_ten_minutes_of_driving_are_thinned_and_the_error_is_reported() -> None:
     world = World()
     world.start()
     for n in range(9_000):

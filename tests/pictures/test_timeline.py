@@ -12,14 +12,14 @@ from playwright.sync_api import Browser
 from spinbook.kernel.timeline import Lane, RecordedEvents, in_words, lanes
 from spinbook.kernel.timeline_picture import moving_timeline, still_timeline
 
-Told = tuple[float, str, str]
+Event = tuple[float, str, str]
 
 
-def recorded(name: str, kind: str, *told: Told) -> tuple[Lane, ...]:
+def recorded(name: str, kind: str, *events: Event) -> tuple[Lane, ...]:
     """Return the lanes of events (time in s, what, goal) with one name."""
     happenings = RecordedEvents()
     happenings.take([json.dumps(["found", name, kind]), "something that a library printed"])
-    happenings.take(json.dumps(["event", at, name, what, goal, ""]) for at, what, goal in told)
+    happenings.take(json.dumps(["event", at, name, what, goal, ""]) for at, what, goal in events)
     return lanes(happenings)
 
 

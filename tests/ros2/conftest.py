@@ -10,7 +10,7 @@ from contextlib import ExitStack
 
 import pytest
 import ros_domains
-from ros2_terminal import PATIENCE, ROBOT, Robot, Terminal
+from ros2_terminal import DEADLINE_S, ROBOT, Robot, Terminal
 
 
 @pytest.fixture(autouse=True)
@@ -42,7 +42,7 @@ def start(*parts: str) -> subprocess.Popen[str]:
 def end(robots: Iterable[subprocess.Popen[str]]) -> None:
     for process in robots:
         process.kill()
-        process.communicate(timeout=PATIENCE)
+        process.communicate(timeout=DEADLINE_S)
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from pathlib import Path
 ROBOT = Path(__file__).parent / "ros2_robot.py"
 
 #: Seconds after which something that should have happened has failed. Generous: the machine may be busy.
-PATIENCE = 60
+DEADLINE_S = 60
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Running:
     def stop(self, number: int = signal.SIGINT) -> Answer:
         """Send a signal; return what arrived after the lines that were read."""
         self.process.send_signal(number)
-        out, err = self.process.communicate(timeout=PATIENCE)
+        out, err = self.process.communicate(timeout=DEADLINE_S)
         return Answer(self.process.returncode, out, err)
 
 
@@ -73,7 +73,7 @@ class Terminal:
             input=stdin,
             capture_output=True,
             text=True,
-            timeout=PATIENCE,
+            timeout=DEADLINE_S,
             check=False,
         )
         assert "Traceback" not in done.stderr, done.stderr

@@ -41,9 +41,9 @@ def test_feedback_stands_between_acceptance_and_result_whatever_overtakes_what(
     standing("hasty_action")
     out = terminal.ros2("action", "send_goal", "-f", "/fibonacci", FIBONACCI).out
     heads = [line.split(":")[0] if line[:1].isupper() else line for line in out.splitlines() if line.strip()]
-    told = [line for number in range(1, 6) for line in ("Feedback", "    sequence:", f"- {number}")]
+    feedback = [line for number in range(1, 6) for line in ("Feedback", "    sequence:", f"- {number}")]
     assert heads[heads.index("Goal accepted with ID") :] == [
-        *("Goal accepted with ID", *told),
+        *("Goal accepted with ID", *feedback),
         *("Result", "    sequence:", "- 5", "Goal finished with status"),
     ]
 

@@ -8,7 +8,7 @@ import pytest
 from ros2_terminal import Robot, Terminal
 
 
-def test_what_was_recorded_is_told_and_played_again(
+def test_what_was_recorded_is_reported_and_played_again(
     robot: Robot, terminal: Terminal, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -22,10 +22,10 @@ def test_what_was_recorded_is_told_and_played_again(
     publisher.kill()
     publisher.communicate()
 
-    told = terminal.ros2("bag", "info", "swing")
-    assert told.code == 0, told.err
-    assert "Storage id:        mcap" in told.out
-    assert "Topic information: Topic: /joint_commands | Type: sensor_msgs/msg/JointState | Count: " in told.out
+    output = terminal.ros2("bag", "info", "swing")
+    assert output.code == 0, output.err
+    assert "Storage id:        mcap" in output.out
+    assert "Topic information: Topic: /joint_commands | Type: sensor_msgs/msg/JointState | Count: " in output.out
     listener = terminal.start("topic", "echo", "/joint_commands", "sensor_msgs/msg/JointState")
     played = terminal.ros2("bag", "play", "swing", "--rate", "100")
     assert played.code == 0, played.err

@@ -108,7 +108,7 @@ def test_the_daemon_is_explained(terminal: Terminal) -> None:
         ("ROS_DOMAIN_ID", "home", "a whole number from 0 to 232"),
     ],
 )
-def test_an_environment_that_would_end_rclpy_is_told(
+def test_an_environment_that_would_end_rclpy_is_reported(
     terminal: Terminal, monkeypatch: pytest.MonkeyPatch, name: str, value: str, words: str
 ) -> None:
     monkeypatch.setenv(name, value)

@@ -21,17 +21,17 @@ def test_the_rate_is_of_the_window_with_the_population_deviation() -> None:
         rate.arrived(time)
         reports.append(rate.report())
     # The first interval begins the awaited second; 100, 500, 100, 300 ms are the window at its end.
-    told = [report for report in reports if report]
-    assert told == ["average rate: 3.333\n\tmin: 0.100s max: 0.500s std dev: 0.14142s window: 4"]
+    printed = [report for report in reports if report]
+    assert printed == ["average rate: 3.333\n\tmin: 0.100s max: 0.500s std dev: 0.14142s window: 4"]
 
 
-def test_no_rate_is_told_more_than_once_a_second() -> None:
+def test_no_rate_is_reported_more_than_once_a_second() -> None:
     rate = Rate(10000)
-    told = 0
+    printed = 0
     for number in range(1, 401):
         rate.arrived(number * 10 * MS)
-        told += rate.report() is not None
-    assert told == 3
+        printed += rate.report() is not None
+    assert printed == 3
 
 
 def test_a_clock_that_goes_back_begins_anew() -> None:
@@ -60,7 +60,7 @@ def test_the_delay_is_the_clock_less_the_stamp() -> None:
         (2_000_000, "4.00 MB/s from 4 messages\n\tMessage size mean: 2.00 MB min: 2.00 MB max: 2.00 MB"),
     ],
 )
-def test_bandwidth_is_told_in_one_unit(size: int, text: str) -> None:
+def test_bandwidth_is_reported_in_one_unit(size: int, text: str) -> None:
     bandwidth = Bandwidth(4)
     for time in range(10):
         bandwidth.arrived(float(time), size)

@@ -77,8 +77,8 @@ def test_a_misspelled_service_is_waited_for_with_the_right_name_in_sight(standin
     standing("service")
     running = terminal.start("service", "call", "/stand_op", "std_srvs/srv/SetBool")
     assert running.process.stderr is not None
-    told = running.process.stderr.readline()
-    assert told == "There is no service '/stand_op' yet. Did you mean /stand_up? Ctrl-C ends the wait.\n"
+    message = running.process.stderr.readline()
+    assert message == "There is no service '/stand_op' yet. Did you mean /stand_up? Ctrl-C ends the wait.\n"
     running.stop()
 
 

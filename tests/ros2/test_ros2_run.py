@@ -63,10 +63,10 @@ def test_a_package_of_a_workspace_runs_without_sourcing(
 ) -> None:
     module = install(tmp_path, layout, symlinked=symlinked)
     answer = terminal.ros2("run", "hello_pkg", "hello", "--ros-args", "-p", "a:=1", cwd=tmp_path)
-    told = json.loads(answer.out)
-    assert told["arguments"] == ["--ros-args", "-p", "a:=1"]
-    assert Path(told["module"]).parent == module
-    assert told["prefixes"][0].startswith(str(tmp_path / "install"))
+    answered = json.loads(answer.out)
+    assert answered["arguments"] == ["--ros-args", "-p", "a:=1"]
+    assert Path(answered["module"]).parent == module
+    assert answered["prefixes"][0].startswith(str(tmp_path / "install"))
 
 
 def test_the_workspace_is_found_from_below_it_and_from_beside_it(tmp_path: Path, terminal: Terminal) -> None:
@@ -81,8 +81,8 @@ def test_the_workspace_is_found_from_below_it_and_from_beside_it(tmp_path: Path,
 def test_the_process_becomes_the_node_so_signals_are_its_own(tmp_path: Path, terminal: Terminal) -> None:
     install(tmp_path, "isolated")
     run = terminal.start("run", "hello_pkg", "hello", "wait", cwd=tmp_path)
-    told = json.loads(run.lines(1)[0])
-    assert told["pid"] == run.process.pid
+    answered = json.loads(run.lines(1)[0])
+    assert answered["pid"] == run.process.pid
     assert run.stop(signal.SIGTERM).code == -signal.SIGTERM
 
 
@@ -106,8 +106,8 @@ def test_an_installed_prefix_comes_before_a_workspace(
     sourced = install(tmp_path / "sourced", "merged")
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "sourced" / "install"))
     monkeypatch.setenv("PYTHONPATH", str(sourced.parent))
-    told = json.loads(terminal.ros2("run", "hello_pkg", "hello", cwd=tmp_path / "near").out)
-    assert Path(told["module"]).parent == sourced
+    answered = json.loads(terminal.ros2("run", "hello_pkg", "hello", cwd=tmp_path / "near").out)
+    assert Path(answered["module"]).parent == sourced
 
 
 def test_turtlesim_is_ours_where_only_its_messages_are_installed(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from grader.runner.budget import Allowance, Budget, HostStalled
 from grader.runner.ends import BETWEEN_MESSAGES, Clocks
-from grader.runner.recorder import by_several_threads, in_canonical_order, without_order
+from grader.runner.recorder import Moment, by_several_threads, in_canonical_order, without_order
 from grader.scenario.scenario import SECOND, START
 from rmw_lockstep.hub import EndPoint, Heard, Qos
 
@@ -49,7 +49,11 @@ def heard(cdr: bytes, thread: int, now: int = 5, process: int = 1, node: str = "
 
 
 def order(entries: Sequence[tuple[int, Heard]]) -> list[bytes]:
-    return [one.cdr for _, one in in_canonical_order(entries)]
+    return [one.cdr for _, one in in_canonical_order(entries, by_several_threads(entries))]
+
+
+def unordered(*entries: tuple[int, Heard]) -> set[Moment]:
+    return without_order(entries, by_several_threads(entries))
 
 
 def test_what_one_thread_publishes_stays_in_its_order() -> None:
@@ -68,8 +72,8 @@ def test_what_only_one_thread_of_a_node_publishes_has_an_order() -> None:
 
 
 def test_only_messages_of_one_moment_can_be_without_an_order() -> None:
-    assert without_order([heard(b"a", 1), heard(b"b", 2, now=9)]) == set()
-    assert len(without_order([heard(b"a", 1), heard(b"b", 2), heard(b"c", 1, now=9)])) == 1
+    assert unordered(heard(b"a", 1), heard(b"b", 2, now=9)) == set()
+    assert len(unordered(heard(b"a", 1), heard(b"b", 2), heard(b"c", 1, now=9))) == 1
 
 
 def test_of_several_processes_the_node_decides() -> None:

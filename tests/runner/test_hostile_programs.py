@@ -38,7 +38,7 @@ def attack(code: str) -> str:
 
 
 @pytest.mark.parametrize(
-    ("code", "outcome", "told"),
+    ("code", "outcome", "text"),
     [
         ("own().sendall(b'\\xff' * 100)", "over-limit", "disturbed the connection"),
         ("own().sendall(frame(b'T', b'\\0' * 9))", "over-limit", "disturbed the connection"),
@@ -57,10 +57,10 @@ def attack(code: str) -> str:
     ],
 )  # fmt: skip
 def test_an_attack_ends_the_run_with_a_true_message(
-    run_program: RunProgram, code: str, outcome: str, told: str
+    run_program: RunProgram, code: str, outcome: str, text: str
 ) -> None:
     recording = run_program(attack(code), limits=Limits(frames=20_000, end_points=400, connections=16))
-    assert (recording.ending.outcome, told in recording.ending.message) == (outcome, True), recording.ending
+    assert (recording.ending.outcome, text in recording.ending.message) == (outcome, True), recording.ending
     assert [received.fields["data"] for received in recording.received][:2] == [2, 4]
 
 
@@ -96,7 +96,7 @@ def test_a_connection_that_is_handed_on_to_a_child_is_one_process(run_program: R
 
 
 @pytest.mark.parametrize(
-    ("source", "outcome", "told"),
+    ("source", "outcome", "text"),
     [
         (program(body="while message.data == 2.0: pass"), "timed-out", "endless loop"),
         (program(body="while message.data == 2.0: time.monotonic()"), "timed-out", "never responds"),
@@ -109,10 +109,10 @@ def test_a_connection_that_is_handed_on_to_a_child_is_one_process(run_program: R
     ids=["computes", "reads the clock", "sleeps", "waits", "sleeps before", "waits before", "gives up"],
 )
 def test_a_program_that_does_not_go_on_is_told_why(
-    run_program: RunProgram, source: str, outcome: str, told: str
+    run_program: RunProgram, source: str, outcome: str, text: str
 ) -> None:
     ending = run_program(source).ending
-    assert (ending.outcome, told in ending.message) == (outcome, True), ending
+    assert (ending.outcome, text in ending.message) == (outcome, True), ending
 
 
 def test_a_program_that_sleeps_two_seconds_before_it_makes_a_node_is_not_too_late(run_program: RunProgram) -> None:

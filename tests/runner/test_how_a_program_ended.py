@@ -48,7 +48,7 @@ NO_RESULT = (
 
 
 @pytest.mark.parametrize(
-    ("log", "exit_", "told"),
+    ("log", "exit_", "message"),
     [
         (NO_RESPONSE, Exit(1, None, None), "end each way through it with `return response`"),
         (
@@ -62,5 +62,5 @@ NO_RESULT = (
         ("", Exit(None, 6, None), "killed by signal 6"),
     ],
 )
-def test_an_end_far_from_its_cause_says_what_to_do(log: str, exit_: Exit, told: str) -> None:
-    assert told in of_exit(exit_, log, "turnstile.py", SOURCE)[0]
+def test_an_end_far_from_its_cause_says_what_to_do(log: str, exit_: Exit, message: str) -> None:
+    assert message in of_exit(exit_, log, "turnstile.py", SOURCE)[0]

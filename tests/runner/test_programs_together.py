@@ -82,7 +82,7 @@ def test_a_program_may_start_later_and_again(together: Together) -> None:
     assert heard(recording) == [0.21, 0.3, 0.46, 0.5, 0.6]
 
 
-def test_which_program_crashed_is_told(together: Together) -> None:
+def test_which_program_crashed_is_reported(together: Together) -> None:
     crashes = TALKER.replace("lambda: self.talk.publish(Float64(data=1.0))", "lambda: 1 / 0")
     ending = together(Scenario("s", "t", duration=0.5), crashes).ending
     assert ending.outcome == "crashed"

@@ -304,7 +304,7 @@ def test_a_program_that_does_nothing_moves_nothing(scripted: Scripted) -> None:
     assert {(one.fields["x"], one.fields["y"]) for one in recording.sent} == {(5.0, 7.0)}
 
 
-def test_joints_go_to_where_they_are_told_no_faster_than_they_can() -> None:
+def test_joints_go_to_where_they_are_reported_no_faster_than_they_can() -> None:
     chain = JointChain({"elbow": 0.0, "wrist": 1.0}, fastest=2.0)
     from sensor_msgs.msg import JointState
 
@@ -321,8 +321,8 @@ def too_many(request: object) -> dict[str, object]:
 
 
 def test_an_authors_function_that_breaks_is_named_with_the_request(scripted: Scripted) -> None:
-    told = r"too_many\(\) for /lamp, with the request \{'data': True\}: .* is given for success"
-    with pytest.raises(ExerciseError, match=told) as caught:
+    words = r"too_many\(\) for /lamp, with the request \{'data': True\}: .* is given for success"
+    with pytest.raises(ExerciseError, match=words) as caught:
         scripted(program(SERVICE_CLIENT), Scenario("s", "t", servers=Server("/lamp", replies=too_many), duration=1.0))
     assert "a student's node may send it anything" in str(caught.value)
 

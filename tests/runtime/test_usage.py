@@ -20,7 +20,7 @@ from notebook_kernel import Kernel
         ("%turtle", "turtlesim"),
     ],
 )
-def test_bad_usage_is_told_in_words(module_kernel: Kernel, line: str, words: str) -> None:
+def test_bad_usage_is_reported_in_words(module_kernel: Kernel, line: str, words: str) -> None:
     error = module_kernel.run(line).error
 
     assert words in error

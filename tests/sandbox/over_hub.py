@@ -55,7 +55,7 @@ def in_the_runner(
                 if student.poll() is not None or time.monotonic() > deadline:
                     raise _Over
 
-            hub.main, hub.patience = student.pid, look
+            hub.main, hub.on_tick = student.pid, look
             try:
                 while True:
                     hub.wait_until_idle()

@@ -53,7 +53,7 @@ def ends_at(runner: Runner, limit: str, code: str) -> None:
 
 
 @pytest.mark.parametrize(("limit", "code"), PLAIN)
-def test_a_limit_ends_the_program_and_is_told(any_runner: Runner, limit: str, code: str) -> None:
+def test_a_limit_ends_the_program_and_is_reported(any_runner: Runner, limit: str, code: str) -> None:
     ends_at(any_runner, limit, code)
 
 

@@ -118,9 +118,9 @@ def test_no_temporary_folder_is_left(any_runner: Runner) -> None:
     def folders() -> set[str]:
         return {path.name for path in Path("/tmp").glob("spinbook-student-*")}
 
-    told = any_runner.run("import os\nprint(os.path.dirname(os.path.dirname(__file__)))").text.strip()
+    shown = any_runner.run("import os\nprint(os.path.dirname(os.path.dirname(__file__)))").text.strip()
 
-    assert Path(told).name not in folders() or told == "/"
+    assert Path(shown).name not in folders() or shown == "/"
 
 
 NOTE = """

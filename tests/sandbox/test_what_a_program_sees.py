@@ -151,20 +151,20 @@ print(json.dumps(done))"""
 
 def test_what_holds_its_namespace_open_is_no_use_to_it(apart_runner: Runner) -> None:
     code = """
-told = []
+found = []
 for process in [n for n in os.listdir('/proc') if n.isdigit() and int(n) != os.getpid()]:
     status = dict(line.split(':', 1) for line in open(f'/proc/{process}/status').read().splitlines())
-    told.append([int(status[name], 16) for name in ('CapPrm', 'CapBnd', 'NoNewPrivs', 'Seccomp')])
+    found.append([int(status[name], 16) for name in ('CapPrm', 'CapBnd', 'NoNewPrivs', 'Seccomp')])
 try:
     os.kill(1, 9)
 except PermissionError:
     pass
-print(json.dumps(told))
+print(json.dumps(found))
 """
-    told = answer(apart_runner, code)
+    reported = answer(apart_runner, code)
 
-    assert told
-    assert all(one == [0, 0, 1, 2] for one in told)
+    assert reported
+    assert all(one == [0, 0, 1, 2] for one in reported)
 
 
 def test_it_has_no_capability_and_gains_none(confined_runner: Runner) -> None:
@@ -274,8 +274,8 @@ print(json.dumps([read(path) or None for path in {paths!r}]))"""
     )
     with fork_server.start(program, level) as student:
         student.wait(30.0)
-    told: list[str | None] = json.loads(student.output().text)
-    return told
+    reported: list[str | None] = json.loads(student.output().text)
+    return reported
 
 
 def test_a_folder_that_is_shown_is_seen_without_what_is_hidden_in_it(confined_runner: Runner, tmp_path: Path) -> None:

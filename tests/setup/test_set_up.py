@@ -197,7 +197,7 @@ def test_a_python_that_is_too_old_or_too_new_is_refused(checkout: Checkout) -> N
         assert "Traceback" not in said
 
 
-def test_a_python_that_is_not_there_is_told(checkout: Checkout) -> None:
+def test_a_python_that_is_not_there_is_reported(checkout: Checkout) -> None:
     code, said = checkout.set_up(PYTHON="python3.99")
     assert code == 1
     assert "There is no 'python3.99' here" in said

@@ -18,7 +18,7 @@ FULL = "ERROR: Could not install packages due to an OSError: [Errno 28] No space
 
 
 @pytest.mark.parametrize(
-    ("pip_says", "told"),
+    ("pip_says", "message"),
     [
         (NO_NETWORK, "PyPI can't be reached. Is there a network?"),
         (ALTERED, "not the file that was pinned"),
@@ -27,11 +27,11 @@ FULL = "ERROR: Could not install packages due to an OSError: [Errno 28] No space
     ],
     ids=["no network", "altered download", "full disk", "anything else"],
 )
-def test_a_failing_pip_is_explained(checkout: Checkout, pip_says: str, told: str) -> None:
+def test_a_failing_pip_is_explained(checkout: Checkout, pip_says: str, message: str) -> None:
     checkout.tell("pip-fails", pip_says)
     code, said = checkout.set_up()
     assert code == 1
-    assert told in said
+    assert message in said
     assert "The whole log: .venv/setup.log" in said
     assert pip_says in (checkout.folder / ".venv" / "setup.log").read_text()
 

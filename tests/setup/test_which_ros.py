@@ -50,7 +50,7 @@ def test_an_environment_with_wheels_is_made_anew_once_ros_is_sourced_and_back(
         assert checkout.set_up(**settings) == (0, "")
 
 
-def test_a_sourced_ros_that_does_not_load_is_told(checkout: Checkout, tmp_path: Path) -> None:
+def test_a_sourced_ros_that_does_not_load_is_reported(checkout: Checkout, tmp_path: Path) -> None:
     checkout.tell(
         "ros-fails", "Traceback (most recent call last):\nImportError: librcl.so: cannot open shared object file"
     )
@@ -62,7 +62,7 @@ def test_a_sourced_ros_that_does_not_load_is_told(checkout: Checkout, tmp_path: 
 
 
 @pytest.mark.parametrize(
-    ("sourced", "told"),
+    ("sourced", "message"),
     [
         (lambda prefix: empty_rclpy(prefix, ".cpython-38-x86_64-linux-gnu.so"), "make PYTHON=python3.12"),
         (lambda prefix: empty_rclpy(prefix, distro="humble"), "The sourced ROS 2 is Humble"),
@@ -71,12 +71,12 @@ def test_a_sourced_ros_that_does_not_load_is_told(checkout: Checkout, tmp_path: 
     ids=["for another Python", "older than Jazzy", "ROS 1"],
 )
 def test_a_sourced_ros_that_can_not_be_used_is_refused_and_nothing_is_made(
-    checkout: Checkout, tmp_path: Path, sourced: object, told: str
+    checkout: Checkout, tmp_path: Path, sourced: object, message: str
 ) -> None:
     assert callable(sourced)
     code, said = checkout.set_up(**sourced(tmp_path / "ros"))
     assert code == 1
-    assert told in said
+    assert message in said
     assert "no ROS setup file is sourced" in said
     assert checkout.calls == []
 
@@ -99,9 +99,9 @@ def test_the_first_rclpy_on_the_path_counts(tmp_path: Path) -> None:
 )
 def test_where_no_wheels_fit_another_way_is_named(system: str, processor: str, libc: str, reason: str) -> None:
     machine = Machine(system, processor, libc, (3, 12), [".cpython-312-x86_64-linux-gnu.so"])
-    with pytest.raises(NoRos, match=reason) as told:
+    with pytest.raises(NoRos, match=reason) as caught:
         ros_origin({}, machine)
-    assert "container" in str(told.value)
+    assert "container" in str(caught.value)
 
 
 def test_where_no_wheels_fit_a_sourced_ros_is_used_all_the_same(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from playwright.sync_api import Page
 
 CELLS = "main .cell:is(.cell-node, .cell-shell, .cell-snippet, .cell-interface, .cell-package_file)"
 #: How long to wait for a cell (s): the machine may be busy.
-PATIENCE_S = 120
+DEADLINE_S = 120
 
 _CELL = f"const cell = document.querySelectorAll('{CELLS}')[at];"
 _UNTIL = """const until = async (holds, seconds) => {
@@ -109,8 +109,8 @@ class ChapterPage:
     def run(self, at: int) -> None:
         """Press a cell's Run, and wait until it has ended, or until its node has started. Raises TimeoutError."""
         self.driver.click(_BUTTON, at)
-        if not self.driver.call(_ENDED, at, PATIENCE_S):
-            raise TimeoutError(f"cell {at} did not end within {PATIENCE_S} s")
+        if not self.driver.call(_ENDED, at, DEADLINE_S):
+            raise TimeoutError(f"cell {at} did not end within {DEADLINE_S} s")
 
     def wait_for(self, at: int, patterns: list[str], picture: bool, seconds: float) -> None:
         """Wait until a cell shows lines of each pattern, and a picture if one is wanted, but no longer than this."""
@@ -127,8 +127,8 @@ class ChapterPage:
         """Stop every node."""
         if self.driver.call(f"() => Boolean(({_EVERY})())"):
             self.driver.click(_EVERY)
-        if not self.driver.call(_NONE_RUNS, PATIENCE_S):
-            raise TimeoutError(f"nodes did not end within {PATIENCE_S} s")
+        if not self.driver.call(_NONE_RUNS, DEADLINE_S):
+            raise TimeoutError(f"nodes did not end within {DEADLINE_S} s")
 
     def outside(self) -> list[str]:
         """Return what the page has asked other hosts for."""

@@ -20,7 +20,7 @@ from grader.submission import read
 
 SOLUTIONS = ROOT / "solutions" / "joint_velocity"
 MISTAKES = ("wrong_topic", "degrees", "sign_turned_round", "publishes_on_the_first_message", "traceback_on_ctrl_c")
-PATIENCE_MS = 180_000
+DEADLINE_MS = 180_000
 WIDTHS = (1280, 390)
 
 pytestmark = [pytest.mark.soak, pytest.mark.timeout(1800)]
@@ -58,7 +58,7 @@ def output(name: str) -> str:
 
 
 def says(page: Page, name: str, text: str) -> None:
-    expect(page.locator(output(name))).to_contain_text(text, timeout=PATIENCE_MS)
+    expect(page.locator(output(name))).to_contain_text(text, timeout=DEADLINE_MS)
 
 
 def clean(shown: Opened) -> None:
@@ -77,7 +77,7 @@ def the_chapter(shown: Opened) -> None:
     press(page, "Run balance_controller.py")
     says(page, "balance_controller", "I hear")
     press(page, "Node graph")
-    expect(page.locator(".graph-panel svg")).to_contain_text("/left_foot/toe", timeout=PATIENCE_MS)
+    expect(page.locator(".graph-panel svg")).to_contain_text("/left_foot/toe", timeout=DEADLINE_MS)
     clean(shown)
     for name in ("left_toe", "balance_controller"):
         expect(page.get_by_role("button", name=f"Stop {name}", exact=True)).to_be_in_viewport(ratio=1)
@@ -92,7 +92,7 @@ def the_chapter(shown: Opened) -> None:
     says(page, "left_toe", "AttributeError")
     picture(page, "2-broken")
     press(page, "Stop balance_controller")
-    expect(page.get_by_role("region", name="Running nodes")).to_be_hidden(timeout=PATIENCE_MS)
+    expect(page.get_by_role("region", name="Running nodes")).to_be_hidden(timeout=DEADLINE_MS)
     page.reload()
     press(page, "Run left_toe.py")
     says(page, "left_toe", "AttributeError")
@@ -111,7 +111,7 @@ def the_exercise(shown: Opened, downloads: Path) -> Path:
             clean(shown)
             picture(page, "3-degrees")
     check(page, SOLUTIONS / "solution.py")
-    expect(page.locator(".check-total")).to_contain_text("11 of 11 public checks, 41 of 41 points", timeout=PATIENCE_MS)
+    expect(page.locator(".check-total")).to_contain_text("11 of 11 public checks, 41 of 41 points", timeout=DEADLINE_MS)
     picture(page, "4-solved")
     page.reload()
     press(page, "Edit and check the starter here")
@@ -130,7 +130,7 @@ def check(page: Page, file: Path) -> None:
     expect(page.get_by_role("textbox", name="Code of joint_velocity.py")).to_contain_text(file.read_text()[:40])
     page.locator(".check-result").evaluate("place => place.replaceChildren()")
     press(page, "Check joint_velocity.py")
-    expect(page.locator(".check-total")).to_be_in_viewport(timeout=PATIENCE_MS)
+    expect(page.locator(".check-total")).to_be_in_viewport(timeout=DEADLINE_MS)
 
 
 @pytest.mark.parametrize("width", WIDTHS)

@@ -50,7 +50,7 @@ def test_a_chapter_that_is_taken_out_leaves_nothing(course: SmallCourse) -> None
     assert not [name for name in snapshot(course.root / "build" / "launch") if "02-more" in name]
 
 
-def test_what_is_wrong_is_told_by_the_chapter_s_line(course: SmallCourse) -> None:
+def test_what_is_wrong_is_reported_by_the_chapter_s_line(course: SmallCourse) -> None:
     course.change("chapters/02-more.md", "Good-bye.", "See [nothing](#not-here).")
 
     said = course.spinbook_site()

@@ -23,7 +23,7 @@ PAGES = [
     "about.html",
     "search.html?q=publisher",
 ]
-PATIENCE_MS = 60_000
+DEADLINE_MS = 60_000
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -42,10 +42,10 @@ def test_the_search_finds_publisher(browser: Browser, built: SmallCourse, addres
         shown.page.get_by_role("searchbox").fill("publisher")
         shown.page.get_by_role("searchbox").press("Enter")
         results = shown.page.locator("#search-results li")
-        expect(results.first).to_be_visible(timeout=PATIENCE_MS)
+        expect(results.first).to_be_visible(timeout=DEADLINE_MS)
         assert "Publisher" in results.first.inner_text()
         results.get_by_role("link", name="Talk", exact=True).click()
-        expect(shown.page.get_by_role("heading", level=1)).to_contain_text("Talk", timeout=PATIENCE_MS)
+        expect(shown.page.get_by_role("heading", level=1)).to_contain_text("Talk", timeout=DEADLINE_MS)
         assert shown.faults == []
 
 
@@ -60,7 +60,7 @@ def test_the_search_answers_while_one_types_and_forgives(
         expect(field).to_be_focused()
         for typed in ("publisher", "publishers", "publihser", "pubisher"):
             field.fill(typed)
-            expect(results.first).to_be_visible(timeout=PATIENCE_MS)
+            expect(results.first).to_be_visible(timeout=DEADLINE_MS)
             expect(shown.page.locator("#search-now")).to_contain_text("Publisher")
         if not from_folder:  # axe requests the style sheet itself, which a page from a folder may not
             assert shown.violations() == []
@@ -72,7 +72,7 @@ def test_the_search_answers_while_one_types_and_forgives(
         expect(shown.page.locator("#search-now")).to_contain_text("No results for “xylophone”.")
         field.fill("publihsers")
         field.press("Enter")
-        expect(shown.page.locator("#search-count")).to_contain_text("for “publisher”", timeout=PATIENCE_MS)
+        expect(shown.page.locator("#search-count")).to_contain_text("for “publisher”", timeout=DEADLINE_MS)
         assert shown.faults == []
 
 
@@ -102,7 +102,7 @@ def test_copying_gives_the_node_s_code(browser: Browser, built: SmallCourse, add
     with opened(browser, f"{address}/chapters/01-talk.html") as shown:
         shown.page.context.grant_permissions(["clipboard-read", "clipboard-write"])
         shown.page.get_by_role("button", name="Copy talker.py").click()
-        expect(shown.page.locator("#said")).to_have_text("Copied", timeout=PATIENCE_MS)
+        expect(shown.page.locator("#said")).to_have_text("Copied", timeout=DEADLINE_MS)
         copied = shown.page.evaluate("navigator.clipboard.readText()")
     assert copied.strip() == (built.site / "downloads" / "talker.py").read_text().strip()
 
@@ -119,9 +119,9 @@ def test_the_menu_of_a_phone_opens_and_closes_by_keyboard(browser: Browser, addr
         link = shown.page.get_by_role("navigation", name="Course").get_by_role("link", name="Glossary")
         expect(link).to_be_hidden()
         shown.page.get_by_role("button", name="Contents").press("Enter")
-        expect(link).to_be_visible(timeout=PATIENCE_MS)
+        expect(link).to_be_visible(timeout=DEADLINE_MS)
         shown.page.keyboard.press("Escape")
-        expect(link).to_be_hidden(timeout=PATIENCE_MS)
+        expect(link).to_be_hidden(timeout=DEADLINE_MS)
 
 
 def edges(table: Locator) -> list[float]:
@@ -199,10 +199,10 @@ def test_what_moves_stands_still_on_paper_and_for_those_who_prefer_no_motion(
 
 def test_while_an_author_writes_the_open_page_follows(browser: Browser, course: SmallCourse) -> None:
     with course.serving() as address, opened(browser, f"{address}/chapters/02-more.html") as shown:
-        with shown.page.expect_websocket(timeout=PATIENCE_MS):
+        with shown.page.expect_websocket(timeout=DEADLINE_MS):
             shown.page.reload()
         course.change("chapters/02-more.md", "Words only.", "Words that were saved just now.")
-        expect(shown.page.get_by_text("saved just now")).to_be_visible(timeout=2 * PATIENCE_MS)
+        expect(shown.page.get_by_text("saved just now")).to_be_visible(timeout=2 * DEADLINE_MS)
         assert shown.faults == []
 
 

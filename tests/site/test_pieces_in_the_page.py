@@ -15,7 +15,7 @@ from spinbook.browser.files import can_run
 pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Pyodide from npm")
 
 #: Pyodide starts in a few seconds; on a busy machine, in many.
-PATIENCE_MS = 60_000
+DEADLINE_MS = 60_000
 CHAPTER = """\
 # Pieces
 
@@ -61,18 +61,18 @@ def test_a_node_in_pieces_runs_with_the_messages_of_its_chapter(tmp_path: Path, 
     with served(tmp_path / "build" / "site") as address, opened(browser, f"{address}/chapters/pieces.html") as shown:
         cell = shown.page.locator(".cell-node")
         cell.get_by_role("button", name="Run counter.py").click()
-        expect(cell.get_by_role("log")).to_contain_text("[counter]: counted 7", timeout=PATIENCE_MS)
+        expect(cell.get_by_role("log")).to_contain_text("[counter]: counted 7", timeout=DEADLINE_MS)
 
         shown.page.get_by_role("button", name="Run robot_interfaces/msg/Count.msg").click()
         interface = shown.page.locator(".cell-interface").get_by_role("log")
-        expect(interface).to_contain_text("robot_interfaces/msg/Count: ready.", timeout=PATIENCE_MS)
+        expect(interface).to_contain_text("robot_interfaces/msg/Count: ready.", timeout=DEADLINE_MS)
 
         part = shown.page.locator(".cell-part")
         part.get_by_role("button", name="Run cell 2", exact=True).click()
-        expect(shown.page.locator("#said")).to_have_text("cell 2: done", timeout=PATIENCE_MS)
+        expect(shown.page.locator("#said")).to_have_text("cell 2: done", timeout=DEADLINE_MS)
 
         terminal = shown.page.locator(".cell-shell")
         terminal.get_by_role("button", name="Run cell 4", exact=True).click()
-        expect(terminal.get_by_role("log")).to_contain_text("[counter]: counted 7", timeout=PATIENCE_MS)
+        expect(terminal.get_by_role("log")).to_contain_text("[counter]: counted 7", timeout=DEADLINE_MS)
         assert shown.violations() == []
         assert shown.faults == []

@@ -13,7 +13,7 @@ from spinbook.browser.files import can_run
 pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Pyodide from npm")
 
 #: Pyodide starts in a few seconds; on a busy machine, in many.
-PATIENCE_MS = 120_000
+DEADLINE_MS = 120_000
 WITHOUT_JSPI = "delete WebAssembly.Suspending; delete WebAssembly.promising;"
 #: What a browser does that has no memory left for another program.
 WITHOUT_MEMORY = """
@@ -82,51 +82,51 @@ SENTENCES = {
 }
 
 
-def test_a_program_that_needs_more_than_a_page_has_is_told_so(shown: Opened) -> None:
+def test_a_program_that_needs_more_than_a_page_has_is_reported(shown: Opened) -> None:
     cell = shown.page.locator(".cell-snippet").first
     for code, sentence in SENTENCES.items():
-        expect(run(cell, code)).to_contain_text(sentence, timeout=PATIENCE_MS)
+        expect(run(cell, code)).to_contain_text(sentence, timeout=DEADLINE_MS)
     assert shown.faults == []
 
 
 def test_garbage_is_collected_while_threads_wait(shown: Opened) -> None:
     output = run(shown.page.locator(".cell-snippet").first, GARBAGE)
-    expect(output).to_contain_text("all threads went on", timeout=PATIENCE_MS)
+    expect(output).to_contain_text("all threads went on", timeout=DEADLINE_MS)
     assert shown.faults == []
 
 
 def test_a_cell_that_computes_for_ever_can_be_stopped(shown: Opened) -> None:
     cell = shown.page.locator(".cell-snippet").first
-    expect(run(cell, "print('begins')\nwhile True: pass")).to_contain_text("begins", timeout=PATIENCE_MS)
+    expect(run(cell, "print('begins')\nwhile True: pass")).to_contain_text("begins", timeout=DEADLINE_MS)
     bar = shown.page.get_by_role("region", name="Running nodes")
     bar.get_by_role("button", name="Stop all nodes").click()
-    expect(cell.get_by_role("status")).to_contain_text("It was ended, and the variables", timeout=PATIENCE_MS)
-    expect(bar).to_be_hidden(timeout=PATIENCE_MS)
+    expect(cell.get_by_role("status")).to_contain_text("It was ended, and the variables", timeout=DEADLINE_MS)
+    expect(bar).to_be_hidden(timeout=DEADLINE_MS)
 
 
 @pytest.mark.soak
 def test_a_node_that_computes_for_ever_is_reported_and_can_be_stopped(shown: Opened) -> None:
     node = shown.page.locator(".cell-node").first
-    expect(run(node, "print('begins')\nwhile True: pass")).to_contain_text("begins", timeout=PATIENCE_MS)
+    expect(run(node, "print('begins')\nwhile True: pass")).to_contain_text("begins", timeout=DEADLINE_MS)
     state = node.get_by_role("status")
-    expect(state).to_contain_text("talker computes without a pause", timeout=PATIENCE_MS)
+    expect(state).to_contain_text("talker computes without a pause", timeout=DEADLINE_MS)
     shown.page.get_by_role("button", name="Stop talker").click()
-    expect(state).to_contain_text("talker did not react to Ctrl-C, so it was ended after 2 s.", timeout=PATIENCE_MS)
+    expect(state).to_contain_text("talker did not react to Ctrl-C, so it was ended after 2 s.", timeout=DEADLINE_MS)
 
 
-def test_a_browser_without_promise_integration_is_told_so(browser: Browser, address: str) -> None:
+def test_a_browser_without_promise_integration_is_reported(browser: Browser, address: str) -> None:
     with opened(browser, f"{address}/chapters/01-talk.html") as page:
         page.page.add_init_script(WITHOUT_JSPI)
         page.page.reload()
         page.page.get_by_role("button", name="Run talker.py", exact=True).click()
         state = page.page.locator(".cell-node").get_by_role("status")
-        expect(state).to_contain_text("This browser can't run nodes", timeout=PATIENCE_MS)
+        expect(state).to_contain_text("This browser can't run nodes", timeout=DEADLINE_MS)
         assert "A publisher sends messages." in page.page.inner_text("main")
         assert page.violations() == []
         assert page.faults == []
 
 
-def test_a_browser_without_memory_for_another_node_is_told_so(browser: Browser, address: str) -> None:
+def test_a_browser_without_memory_for_another_node_is_reported(browser: Browser, address: str) -> None:
     def exhausted(route: Route) -> None:
         response = route.fetch()
         route.fulfill(response=response, body=WITHOUT_MEMORY + response.text())
@@ -135,4 +135,4 @@ def test_a_browser_without_memory_for_another_node_is_told_so(browser: Browser, 
         page.page.context.route("**/run/pyodide.mjs", exhausted)
         page.page.get_by_role("button", name="Run talker.py", exact=True).click()
         state = page.page.locator(".cell-node").get_by_role("status")
-        expect(state).to_contain_text("There is not enough memory for this. Stop a node", timeout=PATIENCE_MS)
+        expect(state).to_contain_text("There is not enough memory for this. Stop a node", timeout=DEADLINE_MS)

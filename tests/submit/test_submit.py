@@ -54,7 +54,7 @@ def test_a_file_is_checked_handed_in_and_read_again(folder: Path) -> None:
     assert done.exit_code == 0, done.output
     assert f"Upload this file: {UPLOAD}" in done.output
     assert "41 of 41 points" in done.output
-    assert "long gap" not in done.output, "no hidden check is told"
+    assert "long gap" not in done.output, "no hidden check is shown"
     record = upload().record
     assert record["student"] == "Ada Lovelace"
     assert record["time"] == "2023-11-14T22:13:20+00:00"
@@ -73,7 +73,7 @@ def test_a_notebook_is_handed_in_with_its_cell_and_as_a_whole(folder: Path) -> N
     assert upload().record["from"] == "week3.ipynb"
 
 
-def test_of_several_cells_the_last_is_handed_in_and_that_is_told(folder: Path) -> None:
+def test_of_several_cells_the_last_is_handed_in_and_that_is_reported(folder: Path) -> None:
     write_notebook("week3.ipynb", "first = 1")
     notebook = json.loads(Path("week3.ipynb").read_text())
     for line in ("%%node joint_velocity --seconds 20", "%%node joint_velocity.py"):
@@ -172,19 +172,19 @@ def test_a_self_check_that_can_not_run_keeps_nobody_from_handing_in(folder: Path
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (["nowhere.py"], "there is no such file"),
         (["pkg/executable"], "give a notebook"),
     ],
 )
-def test_wrong_usage_is_told(folder: Path, words: list[str], told: str) -> None:
+def test_wrong_usage_is_reported(folder: Path, words: list[str], message: str) -> None:
     done = submitted(*words)
     assert done.exit_code == 2
-    assert told in done.output
+    assert message in done.output
 
 
-def test_an_unknown_exercise_is_told_with_those_that_there_are(folder: Path) -> None:
+def test_an_unknown_exercise_is_reported_with_those_that_there_are(folder: Path) -> None:
     done = CliRunner().invoke(submit, ["joint_velocty"])
     assert done.exit_code == 2
     assert "There are: joint_velocity" in done.output

@@ -105,7 +105,7 @@ def test_an_upload_that_was_packed_again_by_hand_is_as_good(exercise: Exercise) 
     assert submission.source == CODE.decode()
 
 
-def test_an_upload_for_another_exercise_is_told(exercise: Exercise) -> None:
+def test_an_upload_for_another_exercise_is_reported(exercise: Exercise) -> None:
     submission = of_upload("upload.zip", pack({"exercise": "speed_limit"}, FILES), exercise)
     assert "'speed_limit'" in submission.warning
 
@@ -132,7 +132,7 @@ def link() -> bytes:
     ],
     ids=["empty", "cut off", "link", "one bomb", "many bombs", "many files", "two of one name"],
 )
-def test_what_is_no_upload_is_told_and_does_no_harm(content: bytes, why: str, exercise: Exercise) -> None:
+def test_what_is_no_upload_is_reported_and_does_no_harm(content: bytes, why: str, exercise: Exercise) -> None:
     with pytest.raises(NoUpload, match=why):
         unpack(content)
     submission = of_upload("upload.zip", content, exercise)

@@ -64,15 +64,15 @@ def test_the_picture_of_a_new_world_shows_turtle1_in_the_middle() -> None:
     }
 
 
-def test_a_picture_survives_being_told_as_json() -> None:
+def test_a_picture_survives_being_written_as_json() -> None:
     picture = picture_of(driven(7), BLUE)
     (stroke,) = picture.trails
-    told = WorldPicture.from_json(picture.to_json())
-    assert told.to_json() == picture.to_json()
-    assert [len(each.points) for each in told.trails] == [len(stroke.points)]
+    restored = WorldPicture.from_json(picture.to_json())
+    assert restored.to_json() == picture.to_json()
+    assert [len(each.points) for each in restored.trails] == [len(stroke.points)]
 
 
-def test_ten_minutes_of_driving_are_told_in_far_less_than_a_megabyte() -> None:
+def test_ten_minutes_of_driving_are_stored_in_far_less_than_a_megabyte() -> None:
     assert len(picture_of(driven(600), BLUE).to_json()) < 250_000
 
 

@@ -123,8 +123,8 @@ def test_ticks_are_those_that_turtlesim_itself_made(name: str) -> None:
     assert RECORDED[name][-1][0] == len(poses) - 1
     for tick, x, y, theta, speed, turn in RECORDED[name]:
         pose = poses[int(tick)]
-        told = (pose.x, pose.y, pose.theta, pose.linear_velocity, pose.angular_velocity)
-        assert told == pytest.approx((x, y, theta, speed, turn), abs=ROUNDED), tick
+        reported = (pose.x, pose.y, pose.theta, pose.linear_velocity, pose.angular_velocity)
+        assert reported == pytest.approx((x, y, theta, speed, turn), abs=ROUNDED), tick
 
 
 def act(driven: Driven, oracle: OracleTurtle, kind: str, numbers: tuple[float, ...]) -> None:
@@ -187,7 +187,7 @@ def test_the_heading_turns_before_the_turtle_moves() -> None:
     assert (pose.x - W / 2, pose.y - W / 2) == pytest.approx((0.0, 0.016), abs=1e-6)
 
 
-def test_the_speed_told_is_never_negative() -> None:
+def test_the_reported_speed_is_never_negative() -> None:
     driven = Driven()
     driven.command(-3.0, 0.0, left=4.0)
     assert driven.pose().linear_velocity == 5.0
@@ -238,13 +238,13 @@ def test_jumping_above_the_upper_wall_warns_only_for_x() -> None:
 
 # The float32 nearest to -pi is just below turtlesim's -3.14159265, so it wraps to the other side.
 @pytest.mark.parametrize(
-    ("theta", "told"), [(3.0, 3.0), (math.pi, -math.pi), (-math.pi, math.pi), (7.0, 7 - 2 * math.pi)]
+    ("theta", "reported"), [(3.0, 3.0), (math.pi, -math.pi), (-math.pi, math.pi), (7.0, 7 - 2 * math.pi)]
 )
-def test_the_heading_told_lies_between_minus_pi_and_pi(theta: float, told: float) -> None:
+def test_the_reported_heading_lies_between_minus_pi_and_pi(theta: float, reported: float) -> None:
     driven = Driven()
     driven.world.teleport_absolute("turtle1", 5.0, 5.0, theta)
     pose = driven.pose()
-    assert pose.theta == pytest.approx(told, abs=1e-6)
+    assert pose.theta == pytest.approx(reported, abs=1e-6)
 
 
 def test_a_relative_jump_turns_first() -> None:

@@ -126,8 +126,8 @@ class Outside:
 
     def set_integer(self, name: str, value: int) -> Any:
         """Set a parameter of the node; return its answer."""
-        told = ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=value)
-        request = SetParameters.Request(parameters=[Parameter(name=name, value=told)])
+        wanted = ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=value)
+        request = SetParameters.Request(parameters=[Parameter(name=name, value=wanted)])
         return self.call(SetParameters, "/turtlesim/set_parameters", request).results[0]
 
     def picture(self) -> Any:
@@ -234,10 +234,10 @@ def test_a_circle_is_a_circle(turtlesim: Running, outside: Outside) -> None:
 def test_the_picture_tells_the_world(turtlesim: Running, outside: Outside) -> None:
     outside.call(TeleportAbsolute, "/turtle1/teleport_absolute", TeleportAbsolute.Request(x=2.0, y=3.0, theta=1.0))
     outside.until(lambda: outside.picture()["turtles"][0]["x"] == 2.0, "the teleport")
-    told = outside.picture()
-    (stroke,) = told["trails"]
+    picture = outside.picture()
+    (stroke,) = picture["trails"]
     assert stroke["points"] == [[5.5444, 5.5444], [2.0, 3.0]]
-    assert told["background"] == [69, 86, 255]
+    assert picture["background"] == [69, 86, 255]
     outside.call(Empty, "/clear")
     assert outside.picture()["trails"] == []
     outside.call(Empty, "/reset")
@@ -273,7 +273,7 @@ def test_turtles_are_spawned_with_a_pen_and_killed(turtlesim: Running, outside: 
     assert [turtle["name"] for turtle in outside.picture()["turtles"]] == ["turtle1"]
 
 
-def test_a_name_that_is_taken_or_unknown_is_told_in_the_log(turtlesim: Running, outside: Outside) -> None:
+def test_a_name_that_is_taken_or_unknown_is_reported_in_the_log(turtlesim: Running, outside: Outside) -> None:
     assert outside.call(Spawn, "/spawn").name == "turtle2"
     assert outside.call(Spawn, "/spawn", Spawn.Request(name="turtle2")).name == ""
     outside.call(Kill, "/kill", Kill.Request(name="eve"))
@@ -290,7 +290,7 @@ def rotate(outside: Outside, theta: float, remaining: list[float]) -> Any:
     client = ActionClient(outside.node, RotateAbsolute, "/turtle1/rotate_absolute")
     outside.until(client.server_is_ready, "the action")
     goal = client.send_goal_async(
-        RotateAbsolute.Goal(theta=theta), feedback_callback=lambda told: remaining.append(told.feedback.remaining)
+        RotateAbsolute.Goal(theta=theta), feedback_callback=lambda arrived: remaining.append(arrived.feedback.remaining)
     )
     outside.until(goal.done, "the goal's acceptance")
     assert goal.result().accepted
@@ -338,7 +338,7 @@ def test_two_worlds_live_in_namespaces_of_their_own(outside: Outside) -> None:
         assert fetch(DEADLINE_S, node="/sim2/turtlesim").turtles[0].x == pytest.approx(CENTRE, abs=1e-4)
 
 
-def test_a_parameter_out_of_range_at_the_start_is_told_without_a_traceback(ros_domain: int) -> None:
+def test_a_parameter_out_of_range_at_the_start_is_reported_without_a_traceback(ros_domain: int) -> None:
     with running("node", "--ros-args", "-p", "background_r:=300") as node:
         assert node.process.wait(timeout=DEADLINE_S) == 1
         node.end(signal.SIGTERM)
@@ -418,7 +418,7 @@ def test_a_turtlesim_without_pictures_is_listened_to(outside: Outside, tmp_path:
     assert (tmp_path / "heard.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_without_any_turtlesim_the_reader_is_told_so(ros_domain: int, tmp_path: Path) -> None:
+def test_without_any_turtlesim_the_reader_is_reported(ros_domain: int, tmp_path: Path) -> None:
     with running("picture", str(tmp_path / "none.svg"), "--timeout", "0.1", "--listen", "0.2") as picture:
         assert picture.process.wait(timeout=DEADLINE_S) == 1
         picture.end(signal.SIGTERM)
@@ -427,17 +427,17 @@ def test_without_any_turtlesim_the_reader_is_told_so(ros_domain: int, tmp_path: 
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_topic_of_another_type_is_told(outside: Outside) -> None:
+def test_a_topic_of_another_type_is_reported(outside: Outside) -> None:
     outside.node.create_publisher(String, "/turtle1/pose", 10)
-    deadline, told = time.monotonic() + DEADLINE_S, ""
-    while "carries std_msgs/msg/String" not in told:  # a busy machine may need longer to find the publisher
-        assert time.monotonic() < deadline, told
+    deadline, message = time.monotonic() + DEADLINE_S, ""
+    while "carries std_msgs/msg/String" not in message:  # a busy machine may need longer to find the publisher
+        assert time.monotonic() < deadline, message
         with pytest.raises(NoPictureError) as caught:
             fetch(timeout_s=0.0, listen_s=1.0)
-        told = str(caught.value)
+        message = str(caught.value)
 
 
-def test_a_node_that_answers_with_something_else_is_told(outside: Outside) -> None:
+def test_a_node_that_answers_with_something_else_is_reported(outside: Outside) -> None:
     def answer(_: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         response.message = "cheese"
         return response

@@ -50,9 +50,9 @@ def tick_until_rotated(world: World, ticks: int = 500) -> tuple[RotationEnded, l
 
 def test_the_start_tells_where_turtle1_is() -> None:
     events = World().start()
-    told = "Spawning turtle [turtle1] at x=[5.544445], y=[5.544445], theta=[0.000000]"
+    message = "Spawning turtle [turtle1] at x=[5.544445], y=[5.544445], theta=[0.000000]"
     assert Spawned("turtle1") in events
-    assert lines(events) == [("info", told)]
+    assert lines(events) == [("info", message)]
 
 
 def test_turtles_without_a_name_are_numbered_and_names_in_use_are_skipped(world: World) -> None:
@@ -68,8 +68,8 @@ def test_the_number_of_a_killed_turtle_is_not_used_again(world: World) -> None:
 
 
 def test_a_name_in_use_is_an_error_and_spawns_nothing(world: World) -> None:
-    told = "A turtle named [turtle1] already exists. Choose another name, or call /kill with this one first."
-    assert lines(world.spawn(1, 1, 0, "turtle1")) == [("error", told)]
+    message = "A turtle named [turtle1] already exists. Choose another name, or call /kill with this one first."
+    assert lines(world.spawn(1, 1, 0, "turtle1")) == [("error", message)]
     assert not any(isinstance(event, Spawned) for event in world.spawn(1, 1, 0, "turtle1"))
 
 
@@ -83,19 +83,19 @@ def test_a_name_that_no_topic_can_have_is_refused(world: World, name: str) -> No
 
 
 def test_killing_a_turtle_that_does_not_exist_is_an_error_that_says_which_do(world: World) -> None:
-    told = [("error", "Tried to kill turtle [bob], which does not exist. Turtles that do: turtle1.")]
-    assert lines(world.kill("bob")) == told
+    events = [("error", "Tried to kill turtle [bob], which does not exist. Turtles that do: turtle1.")]
+    assert lines(world.kill("bob")) == events
     world.kill("turtle1")
     assert lines(world.kill("bob"))[0][1].endswith("Turtles that do: none.")
 
 
 def test_a_place_outside_the_window_is_a_warning_that_says_what_is_inside(world: World) -> None:
-    told = "[turtle1] stops at the edge: x=99, y=-1 is outside. Choose both between 0 and 11.09."
-    assert lines(world.teleport_absolute("turtle1", 99, -1, 0)) == [("warn", told)]
+    message = "[turtle1] stops at the edge: x=99, y=-1 is outside. Choose both between 0 and 11.09."
+    assert lines(world.teleport_absolute("turtle1", 99, -1, 0)) == [("warn", message)]
     assert lines(world.teleport_absolute("turtle1", 0, 11.0, 0)) == []
     assert lines(world.spawn(12, 1, 0, "bob"))[1] == (
         "warn",
-        told.replace("turtle1", "bob").replace("99, y=-1", "12, y=1"),
+        message.replace("turtle1", "bob").replace("99, y=-1", "12, y=1"),
     )
 
 
@@ -183,8 +183,8 @@ def test_a_command_ends_a_rotation_with_a_warning(world: World) -> None:
 def test_a_new_rotation_ends_the_former_with_a_warning(world: World) -> None:
     world.rotate("turtle1", 1, 3.0)
     events = world.rotate("turtle1", 2, -3.0)
-    told = "Rotation goal received before a previous goal finished. Aborting previous goal"
-    assert lines(events) == [("warn", told)]
+    message = "Rotation goal received before a previous goal finished. Aborting previous goal"
+    assert lines(events) == [("warn", message)]
     assert [(end.goal, end.outcome) for end in ends(events)] == [(1, Outcome.ABORTED)]
     end, _ = tick_until_rotated(world)
     assert (end.goal, end.outcome) == (2, Outcome.SUCCEEDED)

@@ -34,23 +34,23 @@ def edited(made: Cell, text: str) -> Cell:
 
 def test_what_only_the_course_changed_is_taken_and_what_only_the_student_changed_is_kept() -> None:
     talker = edited(TALKER, TALKER["source"].replace("talks", "talks louder"))
-    result, told = merged_notebook(
+    result, report = merged_notebook(
         BASE, notebook(TITLE, SETUP, TALKER, TASK, MINE, END), notebook(TITLE, SETUP, talker, TASK, STARTER, END)
     )
     assert texts(result) == [c["source"] for c in (TITLE, SETUP, talker, TASK, MINE, END)]
-    assert told.conflicts == []
+    assert report.conflicts == []
 
 
 def test_both_changed_is_a_conflict_the_students_stays_and_the_new_one_is_text_below() -> None:
     starter = edited(STARTER, STARTER["source"] + "\n# TODO: listen twice ```")
     mine = notebook(TITLE, SETUP, TALKER, TASK, ran(MINE, "heard"), END)
-    result, told = merged_notebook(BASE, mine, notebook(TITLE, SETUP, TALKER, TASK, starter, END))
+    result, report = merged_notebook(BASE, mine, notebook(TITLE, SETUP, TALKER, TASK, starter, END))
     kept, shown = cells_of(result)[4:6]
     assert kept == ran(MINE, "heard")
     assert shown["cell_type"] == "markdown"
     assert shown["source"].startswith("**CHANGED IN THE NEW HANDOUT.**")
     assert f"````python\n{starter['source']}\n````" in shown["source"]
-    assert told.conflicts == ["%%node listener"]
+    assert report.conflicts == ["%%node listener"]
     nbformat.validate(json.loads(result))
 
 
@@ -65,47 +65,47 @@ def test_outputs_stay_where_the_code_did_and_go_where_it_changed() -> None:
 def test_cells_of_the_students_stay_behind_what_they_stood_behind() -> None:
     more = cell("## Another section", "another", "markdown")
     mine = notebook(TITLE, OWN, SETUP, TALKER, TASK, MINE, edited(OWN, "x = 1"), END)
-    result, told = merged_notebook(BASE, mine, notebook(TITLE, more, SETUP, TALKER, TASK, STARTER, END))
+    result, report = merged_notebook(BASE, mine, notebook(TITLE, more, SETUP, TALKER, TASK, STARTER, END))
     assert [c["id"] for c in cells_of(result)][:5] == ["title", "a1b2c3", "another", "spinbook-setup", "node-talker"]
     assert texts(result)[6:] == [MINE["source"], "x = 1", END["source"]]
-    assert told.added == ["## Another section"]
+    assert report.added == ["## Another section"]
 
 
 def test_sections_in_another_order_are_taken_and_a_students_own_order_is_kept() -> None:
     turned = notebook(TITLE, SETUP, TASK, STARTER, TALKER, END)
-    result, told = merged_notebook(BASE, notebook(TITLE, SETUP, TALKER, OWN, TASK, MINE, END), turned)
+    result, report = merged_notebook(BASE, notebook(TITLE, SETUP, TALKER, OWN, TASK, MINE, END), turned)
     assert texts(result) == [c["source"] for c in (TITLE, SETUP, TASK, MINE, TALKER, OWN, END)]
-    assert not told.order_kept
+    assert not report.order_kept
     moved = notebook(TITLE, SETUP, TALKER, END, TASK, MINE)
-    result, told = merged_notebook(BASE, moved, turned)
+    result, report = merged_notebook(BASE, moved, turned)
     assert texts(result) == texts(moved)
-    assert told.order_kept
+    assert report.order_kept
 
 
 def test_what_the_course_took_out_goes_unless_the_student_changed_it() -> None:
     talker = edited(TALKER, "%%node talker\nprint('mine')")
     mine = notebook(TITLE, SETUP, talker, TASK, MINE, END)
-    result, told = merged_notebook(BASE, mine, notebook(TITLE, SETUP, STARTER))
+    result, report = merged_notebook(BASE, mine, notebook(TITLE, SETUP, STARTER))
     assert texts(result) == [c["source"] for c in (TITLE, SETUP, talker, MINE)]
-    assert told.kept_though_removed == ["%%node talker"]
-    assert told.removed == ["## The task", "## The end"]
+    assert report.kept_though_removed == ["%%node talker"]
+    assert report.removed == ["## The task", "## The end"]
 
 
-def test_a_deleted_cell_stays_deleted_unless_it_changed_and_a_missing_exercise_is_told() -> None:
+def test_a_deleted_cell_stays_deleted_unless_it_changed_and_a_missing_exercise_is_reported() -> None:
     task = edited(TASK, "## The task\nWrite two listeners.")
-    result, told = merged_notebook(BASE, notebook(SETUP, END), notebook(TITLE, SETUP, TALKER, task, STARTER, END))
+    result, report = merged_notebook(BASE, notebook(SETUP, END), notebook(TITLE, SETUP, TALKER, task, STARTER, END))
     assert texts(result) == [SETUP["source"], task["source"], END["source"]]
-    assert told.back == ["## The task"]
-    assert told.missing == ["%%node listener"]
+    assert report.back == ["## The task"]
+    assert report.missing == ["%%node listener"]
 
 
-def test_a_deleted_check_is_told_too() -> None:
+def test_a_deleted_check_is_reported_too() -> None:
     check = cell("%check listener", "exercise-listener-check")
     check["metadata"]["spinbook"] = {"kind": "check"}
     base = notebook(TITLE, SETUP, STARTER, check)
-    result, told = merged_notebook(base, notebook(TITLE, SETUP, MINE), notebook(TITLE, SETUP, STARTER, check, END))
+    result, report = merged_notebook(base, notebook(TITLE, SETUP, MINE), notebook(TITLE, SETUP, STARTER, check, END))
     assert check["source"] not in texts(result)
-    assert told.missing == ["%check listener"]
+    assert report.missing == ["%check listener"]
 
 
 def test_cells_that_lost_their_ids_are_found_by_content_by_node_and_by_likeness() -> None:
@@ -118,8 +118,8 @@ def test_cells_that_lost_their_ids_are_found_by_content_by_node_and_by_likeness(
     old["nbformat_minor"] = 0
     new_end = edited(END, "## The end, at last")
     new = notebook(TITLE, SETUP, TALKER, TASK, edited(STARTER, "%%node listener\n# TODO: hear"), new_end)
-    result, told = merged_notebook(BASE, json.dumps(old).encode(), new)
-    assert told.conflicts == ["%%node listener"]
+    result, report = merged_notebook(BASE, json.dumps(old).encode(), new)
+    assert report.conflicts == ["%%node listener"]
     assert [t for t in texts(result) if "CHANGED" not in t] == [
         *(c["source"] for c in (TITLE, SETUP, TALKER, task, MINE, new_end))
     ]
@@ -135,13 +135,13 @@ def test_a_cell_that_was_copied_is_one_cell_and_a_cell_of_the_students_own() -> 
 
 def test_without_what_was_handed_out_every_difference_is_the_students() -> None:
     mine = notebook(TITLE, SETUP, edited(TALKER, "%%node talker\nprint('whose?')"), TASK, MINE, OWN, END)
-    result, told = merged_notebook(None, mine, BASE)
+    result, report = merged_notebook(None, mine, BASE)
     assert [t for t in texts(result) if "CHANGED" not in t] == texts(mine)
-    assert told.conflicts == ["%%node talker", "%%node listener"]
+    assert report.conflicts == ["%%node talker", "%%node listener"]
 
 
 @pytest.mark.parametrize("data", [b"", b"[]", b'{"cells": 3}', b'{"cells": [1]}', b"[" * 100_000, b"\xff"])
-def test_what_is_no_notebook_is_told(data: bytes) -> None:
+def test_what_is_no_notebook_is_reported(data: bytes) -> None:
     with pytest.raises(NoNotebook):
         merged_notebook(BASE, data, notebook(TITLE))
 

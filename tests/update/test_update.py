@@ -186,7 +186,7 @@ def link() -> bytes:
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "message"),
     [
         (b"", "can't be read"),
         (zipped({"../../evil.ipynb": b"{}"}, ""), "leads out of its folder"),
@@ -195,16 +195,16 @@ def link() -> bytes:
         (zipped({"a.jpg": b"x"}), "no notebook in it"),
     ],
 )
-def test_what_is_no_handout_changes_nothing(content: bytes, told: str, folder: Path) -> None:
+def test_what_is_no_handout_changes_nothing(content: bytes, message: str, folder: Path) -> None:
     before = everything(folder.parent)
     (folder.parent / "new.zip").write_bytes(content)
     done = updated("../new.zip")
     assert isinstance(done.exception, SpinbookError)
-    assert told in str(done.exception)
+    assert message in str(done.exception)
     assert everything(folder.parent) == {**before, "new.zip": content}
 
 
-def test_a_folder_that_is_no_course_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_folder_that_is_no_course_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write(tmp_path / "new", OLD)
     (tmp_path / "empty").mkdir()
     monkeypatch.chdir(tmp_path / "empty")
@@ -221,7 +221,7 @@ def other_course() -> dict[str, bytes]:
 
 
 @pytest.mark.parametrize(
-    ("files", "told"),
+    ("files", "message"),
     [
         ({"week3.ipynb": notebook(TITLE, LOUDER), "submission.json": b"{}"}, "it is a file to hand in"),
         ({"week3.ipynb": notebook(TITLE, LOUDER)}, "it is not a handout: there is no .spinbook/base in it."),
@@ -231,12 +231,12 @@ def other_course() -> dict[str, bytes]:
     ids=["a submission", "a zip with a notebook", "a zip", "another course"],
 )
 def test_what_is_not_a_handout_of_this_course_is_refused_and_nothing_is_changed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, files: dict[str, bytes], told: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, files: dict[str, bytes], message: str
 ) -> None:
     folder = write(tmp_path / "mine", handout(TITLE, SETUP, TALKER, STARTER))
     monkeypatch.chdir(folder)
     before = everything(folder)
     (tmp_path / "given.zip").write_bytes(zipped(files, ""))
-    with pytest.raises(SpinbookError, match=re.escape(told)):
+    with pytest.raises(SpinbookError, match=re.escape(message)):
         CliRunner().invoke(update, ["../given.zip"], catch_exceptions=False)
     assert everything(folder) == before

@@ -1,4 +1,4 @@
-"""The executor that is told of messages by callbacks."""
+"""The executor that callbacks notify of messages."""
 
 import rclpy
 from rclpy.experimental.events_executor import EventsExecutor

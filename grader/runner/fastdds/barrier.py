@@ -36,7 +36,7 @@ STILL_S = 0.004
 RESTLESS_S, RESTLESS_TIMES = 0.25, 3
 
 ENDLESS = "Your node used {0:g} s of computing time on one message and did not finish. Is there an endless loop?"
-DEAF = (
+UNRESPONSIVE = (
     "Your node started but never responds. Does your program call rclpy.spin(node), and does no callback wait or sleep?"
 )
 
@@ -62,11 +62,11 @@ class Gone(Exception):
 class Barrier:
     """Holds the runner until the student's nodes have handled what was published.
 
-    `hear` takes what they publish; it is called repeatedly, and may raise an exception that ends the run.
+    `receive` takes what they publish; it is called repeatedly, and may raise an exception that ends the run.
     """
 
-    def __init__(self, node: Any, watch: Watch, hear: Callable[[], None]) -> None:
-        self._node, self._watch, self._hear = node, watch, hear
+    def __init__(self, node: Any, watch: Watch, receive: Callable[[], None]) -> None:
+        self._node, self._watch, self._receive = node, watch, receive
         self._calls = Calls(node.context, ())
         self._blocked = 0.0
         self._restless = 0
@@ -113,7 +113,7 @@ class Barrier:
         self._wait_for_answers(self._calls)
         self._rest()
         self._watch.receivers.wait()
-        self._hear()
+        self._receive()
 
     def _wait_for_answers(self, calls: Calls) -> None:
         idle_time = IdleTime(self._watch)
@@ -135,11 +135,11 @@ class Barrier:
             if time.monotonic() < due:
                 continue
             self.alive()
-            self._hear()
+            self._receive()
             # Most waits are over before this is needed.
             budget = budget or TimeBudget(self._watch, cpu_s)
             blocked = budget.blocked
-            budget.check(ENDLESS.format(cpu_s), DEAF)
+            budget.check(ENDLESS.format(cpu_s), UNRESPONSIVE)
             self._blocked += budget.blocked - blocked
             if self._blocked > MOST_BLOCKED_S:
                 raise Stopped("timed-out", SLEEPY.format(MOST_BLOCKED_S))
@@ -157,7 +157,7 @@ class Barrier:
         budget = TimeBudget(self._watch)
         while not self._watch.threads.wait_until_idle(STILL_S, 0.1):
             self.alive()
-            self._hear()
+            self._receive()
             if budget.ended() == "cpu":
                 raise Stopped("timed-out", ENDLESS.format(3.0))
 

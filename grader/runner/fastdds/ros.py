@@ -96,7 +96,7 @@ class Clock:
         self._publisher.publish(message)
 
     @property
-    def heard(self) -> bool:
+    def has_subscriber(self) -> bool:
         """Whether the student's node subscribes to it."""
         return bool(self._publisher.get_subscription_count())
 
@@ -111,28 +111,28 @@ class ReferencePublishers:
     def __init__(self, node: Any, scenario: Scenario) -> None:
         self._node = node
         self._ready: dict[tuple[str, int], Any] = {}
-        self._speaking: dict[str, int] = {}
+        self._current: dict[str, int] = {}
         for message in scenario.messages:
             key = (message.topic, message.publisher)
             if key not in self._ready:
                 self._ready[key] = node.create_publisher(message_class(message.type), message.topic, OFFER)
-            self._speaking.setdefault(message.topic, message.publisher)
+            self._current.setdefault(message.topic, message.publisher)
         self.sent: list[Sent] = []
 
     def publish(self, message: Message) -> None:
         """Publish one message."""
-        former = self._speaking[message.topic]
+        former = self._current[message.topic]
         if former != message.publisher:
             self._node.destroy_publisher(self._ready.pop((message.topic, former)))
-            self._speaking[message.topic] = message.publisher
+            self._current[message.topic] = message.publisher
         ros_message = to_message(message.type, message.fields)
         publisher = self._ready[message.topic, message.publisher]
-        heard = publisher.get_subscription_count() > 0
+        subscribed = publisher.get_subscription_count() > 0
         publisher.publish(ros_message)
-        self.sent.append(Sent(message.at, message.topic, message.type, message.fields, heard))
+        self.sent.append(Sent(message.at, message.topic, message.type, message.fields, subscribed))
 
     @property
-    def heard(self) -> bool:
+    def have_subscribers(self) -> bool:
         """Whether the student's node subscribes to every topic."""
         return all(publisher.get_subscription_count() for publisher in self._ready.values())
 
@@ -197,14 +197,14 @@ class Recorder:
             else:
                 self.received.append(Received(at, after, topic.name, topic.type, fields))
 
-    def hear(self) -> None:
+    def receive(self) -> None:
         """Take what has arrived. Raises `Stopped` when it is too much."""
         self.take()
         if self.too_much:
             raise self.too_much
 
     @property
-    def hears(self) -> bool:
+    def is_connected(self) -> bool:
         """Whether the student's node publishes every topic, in a way that reaches this recorder."""
         return all(subscription.get_publisher_count() for subscription in self._subscriptions.values())
 
@@ -221,7 +221,7 @@ class Recorder:
             self._known |= identities
         return found
 
-    def hears_all(self, topic: Topic) -> bool:
+    def is_connected_to_all(self, topic: Topic) -> bool:
         """Return whether every publisher of `topic` has found this recorder."""
         return bool(self._subscriptions[topic.name].get_publisher_count() >= len(self._publishers(topic)))
 

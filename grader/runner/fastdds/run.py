@@ -61,7 +61,7 @@ class Run:
         self._recorder = Recorder(node, task.exercise.outputs, self._moment)
         self._graph = Graph(node, ros.names)
         self._watch = Watch(student, Threads(student.pids), Receivers())
-        self._barrier = Barrier(node, self._watch, self._recorder.hear)
+        self._barrier = Barrier(node, self._watch, self._recorder.receive)
         self._nodes: list[str] = []
         self._sim_time = False
         self._met = False
@@ -109,7 +109,7 @@ class Run:
         if self._barrier.synchronization == "parameters":
             self._sim_time = all(self._barrier.use_sim_time(node) for node in self._nodes)
         wait_until_connected(discovery, self._barrier, self._clock, self._publishers, self._recorder)
-        if self._recorder.hears:
+        if self._recorder.is_connected:
             self._recorder.new_publishers()
         self._barrier.wait(1)
         self._barrier.look()
@@ -221,7 +221,7 @@ def wait_until_connected(
 
     A topic with another name or type never does; the checks see that in the graph.
     """
-    while not (publishers.heard and recorder.hears and clock.heard):
+    while not (publishers.have_subscribers and recorder.is_connected and clock.has_subscriber):
         barrier.alive()
         if discovery.ended():
             return
@@ -238,7 +238,7 @@ def wait_for_publisher(watch: Watch, barrier: Barrier, recorder: Recorder, topic
     ever will, and has sent again what it has already published: something other than the first `came` messages."""
 
     def found() -> bool:
-        return recorder.hears_all(topic)
+        return recorder.is_connected_to_all(topic)
 
     def sent_again() -> bool:
         return recorder.since(came, topic)
@@ -249,4 +249,4 @@ def wait_for_publisher(watch: Watch, barrier: Barrier, recorder: Recorder, topic
             barrier.alive()
             time.sleep(LOOK_S)
             recorder.adapt()
-            recorder.hear()
+            recorder.receive()

@@ -1,7 +1,7 @@
 """Counts the 5 s from when the goal was sent.
 
 Caught by:
-- test_has_patience
+- test_waits_long_enough
 """
 
 import rclpy

@@ -2,7 +2,7 @@
 
 Caught by:
 - test_asks_to_cancel
-- test_has_patience
+- test_waits_long_enough
 """
 
 import time

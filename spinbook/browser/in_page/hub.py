@@ -110,7 +110,7 @@ class PageHub(Hub):
         self._standstills, self._awaited, self._runs = 0, False, {}
         self.main: int | None = None
         self.mains: set[int] = set()
-        self.patience: Callable[[], None] = lambda: None
+        self.on_tick: Callable[[], None] = lambda: None
         self.before_end: Callable[[], None] = lambda: None
         self._router = Router(self._use, lambda: EPOCH + self._until, EPOCH)
         self._use.connection(0)
@@ -125,7 +125,7 @@ class PageHub(Hub):
     def pause(self) -> None:
         """Let the program continue, and check whether it takes too long."""
         self._take()
-        self.patience()
+        self.on_tick()
 
     def drain(self, at_most_s: float = 1.0) -> None:
         """Do nothing: everything the program has sent was taken at once."""
@@ -136,7 +136,7 @@ class PageHub(Hub):
             if self.connection in self.links:
                 self.before_end()
                 self._router.forget(self.connection)
-            self.patience()
+            self.on_tick()
 
     def _flush(self) -> None:
         """Do nothing: frames are never in transit."""

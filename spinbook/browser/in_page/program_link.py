@@ -23,7 +23,7 @@ from rmw_lockstep.hub.hashes import NO_HASH
 from rmw_lockstep.hub.qos import AUTOMATIC, INFINITE, Qos
 from spinbook.browser.in_page import threads
 from spinbook.browser.in_page.hub import PROGRAM, Over, PageHub, Turns
-from spinbook.browser.in_page.rota import Rota
+from spinbook.browser.in_page.scheduler import Scheduler
 
 _KINDS = (PUBLISHER, SUBSCRIPTION, SERVICE, CLIENT)
 _HEADER = 5
@@ -60,7 +60,7 @@ class ProgramLink:
         self._activity = self._number = 0
         self._looks: dict[int, Looks] = {}
         self._ends: dict[str, str] = {}
-        self.rota = Rota(self)
+        self.scheduler = Scheduler(self)
 
     # --- out
 
@@ -70,7 +70,7 @@ class ProgramLink:
             return  # such as an object of the program's that is collected later
         if not self._in_order(frame):
             return
-        thread = self.rota.number()
+        thread = self.scheduler.number()
         self._activity += 1
         for kind, payload in _encoded(frame, data, (self._connection.handled, self._now, thread)):
             try:
@@ -113,7 +113,7 @@ class ProgramLink:
         """Wait for what comes, for another thread, or for so long."""
         held = self.lock._release_save()  # type: ignore[attr-defined]
         try:
-            self.rota.wait(nanoseconds, in_ros=True)
+            self.scheduler.wait(nanoseconds, in_ros=True)
         finally:
             self.lock._acquire_restore(held)  # type: ignore[attr-defined]
 
@@ -121,7 +121,7 @@ class ProgramLink:
         """Sleep as time.sleep does, in the hub's time."""
         until = self._now + round(float(seconds) * 1e9)
         while self._now < until:
-            self.rota.wait(until - self._now, in_ros=False)
+            self.scheduler.wait(until - self._now, in_ros=False)
             participant.current().pump()
 
     def rest(self, until: int | None, in_ros: int) -> None:
@@ -144,7 +144,7 @@ class ProgramLink:
         """End the program as C code ends one, with these last words. Raises `Over`."""
         print(text, file=sys.stderr)
         self._turns.aborted = self._turns.is_over = True
-        self.rota.leave_to_main()
+        self.scheduler.leave_to_main()
         raise Over
 
     @property
@@ -177,9 +177,9 @@ class ProgramLink:
         """How long a thread waits that only looks (ns): from its third look in a row without news."""
         if not looks:
             return 0
-        thread = self.rota.number()
+        thread = self.scheduler.number()
         mine = self._looks.setdefault(thread, Looks())
-        mine.count(self._activity, self.rota.rests[thread])
+        mine.count(self._activity, self.scheduler.rests[thread])
         if mine.quiet < _LOOKS:
             return 0
         mine.rests += 1  # this one is not the program's own

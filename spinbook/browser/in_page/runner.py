@@ -190,14 +190,14 @@ def _as_main(program: Program, scenario: Scenario, log: io.StringIO, link: Progr
     sys.argv = [program.file, *arguments(scenario)]
     logs.write = lambda line: print(line, file=log)
     abort.end = link.abort
-    threads.govern(link.rota)
+    threads.govern(link.scheduler)
     try:
         with redirect_stdout(log), redirect_stderr(log), _time_of(link):
             yield
     finally:
         sys.modules["__main__"], sys.argv, logs.write, abort.end, environment = before
         with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
-            link.rota.close()
+            link.scheduler.close()
         os.environ.clear()
         os.environ.update(environment)
         for number, handler in handlers.items():
@@ -219,7 +219,7 @@ def _time_of(link: ProgramLink) -> Iterator[None]:
 
     def choose(name: str) -> Callable[..., float | None]:
         def clock(*given: float) -> float | None:
-            return (theirs if link.rota.governs(threads.get_ident()) else ours)[name](*given)
+            return (theirs if link.scheduler.governs(threads.get_ident()) else ours)[name](*given)
 
         return clock
 

@@ -31,7 +31,7 @@ _waiting = 0
 
 
 class Governor(Protocol):
-    """Decides whose turn it is among the threads of a program that is being checked (rota.py)."""
+    """Decides whose turn it is among the threads of a program that is being checked (scheduler.py)."""
 
     def governs(self, thread: int) -> bool: ...
     def pause(self, milliseconds: float) -> None: ...

@@ -173,7 +173,7 @@ def _legend(looks: Mapping[str, str], y: float) -> tuple[str, float]:
 
 
 def _polyline(curve: Curve, across: Scale, up: Scale, start: float) -> str:
-    """The curve's path, each point told from the one before it."""
+    """The curve's path, each point relative to the one before it."""
     places = [(across.at(time - start), up.at(value)) for time, value in zip(curve.times, curve.values, strict=True)]
     precision = PRECISION_PX
     while len(points := thinned(places, precision)) > MOST_POINTS:

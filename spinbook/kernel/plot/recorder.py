@@ -54,9 +54,11 @@ class Recorder(Node):
 
     def _subscribe(self, path: TopicPath, full_type: str) -> None:
         short = full_type.replace("/msg/", "/")
-        self.create_subscription(message_class(full_type), path.topic, partial(self._hear, path, short), _HEARS_ALL)
+        self.create_subscription(
+            message_class(full_type), path.topic, partial(self._on_message, path, short), _HEARS_ALL
+        )
 
-    def _hear(self, path: TopicPath, type_name: str, message: Any) -> None:
+    def _on_message(self, path: TopicPath, type_name: str, message: Any) -> None:
         now = stamp_of(message) or time.time()
         for quantity, value in quantities(path, message, type_name):
             write_line("sample", quantity.topic, quantity.kind, quantity.unit, quantity.label, now, value)

@@ -58,12 +58,12 @@ def read(file: Path) -> LaunchDescription:
             raise CommandError(f"{file}{_line(refusal, file)}: {refusal.message}") from None
         except KeyError as error:
             if error.args != ("generate_launch_description",):
-                raise CommandError(f"{file}{_line(error, file)}: {_told(error)}") from None
+                raise CommandError(f"{file}{_line(error, file)}: {_describe(error)}") from None
             raise CommandError(f"{file} has no function generate_launch_description().") from None
         except SyntaxError as error:
             raise CommandError(f"{file}:{error.lineno}: not valid Python: {error.msg}") from None
         except Exception as error:
-            raise CommandError(f"{file}{_line(error, file)}: {_told(error)}") from None
+            raise CommandError(f"{file}{_line(error, file)}: {_describe(error)}") from None
     if not isinstance(found, LaunchDescription):
         raise CommandError(
             f"{file}: generate_launch_description() returned {type(found).__name__}, not a LaunchDescription."
@@ -99,7 +99,7 @@ def _line(error: BaseException, file: Path) -> str:
     return f":{lines[-1]}" if lines else ""
 
 
-def _told(error: BaseException) -> str:
+def _describe(error: BaseException) -> str:
     if isinstance(error, ModuleNotFoundError) and (error.name or "").split(".")[0] in {"launch", "launch_ros"}:
         there = ", ".join(MODULES)
         return f"the module {error.name} is not supported here. There is: {there}.\n{_ELSEWHERE}"

@@ -41,7 +41,7 @@ class Rate:
     def __init__(self, window: int) -> None:
         self._intervals: deque[int] = deque(maxlen=window)
         self._latest: int | None = None
-        self._told = 0
+        self._reported = 0
 
     def arrived(self, now: int) -> None:
         """A message came at `now`; a clock that went back begins anew."""
@@ -61,12 +61,12 @@ class Rate:
         """The two lines to print, at most once a second of arrivals; None if none are due."""
         if not self._intervals or self._latest is None:
             return None
-        if self._told == 0 or self._latest < self._told:
-            self._told = self._latest
+        if self._reported == 0 or self._latest < self._reported:
+            self._reported = self._latest
             return None
-        if self._latest < self._told + 1_000_000_000:
+        if self._latest < self._reported + 1_000_000_000:
             return None
-        self._told = self._latest
+        self._reported = self._latest
         result = spread(self._intervals)
         rate = 1e9 / result.mean if result.mean > 0 else 0.0
         return f"average rate: {rate:.3f}\n\t" + _seconds(result)
@@ -78,7 +78,7 @@ class Delay:
     def __init__(self, window: int) -> None:
         self._delays: deque[int] = deque(maxlen=window)
         self._latest: int | None = None
-        self._told: int | None = None
+        self._reported: int | None = None
 
     def arrived(self, now: int, stamp: int) -> None:
         """A message with the header stamp `stamp` came at `now`. The first is left out, as the real one does."""
@@ -92,9 +92,9 @@ class Delay:
         """The lines to print this second; None before there is anything."""
         if not self._delays:
             return None
-        if self._latest == self._told:
+        if self._latest == self._reported:
             return "no new messages"
-        self._told = self._latest
+        self._reported = self._latest
         result = spread(self._delays)
         return f"average delay: {result.mean * 1e-9:.3f}\n\t" + _seconds(result)
 
@@ -130,7 +130,7 @@ def _seconds(result: Spread) -> str:
 
 
 def _unit(rate: float) -> Callable[[float], str]:
-    """The unit that suits a rate in bytes a second; everything beside it is told in the same one."""
+    """The unit that suits a rate in bytes per second; all other figures in the report use the same one."""
     if rate < 1000:
         return lambda size: f"{size:.0f} B"
     if rate < 1_000_000:
@@ -245,14 +245,14 @@ def bw(topic_name: str, window: int, spin_time: float | None, use_sim_time: bool
         def arrived(data: bytes) -> None:
             bandwidth.arrived(now(), len(data))
 
-        def tell() -> None:
+        def print_report() -> None:
             report = bandwidth.report(now())
             if report is not None:
                 print(report, flush=True)
 
         graph.node.create_subscription(message, name, arrived, qos_profile_sensor_data, raw=True)
         print(f"Subscribed to [{name}]", flush=True)
-        graph.node.create_timer(1, tell)
+        graph.node.create_timer(1, print_report)
         while True:
             graph.spin_once()
 
@@ -290,12 +290,12 @@ def delay(topic_name: str, window: int, spin_time: float | None, use_sim_time: b
         def arrived(data: Any) -> None:
             delays.arrived(clock.now().nanoseconds, Time.from_msg(data.header.stamp).nanoseconds)
 
-        def tell() -> None:
+        def print_report() -> None:
             report = delays.report()
             if report is not None:
                 print(report, flush=True)
 
         graph.node.create_subscription(message, name, arrived, qos_profile_sensor_data)
-        graph.node.create_timer(1, tell)
+        graph.node.create_timer(1, print_report)
         while True:
             graph.spin_once()

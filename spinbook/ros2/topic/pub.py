@@ -14,8 +14,8 @@ from spinbook.ros2.opening import open_graph
 if TYPE_CHECKING:
     from spinbook.ros2.graph import Graph
 
-#: Seconds between two lines that say what is waited for.
-PATIENCE = 1.0
+#: Seconds between two lines that say what the command is waiting for.
+REPORT_EVERY_S = 1.0
 #: Seconds that a reliable subscription gets to confirm the last message.
 CONFIRMATION = 2.0
 
@@ -90,10 +90,10 @@ def _wait_for_subscriptions(graph: Graph, publisher: Any, count: int, most: floa
     while publisher.get_subscription_count() < count:
         print(f"Waiting for at least {count} matching subscription(s)...", flush=True)
         left = None if most is None else most - (time.monotonic() - start)
-        patience = PATIENCE if left is None else min(PATIENCE, left)
-        if graph.spin_until(lambda: publisher.get_subscription_count() >= count, patience):
+        timeout = REPORT_EVERY_S if left is None else min(REPORT_EVERY_S, left)
+        if graph.spin_until(lambda: publisher.get_subscription_count() >= count, timeout):
             return
-        if left is not None and left <= PATIENCE:
+        if left is not None and left <= REPORT_EVERY_S:
             raise CommandError(
                 f"Timed out waiting for subscribers: Expected {count} subscribers but only got "
                 f"{publisher.get_subscription_count()} subscribers",

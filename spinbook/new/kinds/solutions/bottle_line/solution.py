@@ -52,7 +52,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Bool, String
 
-PATIENCE = 2.0  # s
+SILENCE = 2.0  # s
 
 
 class BottleSorter(Node):
@@ -62,10 +62,10 @@ class BottleSorter(Node):
         super().__init__("bottle_sorter")
         self.create_subscription(Bool, "/full", self.on_bottle, 10)
         # TODO: create a publisher of String messages on "/gate", with a queue depth of 10.
-        # TODO: create a timer that calls self.on_silence after PATIENCE seconds, and cancel it until there is a bottle.
+        # TODO: create a timer that calls self.on_silence after SILENCE seconds, and cancel it until there is a bottle.
         # BEGIN SOLUTION
         self.publisher = self.create_publisher(String, "/gate", 10)
-        self.timer = self.create_timer(PATIENCE, self.on_silence)
+        self.timer = self.create_timer(SILENCE, self.on_silence)
         self.timer.cancel()
         # END SOLUTION
 
@@ -78,7 +78,7 @@ class BottleSorter(Node):
         # END SOLUTION
 
     def on_silence(self):
-        """Called when nothing was heard for PATIENCE seconds."""
+        """Called when nothing was heard for SILENCE seconds."""
         # TODO: publish "closed", once.
         # BEGIN SOLUTION
         self.timer.cancel()

@@ -1,4 +1,4 @@
-"""The harder scenarios of `speed_limit`. Every rule that they rely on is told in task.md."""
+"""The harder scenarios of `speed_limit`. Every rule that they rely on is in task.md."""
 
 from __future__ import annotations
 

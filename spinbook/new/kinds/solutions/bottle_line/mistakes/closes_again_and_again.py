@@ -52,7 +52,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Bool, String
 
-PATIENCE = 2.0  # s
+SILENCE = 2.0  # s
 
 
 class BottleSorter(Node):
@@ -62,7 +62,7 @@ class BottleSorter(Node):
         super().__init__("bottle_sorter")
         self.create_subscription(Bool, "/full", self.on_bottle, 10)
         self.publisher = self.create_publisher(String, "/gate", 10)
-        self.timer = self.create_timer(PATIENCE, self.on_silence)
+        self.timer = self.create_timer(SILENCE, self.on_silence)
         self.timer.cancel()
 
     def on_bottle(self, message):
@@ -71,7 +71,7 @@ class BottleSorter(Node):
         self.publisher.publish(String(data="pass" if message.data else "reject"))
 
     def on_silence(self):
-        """Called when nothing was heard for PATIENCE seconds."""
+        """Called when nothing was heard for SILENCE seconds."""
         self.publisher.publish(String(data="closed"))
 
 

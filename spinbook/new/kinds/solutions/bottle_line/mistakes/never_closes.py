@@ -52,7 +52,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Bool, String
 
-PATIENCE = 2.0  # s
+SILENCE = 2.0  # s
 
 
 class BottleSorter(Node):
@@ -68,7 +68,7 @@ class BottleSorter(Node):
         self.publisher.publish(String(data="pass" if message.data else "reject"))
 
     def on_silence(self):
-        """Called when nothing was heard for PATIENCE seconds."""
+        """Called when nothing was heard for SILENCE seconds."""
         self.publisher.publish(String(data="closed"))
 
 

@@ -54,7 +54,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Bool, String
 
-PATIENCE = Duration(seconds=2.0)
+SILENCE = Duration(seconds=2.0)
 PERIOD = 0.05  # s, between two looks at the clock
 
 
@@ -79,7 +79,7 @@ class BottleSorter(Node):
         """Called every PERIOD seconds."""
         now = self.get_clock().now()
         self.last = self.last or now
-        if not self.closed and now - self.last >= PATIENCE:
+        if not self.closed and now - self.last >= SILENCE:
             self.closed = True
             self.publisher.publish(String(data="closed"))
 

@@ -54,7 +54,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Float64, String
 
-PATIENCE = 2.0  # s
+SILENCE = 2.0  # s
 
 
 class BottleSorter(Node):
@@ -64,7 +64,7 @@ class BottleSorter(Node):
         super().__init__("bottle_sorter")
         self.create_subscription(Float64, "/weight", self.on_bottle, 10)
         self.publisher = self.create_publisher(String, "/gate", 10)
-        self.timer = self.create_timer(PATIENCE, self.on_silence)
+        self.timer = self.create_timer(SILENCE, self.on_silence)
         self.timer.cancel()
 
     def on_bottle(self, message):
@@ -73,7 +73,7 @@ class BottleSorter(Node):
         self.publisher.publish(String(data="pass" if 490.0 <= message.data <= 510.0 else "reject"))
 
     def on_silence(self):
-        """Called when nothing was heard for PATIENCE seconds."""
+        """Called when nothing was heard for SILENCE seconds."""
         self.timer.cancel()
         self.publisher.publish(String(data="closed"))
 

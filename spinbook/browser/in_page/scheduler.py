@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from spinbook.browser.in_page.program_link import ProgramLink
 
 #: A thread that is to end may wait so many times more, such as in a `finally`.
-_REFUSALS = 100
+_WAITS_AFTER_END = 100
 
 
-class Rota:
+class Scheduler:
     """The threads of one program; the one that makes it is the main thread."""
 
     def __init__(self, link: ProgramLink) -> None:
@@ -29,16 +29,16 @@ class Rota:
         self._gates: dict[int, Any] = {self._main: _closed()}
         self._due: dict[int, int | None] = {}
         self._in_ros: set[int] = set()
-        self._curious: set[int] = set()
+        self._to_check: set[int] = set()
         self._numbers = {self._main: 1}
         self.rests: Counter[int] = Counter()
         """How often each thread has waited, by its number."""
-        self._refused: Counter[int] | None = None
+        self._waits_after_end: Counter[int] | None = None
         """How often each thread wanted to wait after the program's end; None before that."""
 
     def close(self) -> None:
         """The program has ended. Its other threads end where they wait, so that no stack of theirs is left behind."""
-        self._refused = Counter()
+        self._waits_after_end = Counter()
         for thread in [thread for thread in self._gates if thread != self._main]:
             self._gates[thread].release()
             self._gates[self._main].acquire()
@@ -60,7 +60,7 @@ class Rota:
         def body() -> None:
             gate.acquire()
             try:
-                if self._refused is None:
+                if self._waits_after_end is None:
                     run()
             finally:
                 self._leave()
@@ -69,12 +69,12 @@ class Rota:
         self._gates[number] = gate
         self._numbers[number] = len(self._numbers) + 1
         self._due[number] = None
-        self._curious.add(number)
+        self._to_check.add(number)
         return number
 
     def changed(self) -> None:
         """Let all waiting threads check again."""
-        self._curious.update(self._due)
+        self._to_check.update(self._due)
 
     def pause(self, milliseconds: float) -> None:
         """Wait for another thread, for so long at most (-1: without a limit)."""
@@ -88,7 +88,7 @@ class Rota:
     def wait(self, nanoseconds: int | None, in_ros: bool) -> None:
         """Let others have their turns: for so long, or until there is anything new to look at."""
         mine = threads.get_ident()
-        self._end_behind_program(mine)
+        self._end_after_program(mine)
         self.rests[self.number()] += 1
         self._due[mine] = None if nanoseconds is None else self._link.steady() + nanoseconds
         if in_ros:
@@ -99,17 +99,17 @@ class Rota:
             self._gates[mine].acquire()
         del self._due[mine]
         self._in_ros.discard(mine)
-        self._curious.discard(mine)
+        self._to_check.discard(mine)
         if mine == self._main:
             self._link.heed()
-        self._end_behind_program(mine)
+        self._end_after_program(mine)
 
-    def _end_behind_program(self, mine: int) -> None:
+    def _end_after_program(self, mine: int) -> None:
         """After the program's end, end as `sys.exit` does; a thread that continues waits forever."""
-        if self._refused is None or mine == self._main:
+        if self._waits_after_end is None or mine == self._main:
             return
-        self._refused[mine] += 1
-        if self._refused[mine] > _REFUSALS:
+        self._waits_after_end[mine] += 1
+        if self._waits_after_end[mine] > _WAITS_AFTER_END:
             self._gates[self._main].release()
             self._gates[mine].acquire()
         raise SystemExit
@@ -117,7 +117,7 @@ class Rota:
     def _leave(self) -> None:
         """End this thread."""
         mine = threads.get_ident()
-        next_ = self._next(mine) if self._refused is None else self._main
+        next_ = self._next(mine) if self._waits_after_end is None else self._main
         del self._gates[mine]
         self._gates[next_].release()
 
@@ -129,7 +129,7 @@ class Rota:
             known = list(self._gates)
             at = known.index(mine) + 1
             for thread in (*known[at:], *known[:at]):
-                if thread in self._due and (thread in self._curious or self._is_due(thread)):
+                if thread in self._due and (thread in self._to_check or self._is_due(thread)):
                     return thread
             self._let_hub_go_on()
 
