@@ -108,8 +108,8 @@ def grade(
 
     A class is a folder with one file (or one folder) per student, nbgrader's folder, a zip from Moodle or Canvas, or a
     CSV file with the columns file and student. The command does not grade unchanged submissions again, and continues a
-    run that was stopped. Exit codes for a class: 0 all graded, 1 there are questions to settle, 2 wrong usage, 3 a
-    fault of Spinbook or the machine.
+    run that was stopped. Exit codes for a class: 0 all graded, 1 some need your decision, 2 wrong usage, 3 a fault
+    of Spinbook or the machine.
 
     \b
       spinbook grade joint_velocity submissions/ --out results/
