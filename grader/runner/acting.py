@@ -14,6 +14,7 @@ from grader.runner.cdr import deserialized
 from grader.runner.ends import Ends, Schedule, nanoseconds
 from grader.runner.goals import CANCEL, STATUS
 from grader.runner.message import filled, message_class, to_fields
+from grader.runner.order import requests_in_order
 from grader.scenario.scenario import SECOND
 from grader.scenario.servers import ActionServer as Declared
 from grader.scenario.servers import GoalScript
@@ -22,6 +23,13 @@ from rmw_lockstep.hub.qos import TRANSIENT_LOCAL
 
 #: What rcl gives the status topic (rcl_action_qos_profile_status_default).
 STATUS_QOS = Qos(depth=1, durability=TRANSIENT_LOCAL)
+
+#: The bytes before a request's own fields: CDR's header, and the goal's id, which the client draws at random.
+_HEADER_AND_ID = 4 + 16
+
+
+def _without_id(cdr: bytes) -> bytes:
+    return cdr[_HEADER_AND_ID:]
 
 
 @dataclass
@@ -86,7 +94,7 @@ class ScriptedActionServer:
             return False
         found = False
         for server, take in zip(self._servers, (self._goal, self._cancel, self._result), strict=True):
-            requests, server.asked[:] = tuple(server.asked), []
+            requests, server.asked[:] = requests_in_order(server.asked, _without_id), []
             for one in requests:
                 take(one, now)
                 found = True

@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import contextlib
 from bisect import bisect_right
-from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from grader.recording.recording import Received
 from grader.runner.cdr import fields_of
 from grader.runner.ends import Clocks
 from grader.runner.message import message_class
+from grader.runner.order import in_canonical_order, place_of, without_order
 from grader.runner.student import Stopped, Task
 from rmw_lockstep.hub import Heard, HubNode, Qos, Subscription
 from rmw_lockstep.hub.qos import BEST_EFFORT
 
 #: No exercise needs more than this from a node in one scenario.
 MOST_MESSAGES = 5_000
-
-#: A subscription, a node, and the stage and the computer's time (ns) at which the node published.
-Moment = tuple[int, str, int, int]
 
 #: Compatible with whatever a student's publisher offers.
 ACCEPT_ANY = Qos(depth=10_000, reliability=BEST_EFFORT)
@@ -116,52 +112,12 @@ class Recorder:
         `stages` has the number of each message sent, among everything the hub has published; see `Heard.stage`.
         """
         found = []
-        several = by_several_threads(self._heard)
-        unordered = without_order(self._heard, several)
-        for number, heard in in_canonical_order(self._heard, several):
+        unordered = without_order(self._heard)
+        for number, heard in in_canonical_order(self._heard):
             to = self._listening[number]
             at = max(self._earliest, clocks.simulated(heard.now, heard.stage))
             after = bisect_right(stages, heard.stage)
             fields = fields_of(heard.cdr, message_class(to.type))
-            any_order = _moment(number, heard) in unordered
+            any_order = place_of(number, heard) in unordered
             found.append(Received(at, after, to.topic, to.type, fields, to.subscriber, heard.node, any_order))
         return tuple(found)
-
-
-def in_canonical_order(
-    heard: Sequence[tuple[int, Heard]], several: Collection[tuple[int, str]]
-) -> list[tuple[int, Heard]]:
-    """Sort messages by their moment; at the same moment by topic and node, and within these as they were sent.
-
-    What `several` threads (see `by_several_threads`) publish on one topic at the same moment has no order, so it is
-    sorted by its bytes.
-    """
-    alone = len({one.publisher.process for _, one in heard}) <= 1
-
-    def key(entry: tuple[int, Heard]) -> tuple[Any, ...]:
-        number, one = entry
-        own = one.handled if alone else 0  # the frames of two processes cannot be compared
-        return one.stage, one.now, own, number, one.node, one.cdr if (number, one.node) in several else b""
-
-    return sorted(heard, key=key)
-
-
-def without_order(heard: Sequence[tuple[int, Heard]], several: Collection[tuple[int, str]]) -> set[Moment]:
-    """Return the moments at which `several` threads may have published more than one message on a topic."""
-    counts = Counter(_moment(number, one) for number, one in heard if (number, one.node) in several)
-    return {moment for moment, count in counts.items() if count > 1}
-
-
-def _moment(number: int, one: Heard) -> Moment:
-    return number, one.node, one.stage, one.now
-
-
-def by_several_threads(heard: Sequence[tuple[int, Heard]]) -> set[tuple[int, str]]:
-    """Return the subscriptions and nodes for which more than one thread of the node published.
-
-    Over the whole recording, for which of a pool's threads publishes a message is chance.
-    """
-    threads: dict[tuple[int, str], set[tuple[int, int]]] = {}
-    for number, one in heard:
-        threads.setdefault((number, one.node), set()).add((one.publisher.process, one.thread))
-    return {key for key, found in threads.items() if len(found) > 1}

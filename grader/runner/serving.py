@@ -10,6 +10,7 @@ from grader.recording.events import Call
 from grader.runner.cdr import deserialized, fields_of, serialized
 from grader.runner.ends import Ends, Schedule, nanoseconds
 from grader.runner.message import message_class, to_fields
+from grader.runner.order import requests_in_order
 from grader.scenario.code import Code
 from grader.scenario.servers import Reply
 from grader.scenario.servers import Server as Declared
@@ -57,7 +58,7 @@ class ServiceServer:
     def react(self, now: int) -> bool:
         """Take the requests that arrived, and plan the answers. Return whether there were any."""
         asked = self._server.asked if self._server else []
-        requests, asked[:] = tuple(asked), []
+        requests, asked[:] = requests_in_order(asked), []
         for one in requests:
             self._take(one, now)
         return bool(requests)
@@ -116,7 +117,8 @@ class ServiceServer:
 def unserved(ends: Ends, exercise: Exercise) -> tuple[Call, ...]:
     """Return the student's requests for which there was no server, of the services that the exercise declares."""
     types = {one.name: one.type for one in exercise.clients}
-    found = [asked for asked in ends.hub.unserved if types.get(asked.client.name) == asked.client.type]
+    everything = requests_in_order(ends.hub.unserved)
+    found = [asked for asked in everything if types.get(asked.client.name) == asked.client.type]
     return tuple(
         Call(
             ends.at(asked.moment),

@@ -14,7 +14,7 @@ class Heard(NamedTuple):
     """A message that arrived from a process.
 
     `now` is the time of the process (ns). `stage` is the number of the hub's last publication that the process had
-    handled. `handled` counts the hub's frames that it had handled, and `thread` numbers its threads, from 1.
+    handled. `handled` counts the hub's frames that it had handled. `main` tells whether its main thread sent it.
     """
 
     publisher: EndPoint
@@ -22,7 +22,7 @@ class Heard(NamedTuple):
     now: int
     stage: int
     handled: int
-    thread: int
+    main: bool
     cdr: bytes
 
 
@@ -32,7 +32,7 @@ class Moment(NamedTuple):
     now: int
     stage: int
     handled: int
-    thread: int
+    main: bool
 
 
 class Asked(NamedTuple):

@@ -37,7 +37,6 @@ class Link:
         self.now = self.granted = 0
         self.idle: Idle | None = None
         self.last_idle: Idle | None = None
-        self.threads: set[int] = set()
         self.nodes: set[int] = set()
         self.end_points: set[int] = set()
         self.requests: set[tuple[int, int]] = set()
@@ -64,6 +63,10 @@ class Link:
     def pid_inside(self) -> int:
         """The process's id as it sees it itself: in the order in which the program's processes were started."""
         return self.hello.pid if self.hello else 0
+
+    def is_main(self, thread: int) -> bool:
+        """Return whether this is the number of the process's main thread, which is the process's own (gettid(2))."""
+        return thread == self.pid_inside
 
     @property
     def order(self) -> tuple[int, int]:

@@ -200,12 +200,12 @@ class Router:
         self._use.data(len(data.cdr))
         publisher = self._own(link, data.publisher, PUBLISHER)
         handled, now = link.moment(data.handled, data.now)
-        link.threads.add(data.thread)
+        main = link.is_main(data.thread)
         route = self._routes.get(publisher.id) or self._route(publisher)
         for subscription in route.subscriptions:
             if data.only in (0, subscription.end_point.id):
                 stage = link.stage(handled)
-                subscription.take(Heard(publisher, route.node, now, stage, handled, data.thread, data.cdr))
+                subscription.take(Heard(publisher, route.node, now, stage, handled, main, data.cdr))
         for other in route.links:
             self._pass_on(link, other, frames.to_data(publisher.id, data.only, data.source_time, data.cdr))
 
@@ -277,7 +277,7 @@ class Router:
 
     def _moment(self, link: Link, call: frames.Call) -> Moment:
         handled, now = link.moment(call.handled, call.now)
-        return Moment(now, link.stage(handled), handled, call.thread)
+        return Moment(now, link.stage(handled), handled, link.is_main(call.thread))
 
     def _alive(self, link: Link, payload: bytes) -> None:
         publisher = self._own(link, frames.identity(payload), PUBLISHER)

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from grader.runner.budget import Allowance, Budget, HostStalled
 from grader.runner.ends import BETWEEN_MESSAGES, Clocks
-from grader.runner.recorder import Moment, by_several_threads, in_canonical_order, without_order
+from grader.runner.order import from_other_threads, in_canonical_order, place_of, requests_in_order, without_order
 from grader.scenario.scenario import SECOND, START
-from rmw_lockstep.hub import EndPoint, Heard, Qos
+from rmw_lockstep.hub import Asked, EndPoint, Heard, Moment, Qos
 
 BEGAN = 1_000 * SECOND + 7
 
@@ -43,41 +43,58 @@ def test_simulated_time_goes_at_80_percent_of_the_computers_and_never_beyond_the
     assert clocks.simulated(BEGAN + BETWEEN_MESSAGES // 2, 1) == START + 10
 
 
-def heard(cdr: bytes, thread: int, now: int = 5, process: int = 1, node: str = "/node") -> tuple[int, Heard]:
+MAIN, OTHER = True, False
+
+
+def heard(cdr: bytes, main: bool, now: int = 5, process: int = 1, node: str = "/node") -> tuple[int, Heard]:
     publisher = EndPoint(process << 32 | 1, 0, process << 32 | 2, "/out", "a/msg/B", bytes(33), Qos())
-    return 0, Heard(publisher, node, now, 1, 1, thread, cdr)
+    return 0, Heard(publisher, node, now, 1, 1, main, cdr)
 
 
 def order(entries: Sequence[tuple[int, Heard]]) -> list[bytes]:
-    return [one.cdr for _, one in in_canonical_order(entries, by_several_threads(entries))]
+    return [one.cdr for _, one in in_canonical_order(entries)]
 
 
-def unordered(*entries: tuple[int, Heard]) -> set[Moment]:
-    return without_order(entries, by_several_threads(entries))
+def test_what_the_main_thread_publishes_stays_in_its_order() -> None:
+    assert order([heard(b"b", MAIN), heard(b"a", MAIN), heard(b"c", MAIN)]) == [b"b", b"a", b"c"]
 
 
-def test_what_one_thread_publishes_stays_in_its_order() -> None:
-    assert order([heard(b"b", 1), heard(b"a", 1), heard(b"c", 1)]) == [b"b", b"a", b"c"]
-
-
-def test_what_several_threads_publish_at_one_moment_is_in_the_order_of_its_bytes() -> None:
-    first = [heard(b"b", 1), heard(b"a", 2), heard(b"c", 1, now=4)]
+def test_what_other_threads_publish_at_one_moment_is_in_the_order_of_its_bytes() -> None:
+    first = [heard(b"b", OTHER), heard(b"a", OTHER), heard(b"c", OTHER, now=4)]
     assert order(first) == order([first[1], first[0], first[2]]) == [b"c", b"a", b"b"]
 
 
-def test_what_only_one_thread_of_a_node_publishes_has_an_order() -> None:
-    assert by_several_threads([heard(b"b", 1), heard(b"a", 1)]) == set()
-    assert by_several_threads([heard(b"b", 1), heard(b"a", 2, now=9)]) == {(0, "/node")}
-    assert by_several_threads([heard(b"b", 1, node="/a"), heard(b"a", 2, process=2, node="/b")]) == set()
+def test_whatever_another_thread_than_the_main_one_publishes_has_no_order() -> None:
+    assert from_other_threads([heard(b"b", MAIN), heard(b"a", MAIN)]) == set()
+    # Of a pool, one thread may have got all there was to do. In another run it would have been two.
+    assert from_other_threads([heard(b"b", OTHER), heard(b"a", OTHER)]) == {(0, "/node")}
+    assert from_other_threads([heard(b"b", MAIN, node="/a"), heard(b"a", OTHER, node="/b")]) == {(0, "/b")}
 
 
 def test_only_messages_of_one_moment_can_be_without_an_order() -> None:
-    assert unordered(heard(b"a", 1), heard(b"b", 2, now=9)) == set()
-    assert len(unordered(heard(b"a", 1), heard(b"b", 2), heard(b"c", 1, now=9))) == 1
+    assert without_order([heard(b"a", OTHER), heard(b"b", OTHER, now=9)]) == set()
+    first = [heard(b"a", OTHER), heard(b"b", OTHER), heard(b"c", OTHER, now=9)]
+    assert without_order(first) == {place_of(0, first[0][1])}
+
+
+def asked(cdr: bytes, main: bool, now: int = 5, process: int = 1, node: str = "/node") -> Asked:
+    client = EndPoint(process << 32 | 1, 0, process << 32 | 2, "/add", "a/srv/B", bytes(33), Qos())
+    return Asked(client, node, 1, Moment(now, 1, 1, main), cdr)
+
+
+def requests(*entries: Asked, start: int = 0) -> list[bytes]:
+    return [one.cdr for one in requests_in_order(entries, lambda cdr: cdr[start:])]
+
+
+def test_requests_of_the_main_thread_are_answered_as_they_were_sent_and_others_by_their_bytes() -> None:
+    assert requests(asked(b"b", MAIN), asked(b"a", MAIN)) == [b"b", b"a"]
+    first = [asked(b"b", OTHER), asked(b"a", OTHER), asked(b"c", OTHER, now=4)]
+    assert requests(*first) == requests(*first[::-1]) == [b"c", b"a", b"b"]
+    assert requests(asked(b"1b", OTHER), asked(b"2a", OTHER), start=1) == [b"2a", b"1b"], "the id of a goal is chance"
 
 
 def test_of_several_processes_the_node_decides() -> None:
-    first = [heard(b"1", 1, process=2, node="/b"), heard(b"2", 1, process=1, node="/a")]
+    first = [heard(b"1", MAIN, process=2, node="/b"), heard(b"2", MAIN, process=1, node="/a")]
     assert order(first) == order(first[::-1]) == [b"2", b"1"]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from runner_programs import ANSWER, HARD, RunProgram, numbers, program
+from runner_programs import ANSWER, HARD, THREADS, RunProgram, numbers, program
 
 from grader.recording import Recording
 from grader.recording.recording import to_json
@@ -63,9 +63,26 @@ def test_who_measures_with_the_computers_clock_measures_another_time_the_same_ea
     assert measured == answers(run_program(program(body=body)))
 
 
-def test_several_answers_from_one_thread_keep_their_order(run_program: RunProgram) -> None:
-    recording = run_program(program(body="for i in (3, 1, 2):\n    self.answer(message.data * i)"))
+THREE_ANSWERS = "for i in (3, 1, 2):\n    self.answer(message.data * i)"
+
+
+def test_several_answers_from_the_main_thread_keep_their_order(run_program: RunProgram) -> None:
+    recording = run_program(program(body=THREE_ANSWERS))
     assert answers(recording)[:6] == [6, 2, 4, 12, 4, 8]
+    assert not any(received.unordered for received in recording.received)
+
+
+def test_several_answers_from_a_pool_of_threads_have_no_order_whichever_thread_had_them(
+    run_program: RunProgram,
+) -> None:
+    # A single thread has all the work here, as one of several may have by chance.
+    spin = "executor = MultiThreadedExecutor(2)\nexecutor._executor._max_workers = 1\n"
+    recording = run_program(program(body=THREE_ANSWERS, spin=f"{spin}executor.add_node(node)\nexecutor.spin()"))
+    assert sorted(answers(recording)[:3]) == [2, 4, 6]
+    assert answers(recording) == answers(
+        run_program(program(body=THREE_ANSWERS.replace("3, 1, 2", "1, 2, 3"), spin=THREADS))
+    )
+    assert all(received.unordered for received in recording.received)
 
 
 def test_what_was_published_before_simulated_time_began_has_no_time(run_program: RunProgram) -> None:

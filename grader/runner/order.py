@@ -1,0 +1,67 @@
+"""The one order that messages and requests have, however the threads that sent them shared the machine."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from rmw_lockstep.hub import Asked, Heard
+
+#: A subscription, a node, and the stage and the computer's time (ns) at which the node published.
+Place = tuple[int, str, int, int]
+
+#: Which node published for which subscription.
+Source = tuple[int, str]
+
+
+def in_canonical_order(heard: Sequence[tuple[int, Heard]]) -> list[tuple[int, Heard]]:
+    """Sort messages by their moment; at the same moment by topic and node, and within these as they were sent.
+
+    What several threads may have published on one topic at the same moment has no order, so it is sorted by its bytes.
+    """
+    threaded = from_other_threads(heard)
+    alone = len({one.publisher.process for _, one in heard}) <= 1
+
+    def key(entry: tuple[int, Heard]) -> tuple[Any, ...]:
+        number, one = entry
+        own = one.handled if alone else 0  # the frames of two processes cannot be compared
+        return one.stage, one.now, own, number, one.node, one.cdr if (number, one.node) in threaded else b""
+
+    return sorted(heard, key=key)
+
+
+def without_order(heard: Sequence[tuple[int, Heard]]) -> set[Place]:
+    """Return where and when several threads may have published more than one message."""
+    threaded = from_other_threads(heard)
+    counts = Counter(place_of(number, one) for number, one in heard if (number, one.node) in threaded)
+    return {place for place, count in counts.items() if count > 1}
+
+
+def place_of(number: int, one: Heard) -> Place:
+    """Return where and when a message was published."""
+    return number, one.node, one.stage, one.now
+
+
+def from_other_threads(heard: Sequence[tuple[int, Heard]]) -> set[Source]:
+    """Return the subscriptions and nodes for which any thread but the main one published.
+
+    It could be one thread or several: how many of a pool's threads get something to do is chance, so they count as
+    several.
+    """
+    return {(number, one.node) for number, one in heard if not one.main}
+
+
+def requests_in_order(asked: Sequence[Asked], content: Callable[[bytes], bytes] = bytes) -> list[Asked]:
+    """Sort requests by their moment; at the same moment by node, and those of the main thread as they were sent.
+
+    Others are sorted by their `content`: their bytes, or what of these is not chance, as the id of a goal is.
+    """
+    alone = len({one.client.process for one in asked}) <= 1
+
+    def key(one: Asked) -> tuple[Any, ...]:
+        moment = one.moment
+        own = moment.handled if alone else 0
+        return moment.stage, moment.now, own, one.node, *(() if moment.main else (one.client.name, content(one.cdr)))
+
+    return sorted(asked, key=key)
