@@ -27,6 +27,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from grader.exercise import Exercise, load
+from grader.files import write_if_changed
 from grader.grading import Grade, Options
 from grader.grading.grading import Grading, grading_of
 from grader.recording.recording import to_json
@@ -56,17 +57,19 @@ class Counts:
     host_errors: int = 0
     first: Grade | None = field(default=None, repr=False)
 
-    def add(self, grade: Grade) -> None:
-        """Compare a grade with the first one."""
+    def add(self, grade: Grade) -> dict[str, tuple[str, str]]:
+        """Compare a grade with the first one. Return the recordings that differ, by scenario: the first, and this."""
         self.grades += 1
         self.spins += len(grade.recordings)
         if grade.outcome == "host-error":
             self.host_errors += 1
-            return
+            return {}
         self.first = first = self.first or grade
         self.other_grades += grade != first
         before, now = _texts(first), _texts(grade)
-        self.other_recordings += sum(before.get(name) != text for name, text in now.items())
+        other = {name: (before.get(name, ""), text) for name, text in now.items() if before.get(name) != text}
+        self.other_recordings += len(other)
+        return other
 
     @property
     def plain(self) -> dict[str, int]:
@@ -82,9 +85,13 @@ class Program:
     grading: Grading
     counts: Counts = field(default_factory=Counts)
 
-    def grade(self) -> None:
-        """Grade it once more."""
-        self.counts.add(self.grading.grade(read(str(self.file), self.grading.runner.exercise)))
+    def grade(self, keep: Path) -> None:
+        """Grade it once more; what differs is written to the folder `keep`."""
+        exercise = self.grading.runner.exercise
+        for scenario, texts in self.counts.add(self.grading.grade(read(str(self.file), exercise))).items():
+            name = f"{exercise.name}-{self.file.stem}-{scenario}-{self.counts.grades}"
+            for which, text in zip(("first", "other"), texts, strict=True):
+                write_if_changed(keep / f"{name}-{which}.json", text)
 
 
 def _texts(grade: Grade) -> dict[str, str]:
@@ -130,6 +137,12 @@ def _options() -> argparse.Namespace:
         help="how many are graded at once  (default: %(default)s)",
     )
     parser.add_argument("--nice", type=int, default=0, help="how nice the busy loops are  (default: %(default)s)")
+    parser.add_argument(
+        "--keep",
+        type=Path,
+        default=Path("build/determinism"),
+        help="where recordings that differ go  (default: %(default)s)",
+    )
     parser.add_argument("--json", type=Path, help="write the counts to this file, too")
     return parser.parse_args()
 
@@ -151,7 +164,7 @@ def _round(number: int, programs: list[Program], options: argparse.Namespace) ->
     began = time.monotonic()
     busy = number % 2 == 1
     with _load(busy, options.nice), ThreadPoolExecutor(options.parallel) as pool:
-        for done in [pool.submit(program.grade) for program in programs]:
+        for done in [pool.submit(program.grade, options.keep) for program in programs]:
             done.result()
     how = "next to busy loops" if busy else "alone"
     summary = f"round {number + 1}, {how}: {time.monotonic() - began:.0f} s, {_total(programs).plain}"
