@@ -32,7 +32,7 @@ class Wrong(AssertionError):
 
 
 def fail(text: str, *, expected: object = "", got: object = "", at: float | None = None) -> NoReturn:
-    """End the check: the node does not pass it. `text` says to the student why; `at` is in seconds."""
+    """End the check: the node does not pass it. `text` tells the student why; `at` is in seconds."""
     message = text
     if expected != "" or got != "":
         message += f" Expected {expected}, got {got}."
