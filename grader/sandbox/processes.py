@@ -100,7 +100,7 @@ def _read(path: str) -> bytes:
 
 def _names(folder: str) -> list[str]:
     try:
-        return os.listdir(folder)  # noqa: PTH208 - names alone, many times a second
+        return os.listdir(folder)  # noqa: PTH208 - names alone, many times per second
     except OSError:
         return []
 

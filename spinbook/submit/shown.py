@@ -35,7 +35,7 @@ LAST_LINES = 12
 class Row:
     """One check as it is shown. `facts` are label and value; `remark` is what they leave out.
 
-    `before` stands above the first of several checks that all wait for the same one.
+    `before` is above the first of several checks that all wait for the same one.
     """
 
     check: ShownCheck

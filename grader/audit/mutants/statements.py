@@ -199,7 +199,7 @@ def part_of_condition(node: cst.CSTNode, program: Program) -> Iterator[Change]:
 
 
 def condition(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """A condition is turned round, always holds, never holds."""
+    """A condition is inverted, always holds, never holds."""
     if isinstance(node, (cst.If, cst.While, cst.IfExp, cst.CompIf)):
         text = program.text(node.test)
         if not (isinstance(node, cst.While) and text == "True"):

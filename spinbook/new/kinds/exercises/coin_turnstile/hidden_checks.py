@@ -39,7 +39,7 @@ def test_every_coin_counts(all_coins: Run) -> None:
     rule="It falls through: the credit stays as it is.",
 )
 def test_what_is_no_coin_falls_through(not_coins: Run) -> None:
-    """A value that is no coin leaves the credit as it is."""
+    """A value that is not a coin leaves the credit as it is."""
     not_coins.must_match_responses()
 
 

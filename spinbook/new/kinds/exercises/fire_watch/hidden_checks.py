@@ -15,7 +15,7 @@ REPORTS = [*CALLS, "test_reports_the_answer"]
     rule="Smoke of 0.3 or less is none, and at the start there is none.",
 )
 def test_smoke_at_the_edge(edges: Run) -> None:
-    """Smoke of 0.3 is no fire, and a little more is one."""
+    """Smoke of 0.3 is not a fire, and a little more is one."""
     edges.must_match_requests("data")
     edges.must_match_series("data", topic="/siren")
 
