@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from spinbook.chapter.read import Reading, Surroundings, modules_of, read_chapter
+from spinbook.chapter.labels import Label
+from spinbook.chapter.read import Reading, Surroundings, labels_of, modules_of, read_chapter, title_of
 from spinbook.course.course import Course
 from spinbook.interfaces.compiling import collect
 
@@ -15,7 +16,13 @@ def surroundings(course: Course) -> Surroundings:
     for file in course.chapters:
         modules |= modules_of(course.root, file)
     interfaces = frozenset(item.full_name for item in collect(course).definitions)
-    return Surroundings(course.package.name, frozenset(modules), course.exercises, course.names, interfaces)
+    labels: dict[str, Label] = {}
+    for file in course.chapters:
+        labels = labels_of(course.root, file) | labels
+    titles = {file: title_of(course.root, file) for file in course.chapters}
+    return Surroundings(
+        course.package.name, frozenset(modules), course.exercises, course.names, interfaces, labels, titles
+    )
 
 
 def read_all(course: Course) -> Iterator[Reading]:

@@ -39,7 +39,7 @@ class Location:
     """Where a piece of prose is from: the course's root, the folder of its file, and what its links may lead to.
 
     `notebooks` are what chapters are called, by their file. `pictures` collects the files that the prose shows: name of
-    the attachment -> media type -> content in base 64.
+    the attachment -> media type -> content in base 64. `file` is the chapter itself, where it is one.
     """
 
     root: Path
@@ -47,6 +47,7 @@ class Location:
     notebooks: Mapping[Path, str] = field(default_factory=dict)
     repository: str = ""
     pictures: dict[str, dict[str, str]] = field(default_factory=dict)
+    file: Path | None = None
 
     def target(self, target: str, is_image: bool) -> str | None:
         """Where a link or an image leads to from a notebook; None: nowhere else than it says."""
@@ -54,6 +55,8 @@ class Location:
             return None
         file = locate(self.root, self.folder, target)
         _, anchor = split(target)
+        if file is not None and file == self.file and anchor:
+            return anchor
         if file is not None and file in self.notebooks:
             return quote(f"{self.notebooks[file]}.ipynb") + anchor
         if is_image and file is not None and (name := self._attached(file)):
@@ -187,7 +190,8 @@ def _notebook(chapter: Chapter, course: Course) -> dict[str, Any]:
 def _cells(chapter: Chapter, course: Course) -> Iterator[dict[str, Any]]:
     setup = _SETUP.format(name=chapter.name, package=course.package.name, workspace=course.package.workspace)
     setup_cell = _code("spinbook-setup", setup, {"kind": "setup", "line": 1})
-    location = Location(course.root, chapter.file.parent.as_posix(), course.names, course.repository)
+    folder = chapter.file.parent.as_posix()
+    location = Location(course.root, folder, course.names, course.repository, file=chapter.file)
     waiting = True
     for cell in chapter.cells:
         # The chapter's heading comes first, then what makes its cells work.

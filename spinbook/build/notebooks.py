@@ -101,9 +101,10 @@ def _key(own: str, uses: Sequence[str], course: Course) -> str:
     return digest(own, files_digest((course.root / file for file in uses), course.root))
 
 
-def _sorted(known: Surroundings) -> tuple[str, list[str], list[str], list[tuple[Path, str]], list[str]]:
-    names = sorted(known.names.items())
-    return known.package, sorted(known.modules), sorted(known.exercises), names, sorted(known.interfaces)
+def _sorted(known: Surroundings) -> tuple[Any, ...]:
+    named = [sorted(given.items()) for given in (known.names, known.titles)]
+    labels = [(name, str(label)) for name, label in sorted(known.labels.items())]
+    return known.package, sorted(known.modules), sorted(known.exercises), named, sorted(known.interfaces), labels
 
 
 def _read_record(file: Path) -> Mapping[str, Any]:

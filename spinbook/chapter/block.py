@@ -52,6 +52,8 @@ class Block:
     new: tuple[Line, ...] | None = None
     offset: int = 0
     """How far the text of a list's item is indented."""
+    label: str = ""
+    """By what MyST's references call it, or, where it is dropped, what follows."""
 
     @property
     def line(self) -> int:

@@ -69,7 +69,7 @@ class _Reader:
         body = [Line(text, lines[0].number + 1 + i) for i, text in enumerate(token.content.split("\n")[:-1])]
         if name:
             closed = closed or len(lines) == 1
-            return self._directive(name, argument, lines, body, closed)
+            return _labelled(self._directive(name, argument, lines, body, closed), body)
         fence = self._included(make_fence(token.info, token.content, lines[0].number))
         expanded = fence.code != token.content and "".join(f"{line.text}\n" for line in body) != fence.code
         new = as_fence(fence, lines) if expanded and not fence.skipped else None
@@ -106,7 +106,8 @@ class _Reader:
             return list(self.inside(included)) if text else [Block(Kind.DROPPED, lines)]
         if name in {"image", "figure"}:
             new = [Line(attributes.image(argument, options), lines[0].number), Line("", lines[0].number), *inner]
-            return [Block(Kind.TEXT, lines, new=tuple(new))]
+            caption = next((line.text.strip() for line in inner if line.text.strip()), "")
+            return [Block(Kind.TEXT, lines, title=caption, new=tuple(new))]
         if name in attributes.UNSEEN:
             return [Block(Kind.DROPPED, lines)]
         if name == "mermaid":
@@ -153,7 +154,7 @@ class _Reader:
         inner = list(lines[1:-1] if ends else lines[1:])
         options, skipped = attributes.options([line.text for line in inner])
         if name in attributes.CODE or name in {"image", "figure", "literalinclude", "include", "math", "mermaid"}:
-            return self._directive(name, argument, lines, inner, ends)
+            return _labelled(self._directive(name, argument, lines, inner, ends), inner)
         if name in attributes.UNSEEN:
             return [Block(Kind.DROPPED, lines)]
         is_myst = token.info.strip().startswith("{") and not token.info.strip().startswith("{.")
@@ -182,6 +183,9 @@ class _Reader:
 
     def _kramdown(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
         return [Block(Kind.DROPPED, lines, style=attributes.kramdown_style(token.info))]
+
+    def _label(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+        return [Block(Kind.DROPPED, lines, label=token.tag)]
 
     def _dropped(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
         return [Block(Kind.DROPPED, lines)]
@@ -257,6 +261,13 @@ def read_blocks(text: str, include: Include) -> tuple[Block, ...]:
     """The blocks of a chapter's text."""
     lines = [Line(content, number) for number, content in enumerate(text.split("\n"), start=1)]
     return _Reader(include).blocks(lines)
+
+
+def _labelled(blocks: list[Block], body: Sequence[Line]) -> list[Block]:
+    """A directive's blocks, the first with the label that its options give it."""
+    options, _ = attributes.options([line.text for line in body])
+    label = options.get("name") or options.get("label") or ""
+    return [replace(blocks[0], label=label), *blocks[1:]] if label and blocks else blocks
 
 
 def _offset(text: str, marker: int) -> int:

@@ -31,7 +31,7 @@ _FENCE = ("```", "~~~")
 _LIQUID = re.compile(r"\{%-?\s*(\w+)\s*(.*?)\s*-?%\}$")
 _KRAMDOWN = re.compile(r"\{:\s*(.*?)\s*\}$")
 _SNIPPET = re.compile(r"-+8<-+\s+[\"'](.+?)[\"']$")
-_LABEL = re.compile(r"\([\w:.-]+\)=$")
+_LABEL = re.compile(r"\(([\w:./-]+)\)=$")
 _ESM = re.compile(
     r"""import\s+(?:[\w*{][\w\s{},*]*\s+from\s+)?["'][^"']+["'];?$|export\s+(?:const|default|function|let)\b"""
 )
@@ -102,7 +102,9 @@ def _parse(text: str) -> tuple[str, str, str]:
         return "snippet", "", match[1]
     if text.startswith(("!> ", "?> ")):
         return "callout", "warning" if text[0] == "!" else "tip", text[3:]
-    if text.startswith("{/*") or _LABEL.match(text) or _ESM.match(text):
+    if match := _LABEL.match(text):
+        return "label", match[1], ""
+    if text.startswith("{/*") or _ESM.match(text):
         return "dropped", "", ""
     return "", "", ""
 

@@ -17,6 +17,7 @@ from spinbook.chapter.classify import CellKind, Classified, first_look, with_lan
 from spinbook.chapter.excerpts import excerpts, is_excerpt
 from spinbook.chapter.fence import Fence, interface_package
 from spinbook.chapter.files import is_elsewhere, locate, read_included
+from spinbook.chapter.labels import Heading, Label, References, headings, labels, words_of
 from spinbook.chapter.layout import Layout, Piece
 from spinbook.chapter.own_packages import OwnPackages, named_files, own_packages
 from spinbook.chapter.programs import Programs
@@ -31,7 +32,8 @@ class Surroundings:
 
     `package` is the course's ROS package, `modules` the node modules of the course's other chapters, `exercises`
     the exercises that exist, `names` what chapters are called, by their file, `interfaces` the messages, services and
-    actions that the course defines, such as `my_robot_interfaces/msg/JointLimits`.
+    actions that the course defines, such as `my_robot_interfaces/msg/JointLimits`, `labels` what MyST's labels name,
+    `titles` the chapters' titles, by their file.
     """
 
     package: str
@@ -39,6 +41,8 @@ class Surroundings:
     exercises: frozenset[str] = frozenset()
     names: Mapping[Path, str] = field(default_factory=dict)
     interfaces: frozenset[str] = frozenset()
+    labels: Mapping[str, Label] = field(default_factory=dict)
+    titles: Mapping[Path, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -70,11 +74,17 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> Reading:
         return Reading(None, tuple(problems))
     classified, found = _classify(parsed, file, surroundings)
     title, title_problems = _title(parsed, file)
-    problems += [*found, *title_problems, *_references(parsed, surroundings, root, file)]
+    own = labels(parsed.blocks, file)
+    sections = {heading.slug: heading for heading in headings(parsed.blocks)}
+    references = References(root, file, {**surroundings.labels, **own}, surroundings.titles, sections)
+    problems += [*found, *title_problems, *_references(parsed, surroundings, root, references)]
     problems.sort(key=lambda problem: (problem.line or 0, problem.found))
     by_line = {item.fence.line: item for item in classified}
     pieces = _layout(by_line, surroundings).pieces(parsed.blocks)
-    cells = make_cells([*_heading(parsed, title), *pieces], by_line)
+    cells = tuple(
+        replace(cell, source=references.resolved(cell.source)) if cell.kind is CellKind.PROSE else cell
+        for cell in make_cells([*_heading(parsed, title), *pieces], by_line)
+    )
     chapter = Chapter(
         name=surroundings.names.get(file, file.stem),
         file=file,
@@ -101,6 +111,22 @@ def modules_of(root: Path, file: Path) -> frozenset[str]:
     titles = (block.fence.title for block in _parse(root, file).fences if block.fence)
     stems = (Path(title).name.removesuffix(".py") for title in titles if title and title.endswith(".py"))
     return frozenset(stem for stem in stems if stem.isidentifier())
+
+
+def labels_of(root: Path, file: Path) -> dict[str, Label]:
+    """What the labels of a chapter name."""
+    return labels(_parse(root, file).blocks, file)
+
+
+def headings_of(root: Path, file: Path) -> tuple[Heading, ...]:
+    """The headings of a chapter."""
+    return tuple(headings(_parse(root, file).blocks))
+
+
+def title_of(root: Path, file: Path) -> str:
+    """The title of a chapter, as Markdown; "" if it can't be read."""
+    parsed = _parse(root, file)
+    return _title(parsed, file)[0] if parsed.source else ""
 
 
 def _parse(root: Path, file: Path) -> _Parsed:
@@ -214,7 +240,8 @@ def _without_seconds(fence: Fence) -> Fence:
     return replace(fence, attributes={key: value for key, value in fence.attributes.items() if key != "seconds"})
 
 
-def _references(parsed: _Parsed, surroundings: Surroundings, root: Path, file: Path) -> Iterator[Problem]:
+def _references(parsed: _Parsed, surroundings: Surroundings, root: Path, references: References) -> Iterator[Problem]:
+    file = references.file
     for block in (inner for top in parsed.blocks for inner in top.walk() if inner.kind is Kind.EXERCISE):
         if block.title not in surroundings.exercises:
             known = ", ".join(sorted(surroundings.exercises)) or "none yet"
@@ -223,8 +250,11 @@ def _references(parsed: _Parsed, surroundings: Surroundings, root: Path, file: P
             yield Problem(file, block.line, found, fix, Severity.NOT_RUN)
     assert parsed.source is not None
     folder = file.parent.as_posix()
+    yield from references.problems(parsed.blocks)
     for target, line in _links(parsed.source.text):
-        if not is_elsewhere(target) and "{" not in target and locate(root, folder, target) is None:
+        if is_elsewhere(target) or "{" in target or references.is_label(target):
+            continue
+        if locate(root, folder, target) is None:
             found = f"a link leads to `{target}`, and there is no such file."
             fix = "Write the path relative to the chapter's folder."
             yield Problem(file, line, found, fix, Severity.WARNING, group="files that are not there")
@@ -272,14 +302,8 @@ def _title(parsed: _Parsed, file: Path) -> tuple[str, list[Problem]]:
     given = front.get("title") or front.get("sidebar_label")
     heading = next((block for block in parsed.blocks if block.kind is Kind.HEADING), None)
     if heading:
-        return str(given or _words(heading)), []
+        return str(given or words_of(heading)), []
     fix = "Begin it with one line such as `# Nodes and Topics`."
     named = file.stem if file.stem.lower() not in {"index", "readme"} else file.parent.name or file.stem
     title = str(given or named.replace("-", " ").replace("_", " "))
     return title, [] if given else [Problem(file, 1, "the chapter has no heading.", fix, Severity.WARNING)]
-
-
-def _words(heading: Block) -> str:
-    tokens = MarkdownIt("commonmark").parse("\n".join(line.text for line in heading.lines))
-    inline = next((token for token in tokens if token.type == "inline"), None)
-    return inline.content.partition(" {#")[0] if inline else ""

@@ -48,10 +48,9 @@ class _Said:
         self._text = ""
 
     def add(self, text: str) -> None:
-        """Hear what runs. turtlesim's own names are known."""
+        """Hear what runs. The names are known that turtlesim and the demo nodes give."""
         self._text += text.lower()
-        if "turtlesim" in text:
-            self._text += _TURTLESIM
+        self._text += "".join(names for package, names in _GIVEN.items() if package in text)
 
     def __contains__(self, name: str) -> bool:
         return name in self._text
@@ -59,6 +58,8 @@ class _Said:
 
 _TURTLESIM = " turtlesim turtle1 turtle2 cmd_vel pose color_sensor spawn kill clear reset set_pen teleport_absolute "
 _TURTLESIM += "teleport_relative rotate_absolute background_r background_g background_b "
+#: Package -> the names that its programs give.
+_GIVEN = {"turtlesim": _TURTLESIM, "demo_nodes_": " chatter talker listener add_two_ints "}
 
 
 @dataclass
@@ -138,7 +139,7 @@ class Shells:
     def _run(self, package: str, executable: str, out: list[Classified]) -> _Refused | None:
         if package == self.package and executable in self.modules:
             return None
-        if package not in ros_packages() and (number := self._started(package, executable, out)) is not None:
+        if not self._is_elsewhere(package) and (number := self._started(package, executable, out)) is not None:
             known = out[number].executables
             if (package, executable) not in known:
                 out[number] = replace(out[number], executables=(*known, (package, executable)))
@@ -148,6 +149,11 @@ class Shells:
             fix = f"Its node cells make these: {', '.join(sorted(self.modules)) or 'none'}."
             return _Refused(found, fix, "")
         return self._foreign(package, executable)
+
+    def _is_elsewhere(self, package: str) -> bool:
+        """Whether a package is ROS's or comes with Spinbook, so that no program of the chapter is meant."""
+        comes_with_us = package in executables.BUILT_IN and package not in self.own.names
+        return comes_with_us or package in ros_packages()
 
     def _lacks_words(self, command: Command, out: Sequence[Classified]) -> _Refused | None:
         """Whether a program of the chapter reads more words than the command gives it."""
@@ -179,7 +185,9 @@ class Shells:
             prefix = prefixes.prefix_of(package, prefixes.installed())
             there |= {path.name for path in executables.in_prefix(prefix, package)} if prefix else set()
         if executable in there:
-            return None
+            needed = executables.interfaces_used(package, executable)
+            lacks = bool(needed) and needed not in ros_packages()
+            return _lacking(needed) if lacks else None
         if there:
             fix = f"It has these: {', '.join(sorted(there))}."
             return _Refused(f"`{package}` has no program `{executable}` here", fix, f"programs of {package}")
@@ -274,12 +282,16 @@ class Shells:
             own = own_names(f"{package}.{kind}", self.interfaces)
             known = own or interfaces_of(f"{package}.{kind}")
             if not own and package not in ros_packages():
-                return _Refused(f"it needs `{package}`, not installed here", remedy(package), package)
+                return _lacking(package)
             if known and name not in known:
                 close = difflib.get_close_matches(name, known, n=1)
                 fix = f"Did you mean `{close[0]}`?" if close else "Look at `ros2 interface list`."
                 return _Refused(f"`{package}/{kind}` has no `{name}`", fix, "")
         return None
+
+
+def _lacking(package: str) -> _Refused:
+    return _Refused(f"it needs `{package}`, not installed here", remedy(package), package)
 
 
 def _last_name(path: str) -> str:

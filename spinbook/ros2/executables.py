@@ -133,16 +133,26 @@ def _append(environment: MutableMapping[str, str], name: str, value: str) -> Non
         environment[name] = os.pathsep.join([*entries, value])
 
 
-#: Package -> executable -> the module that is it. Used where the package has no executables: of turtlesim, set-up
-#: compiles the messages alone.
+_DEMOS = ("add_two_ints_client", "add_two_ints_server", "listener", "talker")
+#: Package -> executable -> the module that is it, with the words that it gets. Used where the package has no
+#: executables: of turtlesim, set-up compiles the messages alone, and of the demo nodes, PyPI has nothing.
 BUILT_IN = {
+    "demo_nodes_cpp": {name: f"spinbook.ros2.demo_nodes cpp {name}" for name in _DEMOS},
+    "demo_nodes_py": {name: f"spinbook.ros2.demo_nodes py {name}" for name in _DEMOS},
     "turtlesim": {
         "draw_square": "spinbook.turtlesim.draw_square",
         "mimic": "spinbook.turtlesim.mimic",
         "turtle_teleop_key": "spinbook.turtlesim.teleop_key",
         "turtlesim_node": "spinbook.turtlesim.node",
-    }
+    },
 }
+
+
+def interfaces_used(package: str, executable: str) -> str:
+    """The package of interfaces without which an executable that Spinbook brings does not run; "" for none."""
+    if package not in BUILT_IN:
+        return ""
+    return "turtlesim" if package == "turtlesim" else "example_interfaces" if "two_ints" in executable else ""
 
 
 @dataclass(frozen=True)
@@ -181,7 +191,7 @@ def find(package: str, executable: str, cwd: Path) -> Launch:
     if executable not in modules:
         raise CommandError("No executable found", f"Executables of {package}: {', '.join(sorted(modules))}.")
     check_installed()
-    return Launch([sys.executable, "-m", modules[executable]], environment)
+    return Launch([sys.executable, "-m", *modules[executable].split()], environment)
 
 
 def is_built_in(package: str, prefix: Path | None) -> bool:
@@ -276,14 +286,14 @@ def hand_over(arguments: Sequence[str]) -> None:
 
 
 def _ours_all_the_same(arguments: Sequence[str]) -> bool:
-    """Whether this runs turtlesim where turtlesim is not installed, which is our own node then."""
+    """Whether this runs a package that is not installed and of which we have the nodes: turtlesim, the demo nodes."""
     if not arguments or arguments[0] != "run":
         return False
     rest = list(arguments[1:])
     while rest and rest[0].startswith("-"):
         takes_value = rest[0] == "--prefix"
         rest = rest[2 if takes_value else 1 :]
-    return rest[:1] == ["turtlesim"] and is_built_in("turtlesim", prefixes.prefix_of("turtlesim", prefixes.installed()))
+    return bool(rest) and is_built_in(rest[0], prefixes.prefix_of(rest[0], prefixes.installed()))
 
 
 @click.command(context_settings={**CONTEXT, "ignore_unknown_options": True, "allow_interspersed_args": False})

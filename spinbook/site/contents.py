@@ -19,6 +19,7 @@ from spinbook.browser.files import can_run, public_parts, run_files
 from spinbook.chapter.chapter import Chapter
 from spinbook.chapter.classify import CellKind
 from spinbook.chapter.comments import without_comments
+from spinbook.chapter.read import headings_of
 from spinbook.chapters import read_all
 from spinbook.course.course import Course
 from spinbook.handout.wheels import interface_wheels, package_of
@@ -89,7 +90,7 @@ def read_contents(course: Course) -> Contents:
     exercises = _exercises(course, chapters)
     repository = repository_of(course.root, course.repository)
     contents = Contents()
-    links = Links(_pages_of_files(course, exercises), repository)
+    links = Links(_pages_of_files(course, exercises), repository, anchors=_anchors(course))
     drawings = _drawn(course, chapters, exercises, links, contents)
     _glossary(course, contents)
     first = chapters[0].name
@@ -151,6 +152,12 @@ def _pages_of_files(course: Course, exercises: Mapping[str, Exercise]) -> dict[s
     if course.glossary:
         pages[course.glossary.as_posix()] = f"{names.GLOSSARY}.md"
     return pages
+
+
+def _anchors(course: Course) -> dict[tuple[str, str], str]:
+    """File and JupyterLab's id of a heading -> its id on the page."""
+    found = ((file, heading) for file in course.chapters for heading in headings_of(course.root, file))
+    return {(file.as_posix(), heading.anchor): heading.slug for file, heading in found}
 
 
 def _drawn(

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
-from urllib.parse import quote
+from urllib.parse import quote, unquote
 
 from markdown_it.token import Token
 
@@ -36,12 +36,14 @@ _SHOWN = frozenset({".png", ".jpg", ".jpeg", ".gif", ".svg", ".webp", ".avif", "
 class Links:
     """Where links of the text lead. `pages` maps files of the course to pages, all relative to the course.
 
-    `pictures` collects the files that the pages show: path in the site -> content.
+    `pictures` collects the files that the pages show: path in the site -> content. `anchors` are the headings' ids
+    on the site, by file and the id that JupyterLab gives them.
     """
 
     pages: Mapping[str, str]
     repository: Repository
     pictures: dict[str, bytes] = field(default_factory=dict)
+    anchors: Mapping[tuple[str, str], str] = field(default_factory=dict)
 
     def target(self, target: str, is_image: bool, folder: str, page_folder: str) -> str | None:
         """Where a link in a file of `folder` leads, seen from a page in `page_folder`; None: where it says."""
@@ -51,7 +53,8 @@ class Links:
         file = locate(self.repository.root, folder, target)
         full = file.as_posix() if file else posixpath.normpath(posixpath.join(folder, path))
         if full in self.pages:
-            return posixpath.relpath(self.pages[full], page_folder or ".") + anchor
+            slug = self.anchors.get((full, unquote(anchor[1:])))
+            return posixpath.relpath(self.pages[full], page_folder or ".") + (f"#{slug}" if slug else anchor)
         if is_image and file is not None and file.suffix.lower() in _SHOWN:
             return posixpath.relpath(self._picture(file), page_folder or ".")
         link = self.repository.link(Path(full))

@@ -172,7 +172,7 @@ def _settings(contents: Contents, course: Course) -> dict[str, Any]:
         "nb_render_text_lexer": "ros-log",
         "nb_render_error_lexer": "ros-log",
         "myst_enable_extensions": ["alert", "colon_fence", "deflist", "dollarmath", "strikethrough", "tasklist"],
-        "myst_heading_anchors": 4,
+        "myst_heading_anchors": 6,
         "myst_all_links_external": False,
         "html_theme": "theme",
         "html_theme_path": [str(_THEMES)],

@@ -12,8 +12,9 @@ from geometry_msgs.msg import Twist
 from rclpy.node import Node
 from std_srvs.srv import Empty
 
+from spinbook.ros2.spinning import spin_until_stopped
 from spinbook.turtlesim.events import DT, normalized
-from spinbook.turtlesim.program import Pose, spin_until_stopped
+from spinbook.turtlesim.messages import Pose
 
 #: Side of the square (units), speeds (units/s and rad/s), and how near is near enough (units, rad; units/s, rad/s).
 SIDE, SPEED, TURN = 2.0, 1.0, 0.4

@@ -20,7 +20,7 @@ from spinbook.turtlesim.events import (
     RotationFeedback,
     Spawned,
 )
-from spinbook.turtlesim.program import (
+from spinbook.turtlesim.messages import (
     Color,
     Kill,
     Pose,

@@ -10,7 +10,8 @@ import sys
 from geometry_msgs.msg import Twist
 from rclpy.node import Node
 
-from spinbook.turtlesim.program import Pose, spin_until_stopped
+from spinbook.ros2.spinning import spin_until_stopped
+from spinbook.turtlesim.messages import Pose
 
 
 def make() -> Node:

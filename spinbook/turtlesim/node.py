@@ -12,9 +12,9 @@ from rclpy.node import Node
 from rclpy.subscription import Subscription
 from std_srvs.srv import Empty, Trigger
 
+from spinbook.ros2.spinning import spin_until_stopped
 from spinbook.turtlesim.events import TICK_NS, Event, Killed, LogLine, Severity, Spawned
 from spinbook.turtlesim.interface import DEPTH, Interface
-from spinbook.turtlesim.program import spin_until_stopped
 from spinbook.turtlesim.world import World
 from spinbook.turtlesim.world_picture import BLUE, picture_of
 

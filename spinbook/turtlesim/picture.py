@@ -27,8 +27,8 @@ from std_srvs.srv import Trigger
 
 from grader.files import write_if_changed
 from spinbook.turtlesim.events import DT, PIXELS_PER_UNIT, SIDE, Pen
+from spinbook.turtlesim.messages import Pose
 from spinbook.turtlesim.moving import moving_svg, turtle_shapes
-from spinbook.turtlesim.program import Pose
 from spinbook.turtlesim.trail import Point, Track, Trail
 from spinbook.turtlesim.world_picture import BLUE, Color, TurtlePicture, WorldPicture, caption, strokes, tracks
 

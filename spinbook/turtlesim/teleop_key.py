@@ -14,7 +14,8 @@ from geometry_msgs.msg import Twist
 from rclpy.action import ActionClient
 from rclpy.node import Node
 
-from spinbook.turtlesim.program import RotateAbsolute, spin_until_stopped
+from spinbook.ros2.spinning import spin_until_stopped
+from spinbook.turtlesim.messages import RotateAbsolute
 
 HELP = """\
 Reading from keyboard

@@ -173,11 +173,27 @@ def test_a_node_knows_what_ros2_run_calls_it(tmp_path: Path) -> None:
     assert node.executables == (("arm", "hand"),)
 
 
+@pytest.mark.parametrize("command", ["ros2 topic echo /chatter", "ros2 node info /listener", "ros2 topic hz chatter"])
+def test_the_demo_nodes_run_and_what_they_make_can_be_looked_at(tmp_path: Path, command: str) -> None:
+    demos = "```bash\nros2 run demo_nodes_cpp talker\n```\n\n```bash\nros2 run demo_nodes_py listener\n```\n"
+    found = cells(read(tmp_path, demos, f"```bash\n{command}\n```\n"))
+
+    assert [cell.kind for cell in found] == [CellKind.SHELL] * 3
+
+
+def test_a_demo_node_is_not_the_chapters_own_node_of_that_name(tmp_path: Path) -> None:
+    own, demo = cells(read(tmp_path, IMPORTS + TALKER + MAIN + GUARD, "```bash\nros2 run demo_nodes_py talker\n```\n"))
+
+    assert (own.name, own.executables) == ("talker", ())
+    assert demo.kind is CellKind.SHELL
+
+
 @pytest.mark.parametrize(
     ("command", "why"),
     [
         ("ros2 run nav2_map_server map_saver", "no package `nav2_map_server`"),
         ("ros2 run turtlesim turtle_race", "has no program `turtle_race`"),
+        ("ros2 run demo_nodes_cpp talker_qos", "has no program `talker_qos`"),
         ("ros2 run turtlesim turtle_teleop_key", "reads keys from a terminal"),
         ("ros2 run arm other", "no fence above shows `other`"),
         ("colcon build", "no cell above makes"),

@@ -169,19 +169,20 @@ def test_the_variable_keeps_ours(terminal: Terminal, monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.usefixtures("installed")
-def test_turtlesim_stays_ours_where_the_installation_has_no_executables_of_it(
-    tmp_path: Path, terminal: Terminal, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("package", "name"), [("turtlesim", "turtlesim_node"), ("demo_nodes_cpp", "talker")])
+def test_a_package_of_ours_stays_ours_where_the_installation_has_no_executables_of_it(
+    tmp_path: Path, terminal: Terminal, monkeypatch: pytest.MonkeyPatch, package: str, name: str
 ) -> None:
-    assert terminal.ros2("run", "turtlesim", "nothing").err.startswith("No executable found\n")
-    assert terminal.ros2("run", "--prefix", "nice", "turtlesim", "nothing").code == 1
+    assert terminal.ros2("run", package, "nothing").err.startswith("No executable found\n")
+    assert terminal.ros2("run", "--prefix", "nice", package, "nothing").code == 1
     packages = tmp_path / "share/ament_index/resource_index/packages"
     packages.mkdir(parents=True)
-    (packages / "turtlesim").touch()
-    executable = tmp_path / "lib" / "turtlesim" / "turtlesim_node"
+    (packages / package).touch()
+    executable = tmp_path / "lib" / package / name
     executable.parent.mkdir(parents=True)
     executable.touch(mode=0o755)
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
-    assert terminal.ros2("run", "turtlesim", "turtlesim_node").out.startswith("real run turtlesim turtlesim_node\n")
+    assert terminal.ros2("run", package, name).out.startswith(f"real run {package} {name}\n")
 
 
 # Signals

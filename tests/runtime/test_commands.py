@@ -162,6 +162,16 @@ def test_the_turtle_runs_and_is_shown(arm: Kernel) -> None:
     assert kernel.run("%stop turtlesim_node").text == "turtlesim_node stopped.\n"
 
 
+def test_a_demo_node_runs_in_a_cell_and_is_heard_in_the_next(new_kernel: Callable[..., Kernel]) -> None:
+    kernel = new_kernel()
+    said = kernel.run("%ros2 --seconds 60 --until 'World: 1' run demo_nodes_cpp talker")
+    assert "[talker]: Publishing: 'Hello World: 1'" in said.text, said.error
+
+    heard = kernel.run("%ros2 --seconds 60 --until heard run demo_nodes_py listener")
+    assert re.search(r"\[listener\]: I heard: \[Hello World: \d+\]", heard.text)
+    assert kernel.run("%stop --all").text == "talker stopped.\nlistener stopped.\n"
+
+
 def test_ros2_is_a_command_of_the_shell_too_though_the_environment_is_not_activated(
     new_kernel: Callable[..., Kernel],
 ) -> None:

@@ -76,3 +76,30 @@ def test_a_node_in_pieces_runs_with_the_messages_of_its_chapter(tmp_path: Path, 
         expect(terminal.get_by_role("log")).to_contain_text("[counter]: counted 7", timeout=DEADLINE_MS)
         assert shown.violations() == []
         assert shown.faults == []
+
+
+DEMOS = """\
+# Demos
+
+```bash until="World: 2"
+ros2 run demo_nodes_cpp talker
+```
+
+```bash seconds=20 until="heard"
+ros2 run demo_nodes_py listener --ros-args -r __node:=ear
+```
+"""
+
+
+def test_demo_nodes_run_in_a_page(tmp_path: Path, browser: Browser) -> None:
+    course = CourseFolder(tmp_path).write(demos=DEMOS)
+    made = course.spinbook("site", "--strict")
+    assert made.returncode == 0, made.stdout + made.stderr
+    with served(tmp_path / "build" / "site") as address, opened(browser, f"{address}/chapters/demos.html") as shown:
+        talker, listener = shown.page.locator(".cell-shell").all()
+        talker.get_by_role("button", name="Run cell 1", exact=True).click()
+        expect(talker.get_by_role("log")).to_contain_text("[talker]: Publishing: 'Hello World: 1'", timeout=PATIENCE_MS)
+
+        listener.get_by_role("button", name="Run cell 2", exact=True).click()
+        expect(listener.get_by_role("log")).to_contain_text("[ear]: I heard: [Hello World: ", timeout=PATIENCE_MS)
+        assert shown.faults == []

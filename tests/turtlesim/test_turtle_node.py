@@ -178,7 +178,7 @@ ENDS_WHILE_PUBLISHING = """
 import os, signal, sys, time
 from rclpy.node import Node
 from std_msgs.msg import String
-from spinbook.turtlesim.program import spin_until_stopped
+from spinbook.ros2.spinning import spin_until_stopped
 
 def make():
     node = Node("ending")

@@ -8,6 +8,7 @@ import { turtle } from "./turtle.js";
 const TURTLESIM =
   "import sys\nfrom spinbook.browser.in_page import canvas\ncanvas.use()\n" +
   "from spinbook.turtlesim.node import main\nsys.exit(main())\n";
+const DEMOS = /^demo_nodes_(cpp|py)\/(talker|listener|add_two_ints_server|add_two_ints_client)$/;
 // How long `ros2 run` of a turtlesim_node shows output before the cell goes on (s).
 const SHOWN_S = 3;
 // The longest that `%log --until` waits (s).
@@ -47,13 +48,18 @@ export async function runNode(cell, into = cell, args = []) {
   await Promise.race([into.ended, new Promise((resolve) => setTimeout(resolve, 500))]);
 }
 
-// `ros2 run PACKAGE EXECUTABLE …`: a node of this page, or turtlesim.
+// `ros2 run PACKAGE EXECUTABLE …`: a node of this page, turtlesim, or a demo node.
 export async function runExecutable(cell, [, , pack, executable, ...args]) {
   const name = args.map((word) => /^__(?:node|name):=(.*)/.exec(word)?.[1]).find(Boolean);
   if (executable === "turtlesim_node") {
     await start(name ?? executable, cell, TURTLESIM, "turtlesim_node.py", args);
     await cell.shows(SHOWN_S);
     return cell.say("turtlesim_node runs. Show its window with %turtle.");
+  }
+  const demo = demoNode(pack, executable);
+  if (demo) {
+    await start(name ?? executable, cell, demo.source, demo.file, args);
+    return void (await Promise.race([cell.shows(SHOWN_S), cell.ended]));
   }
   const wanted = cellOf(executable, `${pack}/${executable}`);
   if (wanted && name) {
@@ -76,8 +82,19 @@ export function showNodes(cell) {
 // The program that a launch file names: its text and its file.
 export function programOf(pack, executable) {
   if (executable === "turtlesim_node") return { source: TURTLESIM, file: "turtlesim_node.py" };
+  const demo = demoNode(pack, executable);
+  if (demo) return demo;
   const cell = cellOf(executable, `${pack}/${executable}`);
   return cell && { source: cell.program, file: cell.file };
+}
+
+// The program of a node of demo_nodes_cpp or demo_nodes_py, which Spinbook brings.
+function demoNode(pack, executable) {
+  const [, language, name] = DEMOS.exec(`${pack}/${executable}`) ?? [];
+  // A chapter may show the package's own program.
+  if (!name || cellOf("", `${pack}/${executable}`)) return undefined;
+  const source = `import sys\nfrom spinbook.ros2.demo_nodes import main\nsys.exit(main(["${language}", "${name}"]))\n`;
+  return { source, file: `${name}.py` };
 }
 
 // `%log NAME [--until TEXT] [--seconds N]`

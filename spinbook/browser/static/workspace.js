@@ -5,10 +5,13 @@ const texts = {};
 
 const NAMED = /\bros2 (?:run|launch) ([a-z]\w+) [\w.]|\bsrc\/([a-z]\w+)\//g;
 
+// Packages that Spinbook brings.
+const OTHERS = /^(turtlesim|demo_nodes_(cpp|py))$/;
+
 // The package of the page's nodes, as its commands name it.
 function pack() {
   const text = [...cells.values()].filter((cell) => cell.kind === "shell").map((cell) => cell.source).join("\n");
-  const names = [...text.matchAll(NAMED)].map(([, run, path]) => run ?? path).filter((name) => name !== "turtlesim");
+  const names = [...text.matchAll(NAMED)].map(([, run, path]) => run ?? path).filter((name) => !OTHERS.test(name));
   return names[0] ?? "package";
 }
 

@@ -1,4 +1,4 @@
-"""Runs a turtlesim node as a program, and loads turtlesim's message types."""
+"""Spins a node as a program of its own, until the process is stopped."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def spin_until_stopped(make: Callable[[], Node]) -> int:
     try_shutdown may find the context valid that is shut down the next moment. Here the callback at hand is
     finished first.
     """
-    text = False
+    stopped = False
 
     def stop(number: int, frame: FrameType | None) -> None:
-        nonlocal text
-        text = True
+        nonlocal stopped
+        stopped = True
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, stop)
@@ -35,22 +35,9 @@ def spin_until_stopped(make: Callable[[], Node]) -> int:
     try:
         executor = SingleThreadedExecutor()
         executor.add_node(make())
-        while not text:
+        while not stopped:
             executor.spin_once(timeout_sec=_NOTICE_S)
         executor.shutdown()
     finally:
         rclpy.shutdown()
     return 0
-
-
-try:
-    from turtlesim.action import RotateAbsolute
-    from turtlesim.msg import Color, Pose
-    from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
-except ImportError:
-    raise SystemExit(
-        "turtlesim's messages are not installed here. In a checkout, `make setup` compiles them. Elsewhere: "
-        "`spinbook interfaces add turtlesim`. With a sourced ROS 2: sudo apt-get install ros-jazzy-turtlesim"
-    ) from None
-
-__all__ = ["Color", "Kill", "Pose", "RotateAbsolute", "SetPen", "Spawn", "TeleportAbsolute", "TeleportRelative"]

@@ -1,0 +1,304 @@
+"""MyST's cross references: what a chapter's labels name, and `{ref}`, `{doc}`, `{numref}`, `[](label)` as plain links.
+
+A reference becomes a link to the file of a chapter and a heading in it, by the id that JupyterLab gives the heading.
+The site has other ids: see `Heading.slug`.
+"""
+
+from __future__ import annotations
+
+import functools
+import posixpath
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote, unquote
+
+from markdown_it import MarkdownIt
+from markdown_it.rules_inline import StateInline
+from markdown_it.token import Token
+from mdit_py_plugins.anchors.index import slugify, unique_slug
+from mdit_py_plugins.myst_role import myst_role_plugin
+
+from spinbook.chapter.block import Block, Kind
+from spinbook.chapter.files import is_elsewhere, locate
+from spinbook.chapter.links import places_of, rule_of
+from spinbook.problem import Problem, Severity
+
+_ROLES = frozenset({"ref", "doc", "numref", "any", "std:ref", "std:doc", "std:numref"})
+#: What a role says of its target: `words <target>`.
+_TITLED = re.compile(r"(.*?)\s*<([^<>]+)>$", re.DOTALL)
+#: Where a number would be that only Sphinx knows.
+_NUMBER = re.compile(r"\s*(?:%s|\{number\}|\{name\})\s*")
+_LABEL = re.compile(r"[\w:-]+")
+#: What may stand in a fragment as it is.
+_SAFE = "/?:@!$&'*+,;=-._~"
+
+
+@dataclass(frozen=True)
+class Heading:
+    """A heading of a chapter: its words as Markdown, its id in JupyterLab, and its id on the site."""
+
+    words: str
+    anchor: str
+    slug: str
+
+
+@dataclass(frozen=True)
+class Label:
+    """What a label names: a place in a chapter's file, and the words for it. `anchor` is "" at the top."""
+
+    file: Path
+    anchor: str
+    words: str
+
+
+def words_of(heading: Block) -> str:
+    """A heading's words, as Markdown."""
+    tokens = MarkdownIt("commonmark").parse("\n".join(line.text for line in heading.lines))
+    inline = next((token for token in tokens if token.type == "inline"), None)
+    return inline.content.partition(" {#")[0] if inline else ""
+
+
+def headings(blocks: Iterable[Block]) -> Iterator[Heading]:
+    """The headings of a chapter, in order. JupyterLab finds the first of equal ones."""
+    seen: set[str] = set()
+    for block in _all(blocks):
+        if block.kind is Kind.HEADING:
+            words = words_of(block)
+            text = _text(words)
+            first = slugify(text) not in seen
+            slug = unique_slug(slugify(text), seen)
+            yield Heading(words, text.replace(" ", "-") if first else slug, slug)
+
+
+def labels(blocks: Sequence[Block], file: Path) -> dict[str, Label]:
+    """The labels of a chapter: those before a heading name it, others the part of the chapter in which they are."""
+    coming = headings(blocks)
+    found: dict[str, Label] = {}
+    waiting: list[str] = []
+    above = Heading("", "", "")
+    for block in _all(blocks):
+        if block.kind is Kind.HEADING:
+            above = next(coming)
+        elif not any(line.text.strip() for line in block.lines):
+            continue
+        if block.label and block.kind is Kind.DROPPED:
+            waiting.append(block.label)
+            continue
+        here = [*waiting, *([block.label] if block.label else [])]
+        words = (block.title if block.label else "") or above.words
+        found = {**{_normal(name): Label(file, above.anchor, words) for name in here}, **found}
+        waiting = []
+    return found
+
+
+def _all(blocks: Iterable[Block]) -> Iterator[Block]:
+    return (inner for top in blocks for inner in top.walk())
+
+
+def _normal(label: str) -> str:
+    return " ".join(label.lower().split())
+
+
+def _text(markdown: str) -> str:
+    """Markdown's words without its marks."""
+    (inline,) = MarkdownIt("commonmark").parseInline(markdown)
+    return "".join(" " if "break" in child.type else child.content for child in inline.children or [])
+
+
+@dataclass(frozen=True)
+class _Found:
+    """A reference in an inline token's content, from `start` to `end`. `role` is "" for a link."""
+
+    start: int
+    end: int
+    role: str
+    words: str
+    target: str
+
+
+@dataclass(frozen=True)
+class References:
+    """The references of one chapter. `known` are all labels, its own first, `titles` the chapters' titles by file.
+
+    `sections` are the chapter's own headings by their ids on the site.
+    """
+
+    root: Path
+    file: Path
+    known: Mapping[str, Label]
+    titles: Mapping[Path, str]
+    sections: Mapping[str, Heading]
+
+    def resolved(self, text: str) -> str:
+        """`text` with links in place of its references. No line is added or lost."""
+        if not self._may_refer(text):
+            return text
+        lines = text.split("\n")
+        at = [0] * len(lines)
+        for first, content, found in _references(text):
+            places = list(places_of(lines, at, first, content))
+            for item in reversed(found):
+                new, _ = self._new(item)
+                if new is not None:
+                    _put(lines, at, places, content, item, new)
+        return "\n".join(lines)
+
+    def problems(self, blocks: Iterable[Block]) -> Iterator[Problem]:
+        """Each name that is unknown, where it is used first."""
+        reported: set[str] = set()
+        for block in _all(blocks):
+            lines = block.new or block.lines
+            text = "\n".join(line.text for line in lines)
+            if block.children or block.fence or block.kind is Kind.DROPPED or not self._may_refer(text):
+                continue
+            for first, content, found in _references(text):
+                for item in found:
+                    _, unknown = self._new(item)
+                    if unknown and unknown not in reported:
+                        reported.add(unknown)
+                        row = first + content.count("\n", 0, item.start)
+                        yield self._problem(item, unknown, lines[min(row, len(lines) - 1)].number)
+
+    def is_label(self, target: str) -> bool:
+        """Whether the target of a link is a label and no file, known or not."""
+        folder = self.file.parent.as_posix()
+        looks_so = _normal(unquote(target)) in self.known or (bool(self.known) and bool(_LABEL.fullmatch(target)))
+        return looks_so and locate(self.root, folder, target) is None
+
+    def _problem(self, item: _Found, unknown: str, line: int) -> Problem:
+        if item.role.endswith("doc"):
+            found = f"a reference leads to the document `{unknown}`, and there is no such file."
+            fix = "Write its path relative to the chapter's folder, without .md."
+        else:
+            found = f"a reference leads to the label `{unknown}`, which no chapter has."
+            fix = f"Write `({unknown})=` on a line before the heading that is meant."
+        return Problem(self.file, line, found, fix, Severity.WARNING, group="labels that no chapter has")
+
+    def _may_refer(self, text: str) -> bool:
+        return "}`" in text or "[](" in text or ("](" in text and bool(self.known))
+
+    def _new(self, item: _Found) -> tuple[str | None, str]:
+        """(what takes a reference's place, the name that is unknown); None leaves it as it is."""
+        if item.role.endswith("doc"):
+            return self._document(item.words, item.target)
+        name = unquote(item.target.removeprefix("#"))
+        label = self.known.get(_normal(name))
+        if item.role:
+            words = _NUMBER.sub(" ", item.words).strip() if item.role.endswith("numref") else item.words
+            return (self._link(label, words), "") if label else (words or name, name)
+        if label and (item.target.startswith("#") or self.is_label(item.target)):
+            return self._link(label, item.words), ""
+        return self._other_link(item)
+
+    def _other_link(self, item: _Found) -> tuple[str | None, str]:
+        """A link to a label that no chapter has, or one without words to a heading or a chapter."""
+        heading = self.sections.get(item.target.removeprefix("#")) if item.target.startswith("#") else None
+        if heading and not item.words:
+            return self._link(Label(self.file, heading.anchor, heading.words), ""), ""
+        if self.is_label(item.target) or (not item.words and _LABEL.fullmatch(item.target.removeprefix("#"))):
+            name = item.target.removeprefix("#")
+            return item.words or name, name
+        if item.words or is_elsewhere(item.target):
+            return None, ""
+        file = locate(self.root, self.file.parent.as_posix(), item.target)
+        return (f"[{self.titles[file]}]({item.target})", "") if file in self.titles and file else (None, "")
+
+    def _document(self, words: str, target: str) -> tuple[str, str]:
+        file = locate(self.root, self.file.parent.as_posix(), target)
+        if file is None:
+            return words or target, target
+        return self._link(Label(file, "", ""), words), ""
+
+    def _link(self, label: Label, words: str) -> str:
+        path = posixpath.relpath(label.file.as_posix(), self.file.parent.as_posix() or ".")
+        anchor = f"#{quote(label.anchor, safe=_SAFE)}" if label.anchor else ""
+        shown = words or label.words or self.titles.get(label.file, label.file.stem)
+        # A link can't hold another one.
+        shown = _text(shown).replace("[", r"\[").replace("]", r"\]") if "[" in shown else shown
+        return f"[{shown}]({quote(path)}{anchor})"
+
+
+@functools.cache
+def _parser() -> MarkdownIt:
+    md = MarkdownIt("commonmark", {"html": True}).enable("table").use(myst_role_plugin)
+    md.core.ruler.enableOnly(["normalize", "block"])
+    for name, read in (("link", _link), ("myst_role", _role)):
+        md.inline.ruler.at(name, _watched(rule_of(md, name), read))
+    return md
+
+
+def _watched(rule: Any, read: Any) -> Any:
+    def watch(state: StateInline, silent: bool) -> bool:
+        start, before = state.pos, len(state.tokens)
+        if not rule(state, silent):
+            return False
+        if not silent and state.src == state.env.get("watched") and (item := read(state, start, before)):
+            state.env["found"].append(item)
+        return True
+
+    return watch
+
+
+def _role(state: StateInline, start: int, before: int) -> _Found | None:
+    token = next(token for token in state.tokens[before:] if token.type == "myst_role")
+    name = str(token.meta["name"])
+    content = token.content.strip()
+    titled = _TITLED.match(content)
+    words, target = (titled[1], titled[2].strip()) if titled else ("", content)
+    return _Found(start, state.pos, name, words, target.lstrip("!~")) if name in _ROLES else None
+
+
+def _link(state: StateInline, start: int, before: int) -> _Found | None:
+    """A link whose target is written behind its words; for `[words][name]` it is elsewhere."""
+    opening = next(token for token in state.tokens[before:] if token.type == "link_open")
+    end, pos = state.pos, state.pos
+    label_end = state.md.helpers.parseLinkLabel(state, start, False)
+    state.pos = pos
+    if state.src[label_end + 1 : label_end + 2] != "(" or "title" in opening.attrs:
+        return None
+    return _Found(start, end, "", state.src[start + 1 : label_end], unquote(str(opening.attrs.get("href", ""))))
+
+
+def _references(text: str) -> Iterator[tuple[int, str, list[_Found]]]:
+    """(first line, content, references) of each part of a text that is read as one, such as a paragraph."""
+    md = _parser()
+    env: dict[str, Any] = {}
+    for token in md.parse(text, env):
+        if token.type == "inline":
+            yield (token.map or (0, 0))[0], token.content, _in_inline(md, token, env)
+
+
+def _in_inline(md: MarkdownIt, token: Token, env: dict[str, Any]) -> list[_Found]:
+    env |= {"watched": token.content, "found": []}
+    md.inline.parse(token.content, md, env, [])
+    out: list[_Found] = []
+    for item in sorted(env["found"], key=lambda item: (item.start, -item.end)):
+        if not out or item.start >= out[-1].end:
+            out.append(item)
+    return out
+
+
+def _put(
+    lines: list[str], at: list[int], places: Sequence[tuple[int, int] | None], content: str, item: _Found, new: str
+) -> None:
+    """Put a reference's link into its lines; of one that goes on in the next line, into that in which text remains."""
+    first, last = (content.count("\n", 0, offset) for offset in (item.start, item.end))
+    spots = places[first : last + 1]
+    if any(spot is None for spot in spots) or not spots:
+        return
+    parts = content[item.start : item.end].split("\n")
+    kept: list[tuple[int, int, int]] = []
+    for row, (spot, part) in enumerate(zip(spots, parts, strict=True)):
+        number, column = spot or (0, 0)
+        column += item.start - (content.rfind("\n", 0, item.start) + 1) if row == 0 else 0
+        kept.append((number, column, len(part)))
+    number, column, length = kept[-1]
+    rest = lines[number][column + length :].strip()
+    chosen = 0 if len(kept) == 1 or rest else len(kept) - 1
+    for row, (number, column, length) in enumerate(kept):
+        text = new if row == chosen else ""
+        lines[number] = lines[number][:column] + text + lines[number][column + length :].lstrip(" " if not text else "")
+        at[number] += len(text) - length

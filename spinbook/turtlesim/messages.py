@@ -1,0 +1,15 @@
+"""Loads turtlesim's message types."""
+
+from __future__ import annotations
+
+try:
+    from turtlesim.action import RotateAbsolute
+    from turtlesim.msg import Color, Pose
+    from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
+except ImportError:
+    raise SystemExit(
+        "turtlesim's messages are not installed here. In a checkout, `make setup` compiles them. Elsewhere: "
+        "`spinbook interfaces add turtlesim`. With a sourced ROS 2: sudo apt-get install ros-jazzy-turtlesim"
+    ) from None
+
+__all__ = ["Color", "Kill", "Pose", "RotateAbsolute", "SetPen", "Spawn", "TeleportAbsolute", "TeleportRelative"]
