@@ -75,7 +75,7 @@ def test_what_has_not_changed_is_not_run_again(course: CourseFolder) -> None:
 
 
 def test_a_cell_that_fails_is_told_by_chapter_and_line_with_its_log_and_the_rest_is_run(course: CourseFolder) -> None:
-    crash = '```python title="crash.py"\nimport rclpy\n\nprint("so far so good")\nrclpy.spin(1 / 0)\n```\n'
+    crash = '```python title="crash.py"\nimport rclpy\nrclpy.init()\nprint("so far so good")\nrclpy.spin(1 / 0)\n```\n'
     course.write(
         bad=f"# Bad\n\n{crash}\n```python\na = 1\nundefined = a.b\n```\n\n```python\n'still here'\n```\n",
         good="# Good\n\n```python\n'all right'\n```\n",
@@ -130,11 +130,13 @@ HOSTILE = """# Nodes that misbehave
 import rclpy
 print("spinning forever")
 while rclpy: pass
+rclpy.init()
 rclpy.spin(None)
 ```
 
 ```python title="crasher.py" raises
 import rclpy
+rclpy.init()
 rclpy.spin(undefined)
 ```
 
@@ -158,7 +160,7 @@ import rclpy
 line = "x" * 999
 for i in range(100_000): print(i, line)
 print("that was 100 MB")
-if not rclpy: rclpy.spin(None)
+if not rclpy: rclpy.init(); rclpy.spin(None)
 ```
 
 ```python title="daemon.py" seconds=60 until=forked
@@ -169,7 +171,7 @@ if os.fork() == 0:
         time.sleep(1000)
     os._exit(0)
 print("forked away")
-if not rclpy: rclpy.spin(None)
+if not rclpy: rclpy.init(); rclpy.spin(None)
 time.sleep(1000)
 ```
 
