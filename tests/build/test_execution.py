@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 
+import pytest
 from course_folder import CourseFolder
 from process_mark import ProcessMark
 
@@ -229,11 +230,12 @@ def test_a_killed_kernel_is_told_and_takes_its_nodes_along(course: CourseFolder,
     process_mark.wait_until_none()
 
 
-def test_twenty_notebooks_that_run_at_once_do_not_hear_each_other(course: CourseFolder) -> None:
-    names = [f"c{number:02}" for number in range(20)]
+@pytest.mark.parametrize("count", [5, pytest.param(20, marks=pytest.mark.soak)])
+def test_notebooks_that_run_at_once_do_not_hear_each_other(course: CourseFolder, count: int) -> None:
+    names = [f"c{number:02}" for number in range(count)]
     course.write(**{name: f"# C\n\n{TALKER.replace('WHO', name)}\n{LISTENER}" for name in names})
 
-    said = course.spinbook("build", "--execute", "--jobs", "20")
+    said = course.spinbook("build", "--execute", "--jobs", str(count))
 
     assert said.returncode == 0, said.stdout
     for name in names:
