@@ -3,6 +3,8 @@
 Half a second of computing goes into the imports of `spinbook build`, each time. A forked process does without; apart
 from that it is a process like any other, with a folder, an environment, output and an exit code of its own. Start a
 real one where the start itself matters: the order of sets, for example, is the same in all forks of one process.
+
+Nothing that is imported here may start a thread, as rclpy does: threads are not in the forks.
 """
 
 from __future__ import annotations
@@ -22,6 +24,13 @@ from functools import cache
 from pathlib import Path
 from typing import IO, Any
 
+_GRADING = ("grader.classroom.class_run", "grader.grading.grading", "grader.report.terminal")
+#: What commands import only when they are under way, by their verb or module.
+LATER = {
+    "site": ("spinbook.site.contents", "spinbook.site.sphinx_build", "myst_nb.sphinx_ext"),
+    "grade": _GRADING,
+    "grader": _GRADING,
+}
 #: The largest request, in bytes: most of it is the environment.
 _LARGEST = 1 << 17
 _TIME_LIMIT_S = 560.0
@@ -54,13 +63,14 @@ def run_prepared(
         return subprocess.CompletedProcess([module, *words], code, _content(out), _content(err))
 
 
-def _needs(module: str, words: tuple[str, ...]) -> str:
-    """Return the module to import before the fork."""
+def _needs(module: str, words: tuple[str, ...]) -> list[str]:
+    """Return what to import before the fork."""
     if module != "spinbook":
-        return f"{module}.command"
+        return [f"{module}.command", *LATER.get(module, ())]
     from spinbook.cli import VERBS
 
-    return VERBS[words[0]].command.partition(":")[0] if words and words[0] in VERBS else "spinbook.cli"
+    verb = words[0] if words else ""
+    return [VERBS[verb].command.partition(":")[0] if verb in VERBS else "spinbook.cli", *LATER.get(verb, ())]
 
 
 def _content(file: IO[bytes]) -> str:
@@ -118,7 +128,9 @@ def _serve(control: socket.socket) -> dict[str, Any]:
         if not data:
             os._exit(0)
         request: dict[str, Any] = json.loads(data)
-        importlib.import_module(request["needs"])
+        for name in request["needs"]:
+            importlib.import_module(name)
+        assert len(list(Path("/proc/self/task").iterdir())) == 1, f"{request['needs']} start a thread"
         gc.freeze()
         if not (pid := os.fork()):
             control.close()
