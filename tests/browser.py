@@ -20,8 +20,20 @@ LOCAL = ("file:", "data:", "blob:", "about:")
 #: How long anything that has to happen in a page may take, on a busy machine (ms).
 DEADLINE_MS = 90_000
 
+#: What is off in Chromium. First what Playwright turns off, as this list replaces its own; then the pages behind the
+#: address bar: without a window nobody sees them, but each window would render two, a third of the time for a page.
+FEATURES_OFF = (
+    *("AvoidUnnecessaryBeforeUnloadCheckSync", "DestroyProfileOnBrowserClose", "HttpsUpgrades", "LensOverlay"),
+    *("HttpsFirstBalancedModeAutoEnable", "MediaRouter", "PaintHolding", "ThirdPartyStoragePartitioning"),
+    *("AvoidCorsURLLoaderRestartOnRedirect", "OptimizationHints", "NetworkTimeServiceQuerying", "AimEnabled"),
+    *("PreconnectToSearch", "WebUIOmniboxPopup", "WebUIOmniboxAimPopup"),
+)
+
 #: No calls home, and no GPU that a test machine would not have.
-ARGUMENTS = ["--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
+ARGUMENTS = [
+    *("--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync"),
+    f"--disable-features={','.join(FEATURES_OFF)}",
+]
 
 
 @dataclass

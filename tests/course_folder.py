@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import nbformat
+from prepared_python import run_prepared
 
 
 class CourseFolder:
@@ -31,6 +32,10 @@ class CourseFolder:
 
     def spinbook(self, *words: str) -> subprocess.CompletedProcess[str]:
         """Run the command in the course's folder."""
+        return run_prepared("spinbook", *words, cwd=self.root)
+
+    def spinbook_from_scratch(self, *words: str) -> subprocess.CompletedProcess[str]:
+        """Run the command in a new Python: sets have another order in each."""
         return subprocess.run(
             [sys.executable, "-m", "spinbook", *words], cwd=self.root, capture_output=True, text=True, timeout=560
         )

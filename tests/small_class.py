@@ -13,6 +13,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from prepared_python import run_prepared
+
 ROOT = Path(__file__).parents[1]
 TEMPLATE = ROOT / "spinbook" / "new" / "template"
 EXERCISE = "speed_limit"
@@ -55,7 +57,7 @@ class SmallClass:
         return subprocess.Popen(
             command,
             cwd=self.folder,
-            env={**os.environ, "SPINBOOK_CACHE": str(self._cache), "COLUMNS": "200"},
+            env=self._environment,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
@@ -64,9 +66,13 @@ class SmallClass:
 
     def grade(self, *arguments: str, out: str = "results") -> tuple[int, str]:
         """Return the command's exit code, and everything it printed."""
-        process = self.start(*arguments, out=out)
-        printed, _ = process.communicate(timeout=560)
-        return process.returncode, printed
+        words = (EXERCISE, "submissions", "--out", out, *arguments)
+        done = run_prepared("grader", *words, cwd=self.folder, env=self._environment, merged=True)
+        return done.returncode, done.stdout
+
+    @property
+    def _environment(self) -> dict[str, str]:
+        return {**os.environ, "SPINBOOK_CACHE": str(self._cache), "COLUMNS": "200"}
 
     def wait_for_grades(self, count: int, process: subprocess.Popen[str], out: str = "results") -> None:
         """Wait until `count` students have a grade, or the command has ended."""

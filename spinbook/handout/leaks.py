@@ -127,7 +127,7 @@ def _run_by(files: Mapping[str, bytes], name: str) -> Iterator[str]:
 
 def bare(text: str) -> str:
     """Return a text without spaces and line ends."""
-    return re.sub(r"\s+", "", text)
+    return "".join(text.split())
 
 
 def _pieces(what: str, place: str, lines: list[Line], known: str) -> list[Secret]:
@@ -222,8 +222,9 @@ class _Search:
     def found_in(self, text: str) -> list[Secret]:
         """Return the secrets that are in the text, in their order."""
         found = {number for number in self._short if self._known[number].text in text}
-        for start in range(0, len(text), self._step):
-            for number, at in self._having.get(text[start : start + _PIECE], ()):
+        having = self._having
+        for start in [at for at in range(0, len(text), self._step) if text[at : at + _PIECE] in having]:
+            for number, at in having[text[start : start + _PIECE]]:
                 if start >= at and text.startswith(self._known[number].text, start - at):
                     found.add(number)
         return [self._known[number] for number in sorted(found)]

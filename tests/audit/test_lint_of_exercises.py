@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from prepared_python import run_prepared
 from small_exercise import SmallExercise
 
 from grader.checking.proofreading import rules_that_the_task_lacks
@@ -28,9 +27,7 @@ def linted(small: SmallExercise) -> tuple[int, str]:
     (small.course / "course.toml").write_text(COURSE)
     (small.course / "chapters").mkdir()
     (small.course / "chapters" / "one.md").write_text("# One\n\nNothing to run.\n")
-    run = subprocess.run(
-        [sys.executable, "-m", "spinbook", "lint"], cwd=small.course, capture_output=True, text=True, timeout=120
-    )
+    run = run_prepared("spinbook", "lint", cwd=small.course)
     return run.returncode, run.stdout + run.stderr
 
 

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 
+import pytest
 from course_folder import CourseFolder
 from process_mark import ProcessMark
 
@@ -77,7 +78,7 @@ def test_what_has_not_changed_is_not_run_again(course: CourseFolder) -> None:
 def test_a_failing_cell_is_reported_by_chapter_and_line_with_its_log_and_the_rest_is_run(
     course: CourseFolder,
 ) -> None:
-    crash = '```python title="crash.py"\nimport rclpy\n\nprint("so far so good")\nrclpy.spin(1 / 0)\n```\n'
+    crash = '```python title="crash.py"\nimport rclpy\nrclpy.init()\nprint("so far so good")\nrclpy.spin(1 / 0)\n```\n'
     course.write(
         bad=f"# Bad\n\n{crash}\n```python\na = 1\nundefined = a.b\n```\n\n```python\n'still here'\n```\n",
         good="# Good\n\n```python\n'all right'\n```\n",
@@ -132,11 +133,13 @@ HOSTILE = """# Nodes that misbehave
 import rclpy
 print("spinning forever")
 while rclpy: pass
+rclpy.init()
 rclpy.spin(None)
 ```
 
 ```python title="crasher.py" raises
 import rclpy
+rclpy.init()
 rclpy.spin(undefined)
 ```
 
@@ -160,7 +163,7 @@ import rclpy
 line = "x" * 999
 for i in range(100_000): print(i, line)
 print("that was 100 MB")
-if not rclpy: rclpy.spin(None)
+if not rclpy: rclpy.init(); rclpy.spin(None)
 ```
 
 ```python title="daemon.py" seconds=60 until=forked
@@ -171,7 +174,7 @@ if os.fork() == 0:
         time.sleep(1000)
     os._exit(0)
 print("forked away")
-if not rclpy: rclpy.spin(None)
+if not rclpy: rclpy.init(); rclpy.spin(None)
 time.sleep(1000)
 ```
 
@@ -229,11 +232,12 @@ def test_a_killed_kernel_is_reported_and_takes_its_nodes_along(course: CourseFol
     process_mark.wait_until_none()
 
 
-def test_twenty_notebooks_that_run_at_once_do_not_hear_each_other(course: CourseFolder) -> None:
-    names = [f"c{number:02}" for number in range(20)]
+@pytest.mark.parametrize("count", [5, pytest.param(20, marks=pytest.mark.soak)])
+def test_notebooks_that_run_at_once_do_not_hear_each_other(course: CourseFolder, count: int) -> None:
+    names = [f"c{number:02}" for number in range(count)]
     course.write(**{name: f"# C\n\n{TALKER.replace('WHO', name)}\n{LISTENER}" for name in names})
 
-    said = course.spinbook("build", "--execute", "--jobs", "20")
+    said = course.spinbook("build", "--execute", "--jobs", str(count))
 
     assert said.returncode == 0, said.stdout
     for name in names:

@@ -5,20 +5,17 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from prepared_python import run_prepared
 
 ROOT = Path(__file__).parents[2]
 SOLUTIONS = ROOT / "solutions" / "joint_velocity"
 
 
 def grade(*arguments: str, cwd: Path = ROOT, **environment: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "grader", *arguments],
-        cwd=cwd, env={**os.environ, **environment}, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+    return run_prepared("grader", *arguments, cwd=cwd, env={**os.environ, **environment})
 
 
 def test_a_mistake_is_reported_with_when_and_where_drawn_and_recorded(tmp_path: Path) -> None:

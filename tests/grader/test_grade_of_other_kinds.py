@@ -6,11 +6,10 @@ The solution has to pass every check before a submission is graded. So each test
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from prepared_python import run_prepared
 
 SAID = """\
 import sys
@@ -95,11 +94,8 @@ def graded(folder: Path, names: str, interface: str, scenario: str, check: str, 
     )
     (solutions / "solution.py").write_text(f"{solution}# BEGIN SOLUTION\n# END SOLUTION\n")
     (folder / "wrong.py").write_text(wrong)
-    done = subprocess.run(
-        [sys.executable, "-m", "grader", "small", "wrong.py"],
-        cwd=folder, env={**os.environ, "SPINBOOK_CACHE": str(folder / "cache")}, capture_output=True, text=True,
-        check=False,
-    )  # fmt: skip
+    environment = {**os.environ, "SPINBOOK_CACHE": str(folder / "cache")}
+    done = run_prepared("grader", "small", "wrong.py", cwd=folder, env=environment)
     assert (done.returncode, done.stderr) == (1, ""), done.stdout + done.stderr
     return " ".join(done.stdout.split())
 

@@ -120,7 +120,7 @@ def append(file: Path, text: str) -> None:
 
 def hand_out(course: CourseFolder) -> HandedOut:
     """Run `spinbook handout`, which must succeed."""
-    done = course.spinbook("handout")
+    done = course.spinbook_from_scratch("handout")
     assert done.returncode == 0, done.stdout + done.stderr
     folder = next(path for path in (course.root / "build" / "handout").iterdir() if path.is_dir())
     return HandedOut(folder, folder.with_suffix(".zip"), done.stdout)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from prepared_python import run_prepared
 
 from spinbook.course.course import read_course
 
@@ -23,8 +23,7 @@ def book(root: Path, *chapters: str) -> Path:
 
 
 def spinbook_import(place: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    argv = [sys.executable, "-m", "spinbook", "import", str(place), *words]
-    return subprocess.run(argv, capture_output=True, text=True, timeout=120, cwd=place.parent)
+    return run_prepared("spinbook", "import", str(place), *words, cwd=place.parent)
 
 
 def order(root: Path) -> list[str]:

@@ -11,6 +11,7 @@ from pathlib import Path
 import nbformat
 import pytest
 from click.testing import CliRunner, Result
+from prepared_python import run_prepared
 
 import spinbook
 from spinbook.course.course import read_course
@@ -20,6 +21,8 @@ from spinbook.problem import SpinbookError
 
 def run(*command: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     environment = {**os.environ, "PYTEST_ADDOPTS": ""}
+    if command[:2] != ("spinbook", "new") and command[0] == "spinbook":
+        return run_prepared(*command, cwd=cwd, env=environment)
     return subprocess.run(
         [sys.executable, "-m", *command], cwd=cwd, env=environment, capture_output=True, text=True, timeout=560
     )

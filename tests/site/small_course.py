@@ -18,6 +18,8 @@ from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
+from prepared_python import run_prepared
+
 ROOT = Path(__file__).parents[2]
 
 _COURSE = """\
@@ -188,8 +190,7 @@ class SmallCourse:
     def spinbook_site(self, *words: str) -> subprocess.CompletedProcess[str]:
         """Run `spinbook site` in the course's folder, without access to npm's registry."""
         environment = {**os.environ, "npm_config_registry": "http://127.0.0.1:9"}
-        argv = [sys.executable, "-m", "spinbook", "site", *words]
-        return subprocess.run(argv, cwd=self.root, env=environment, capture_output=True, text=True, timeout=560)
+        return run_prepared("spinbook", "site", *words, cwd=self.root, env=environment)
 
     @contextmanager
     def serving(self) -> Iterator[str]:
