@@ -98,8 +98,8 @@ def test_demo_nodes_run_in_a_page(tmp_path: Path, browser: Browser) -> None:
     with served(tmp_path / "build" / "site") as address, opened(browser, f"{address}/chapters/demos.html") as shown:
         talker, listener = shown.page.locator(".cell-shell").all()
         talker.get_by_role("button", name="Run cell 1", exact=True).click()
-        expect(talker.get_by_role("log")).to_contain_text("[talker]: Publishing: 'Hello World: 1'", timeout=PATIENCE_MS)
+        expect(talker.get_by_role("log")).to_contain_text("[talker]: Publishing: 'Hello World: 1'", timeout=DEADLINE_MS)
 
         listener.get_by_role("button", name="Run cell 2", exact=True).click()
-        expect(listener.get_by_role("log")).to_contain_text("[ear]: I heard: [Hello World: ", timeout=PATIENCE_MS)
+        expect(listener.get_by_role("log")).to_contain_text("[ear]: I heard: [Hello World: ", timeout=DEADLINE_MS)
         assert shown.faults == []
