@@ -127,7 +127,7 @@ def join(code: str, pieces: Sequence[str]) -> Joined:
 def _amended(code: str, pieces: Sequence[str]) -> tuple[str, str]:
     """(class, its base) of a class in `code` that only adds methods to that of an earlier piece; else ("", "")."""
     facts = inspect(code)
-    for item in ast.parse(code).body if facts.lacking else ():
+    for item in ast.parse(code).body if facts.lacking or facts.nameless else ():
         if not isinstance(item, ast.ClassDef) or item.name not in facts.node_classes:
             continue
         found = _binding(item.name, pieces)

@@ -259,7 +259,8 @@ def _link(state: StateInline, start: int, before: int) -> _Found | None:
     state.pos = pos
     if state.src[label_end + 1 : label_end + 2] != "(" or "title" in opening.attrs:
         return None
-    return _Found(start, end, "", state.src[start + 1 : label_end], unquote(str(opening.attrs.get("href", ""))))
+    words = state.src[start + 1 : label_end].replace("\n", " ")
+    return _Found(start, end, "", words, unquote(str(opening.attrs.get("href", ""))))
 
 
 def _references(text: str) -> Iterator[tuple[int, str, list[_Found]]]:

@@ -22,12 +22,23 @@ def can_stand_alone(name: str, classes: Mapping[str, ast.ClassDef], everything: 
     own = classes[name]
     inside = set(ast.walk(own))
     used = any(isinstance(i, ast.Name) and i.id == name and i not in inside for i in everything)
+    return not used and not needs_arguments(own)
+
+
+def needs_arguments(own: ast.ClassDef) -> bool:
+    """Whether a class can't be made without arguments."""
     init = next((i for i in own.body if isinstance(i, ast.FunctionDef) and i.name == "__init__"), None)
-    if used or init is None:
-        return not used
+    if init is None:
+        return False
     given = len(init.args.args) - 1 - len(init.args.defaults)
     required = [a for a, d in zip(init.args.kwonlyargs, init.args.kw_defaults, strict=True) if d is None]
-    return given <= 0 and not required
+    return given > 0 or bool(required)
+
+
+def gives_no_name(own: ast.ClassDef) -> bool:
+    """Whether a class leaves the making to rclpy's Node, which wants a name."""
+    has_init = any(isinstance(i, ast.FunctionDef) and i.name == "__init__" for i in own.body)
+    return not has_init and [last_name(base) for base in own.bases] in (["Node"], ["LifecycleNode"])
 
 
 def attributes_lacking(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 from spinbook.chapter.classify import CellKind, Classified, node_name
 from spinbook.chapter.imports import Missing, missing_imports
 from spinbook.chapter.joining import Joined, join
+from spinbook.chapter.node_classes import needs_arguments
 from spinbook.chapter.python_code import PythonCode, inspect
 from spinbook.problem import Problem, Severity
 
@@ -61,7 +63,8 @@ class Programs:
                 names = ", ".join(f"`self.{name}`" for name in list(code.lacking)[:3])
                 verb = "is" if len(code.lacking) == 1 else "are"
                 return _static(item, f"it is a fragment: {names} {verb} never set in it")
-            if not code.alone and not _is_file(item):
+            nameless = code.nameless and not joined.amends
+            if (not code.alone and not _is_file(item)) or nameless or _needs_arguments(joined):
                 return _static(item, "it is a fragment: nothing makes a node of its class")
         if code.lacking and code.is_complete and not joined.amends:
             self._lacking(item, code)
@@ -79,7 +82,7 @@ class Programs:
 
     def _joined(self, item: Classified, out: Sequence[Classified]) -> Joined:
         assert item.code is not None
-        if not item.code.needs and not item.code.lacking:
+        if not (item.code.needs or item.code.lacking or item.code.nameless):
             return Joined(item.fence.code)
         return join(item.fence.code, [out[i].fence.code for i in self._pieces])
 
@@ -162,6 +165,13 @@ class Programs:
 
 def _facts(joined: Joined, code: PythonCode) -> PythonCode:
     return inspect(joined.whole) if joined.before else code
+
+
+def _needs_arguments(joined: Joined) -> bool:
+    """Whether the class that code adds methods to can't be made without arguments."""
+    above = ast.parse(joined.before).body if joined.amends else []
+    classes = [item for item in above if isinstance(item, ast.ClassDef) and item.name == joined.amends]
+    return bool(classes) and needs_arguments(classes[-1])
 
 
 def _is_file(item: Classified) -> bool:

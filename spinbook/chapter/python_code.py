@@ -14,6 +14,7 @@ from spinbook.chapter.class_pieces import methods_alone, names_begun, uses_super
 from spinbook.chapter.node_classes import (
     attributes_lacking,
     can_stand_alone,
+    gives_no_name,
     last_name,
     never_initialized,
     used_by_init,
@@ -93,6 +94,8 @@ class PythonCode:
     """The line on which it waits for keyboard input; 0: it does not."""
     alone: tuple[str, ...] = ()
     """The Node classes that nothing in the code makes or derives from, and that need no arguments."""
+    nameless: tuple[str, ...] = ()
+    """Those of them that can't be made after all: they have no `__init__`, and so give the node no name."""
     lacking: Mapping[str, int] = field(default_factory=dict)
     """Attributes of `self` that a Node class uses and nothing sets -> line."""
     fails_at_once: str = ""
@@ -232,6 +235,7 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
     classes = {item.name: item for item in everything if isinstance(item, ast.ClassDef)}
     calls = [item for item in everything if isinstance(item, ast.Call)]
     lacking = attributes_lacking(everything, node_classes, classes)
+    alone = tuple(name for name in node_classes if can_stand_alone(name, classes, everything))
     return PythonCode(
         imports=imports,
         interfaces=interfaces,
@@ -256,7 +260,8 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
         initializes=any(last_name(call.func) == "init" for call in calls),
         leaves=leaves(tree),
         asks=next((call.lineno for call in calls if isinstance(call.func, ast.Name) and call.func.id == "input"), 0),
-        alone=tuple(name for name in node_classes if can_stand_alone(name, classes, everything)),
+        alone=alone,
+        nameless=tuple(name for name in alone if gives_no_name(classes[name])),
         lacking=lacking,
         fails_at_once=used_by_init(lacking, node_classes, classes),
         never_initialized=never_initialized(node_classes, classes),

@@ -16,6 +16,10 @@ _WORDS = {
     ),
     "a file name": ("node has no file name", "nodes have no file name"),
     "files that are not there": ("link leads to a file that is not there", "links lead to files that are not there"),
+    "labels that no chapter has": (
+        "reference leads to a label that no chapter has",
+        "references lead to labels that no chapter has",
+    ),
     "relative imports": ("node imports relative to a package", "nodes import relative to a package"),
     "programs that no fence shows": (
         "command starts a program that no fence shows",

@@ -167,6 +167,29 @@ def test_commands_about_the_chapters_own_package_run(tmp_path: Path, fences: lis
     assert last.kind is CellKind.SHELL
 
 
+@pytest.mark.parametrize("has_main", [True, False])
+@pytest.mark.parametrize("given", ["name", "*, name", "name='arm'", "*names"])
+def test_a_change_to_a_class_that_needs_arguments_is_not_started_without_them(
+    tmp_path: Path, given: str, has_main: bool
+) -> None:
+    main = "def main():\n    rclpy.init()\n    rclpy.spin(Arm('a'))\n" if has_main else ""
+    first = f"{IMPORTS}class Arm(Node):\n    def __init__(self, {given}):\n        super().__init__('arm')\n{main}"
+    change = "class Arm(Node):\n    def tick(self):\n        self.count = 2\n"
+    chapter = read(tmp_path, first, change)
+
+    runs = given in {"name='arm'", "*names"}
+    assert [cell.after for cell in cells(chapter) if cell.source == change] == ([("arm",)] if runs else [])
+    signs = [fence.sign for fence in chapter.static_fences if fence.line > 10]
+    assert signs == ([] if runs else ["it is a fragment: nothing makes a node of its class."])
+
+
+def test_a_class_that_gives_its_node_no_name_is_not_started(tmp_path: Path) -> None:
+    chapter = read(tmp_path, IMPORTS + "class Arm(Node):\n    def tick(self):\n        pass\n")
+
+    assert cells(chapter) == []
+    assert chapter.static_fences[0].sign == "it is a fragment: nothing makes a node of its class."
+
+
 def test_a_node_knows_what_ros2_run_calls_it(tmp_path: Path) -> None:
     node, _ = cells(read(tmp_path, GRIPPER, SETUP, "```bash\nros2 run arm hand\n```\n"))
 
