@@ -181,7 +181,7 @@ def test_a_file_name_is_shown_above_a_static_fence(course: CourseFolder) -> None
 
 
 def test_lint_tells_what_is_not_run_and_builds_nothing(course: CourseFolder) -> None:
-    said = course.write(one=CHAPTER).spinbook("lint", "--static")
+    said = course.write(one=CHAPTER).spinbook_from_scratch("lint", "--static")
 
     assert "1 node, 2 snippet, 1 shell, 1 fences shown and not run" in said.stdout
     assert "chapters/one.md:29: yaml: `yaml` is neither Python nor shell" in said.stdout

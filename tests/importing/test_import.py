@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -158,7 +159,8 @@ def test_the_first_build_and_a_page_say_what_runs_and_what_to_do_first(tmp_path:
     (root / "mkdocs.yml").write_text(MKDOCS)
     before = {path: path.read_bytes() for path in root.rglob("*.md")}
 
-    said = spinbook_import(root)
+    argv = [sys.executable, "-m", "spinbook", "import", str(root)]
+    said = subprocess.run(argv, capture_output=True, text=True, timeout=120, cwd=root.parent)
 
     assert said.stdout.startswith("Robots: a course: 3 chapters")
     assert "gone.md" in said.stdout
