@@ -63,8 +63,8 @@ class Programs:
                 names = ", ".join(f"`self.{name}`" for name in list(code.lacking)[:3])
                 verb = "is" if len(code.lacking) == 1 else "are"
                 return _static(item, f"it is a fragment: {names} {verb} never set in it")
-            nameless = code.nameless and not joined.amends
-            if (not code.alone and not _is_file(item)) or nameless or _needs_arguments(joined):
+            nameless = bool(code.nameless) and not joined.amends
+            if ((not code.alone or nameless) and not _is_file(item)) or _needs_arguments(joined):
                 return _static(item, "it is a fragment: nothing makes a node of its class")
         if code.lacking and code.is_complete and not joined.amends:
             self._lacking(item, code)
