@@ -56,7 +56,12 @@ class Label:
 
 def words_of(heading: Block) -> str:
     """A heading's words, as Markdown."""
-    tokens = MarkdownIt("commonmark").parse("\n".join(line.text for line in heading.lines))
+    return _first_words("\n".join(line.text for line in heading.lines))
+
+
+@functools.lru_cache(maxsize=4096)
+def _first_words(markdown: str) -> str:
+    tokens = _plain_parser().parse(markdown)
     inline = next((token for token in tokens if token.type == "inline"), None)
     return inline.content.partition(" {#")[0] if inline else ""
 
@@ -102,9 +107,15 @@ def _normal(label: str) -> str:
     return " ".join(label.lower().split())
 
 
+@functools.cache
+def _plain_parser() -> MarkdownIt:
+    return MarkdownIt("commonmark")
+
+
+@functools.lru_cache(maxsize=4096)
 def _text(markdown: str) -> str:
     """Markdown's words without its marks."""
-    (inline,) = MarkdownIt("commonmark").parseInline(markdown)
+    (inline,) = _plain_parser().parseInline(markdown)
     return "".join(" " if "break" in child.type else child.content for child in inline.children or [])
 
 
