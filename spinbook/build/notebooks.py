@@ -12,6 +12,7 @@ from grader.exercise.exercise import ExerciseError
 from grader.files import write_if_changed
 from spinbook.build.digest import code_digest, digest, files_digest
 from spinbook.build.notebook import notebook_json
+from spinbook.chapter.labels import may_refer
 from spinbook.chapter.read import Surroundings, forget_chapters, read_chapter
 from spinbook.chapters import surroundings
 from spinbook.course.course import Course
@@ -66,15 +67,19 @@ def build_notebooks(course: Course, *, is_strict: bool = False) -> Iterator[Buil
     for chapter in course.chapters:
         notebook = folder / f"{known.names[chapter]}.ipynb"
         entry = before.get(chapter.as_posix())
-        own = digest(common, exercise_files, files_digest([course.root / chapter], course.root))
-        key = _key(own, entry["uses"] if entry else [], course)
+        own = digest(common, exercise_files)
+        key = _key(own, chapter, entry["uses"] if entry else [], course, known)
         if entry and entry["key"] == key and notebook.exists():
             built = Built(chapter, notebook, tuple(_problem(p) for p in entry["problems"]), False, tuple(entry["uses"]))
         else:
             built = _build(course, chapter, notebook, known, is_strict)
         if not built.failed:
             problems = [_plain(problem) for problem in built.problems]
-            record_of = {"key": _key(own, built.uses, course), "notebook": notebook.name, "uses": list(built.uses)}
+            record_of = {
+                "key": _key(own, chapter, built.uses, course, known),
+                "notebook": notebook.name,
+                "uses": list(built.uses),
+            }
             after[chapter.as_posix()] = {**record_of, "problems": problems}
         yield built
     names = {f"{name}.ipynb" for name in known.names.values()}
@@ -96,15 +101,25 @@ def _build(course: Course, chapter: Path, notebook: Path, known: Surroundings, i
     return Built(chapter, notebook, tuple(problems), fresh=True, uses=uses)
 
 
-def _key(own: str, uses: Sequence[str], course: Course) -> str:
-    """What a chapter's notebook depends on: the chapter, all chapters' surroundings, the files that it shows."""
-    return digest(own, files_digest((course.root / file for file in uses), course.root))
+def _key(own: str, chapter: Path, uses: Sequence[str], course: Course, known: Surroundings) -> str:
+    """What a chapter's notebook depends on: the chapter, all chapters' surroundings, the files that it shows.
+
+    Titles and labels of other chapters count only for a chapter that may refer to them.
+    """
+    files = [course.root / chapter, *(course.root / file for file in uses)]
+    texts = (file.read_bytes().decode(errors="replace") for file in files if file.is_file())
+    referred = _named(known) if any(may_refer(text, known.labels) for text in texts) else ""
+    return digest(own, files_digest(files, course.root), repr(referred))
 
 
 def _sorted(known: Surroundings) -> tuple[Any, ...]:
-    named = [sorted(given.items()) for given in (known.names, known.titles)]
+    names = sorted(known.names.items())
+    return known.package, sorted(known.modules), sorted(known.exercises), names, sorted(known.interfaces)
+
+
+def _named(known: Surroundings) -> tuple[Any, ...]:
     labels = [(name, str(label)) for name, label in sorted(known.labels.items())]
-    return known.package, sorted(known.modules), sorted(known.exercises), named, sorted(known.interfaces), labels
+    return sorted(known.titles.items()), labels
 
 
 def _read_record(file: Path) -> Mapping[str, Any]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 import posixpath
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -130,6 +130,11 @@ class _Found:
     target: str
 
 
+def may_refer(text: str, known: Collection[str]) -> bool:
+    """Whether a chapter's text can have references, when these labels are known: a quick look, before it is parsed."""
+    return "}`" in text or "[](" in text or ("](" in text and bool(known))
+
+
 @dataclass(frozen=True)
 class References:
     """The references of one chapter. `known` are all labels, its own first, `titles` the chapters' titles by file.
@@ -145,7 +150,7 @@ class References:
 
     def resolved(self, text: str) -> str:
         """`text` with links in place of its references. No line is added or lost."""
-        if not self._may_refer(text):
+        if not may_refer(text, self.known):
             return text
         lines = text.split("\n")
         at = [0] * len(lines)
@@ -163,7 +168,7 @@ class References:
         for block in _all(blocks):
             lines = block.new or block.lines
             text = "\n".join(line.text for line in lines)
-            if block.children or block.fence or block.kind is Kind.DROPPED or not self._may_refer(text):
+            if block.children or block.fence or block.kind is Kind.DROPPED or not may_refer(text, self.known):
                 continue
             for first, content, found in _references(text):
                 for item in found:
@@ -187,9 +192,6 @@ class References:
             found = f"a reference leads to the label `{unknown}`, which no chapter has."
             fix = f"Write `({unknown})=` on a line before the heading that is meant."
         return Problem(self.file, line, found, fix, Severity.WARNING, group="labels that no chapter has")
-
-    def _may_refer(self, text: str) -> bool:
-        return "}`" in text or "[](" in text or ("](" in text and bool(self.known))
 
     def _new(self, item: _Found) -> tuple[str | None, str]:
         """(what takes a reference's place, the name that is unknown); None leaves it as it is."""
