@@ -53,7 +53,7 @@ def topic_name(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     others = [other for other in known if other != name]
     word = "topic" if "qos" in ENDS[called(node)] else "name"
     for other in (f"{name}s", f"/robot{name}", f"~{name}", *others):
-        yield Change(node, place.value, expression(repr(other)), f"uses the {word} {other} instead of {name}")
+        yield Change(node, place.value, expression(repr(other)), f"has the {word} {other} for {name}")
 
 
 def message_type(node: cst.CSTNode, program: Program) -> Iterator[Change]:
@@ -61,7 +61,7 @@ def message_type(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     place = _argument(node, "type")
     if place is not None:
         other, module = OTHER_TYPES.get(called(node), ("std_msgs.msg.String", "std_msgs.msg"))
-        what = f"uses the type {other.rpartition('.')[2]} instead of {program.text(place.value)}"
+        what = f"has the type {other.rpartition('.')[2]} for {program.text(place.value)}"
         yield Change(node, place.value, expression(other), what, (module,))
 
 
@@ -77,7 +77,7 @@ def callback_left_out(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     """Messages that arrive are not passed to the callback."""
     place = _argument(node, "callback")
     if place is not None:
-        yield Change(node, place.value, expression("lambda *_: None"), f"never calls {program.text(place.value)}")
+        yield Change(node, place.value, expression("lambda *_: None"), f"does not call {program.text(place.value)}")
 
 
 def timer_period(node: cst.CSTNode, program: Program) -> Iterator[Change]:
@@ -95,12 +95,12 @@ def node_name(node: cst.CSTNode, program: Program) -> Iterator[Change]:
         first = node.args[0]
         if isinstance(first.value, cst.SimpleString):
             name = str(first.value.evaluated_value)
-            yield Change(node, first.value, expression(repr(f"{name}_node")), f"names the node {name + '_node'!r}")
+            yield Change(node, first.value, expression(repr(f"{name}_node")), f"the node is called {name + '_node'!r}")
             namespace = cst.parse_expression("f(namespace='robot')")
             assert isinstance(namespace, cst.Call)
             args = [first.with_changes(comma=cst.Comma(whitespace_after=cst.SimpleWhitespace(" "))), *node.args[1:]]
             new = node.with_changes(args=[*args, namespace.args[0]])
-            yield Change(node, node, new, "puts the node into a namespace")
+            yield Change(node, node, new, "the node has a namespace")
 
 
 def one_publisher_a_message(node: cst.CSTNode, program: Program) -> Iterator[Change]:
@@ -120,7 +120,7 @@ def publisher_on_other_topic(node: cst.CSTNode, program: Program) -> Iterator[Ch
         for topic, kind in kinds.items():
             package, _, name = kind.split("/")
             new = f"self.create_publisher({package}.msg.{name}, '{topic}', 10)"
-            what = f"also creates a publisher on {topic}"
+            what = f"has a publisher on {topic}, too"
             yield program.instead(node, what, node, new, imports=(f"{package}.msg",))
 
 
@@ -129,7 +129,7 @@ def spinning(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     if isinstance(node, cst.Call) and isinstance(node.func, cst.Attribute):
         for old, new in (("spin", "spin_once"), ("try_shutdown", "shutdown")):
             if called(node) == old:
-                yield Change(node, node.func.attr, cst.Name(new), f"calls {new}() instead of {old}()")
+                yield Change(node, node.func.attr, cst.Name(new), f"calls {new}() for {old}()")
 
 
 def _argument(node: cst.CSTNode, which: str) -> cst.Arg | None:

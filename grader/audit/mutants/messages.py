@@ -19,15 +19,15 @@ def other_clock(node: cst.CSTNode, program: Program) -> Iterator[Change]:
         if isinstance(program.parent(node), cst.AssignTarget):
             return
         if program.has_self(node):
-            yield Change(node, node, expression(NODE_CLOCK), "uses the node's clock for the stamp")
-        yield Change(node, node, expression(WALL_CLOCK), "uses the computer's clock for the stamp", ("rclpy.clock",))
+            yield Change(node, node, expression(NODE_CLOCK), "takes the node's clock for the stamp")
+        yield Change(node, node, expression(WALL_CLOCK), "takes the computer's clock for the stamp", ("rclpy.clock",))
 
 
 def part_of_stamp(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     """sec is used instead of nanosec, and the reverse."""
     if isinstance(node, cst.Attribute) and node.attr.value in ("sec", "nanosec"):
         other = "nanosec" if node.attr.value == "sec" else "sec"
-        yield Change(node, node.attr, cst.Name(other), f"uses {other} instead of {node.attr.value}")
+        yield Change(node, node.attr, cst.Name(other), f"takes {other} for {node.attr.value}")
 
 
 def header(node: cst.CSTNode, program: Program) -> Iterator[Change]:
@@ -77,13 +77,13 @@ def before_publishing(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     lists = _lists(program, name)
     if lists:
         all_reversed = "; ".join(f"{name}.{field}.reverse()" for field in lists)
-        yield program.instead(node, "publishes all lists in reverse order", all_reversed, node)
+        yield program.instead(node, "publishes everything in the reverse order", all_reversed, node)
         for field in lists:
-            yield program.instead(node, f"publishes {field} in reverse order", f"{name}.{field}.reverse()", node)
+            yield program.instead(node, f"publishes {field} in the reverse order", f"{name}.{field}.reverse()", node)
             yield program.instead(node, f"publishes one {field} too few", f"{name}.{field}.pop()", node)
             yield program.instead(node, f"publishes no {field}", f"{name}.{field} = []", node)
     if any(topic.type.endswith("JointState") for topic in program.exercise.outputs):
-        yield program.instead(node, "also publishes positions", f"{name}.position = [0.0] * len({name}.name)", node)
+        yield program.instead(node, "publishes positions, too", f"{name}.position = [0.0] * len({name}.name)", node)
     yield program.instead(node, "publishes an empty message", f"{name} = type({name})()", node)
 
 
@@ -99,14 +99,14 @@ def _lists(program: Program, name: str) -> list[str]:
 
 
 def publishing(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """Published in the wrong place: in the loop, before the message is filled in, without a guard, every other time."""
+    """Published in the wrong place: in the loop, before the message is filled, without its guard, every second time."""
     call = only_call(node, "publish")
     if call is None:
         return
     text = program.text(node.with_changes(leading_lines=[])).strip()
     if program.has_self(node):
         turn = "self.turn = not getattr(self, 'turn', False)"
-        yield program.instead(node, "publishes only every second message", turn, f"if self.turn:\n    {text}\n")
+        yield program.instead(node, "publishes every second time", turn, f"if self.turn:\n    {text}\n")
     function = program.function(node)
     if function is None or not isinstance(function.body, cst.IndentedBlock):
         return
@@ -115,12 +115,12 @@ def publishing(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             continue
         if isinstance(other, cst.For) and isinstance(other.body, cst.IndentedBlock):
             body = [*other.body.body, cst.parse_statement(text)]
-            yield Change(other, other.body, with_body(other.body, body), "also publishes inside the loop")
+            yield Change(other, other.body, with_body(other.body, body), "publishes inside the loop, too")
         assignment = only_assignment(other)
         if assignment is not None and call.args:
             target = program.text(assignment.targets[0].target)
             if target == program.text(call.args[0].value):
-                yield program.instead(other, "also publishes before the message is filled in", other, text)
+                yield program.instead(other, "publishes before the message is filled, too", other, text)
 
 
 OPERATORS = (other_clock, part_of_stamp, header, unit, before_publishing, publishing)

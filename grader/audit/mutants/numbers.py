@@ -29,7 +29,7 @@ def arithmetic(node: cst.CSTNode, program: Program) -> Iterator[Change]:
         for other in ARITHMETIC.get(sign, ()):
             template = expression(f"a {other} b")
             assert isinstance(template, cst.BinaryOperation)
-            yield Change(node, node, node.with_changes(operator=template.operator), f"uses {other} instead of {sign}")
+            yield Change(node, node, node.with_changes(operator=template.operator), f"takes {other} for {sign}")
 
 
 def operand(node: cst.CSTNode, program: Program) -> Iterator[Change]:
@@ -49,8 +49,8 @@ def divisor(node: cst.CSTNode, program: Program) -> Iterator[Change]:
         text = program.text(node.right)
         for new, what in (
             (f"round({text}, 1)", f"rounds {text} to tenths"),
-            (f"max({text}, 0.01)", f"uses 0.01 if {text} is smaller"),
-            (f"min({text}, 1.0)", f"uses 1.0 if {text} is larger"),
+            (f"max({text}, 0.01)", f"takes 0.01 for a smaller {text}"),
+            (f"min({text}, 1.0)", f"takes 1.0 for a larger {text}"),
         ):
             yield Change(node, node.right, expression(new), what)
 
@@ -60,19 +60,19 @@ def constant(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     if isinstance(node, cst.Integer):
         value = node.evaluated_value
         for other in (value + 1, value - 1, 0):
-            yield Change(node, node, expression(f"{other}"), f"{node.value} becomes {other}")
+            yield Change(node, node, expression(f"{other}"), f"{node.value} is {other}")
     elif isinstance(node, cst.Float):
         # Twice nothing is nothing: it would be spun for nothing, too.
         others = (f"{node.value} * 2", f"{node.value} / 2", "0.0") if node.evaluated_value else ("1.0",)
         for new in others:
-            yield Change(node, node, expression(f"({new})"), f"{node.value} becomes {new}")
+            yield Change(node, node, expression(f"({new})"), f"{node.value} is {new}")
     elif isinstance(node, cst.SimpleString) and node.raw_value != "__main__":
         changed = node.with_changes(value=f"{node.value[:-1]}_x{node.value[-1]}")
-        yield Change(node, node, changed, f"{node.value} becomes another text")
+        yield Change(node, node, changed, f"{node.value} is another text")
     elif isinstance(node, cst.Name) and not isinstance(program.parent(node), cst.Attribute):
         for old, new in (("True", "False"), ("False", "True"), ("None", "0")):
             if node.value == old:
-                yield Change(node, node, expression(new), f"{old} becomes {new}")
+                yield Change(node, node, expression(new), f"{old} is {new}")
 
 
 def time_unit(node: cst.CSTNode, program: Program) -> Iterator[Change]:
@@ -81,7 +81,7 @@ def time_unit(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     is_power = isinstance(node, cst.BinaryOperation) and program.text(node).replace(" ", "") == "10**9"
     if is_it or is_power:
         for other in MISTAKEN:
-            yield Change(node, node, expression(f"{other:_}"), f"counts {other:,} nanoseconds per second")
+            yield Change(node, node, expression(f"{other:_}"), f"takes {other:,} for the nanoseconds of a second")
 
 
 def without_call(node: cst.CSTNode, program: Program) -> Iterator[Change]:
@@ -97,7 +97,7 @@ NUMBERS = (arithmetic, operand, divisor, constant, time_unit, without_call)
 
 
 def remembered(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """What is remembered is one message too old, never updated, too early, too much, or only after publishing."""
+    """What is remembered is one message too old, never renewed, too early, too much, or only after publishing."""
     assignment = only_assignment(node)
     function = program.function(node)
     if assignment is None or function is None or function.name.value == "__init__":
@@ -109,9 +109,9 @@ def remembered(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     yield program.instead(
         node, f"{name} is one message too old", f"{name} = getattr(self, '{older[5:]}', {name})", f"{older} = {value}"
     )
-    yield program.instead(node, f"sets {name} only once", f"{name} = {name} or {value}")
+    yield program.instead(node, f"{name} is only set once", f"{name} = {name} or {value}")
     if _begins_as_dictionary(program, name):
-        yield program.instead(node, f"{name} never forgets an entry", f"{name} = {{**{name}, **{value}}}")
+        yield program.instead(node, f"{name} forgets nothing", f"{name} = {{**{name}, **{value}}}")
     yield from _elsewhere(node, program, name)
 
 
@@ -140,9 +140,9 @@ def _elsewhere(node: cst.CSTNode, program: Program, name: str) -> Iterator[Chang
     if isinstance(guard.body, cst.IndentedBlock):
         inside = guard.with_changes(body=with_body(guard.body, [*guard.body.body, node]))
         rest = [*body[:k], inside, *body[k + 1 : i], *body[i + 1 :]]
-        yield Change(node, block, with_body(block, rest), f"updates {name} only under the if")
+        yield Change(node, block, with_body(block, rest), f"renews {name} only under the if")
     early = [*body[:k], node, guard, *body[k + 1 : i], *body[i + 1 :]]
-    yield Change(node, block, with_body(block, early), f"updates {name} before it is used")
+    yield Change(node, block, with_body(block, early), f"renews {name} before it is used")
 
 
 HISTORY = (remembered,)

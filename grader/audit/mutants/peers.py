@@ -53,14 +53,14 @@ def outcome(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     """A goal ends in another way."""
     if isinstance(node, cst.Call) and isinstance(node.func, cst.Attribute) and not node.args:
         for other in OUTCOMES.get(called(node), ()):
-            yield Change(node, node.func.attr, cst.Name(other), f"calls {other}() instead of {called(node)}()")
+            yield Change(node, node.func.attr, cst.Name(other), f"calls {other}() for {called(node)}()")
 
 
 def choice(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     """A goal or a request to cancel is rejected instead of accepted; a policy is the other one."""
     if isinstance(node, cst.Attribute) and node.attr.value in CHOICES:
         other = CHOICES[node.attr.value]
-        yield Change(node, node.attr, cst.Name(other), f"uses {other} instead of {node.attr.value}")
+        yield Change(node, node.attr, cst.Name(other), f"takes {other} for {node.attr.value}")
 
 
 def not_asked(node: cst.CSTNode, program: Program) -> Iterator[Change]:
@@ -71,7 +71,7 @@ def not_asked(node: cst.CSTNode, program: Program) -> Iterator[Change]:
         return
     name = node.attr.value if isinstance(node, cst.Attribute) else called(node)
     for answer in ASKED.get(name, ()):
-        yield Change(node, node, expression(answer), f"uses {answer} instead of {name}")
+        yield Change(node, node, expression(answer), f"takes {answer} for {name}")
 
 
 def blocking(node: cst.CSTNode, program: Program) -> Iterator[Change]:
@@ -80,7 +80,7 @@ def blocking(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     if not isinstance(node, cst.Call) or name not in CALLS:
         return
     other, module = CALLS[name]
-    what = f"calls {other}() instead of {name}()"
+    what = f"calls {other}() for {name}()"
     if isinstance(node.func, cst.Attribute):
         yield Change(node, node.func.attr, cst.Name(other), what)
     elif module:
@@ -127,7 +127,7 @@ def timer_clock(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     assert isinstance(wall, cst.Call)
     comma = cst.Comma(whitespace_after=cst.SimpleWhitespace(" "))
     args = [*(arg.with_changes(comma=comma) for arg in node.args), wall.args[0]]
-    what = "the timer runs by the computer's clock"
+    what = "the timer goes by the computer's clock"
     yield Change(node, node, node.with_changes(args=args), what, ("rclpy.clock",))
 
 

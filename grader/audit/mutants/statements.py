@@ -22,7 +22,7 @@ def statement_twice(node: cst.CSTNode, program: Program) -> Iterator[Change]:
         inner = node.body[0]
         if isinstance(inner, (cst.Expr, cst.AugAssign)) or ".create_" in program.text(node):
             again = node.with_changes(leading_lines=[])
-            yield program.instead(node, f"runs {_first_line(node, program)} twice", node, again)
+            yield program.instead(node, f"does {_first_line(node, program)} twice", node, again)
 
 
 def statements_swapped(node: cst.CSTNode, program: Program) -> Iterator[Change]:
@@ -34,7 +34,7 @@ def statements_swapped(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     i = body.index(node)
     if i and _does_something(node, program) and _does_something(body[i - 1], program):
         body[i - 1], body[i] = body[i], body[i - 1]
-        yield Change(node, block, with_body(block, body), f"runs {_first_line(node, program)} too early")
+        yield Change(node, block, with_body(block, body), f"does {_first_line(node, program)} too early")
 
 
 def guard_removed(node: cst.CSTNode, program: Program) -> Iterator[Change]:
@@ -43,9 +43,9 @@ def guard_removed(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     if not isinstance(block, (cst.IndentedBlock, cst.Module)):
         return
     if isinstance(node, cst.If) and "__name__" not in program.text(node.test):
-        yield program.instead(node, f"leaves out the block under if {program.text(node.test)}")
+        yield program.instead(node, f"leaves out what is under if {program.text(node.test)}")
     elif isinstance(node, cst.Try):
-        yield program.instead(node, "leaves out try", *node.body.body)
+        yield program.instead(node, "does not try", *node.body.body)
         if node.finalbody:
             yield Change(node, node, _without_finally(node), "leaves out finally")
 
@@ -67,7 +67,7 @@ def handler(node: cst.CSTNode, program: Program) -> Iterator[Change]:
                 yield Change(node, node.type, tuple_, f"does not catch {program.text(element.value)}")
         if isinstance(node.body, cst.IndentedBlock):
             raised = with_body(node.body, [cst.parse_statement("raise")])
-            yield Change(node, node.body, raised, "re-raises the exception that it caught")
+            yield Change(node, node.body, raised, "raises again what it caught")
 
 
 def argument(node: cst.CSTNode, program: Program) -> Iterator[Change]:
@@ -87,7 +87,7 @@ def argument(node: cst.CSTNode, program: Program) -> Iterator[Change]:
 def result(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     """A function does nothing; what it returns is None."""
     if isinstance(node, cst.Return) and node.value is not None:
-        yield Change(node, node.value, expression("None"), f"returns None instead of {program.text(node.value)}")
+        yield Change(node, node.value, expression("None"), f"returns None for {program.text(node.value)}")
     if isinstance(node, cst.FunctionDef) and isinstance(node.body, cst.IndentedBlock):
         body = [cst.parse_statement("return"), *node.body.body]
         yield Change(node, node.body, with_body(node.body, body), f"{node.name.value}() does nothing")
@@ -106,7 +106,7 @@ def wrong_name(node: cst.CSTNode, program: Program) -> Iterator[Change]:
         return
     for other in others:
         if other != program.text(node):
-            yield Change(node, node, expression(other), f"uses {other} instead of {program.text(node)}")
+            yield Change(node, node, expression(other), f"takes {other} for {program.text(node)}")
 
 
 def _names(program: Program, function: cst.FunctionDef | None) -> list[str]:
@@ -185,7 +185,7 @@ def comparison(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             template = expression(f"a {other} b")
             assert isinstance(template, cst.Comparison)
             new = target.with_changes(operator=template.comparisons[0].operator)
-            yield Change(node, target, new, f"compares with {other} instead of {sign}")
+            yield Change(node, target, new, f"compares with {other} and not with {sign}")
 
 
 def part_of_condition(node: cst.CSTNode, program: Program) -> Iterator[Change]:
@@ -193,19 +193,19 @@ def part_of_condition(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     if isinstance(node, cst.BooleanOperation):
         is_and = isinstance(node.operator, cst.And)
         other = node.with_changes(operator=cst.Or() if is_and else cst.And())
-        yield Change(node, node, other, "uses or instead of and" if is_and else "uses and instead of or")
+        yield Change(node, node, other, "takes or for and" if is_and else "takes and for or")
         for kept, left_out in ((node.left, node.right), (node.right, node.left)):
             yield Change(node, node, kept, f"leaves {program.text(left_out)} out of the condition")
 
 
 def condition(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """A condition is inverted, always holds, never holds."""
+    """A condition is turned round, always holds, never holds."""
     if isinstance(node, (cst.If, cst.While, cst.IfExp, cst.CompIf)):
         text = program.text(node.test)
         if not (isinstance(node, cst.While) and text == "True"):
-            yield Change(node, node.test, expression(f"not ({text})"), f"inverts the condition {text}")
-            yield Change(node, node.test, expression("True"), f"always enters the block under {text}")
-            yield Change(node, node.test, expression("False"), f"never enters the block under {text}")
+            yield Change(node, node.test, expression(f"not ({text})"), f"turns the condition {text} round")
+            yield Change(node, node.test, expression("True"), f"removes the guard {text}")
+            yield Change(node, node.test, expression("False"), f"never goes where {text} leads")
 
 
 def without_not(node: cst.CSTNode, program: Program) -> Iterator[Change]:
@@ -218,8 +218,8 @@ CONDITIONS = (comparison, part_of_condition, condition, without_not)
 
 
 TAKEN = (
-    ("list({})[1:]", "leaves out the first of {}"),
-    ("list({})[:-1]", "leaves out the last of {}"),
+    ("list({})[1:]", "leaves the first of {} out"),
+    ("list({})[:-1]", "leaves the last of {} out"),
     ("reversed(list({}))", "goes through {} backwards"),
     ("sorted({})", "sorts {}"),
 )
@@ -234,10 +234,10 @@ def loop(node: cst.CSTNode, program: Program) -> Iterator[Change]:
 
 
 def end_of_loop(node: cst.CSTNode, program: Program) -> Iterator[Change]:
-    """A loop ends after its first iteration."""
+    """A loop ends after its first turn."""
     if isinstance(node, (cst.For, cst.While)) and isinstance(node.body, cst.IndentedBlock):
         body = [*node.body.body, cst.parse_statement("break")]
-        yield Change(node, node.body, with_body(node.body, body), "ends the loop after its first iteration")
+        yield Change(node, node.body, with_body(node.body, body), "ends the loop after its first turn")
 
 
 LOOPS = (loop, end_of_loop)
