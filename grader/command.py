@@ -90,8 +90,8 @@ def grade(
 ) -> None:
     """Grade one SUBMISSION for an EXERCISE, or a whole class: run the node, and say what is right and what is wrong.
 
-    The node is started as its own process, in a sandbox, and not changed. Reference publishers send it messages
-    under a simulated clock; what it publishes is compared with what the solution publishes.
+    The grader starts the node unchanged, as its own process in a sandbox. Reference publishers send it messages under
+    a simulated clock, and the grader compares what it publishes with what the solution publishes.
 
     \b
       spinbook grade joint_velocity joint_velocity.py         a file

@@ -13,11 +13,11 @@ def _end_process(text: str) -> None:
 
 
 end: Callable[[str], None] = _end_process
-"""Ends the program with these last words. Where a program is no process of its own, something else is put here."""
+"""Ends the program with this message. If a program is not a process of its own, something else is put here."""
 
 
 def require_class(value: object, package: str, name: str) -> None:
-    """End the program if `value` is no message `name` of this package, as the generated C code does."""
+    """End the program if `value` is not a message `name` of this package, as the generated C code does."""
     if type(value).__name__ != name:
         function = f"{package}__convert_from_py"
         end(f'{function}: Assertion `strncmp("{package}.{name}", full_classname_dest, {len(name)}) == 0\' failed.')

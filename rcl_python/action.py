@@ -240,7 +240,7 @@ class ActionServer(_Action[Service, Publisher]):
             self.expiry.cancel_timer()
 
     def expire_goals(self, most: int) -> tuple[Any, ...]:
-        """Forget at most so many goals whose results have been kept long enough; return their GoalInfo."""
+        """Forget at most this many goals whose results have been kept long enough; return their GoalInfo."""
         now = self._clock.now()
         old = [goal for goal in self.goals if goal.ended is not None and now - goal.ended >= self._timeout >= 0]
         for goal in old[:most]:

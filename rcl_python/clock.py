@@ -170,7 +170,7 @@ class Timer(Destroyable):
         self.clock.unwatch(self)
 
     def _jumped(self, change: ClockChange, delta: int, before: bool) -> None:
-        """Keep what was left of the period when ROS time starts or ends; after a jump back, start anew."""
+        """Keep what was left of the period when ROS time starts or ends; after a jump back, start again."""
         now = self.clock.now()
         if change in _ON_OFF:
             self._keep_credit(now, before)

@@ -10,7 +10,7 @@ from grader.checking import Run, check, fail
 OFFSETS, PENDING = "/joint_offsets", "/calibrations_pending"
 
 
-@check(points=8, hint="call_async() in the callback of /calibrate, with the joint's name in the request.")
+@check(points=8, hint="Call call_async() in the callback of /calibrate, with the joint's name in the request.")
 def test_asks(one: Run) -> None:
     """It calls /calibrate_joint with the name of the joint that it received on /calibrate."""
     one.must_have_interface()
@@ -19,7 +19,7 @@ def test_asks(one: Run) -> None:
 
 @check(
     points=10,
-    hint="future.add_done_callback(…): when the answer is there, publish its offset.",
+    hint="Use future.add_done_callback(…), and publish the offset in that callback.",
     depends=[test_asks],
 )
 def test_publishes_the_offset(one: Run) -> None:
@@ -35,19 +35,19 @@ def test_publishes_the_name(one: Run) -> None:
 
 @check(
     points=10,
-    hint="A timer does it, as long as no callback waits.",
+    hint="Use a timer. It works as long as no callback waits.",
     depends=[test_asks],
     misconception="waits for the answer",
 )
 def test_ten_times_a_second(one: Run) -> None:
-    """It publishes on /calibrations_pending ten times per second, also while it waits for an answer."""
+    """It publishes on /calibrations_pending ten times per second, even while it waits for an answer."""
     one.must_keep_rate(10.0, PENDING)
     one.must_have_no_gap(0.15, PENDING)
 
 
 @check(points=8, hint="Count up for each request, and down for each answer.", depends=[test_ten_times_a_second])
 def test_number_of_pending(one: Run) -> None:
-    """/calibrations_pending says how many joints wait: 1 until the answer comes, then 0."""
+    """/calibrations_pending says how many joints wait: 1 until the answer arrives, then 0."""
     one.must_match_series("data", PENDING)
 
 

@@ -40,7 +40,7 @@ def test_never_silent(absent: Run, never: Run) -> None:
     rule="Do not wait for one answer before the next request.",
 )
 def test_asks_at_once(several: Run) -> None:
-    """It asks for each joint at once, also while others are being calibrated."""
+    """It asks for each joint at once, even while others are being calibrated."""
     joints = {"left_elbow": 0.55, "left_shoulder_roll": 0.65, "left_shoulder_pitch": 0.75}
     must_ask_in_time(several, 0.15, joints)
 
@@ -66,7 +66,7 @@ def test_answers_in_another_order(several: Run) -> None:
     rule="publish nothing on /joint_offsets.",
 )
 def test_failed_calibration(failing: Run) -> None:
-    """When a calibration failed, it publishes no offset."""
+    """When a calibration has failed, it publishes no offset."""
     failing.must_match_series("name", OFFSETS)
 
 
@@ -77,7 +77,7 @@ def test_failed_calibration(failing: Run) -> None:
     rule="A joint that failed or timed out is no longer waiting.",
 )
 def test_failed_is_not_pending(failing: Run) -> None:
-    """A joint whose calibration failed is not pending any more."""
+    """A joint whose calibration failed is no longer pending."""
     failing.must_match_series("data", PENDING)
 
 
@@ -117,13 +117,13 @@ def test_pending_without_a_service(absent: Run) -> None:
 
 @check(
     points=5,
-    hint="Remember when each request went out, and look at it in the timer.",
+    hint="Remember when each request went out, and check the time in the timer.",
     depends=COUNT,
     misconception="waits forever",
     rule="No answer 5 s after the request: give up.",
 )
 def test_gives_up(never: Run) -> None:
-    """After 5 s without an answer it gives up: the joint is not pending any more."""
+    """After 5 s without an answer it gives up: the joint is no longer pending."""
     never.must_match_series("data", PENDING)
 
 
@@ -131,10 +131,10 @@ def test_gives_up(never: Run) -> None:
     points=4,
     hint="Forget the future when you give up.",
     depends=["test_publishes_the_name", "test_gives_up"],
-    rule="An answer that comes later is ignored.",
+    rule="An answer that arrives later is ignored.",
 )
 def test_answer_that_is_too_late(too_late: Run) -> None:
-    """An answer that comes after it gave up is ignored."""
+    """An answer that arrives after it gave up is ignored."""
     too_late.must_match_series("name", OFFSETS)
 
 

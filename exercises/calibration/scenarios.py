@@ -17,7 +17,7 @@ def wanted(joint: str, *seconds: float) -> tuple[Content, ...]:
 
 
 def server(*replies: object, **when: float) -> tuple[Server, ...]:
-    """The service, which answers one request after the other."""
+    """The service, which answers one request after another."""
     return (Server(SERVICE, replies=replies, **when),)
 
 

@@ -21,7 +21,7 @@ CARRIED = 11.0  # s after the start: somebody carries the turtle away
     rule="Before the first message on /goal, publish nothing, or zeros.",
 )
 def test_stands_still_without_a_goal(no_goal: Run) -> None:
-    """Until the first goal it sends no command but zeros."""
+    """Until the first goal, it sends no command other than zeros."""
     for command in no_goal.messages_on(COMMANDS):
         if any(command.fields["linear"].values()) or any(command.fields["angular"].values()):
             text = "there is no goal yet, but your node drives."
@@ -30,13 +30,13 @@ def test_stands_still_without_a_goal(no_goal: Run) -> None:
 
 @check(
     points=8,
-    hint="Bring the difference of the two angles back to between -pi and pi: atan2(sin(d), cos(d)) does.",
+    hint="Bring the difference of the two angles back to between -pi and pi: atan2(sin(d), cos(d)) does that.",
     depends=REACHES,
     misconception="angle not wrapped",
     rule="what matters is the difference of two angles, brought back to between −π and π.",
 )
 def test_turns_the_shorter_way(short_way: Run) -> None:
-    """It turns the shorter way, also where that goes past 180 degrees."""
+    """It turns the shorter way, even if that crosses 180 degrees."""
     headings = [theta for at, (theta,) in short_way.trajectory(POSE, "theta") if at < CARRIED]
     turned = sum(abs(math.remainder(b - a, math.tau)) for a, b in itertools.pairwise(headings))
     if turned > math.pi:

@@ -22,7 +22,7 @@ def test_answers_each_message(default: Run) -> None:
     depends=[test_answers_each_message],
 )
 def test_filters_with_the_default(default: Run) -> None:
-    """Without another value, the gain is 0.5."""
+    """By default, the gain is 0.5."""
     default.must_match("position", per="name")
 
 

@@ -21,7 +21,7 @@ def test_gain_of_one(after_refusal: Run) -> None:
 
 @check(
     points=3,
-    hint="declare_parameter() is given the default.",
+    hint="Pass the default to declare_parameter().",
     depends=[NAMED],
     rule="Declared, as a double, with its default 0.5.",
 )
@@ -32,7 +32,7 @@ def test_gain_can_be_read(default: Run) -> None:
 
 @check(
     points=10,
-    hint="A range in the descriptor, and a callback before a set that refuses 0.0.",
+    hint="Use a range in the descriptor, and an on-set callback that refuses 0.0.",
     depends=GAIN,
     misconception="takes every gain",
     rule="Refused: a gain of 0.0 or less, above 1.0, not a number, or of another type",
@@ -80,19 +80,19 @@ def test_refuses_with_a_reason(refused: Run) -> None:
 
 @check(
     points=6,
-    hint="Remember positions by name, not by place in the list.",
+    hint="Remember positions by name, not by index in the list.",
     depends=FILTERS,
     misconception="joints by index",
-    rule="Go by name, never by place: the order of the joints may change.",
+    rule="Go by name, never by index: the order of the joints may change.",
 )
 def test_joints_in_another_order(reordered: Run) -> None:
-    """It filters each joint by its name, in whatever order they come."""
+    """It filters each joint by its name, in whatever order they arrive."""
     reordered.must_match("position", per="name")
 
 
 @check(
     points=5,
-    hint="Keep the smooth position of each joint, also when it is missing.",
+    hint="Keep the smooth position of each joint, even when it is missing.",
     depends=FILTERS,
     rule="A joint that was missing from some messages continues from its last smooth position.",
 )

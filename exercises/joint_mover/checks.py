@@ -44,7 +44,7 @@ def test_result_is_the_position(up: Run) -> None:
 
 @check(
     points=12,
-    hint="A cancel callback accepts. Before each step look at goal_handle.is_cancel_requested, and call canceled().",
+    hint="The cancel callback accepts. Before each step, check goal_handle.is_cancel_requested, and call canceled().",
     depends=[test_succeeds],
     misconception="cannot be canceled",
 )

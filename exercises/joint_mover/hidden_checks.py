@@ -49,7 +49,7 @@ def test_limits_are_accepted(limits: Run) -> None:
     rule="the last one is shorter, and ends exactly at the goal.",
 )
 def test_reaches_the_limit(limits: Run) -> None:
-    """It reaches the upper limit, and not more."""
+    """It reaches the upper limit, and goes no further."""
     limits.must_end("succeeded", goal=1, within=4.85)
     limits.must_match_feedback("position", goal=1)
 
@@ -102,7 +102,7 @@ def test_goal_after_a_cancel(after_cancel: Run) -> None:
 
 @check(
     points=4,
-    hint="A new goal makes the old one end: abort(), as nobody asked to cancel it.",
+    hint="A new goal makes the old one end. Call abort(), because nobody asked to cancel it.",
     depends=SUCCEEDS,
     misconception="two goals at once",
     rule="The old one ends as aborted within 0.1 s, without another step of its own",
@@ -115,7 +115,7 @@ def test_second_goal_aborts_the_first(replaced: Run) -> None:
 
 @check(
     points=2,
-    hint="abort(), and then return a result as always.",
+    hint="Call abort(), and then return a result as always.",
     depends=["test_second_goal_aborts_the_first", "test_result_is_the_position"],
     misconception="canceled() without a request",
     rule="its result holds the position where it stopped.",

@@ -11,7 +11,7 @@ ACTION = "/move_joint"
 
 
 def goal(position: float, *seconds: float) -> tuple[Content, ...]:
-    """A goal is sent. Positions that are no multiple of a step end with a shorter one, whatever is rounded."""
+    """A goal is sent. Positions that are not a multiple of a step end with a shorter one, however they are rounded."""
     return at(*seconds).send_goal(ACTION, position=position)
 
 

@@ -1,6 +1,6 @@
 """What every student may read: the checks of `joint_operator`.
 
-Each fixture is a scenario of scenarios.py; hidden_checks.py goes through the servers that do not do as they should.
+Each fixture is a scenario of scenarios.py; hidden_checks.py goes through the servers that misbehave.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from grader.checking import Run, check, fail
 OUTCOMES, PROGRESS = "/outcomes", "/progress"
 
 
-@check(points=10, hint="send_goal_async() in the callback of /targets, with the target as the goal's position.")
+@check(points=10, hint="Call send_goal_async() in the callback of /targets, with the target as the goal's position.")
 def test_sends_a_goal(succeeds: Run) -> None:
     """It sends a goal for /move_joint with the position that it received on /targets."""
     succeeds.must_have_interface()
@@ -21,7 +21,7 @@ def test_sends_a_goal(succeeds: Run) -> None:
 
 @check(
     points=10,
-    hint="Ask for the result when the goal was accepted, and look at its status.",
+    hint="Ask for the result when the goal has been accepted, and check its status.",
     depends=[test_sends_a_goal],
 )
 def test_publishes_the_outcome(succeeds: Run) -> None:
@@ -46,7 +46,7 @@ def test_publishes_progress(succeeds: Run) -> None:
     misconception="loses targets",
 )
 def test_every_target_in_order(several: Run) -> None:
-    """Each of several targets becomes a goal, in the order in which they came."""
+    """Each of several targets becomes a goal, in the order in which they arrived."""
     several.must_match_goals("position")
 
 
@@ -57,7 +57,7 @@ def test_every_target_in_order(several: Run) -> None:
     misconception="several goals at once",
 )
 def test_one_goal_at_a_time(several: Run) -> None:
-    """It sends the next goal when the one before has ended, and not earlier or much later."""
+    """It sends the next goal when the one before has ended, not earlier and not much later."""
     goals = several.goals(by="node")
     for before, goal in itertools.pairwise(goals):
         wait = (goal.at - (before.finished or goal.at + 1)) / 1_000_000_000

@@ -1,4 +1,4 @@
-"""The servers of `joint_operator` that do not do as they should. Every rule that they rely on is in task.md."""
+"""The misbehaving servers of `joint_operator`. Every rule that they rely on is in task.md."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def outcomes(run: Run) -> None:
 
 
 def must_not_cancel(run: Run) -> None:
-    """No goal of the student's may be canceled."""
+    """No goal of the student may be canceled."""
     for goal in run.goals(by="node"):
         for cancel in goal.cancels:
             text = "the goal had time left, but your node asked to cancel it."
@@ -75,7 +75,7 @@ def test_server_appears_late(appears: Run) -> None:
 
 @check(
     points=7,
-    hint="Remember when the goal was accepted, and look at it in the timer.",
+    hint="Remember when the goal was accepted, and check the time in the timer.",
     depends=OUTCOME,
     misconception="waits forever",
     rule="If a goal has not ended 5 s after it was accepted, ask the server to cancel it, once, within 0.25 s.",
@@ -94,7 +94,7 @@ def test_asks_to_cancel(never_ends: Run) -> None:
 
 @check(
     points=5,
-    hint="The result of a canceled goal comes, too, with the status for it.",
+    hint="A canceled goal has a result, too, with its own status.",
     depends=["test_asks_to_cancel", *ORDER],
     rule="Then continue to wait for its result",
 )
@@ -118,13 +118,13 @@ def test_waits_long_enough(slow: Run, late_and_slow: Run) -> None:
 
 @check(
     points=5,
-    hint="Publish an outcome only when the result is there, and by its status.",
+    hint="Publish an outcome only when the result has arrived, according to its status.",
     depends=["test_asks_to_cancel", *ORDER],
     misconception="believes that a cancel works",
     rule="the server may refuse to cancel it, and it may even succeed.",
 )
 def test_cancel_that_does_not_work(refuses_to_cancel: Run, ignores_the_cancel: Run, aborts_late: Run) -> None:
-    """What counts is how the goal ends, also when the server does not cancel it."""
+    """What counts is how the goal ends, even if the server does not cancel it."""
     for run in (refuses_to_cancel, ignores_the_cancel, aborts_late):
         outcomes(run)
 

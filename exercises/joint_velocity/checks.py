@@ -72,7 +72,7 @@ def test_velocity_of_each_joint(chapter: Run) -> None:
     rule="Only the stamps tell the time.",
 )
 def test_uneven_times(irregular: Run) -> None:
-    """Velocities are right when the messages come at uneven times."""
+    """Velocities are right when the messages arrive at uneven times."""
     irregular.must_match("velocity", per="name")
 
 

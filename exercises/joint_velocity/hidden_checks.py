@@ -19,7 +19,7 @@ VELOCITY = ["test_velocity_of_each_joint"]
     rule="dt is the time between the two stamps, in seconds.",
 )
 def test_speed_that_never_changes(steady: Run) -> None:
-    """A joint that moves at one speed has that velocity, at whatever times the messages come."""
+    """A joint that moves at a constant speed has that velocity, whenever the messages arrive."""
     speeds = {"left_elbow": 0.25, "right_elbow": -1.5, "left_shoulder_pitch": 0.0}
     for exchange in list(steady)[1:]:
         for answer in exchange.answers:
@@ -50,7 +50,7 @@ def test_late_messages(delayed: Run) -> None:
     rule="Copy both stamp and frame_id.",
 )
 def test_stamp_of_late_messages(delayed: Run) -> None:
-    """The stamp is that of the message that arrived, also when it arrived late."""
+    """The stamp is that of the message that arrived, even if it arrived late."""
     delayed.must_match("header.stamp", missing_ok=True)
 
 
@@ -61,7 +61,7 @@ def test_stamp_of_late_messages(delayed: Run) -> None:
     rule="Copy both stamp and frame_id.",
 )
 def test_frame_is_copied(delayed: Run) -> None:
-    """The frame is that of the message that arrived, also when it changes."""
+    """The frame is that of the message that arrived, even if it changes."""
     delayed.must_match("header.frame_id", missing_ok=True)
 
 
@@ -85,7 +85,7 @@ def test_same_messages_same_answers(irregular: Run, irregular_again: Run) -> Non
 
 @check(
     points=5,
-    hint="The stamps tell the time since the last message that arrived.",
+    hint="The stamps give the time since the last message that arrived.",
     depends=VELOCITY,
     rule="The message just before is the last one that arrived.",
 )
@@ -96,7 +96,7 @@ def test_lost_messages(lossy: Run) -> None:
 
 @check(
     points=6,
-    hint="Remember positions by name, not by place in the list.",
+    hint="Remember positions by name, not by index in the list.",
     depends=VELOCITY,
     misconception="joints by index",
     rule="The order of the joints may change from message to message.",
@@ -114,7 +114,7 @@ def test_joints_in_another_order(reordered: Run) -> None:
     rule="name holds the joints' names, in the order of the message that arrived.",
 )
 def test_names_in_another_order(reordered: Run) -> None:
-    """The joints' names are in the order of the message that arrived, also when the order changes."""
+    """The joints' names are in the order of the message that arrived, even if the order changes."""
     reordered.must_match("name", missing_ok=True)
 
 
@@ -149,7 +149,7 @@ def test_joint_that_comes_back(missing_joint: Run) -> None:
     rule="The stamp is the same as before, or earlier. Then dt is zero or negative. Publish nothing.",
 )
 def test_repeated_stamp(repeated_stamp: Run) -> None:
-    """Nothing is published when the stamp is the one before; then it continues as usual."""
+    """Nothing is published when the stamp is the same as before; then it continues as usual."""
     _silent_and_right(repeated_stamp)
 
 
@@ -222,7 +222,7 @@ def test_burst(burst: Run) -> None:
 
 @check(
     points=2,
-    hint="Nothing is special about it: the position jumps. Publish what comes out, however large.",
+    hint="Nothing is special about it: the position jumps. Publish the result, however large.",
     depends=VELOCITY,
     rule="Publish the velocity of the jump, however large.",
 )

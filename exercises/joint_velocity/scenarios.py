@@ -1,4 +1,4 @@
-"""What a velocity node is spun against. Each scenario is a fixture, by its name, in checks.py and hidden_checks.py."""
+"""What a velocity node is run against. Each scenario is a fixture, by its name, in checks.py and hidden_checks.py."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from grader.scenario.times import every, uneven
 #: Joints that move at one speed each (rad/s): whatever the stamps, that is their velocity.
 STEADY = {"left_elbow": 0.25, "right_elbow": -1.5, "left_shoulder_pitch": 0.0}
 
-#: Joints that turn on and on (rad/s): where a publisher starts again from zero, they jump back by several turns.
+#: Joints that keep turning (rad/s): when a publisher starts again from zero, they jump back by several turns.
 TURNING = {"waist": 12.0, "neck": -4.0}
 
 ELBOW = "left_elbow"
@@ -72,7 +72,7 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
             title,
             published(stream),
             interrupt=name == "chapter",
-            # Who measures with the computer's clock measures something else the second time.
+            # A node that measures with the computer's clock measures something else the second time.
             computer_time="simulated" if name == "irregular_again" else "apart",
         )
         for name, (title, stream) in streams.items()

@@ -19,24 +19,24 @@ def test_responds(switching: Run) -> None:
 
 @check(points=10, hint="response.success says whether the request was carried out.", depends=[test_responds])
 def test_success(switching: Run) -> None:
-    """success is true when the motors are as asked."""
+    """success is true when the motors are as requested."""
     switching.must_match_responses("success")
 
 
 @check(
     points=8,
-    hint="First switch, then say how the motors are.",
+    hint="Switch first, then report the state of the motors.",
     depends=[test_responds],
     misconception="the state before the request",
 )
 def test_message(switching: Run) -> None:
-    """message says how the motors are after the request."""
+    """message gives the state of the motors after the request."""
     switching.must_match_responses("message")
 
 
 @check(
     points=10,
-    hint="Publish in the moment when the motors are switched.",
+    hint="Publish at the moment when the motors are switched.",
     depends=[test_responds],
 )
 def test_publishes_each_change(switching: Run) -> None:
@@ -50,7 +50,7 @@ def test_publishes_each_change(switching: Run) -> None:
     depends=[test_success, test_publishes_each_change],
 )
 def test_nothing_to_do(already: Run) -> None:
-    """When the motors are already as asked, it says so, and publishes nothing."""
+    """When the motors are already as requested, it says so, and publishes nothing."""
     already.must_match_responses("success")
     already.must_match_series("data", MOTORS, time=0.06)
 

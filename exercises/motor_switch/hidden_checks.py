@@ -10,7 +10,7 @@ SUCCESS, CHANGES = ["test_success"], ["test_publishes_each_change"]
 
 @check(
     points=8,
-    hint="Keep in mind what the last message on /emergency_stop said.",
+    hint="Remember what the last message on /emergency_stop said.",
     depends=SUCCESS,
     misconception="ignores the emergency stop",
     rule="As long as the emergency stop is pressed, the motors do not switch on: success is false",
@@ -40,10 +40,10 @@ def test_says_why_it_refuses(emergency: Run) -> None:
     points=4,
     hint="The emergency stop forbids one thing only.",
     depends=SUCCESS,
-    rule="Off is always allowed, also in an emergency.",
+    rule="Off is always allowed, even in an emergency.",
 )
 def test_off_is_always_allowed(emergency: Run) -> None:
-    """A request to switch off succeeds, also in an emergency."""
+    """A request to switch off succeeds, even in an emergency."""
     for call in emergency.calls():
         if not call.request["data"] and not (call.response and call.response["success"]):
             text = "off is always allowed: expected success true."
@@ -65,12 +65,12 @@ def test_emergency_switches_off(emergency: Run) -> None:
 
 @check(
     points=7,
-    hint="Releasing the emergency stop allows to switch on. It does not switch on.",
+    hint="After the emergency stop, the motors may be switched on again. Releasing it does not switch them on.",
     depends=["test_success", "test_emergency_switches_off"],
     rule="the motors stay as they are, which is off, until somebody asks for them.",
 )
 def test_released(released: Run) -> None:
-    """After the emergency stop was released, the motors stay off until somebody asks for them."""
+    """After the emergency stop has been released, the motors stay off until somebody asks for them."""
     released.must_match_series("data", MOTORS, time=0.06)
     released.must_match_responses("success")
 
@@ -101,7 +101,7 @@ def test_pressed_twice(pressed_twice: Run) -> None:
 
 @check(
     points=4,
-    hint="At the start the motors are off, and nobody has to be told.",
+    hint="The motors are off at the start. There is no change to publish.",
     depends=[*SUCCESS, *CHANGES],
     rule="Nothing at the start, nothing when a request or an emergency changes nothing.",
 )

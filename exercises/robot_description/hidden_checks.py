@@ -10,7 +10,7 @@ ONCE, START = ["test_publishes_once"], ["test_description_of_the_start", NAMED]
 
 @check(
     points=5,
-    hint="A callback after a set sees the new value; a callback before a set does not.",
+    hint="A post-set callback sees the new value; an on-set callback does not.",
     depends=[*ONCE, *START],
     misconception="publishes the former text",
     rule="When the parameter changes, publish the new text, once, within 0.1 s.",
@@ -38,16 +38,16 @@ def test_late_subscriber_gets_the_newest(changed: Run) -> None:
     rule="not when the parameter is set to the text that it already has.",
 )
 def test_same_text_again(same: Run) -> None:
-    """Nothing is published when the parameter is set to the text that it has."""
+    """Nothing is published when the parameter is set to the text that it already has."""
     same.must_match_series()
 
 
 @check(
     points=3,
-    hint="Try to read the text as XML before it is taken.",
+    hint="Try to read the text as XML before you accept it.",
     depends=["test_description_that_changes"],
     misconception="takes every text",
-    rule="Refused is a text that is not well-formed XML, and XML whose outermost element is not robot.",
+    rule="Refused: a text that is not well-formed XML, and XML whose outermost element is not robot.",
 )
 def test_refuses_what_is_no_robot(refused: Run) -> None:
     """It refuses texts that are not XML, and XML that is not about a robot."""
@@ -69,7 +69,7 @@ def test_refuses_with_a_reason(refused: Run) -> None:
 
 @check(
     points=1,
-    hint="Publish after a set, not before it.",
+    hint="Publish in the post-set callback, not in the on-set callback.",
     depends=["test_description_that_changes"],
     rule="The parameter stays as it was, nothing is published, and the refusal has a reason.",
 )
@@ -82,8 +82,8 @@ def test_publishes_nothing_refused(refused: Run) -> None:
     points=1,
     hint="An exception in a callback ends the node.",
     depends=["test_description_that_changes"],
-    rule="It goes on, and takes the next good one.",
+    rule="It continues to run, and accepts the next valid one.",
 )
 def test_goes_on_after_a_bad_text(after_refusal: Run) -> None:
-    """After a bad text it accepts the next good one."""
+    """After an invalid text, it accepts the next valid one."""
     after_refusal.must_take("robot_description", after_refusal.recording.parameters[1].value)

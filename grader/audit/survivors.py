@@ -18,8 +18,8 @@ else:
 
 NOW = {
     "caught": "a check catches it now",
-    "equivalent": "nothing distinguishes it from the solution any more",
-    "gone": "there is no such mutant any more",
+    "equivalent": "it no longer differs from the solution",
+    "gone": "this mutant no longer exists",
 }
 
 

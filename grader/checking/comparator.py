@@ -72,7 +72,7 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float))
 
 
-#: So many elements of a list are shown, and so many characters of anything else.
+#: How many elements of a list are shown, and how many characters of anything else.
 MOST_ELEMENTS, MOST_CHARACTERS = 8, 200
 
 

@@ -38,7 +38,7 @@ class SeriesChecks(Recorded):
     ) -> None:
         """The node's first message must have the same `field` as the solution's first, and so on to the last.
 
-        Without a `field`, whole messages are compared. With `time`, each must come within so many seconds of the
+        Without a `field`, whole messages are compared. With `time`, each must come within that many seconds of the
         solution's. With `subscriber`, only what that subscriber of the scenario got is compared. What several threads
         published at one moment has no order, so any order is right.
         """

@@ -32,7 +32,7 @@ class Wrong(AssertionError):
 
 
 def fail(text: str, *, expected: object = "", got: object = "", at: float | None = None) -> NoReturn:
-    """End the check: the node does not pass it. `text` says to the student why; `at` is in seconds."""
+    """End the check: the node does not pass it. `text` tells the student why; `at` is in seconds."""
     message = text
     if expected != "" or got != "":
         message += f" Expected {expected}, got {got}."
@@ -96,7 +96,7 @@ def check(
 ) -> Callable[[Test], Test]:
     """Make a test function a check that gives `points`; its docstring is the check's title.
 
-    `hint` says to a student who fails the check where to look. `depends` lists checks (functions of the same file, or
+    `hint` tells a student who fails the check where to look. `depends` lists checks (functions of the same file, or
     names) without which this one can't be judged: it counts as blocked, not as failed, unless all of them passed.
     `misconception` names the common mistake behind a failure, in two or three words. `rule` is the sentence of task.md
     that the check is based on, word for word: `spinbook audit` needs one for each hidden check, and looks for it there.

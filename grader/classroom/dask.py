@@ -66,11 +66,11 @@ def pack_exercise(exercise: Exercise) -> ExerciseFiles:
 
 @dataclass(frozen=True)
 class PreparedGrading:
-    """One exercise, ready to be graded for as long as this process lives. `holds` is closed after it."""
+    """One exercise, ready to be graded for as long as this process lives. `resources` is closed after it."""
 
     grading: Grading
     key: str
-    holds: contextlib.ExitStack
+    resources: contextlib.ExitStack
 
 
 _ready: dict[str, PreparedGrading] = {}
@@ -104,12 +104,12 @@ def _prepared_grading(packed: ExerciseFiles, options: Options) -> PreparedGradin
     with _lock:
         if name not in _ready:
             while _ready:
-                _ready.popitem()[1].holds.close()
-            with contextlib.ExitStack() as holds:
-                folder = holds.enter_context(tempfile.TemporaryDirectory(prefix="spinbook-exercise-"))
-                workers = holds.enter_context(WorkerPool(options.middleware))
+                _ready.popitem()[1].resources.close()
+            with contextlib.ExitStack() as resources:
+                folder = resources.enter_context(tempfile.TemporaryDirectory(prefix="spinbook-exercise-"))
+                workers = resources.enter_context(WorkerPool(options.middleware))
                 grading = grading_of(load(packed.unpack(Path(folder))), options, workers)
-                _ready[name] = PreparedGrading(grading, grade_key(grading), holds.pop_all())
+                _ready[name] = PreparedGrading(grading, grade_key(grading), resources.pop_all())
         return _ready[name]
 
 

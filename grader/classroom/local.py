@@ -34,7 +34,7 @@ def at_once(middleware: Middleware) -> int:
 
 @dataclass(frozen=True)
 class LocalBackend:
-    """One worker pool on this machine. Each submission goes through its scenarios one after the other, on one core.
+    """One worker pool on this machine. Each submission goes through its scenarios one after another, on one core.
 
     When no submission is waiting any more, an idle worker runs scenarios of those in progress.
     """

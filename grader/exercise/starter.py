@@ -27,13 +27,13 @@ def starter(source: str) -> str:
     """
     kept: list[str] = []
     begun: tuple[int, str] | None = None
-    marks = 0
+    markers = 0
     for number, line in enumerate(source.splitlines(), start=1):
         if match := BEGIN.match(line):
             if begun:
                 raise MarkerError(number, f"BEGIN SOLUTION inside the one of line {begun[0]}")
-            begun, marks = (number, match.group(1)), marks + 1
-            kept.append(_PLACE + match.group(1))
+            begun, markers = (number, match.group(1)), markers + 1
+            kept.append(_PLACEHOLDER + match.group(1))
         elif END.match(line):
             if not begun:
                 raise MarkerError(number, "END SOLUTION without a BEGIN SOLUTION before it")
@@ -42,7 +42,7 @@ def starter(source: str) -> str:
             kept.append(line)
     if begun:
         raise MarkerError(begun[0], "BEGIN SOLUTION without an END SOLUTION after it")
-    if not marks:
+    if not markers:
         raise MarkerError(1, "no BEGIN SOLUTION marker, so the starter would be the solution")
     result = re.sub(r"\n{4,}", "\n\n\n", "\n".join(_closed(kept))) + "\n"
     try:
@@ -68,20 +68,20 @@ def hidden_blocks(source: str) -> Iterator[list[tuple[int, str]]]:
 
 
 #: Replaces a removed block until it is known whether its body is left empty.
-_PLACE = "\0"
+_PLACEHOLDER = "\0"
 
 
 def _closed(lines: list[str]) -> list[str]:
     """`lines` without placeholders, and with a `pass` for each removed block whose body has no statement left."""
     result: list[str] = []
     for index, line in enumerate(lines):
-        if not line.startswith(_PLACE):
+        if not line.startswith(_PLACEHOLDER):
             result.append(line)
             continue
-        indent = line[len(_PLACE) :]
+        indent = line[len(_PLACEHOLDER) :]
         before = next((text for text in reversed(lines[:index]) if _is_code(text)), "")
-        after = next((text for text in lines[index + 1 :] if _is_code(text) or text.startswith(_PLACE)), "")
-        text = after.removeprefix(_PLACE)
+        after = next((text for text in lines[index + 1 :] if _is_code(text) or text.startswith(_PLACEHOLDER)), "")
+        text = after.removeprefix(_PLACEHOLDER)
         follows = bool(after) and len(text) - len(text.lstrip()) >= len(indent)
         if before.split("#")[0].rstrip().endswith(":") and indent and not follows:
             result.append(f"{indent}pass")
@@ -90,4 +90,4 @@ def _closed(lines: list[str]) -> list[str]:
 
 def _is_code(line: str) -> bool:
     text = line.strip()
-    return bool(text) and not text.startswith("#") and not line.startswith(_PLACE)
+    return bool(text) and not text.startswith("#") and not line.startswith(_PLACEHOLDER)

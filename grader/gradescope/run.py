@@ -31,7 +31,7 @@ from grader.workers.pool import HostFault, WorkerPool
 
 
 def keep_beside(exercise: Path) -> None:
-    """Let this process keep it beside the course that the exercise's folder is in, unless `SPINBOOK_CACHE` is set."""
+    """Let this process keep it next to the course that the exercise's folder is in, unless `SPINBOOK_CACHE` is set."""
     os.environ.setdefault("SPINBOOK_CACHE", str(exercise.resolve().parents[1] / "cache"))
 
 

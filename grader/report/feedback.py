@@ -46,7 +46,7 @@ class ShownCheck:
         """The same in a few lines of plain text, without title and points."""
         lines = [self.finding.text] if self.finding else []
         if self.needs:
-            lines.append("Can't be judged before this is right: " + " ".join(self.needs))
+            lines.append("Can't be judged until this is right: " + " ".join(self.needs))
         if self.hint:
             lines.append(f"Hint: {self.hint}")
         return "\n".join(lines)

@@ -80,14 +80,14 @@ def _show_verdict(verdict: Verdict, grade: Grade, console: Console) -> None:
     console.print(Text.assemble((f" {sign} ", style), (f"{points:>6}  ", "dim"), verdict.title), soft_wrap=True)
     lines = []
     if verdict.status == "failed":
-        # The message of a run that broke off stands at the top already.
+        # The message of a run that broke off is already at the top.
         if verdict.finding and grade.outcome == "graded":
             lines.append(verdict.finding.text)
         if grade.outcome == "graded":
             lines.append(f"Hint: {verdict.hint}")
     elif verdict.status == "blocked" and grade.outcome == "graded":
         titles = {other.name: other.title for other in grade.verdicts}
-        lines.append("Can't be judged before this is right: " + " ".join(titles[name] for name in verdict.blocked_by))
+        lines.append("Can't be judged until this is right: " + " ".join(titles[name] for name in verdict.blocked_by))
     elif verdict.status == "error":
         lines.append(verdict.error)
     for line in lines:

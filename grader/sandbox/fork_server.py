@@ -65,7 +65,7 @@ class Student:
         return self._monitor.exit
 
     def wait(self, timeout_s: float) -> Exit | None:
-        """Wait for the end of the node's process, at most so many seconds; return None if it still runs."""
+        """Wait for the end of the node's process, at most this many seconds; return None if it still runs."""
         self._monitor.ended.wait(timeout_s)
         return self._monitor.exit
 

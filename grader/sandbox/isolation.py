@@ -1,7 +1,7 @@
 """How well a student's program is isolated from this machine, and which levels this machine offers.
 
 Which levels have been tried and work is kept until something changes that this depends on: a trial takes as long as the
-runs of four scenarios. What is kept makes no start less safe: each start makes its sandbox anew, and where a step of
+runs of four scenarios. What is kept makes no start less safe: each start makes a new sandbox, and where a step of
 that fails nothing runs. What did not work is not kept.
 """
 

@@ -100,7 +100,7 @@ def _read(path: str) -> bytes:
 
 def _names(folder: str) -> list[str]:
     try:
-        return os.listdir(folder)  # noqa: PTH208 - names alone, many times a second
+        return os.listdir(folder)  # noqa: PTH208 - names alone, many times per second
     except OSError:
         return []
 
@@ -122,10 +122,10 @@ class ProcessTree:
     def kill(self) -> None:
         """Kill what the student has started. What it starts meanwhile is found by `reap`."""
         alive = descendants(self.init)
-        for order in (signal.SIGSTOP, signal.SIGKILL):  # first none can fork any more
+        for number in (signal.SIGSTOP, signal.SIGKILL):  # first none can fork any more
             for process in alive:
                 with contextlib.suppress(ProcessLookupError):
-                    os.kill(process, order)
+                    os.kill(process, number)
 
     def reap(self) -> None:
         """Wait until everything is dead, and remove the folder."""

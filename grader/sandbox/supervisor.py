@@ -123,7 +123,7 @@ def _fork_student(
 
 
 def _watch(control: int, child: int, sandbox: namespaces.Namespaces | processes.ProcessTree) -> None:
-    """Pass on interrupts and report the end of the student's first process, until the order to kill."""
+    """Pass on interrupts and report the end of the student's first process, until the command to kill."""
     ended = os.pidfd_open(child)
     poll = select.poll()
     poll.register(control, select.POLLIN)
@@ -136,8 +136,8 @@ def _watch(control: int, child: int, sandbox: namespaces.Namespaces | processes.
             alive = False
             _report_end(control, child)
         if control in ready:
-            order = _receive(control)
-            if order == b"interrupt":
+            command = _receive(control)
+            if command == b"interrupt":
                 if alive:
                     os.kill(child, signal.SIGINT)
                 continue

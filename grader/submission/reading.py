@@ -24,7 +24,7 @@ class Submission:
     """One submission, read.
 
     `digest` is the SHA-256 of what was handed in. `program` says how it is started, and is None if it can't be; then
-    `problem` says to the student why. `source` is its text, to quote lines from. `warning` says to the instructor what
+    `problem` tells the student why. `source` is its text, to quote lines from. `warning` tells the instructor what
     is unusual about it, such as an upload that was changed; it costs no points.
     """
 
@@ -82,7 +82,7 @@ def _described(prefix: Path, script: Path) -> Executable:
 
 
 class NoCell(Exception):
-    """Raised when a notebook has no cell for the exercise; says to the student why."""
+    """Raised when a notebook has no cell for the exercise; tells the student why."""
 
 
 def cell_of(content: bytes, exercise: Exercise) -> str:

@@ -32,7 +32,7 @@ ADVICE = "Hand in the file that `spinbook submit` writes."
 
 
 class NoUpload(Exception):
-    """Raised when a file is not a readable zip, or contains what no upload contains; says to the student why."""
+    """Raised when a file is not a readable zip, or contains what no upload contains; tells the student why."""
 
 
 @dataclass(frozen=True)

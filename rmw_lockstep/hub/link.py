@@ -49,7 +49,7 @@ class Link:
         self._first_mark = 0
 
     def begin(self, now: int, published: int) -> None:
-        """Begin at the time `now` (ns), when the hub has published so many messages."""
+        """Begin at the time `now` (ns), when the hub has published that many messages."""
         self.began = True
         self.now = self.granted = now
         self._first_mark = published

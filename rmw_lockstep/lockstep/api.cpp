@@ -19,7 +19,7 @@ LOCKSTEP_API void lockstep_send(const uint8_t * frame, size_t size) { core().tel
 LOCKSTEP_API lockstep_moment lockstep_here() { return core().here(); }
 LOCKSTEP_API void lockstep_sent_output() { core().sent_output(); }
 LOCKSTEP_API void lockstep_settle_signals() { signals().settle(); }
-LOCKSTEP_API uint64_t lockstep_rests() { return rests; }
+LOCKSTEP_API uint64_t lockstep_sleeps() { return sleeps; }
 
 LOCKSTEP_API int64_t lockstep_now() { return virtual_time() ? core().now() : real::now(CLOCK_MONOTONIC); }
 

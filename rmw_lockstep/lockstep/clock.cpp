@@ -13,16 +13,16 @@ constexpr unsigned FREE_READINGS = 100'000, READINGS = 1'000;
 constexpr int64_t TIME_PER_READINGS = 1'000'000;
 
 thread_local unsigned readings = 0;
-thread_local uint64_t rests_before = 0;
+thread_local uint64_t sleeps_before = 0;
 
 void count_reading() {
   if (reads_clock_freely) return;
-  if (rests_before != rests) { rests_before = rests; readings = 0; }
+  if (sleeps_before != sleeps) { sleeps_before = sleeps; readings = 0; }
   if (++readings < FREE_READINGS || readings % READINGS) return;
   reads_clock_freely = true;
   sleep_until(core().now() + TIME_PER_READINGS, true);
   reads_clock_freely = false;
-  rests_before = rests;  // this sleep is not one of the program's
+  sleeps_before = sleeps;  // this sleep is not one of the program's
 }
 
 bool of_cpu(clockid_t clock) {

@@ -98,14 +98,14 @@ void Core::listen_to_hub() {
   while (connected_) {
     step();
     if (!later_.empty()) { unlock(); lock(); continue; }
-    const bool restless = restless_;
-    look = restless ? std::min(look * 2, LONGEST_LOOK) : FIRST_LOOK;
-    listener_sleeps_ = !restless;
+    const bool recheck = recheck_;
+    look = recheck ? std::min(look * 2, LONGEST_LOOK) : FIRST_LOOK;
+    listener_sleeps_ = !recheck;
     const int socket = socket_, wakes = poke_;
     pthread_mutex_unlock(&mutex_);
     pollfd files[2] = {{socket, POLLIN, 0}, {wakes, POLLIN, 0}};
     const timespec timeout = real::as_timespec(look);
-    real::ppoll()(files, 2, restless ? &timeout : nullptr, nullptr);
+    real::ppoll()(files, 2, recheck ? &timeout : nullptr, nullptr);
     lock();
     listener_sleeps_ = false;
     if (files[1].revents) { uint64_t count; (void)!read(wakes, &count, sizeof count); }

@@ -13,7 +13,7 @@
 
 namespace lockstep {
 
-thread_local uint64_t rests = 0;
+thread_local uint64_t sleeps = 0;
 thread_local bool reads_clock_freely = false;
 
 namespace { thread_local Sleeper * own_sleeper = nullptr; }
@@ -80,7 +80,7 @@ lockstep_moment Core::here() { return {handled_, now(), static_cast<uint32_t>(th
 // ---- sleeping
 
 void Core::fall_asleep(Sleeper & sleeper) {
-  ++rests;
+  ++sleeps;
   sleeper.thread = thread_number();
   sleepers_.push_back(&sleeper);
   own_sleeper = &sleeper;
@@ -92,7 +92,7 @@ void Core::fall_asleep(Sleeper & sleeper) {
     lock();
     step();
   }
-  if (restless_) poke();
+  if (recheck_) poke();
 }
 
 void Core::wake_up(Sleeper & sleeper) {
@@ -160,7 +160,7 @@ Core::Idle Core::idle() {
 }
 
 void Core::step() {
-  restless_ = false;
+  recheck_ = false;
   if (disturbed_.exchange(false)) changed_ = true;
   while (connected_) {
     uint32_t size = 0;
@@ -179,7 +179,7 @@ void Core::step() {
       continue;
     }
     if (!frame && !time_runs_ && !changed_) return;
-    if (idle() != Idle::yes || signals().give_up()) { restless_ = true; return; }
+    if (idle() != Idle::yes || signals().give_up()) { recheck_ = true; return; }
     if (kind == 'T' && !time_runs_) begin_time(frame, size);
     if (time_runs_) {
       go_on();

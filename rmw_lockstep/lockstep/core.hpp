@@ -110,7 +110,7 @@ private:
   uint32_t process_ = 0;
   int64_t epoch_ = 0;
   pid_t listener_ = 0;
-  bool listener_sleeps_ = false, restless_ = false;
+  bool listener_sleeps_ = false, recheck_ = false;
   const lockstep_participant * participant_ = nullptr;
   std::vector<Sleeper *> sleepers_;
   std::vector<pid_t> children_;
@@ -134,7 +134,7 @@ Core & core();
 
 // The kernel's number of the calling thread, and how often it has slept in this library.
 pid_t thread_number();
-extern thread_local uint64_t rests;
+extern thread_local uint64_t sleeps;
 
 // Whether the calling thread's readings of the clock are not counted: it is not one of the program's.
 extern thread_local bool reads_clock_freely;

@@ -73,7 +73,7 @@ LOCKSTEP_API void lockstep_block_until(const volatile int * done);
 LOCKSTEP_API void lockstep_settle_signals(void);
 
 /// How often the calling thread has waited for anything so far: two equal answers mean that it never waited in between.
-LOCKSTEP_API uint64_t lockstep_rests(void);
+LOCKSTEP_API uint64_t lockstep_sleeps(void);
 
 /// Call `function(data, count)` once the lock is released.
 LOCKSTEP_API void lockstep_call_later(void (*function)(const void *, size_t), const void * data, size_t count);

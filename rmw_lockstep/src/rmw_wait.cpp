@@ -12,17 +12,17 @@ namespace {
 
 // How long a thread is considered to wait that polls repeatedly without waiting (ns).
 constexpr int64_t POLL = 10'000'000;
-constexpr int QUIET_POLLS = 2;
+constexpr int UNCHANGED_POLLS = 2;
 
 // How often this thread has polled in a row without anything happening in between.
 struct Polls {
-  uint64_t activity = 0, rests = 0;
-  int quiet = 0;
+  uint64_t activity = 0, sleeps = 0;
+  int unchanged = 0;
   void count() {
-    const uint64_t now = graph().activity, rested = lockstep_rests();
-    quiet = activity == now && rests == rested ? quiet + 1 : 0;
+    const uint64_t now = graph().activity, slept = lockstep_sleeps();
+    unchanged = activity == now && sleeps == slept ? unchanged + 1 : 0;
     activity = now;
-    rests = rested;
+    sleeps = slept;
   }
 };
 thread_local Polls polls;
@@ -38,9 +38,9 @@ bool wait_as_poll(Waiter & waiter) {
   // rclpy's spin_once(timeout_sec=0) triggers a guard condition of its own each time, which does not count as activity.
   if (!lockstep_virtual() || waiter.ready(false)) return false;
   polls.count();
-  if (polls.quiet < QUIET_POLLS) return false;
+  if (polls.unchanged < UNCHANGED_POLLS) return false;
   lockstep_wait(&waiter.thread, lockstep_now() + POLL);
-  polls.rests = lockstep_rests();
+  polls.sleeps = lockstep_sleeps();
   return true;
 }
 

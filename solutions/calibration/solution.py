@@ -14,7 +14,7 @@ LONGEST_WAIT = Duration(seconds=5.0)
 
 
 class Calibration(Node):
-    """Asks for each joint that it is told, and goes on while it waits for the answers."""
+    """Asks for the calibration of each joint that it receives, and continues while it waits for the answers."""
 
     def __init__(self):
         super().__init__('calibration')
@@ -42,8 +42,8 @@ class Calibration(Node):
         # END SOLUTION
 
     def tick(self):
-        """Called ten times a second."""
-        # TODO: ask for what waits, give up what has waited for too long, and publish how many are pending.
+        """Called ten times per second."""
+        # TODO: ask for the joints that wait, give up those that have waited too long, and publish how many are pending.
         # BEGIN SOLUTION
         self.ask()
         now = self.get_clock().now()

@@ -34,7 +34,7 @@ class GoToGoal(Node):
         self.goal = goal
 
     def on_pose(self, pose):
-        """Called once for each pose of the turtle, about 60 times a second."""
+        """Called once for each pose of the turtle, about 60 times per second."""
         # TODO: without a goal, do nothing.
         # TODO: find the distance to the goal, and by which angle the turtle must turn to face it.
         # TODO: close to the goal, stop the turtle and forget the goal. Otherwise drive and turn towards it.

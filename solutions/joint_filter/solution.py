@@ -30,7 +30,7 @@ class JointFilter(Node):
 
     def on_joints(self, message):
         """Called once for each message on /joint_commands."""
-        # TODO: for each joint, go from the smooth position towards the new one, by the part that the gain says.
+        # TODO: for each joint, move the smooth position towards the new one, by the fraction that the gain gives.
         # BEGIN SOLUTION
         gain = self.get_parameter('gain').value
         answer = JointState(header=message.header, name=message.name)
@@ -43,7 +43,7 @@ class JointFilter(Node):
 
     # BEGIN SOLUTION
     def on_set(self, parameters):
-        """Called before parameters change: may they?"""
+        """Called before parameters change. Returns whether they may."""
         for parameter in parameters:
             if parameter.name == 'gain' and not 0.0 < parameter.value <= 1.0:
                 return SetParametersResult(successful=False, reason='gain must be more than 0.0 and at most 1.0')

@@ -1,4 +1,4 @@
-"""Send the joint to one target after another, and tell how each of them ended."""
+"""Send the joint to one target after another, and report how each of them ended."""
 
 import rclpy
 from action_msgs.msg import GoalStatus
@@ -48,7 +48,7 @@ class JointOperator(Node):
         # END SOLUTION
 
     def tick(self):
-        """Called ten times a second."""
+        """Called ten times per second."""
         # TODO: send what waits. Cancel a goal that takes too long.
         # BEGIN SOLUTION
         self.send()
@@ -84,7 +84,7 @@ class JointOperator(Node):
         self.end(OUTCOMES[future.result().status])
 
     def end(self, outcome):
-        """Tell how the goal ended, and go on with the next."""
+        """Report how the goal ended, and continue with the next."""
         self.outcomes.publish(String(data=outcome))
         self.busy = False
         self.goal_handle = self.cancel_at = None

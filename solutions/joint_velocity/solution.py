@@ -29,7 +29,7 @@ class JointVelocity(Node):
         self.get_logger().info(f'{len(message.name)} joints arrived', throttle_duration_sec=1.0)
         # TODO: find dt, the time in seconds between this message's stamp and the stamp of the one just before.
         # TODO: publish the velocity of each joint that is in both messages.
-        # TODO: remember this message, also when there was nothing to publish.
+        # TODO: remember this message, even if there was nothing to publish.
         # BEGIN SOLUTION
         stamp = message.header.stamp.sec * NANOSECONDS + message.header.stamp.nanosec
         positions = {

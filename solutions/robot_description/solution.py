@@ -20,7 +20,7 @@ class RobotDescription(Node):
         # TODO: create a publisher of String messages on '/robot_description' that keeps its last message for late
         #       subscribers: a depth of 1, transient local.
         # TODO: declare the parameter 'robot_description', and publish what it says.
-        # TODO: refuse what is no description, and publish a new one when it was set.
+        # TODO: refuse a text that is not a description, and publish a new description when it was set.
         # BEGIN SOLUTION
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self.publisher = self.create_publisher(String, '/robot_description', latched)
@@ -35,7 +35,7 @@ class RobotDescription(Node):
 
     # BEGIN SOLUTION
     def on_set(self, parameters):
-        """Called before parameters change: may they?"""
+        """Called before parameters change. Returns whether they may."""
         for parameter in parameters:
             if parameter.name == 'robot_description' and not is_robot(parameter.value):
                 return SetParametersResult(successful=False, reason='this is no <robot> in XML')

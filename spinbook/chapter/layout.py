@@ -31,7 +31,7 @@ class Piece:
 
 @dataclass(frozen=True)
 class Layout:
-    """How blocks are laid out. `runs` says which fences become cells, `sign` what stands below one that does not."""
+    """How blocks are laid out. `runs` says which fences become cells, `sign` what is below one that does not."""
 
     runs: Callable[[Block], bool]
     sign: Callable[[Block], str]
@@ -147,7 +147,7 @@ class Layout:
 
 
 def _item(pieces: list[Piece], marker: str, item: Block) -> list[Piece]:
-    """An item's lines below its marker, up to its first cell; what comes behind a cell stands at the margin."""
+    """An item's lines below its marker, up to its first cell; what follows a cell is at the margin."""
     out: list[Piece] = []
     first, in_item = True, True
     for piece in pieces:
@@ -191,7 +191,7 @@ def _spaced(pieces: list[Piece], block: Block) -> list[Piece]:
 
 
 def _wrapped(pieces: list[Piece], opening: Sequence[str], closing: Sequence[str], block: Block) -> list[Piece]:
-    """The lines between an opening and a closing, anew around each cell."""
+    """The lines between an opening and a closing, again around each cell."""
     out: list[Piece] = []
     lines: list[Piece] = []
 

@@ -62,7 +62,7 @@ def _watched(rule: Any, is_image: bool) -> Any:
 
 def _destination(state: StateInline, label: int, is_image: bool) -> _Found | None:
     """The place of `target` in `[text](target "title")`; None for a reference, whose target is elsewhere."""
-    # Links in links are not allowed, but images are: the end of the label must be looked for anew.
+    # Links in links are not allowed, but images are: the end of the label must be searched again.
     pos = state.pos
     label_end = state.md.helpers.parseLinkLabel(state, label, not is_image)
     state.pos = pos

@@ -143,7 +143,7 @@ def _parts(text: str) -> list[str]:
 
 
 def _unquoted(text: str) -> bool:
-    """Whether no `&&` and no `;` stand in quotation marks."""
+    """Whether no `&&` and no `;` are in quotation marks."""
     return all("&&" not in quoted and ";" not in quoted for quoted in re.findall(r"\"[^\"]*\"|'[^']*'", text))
 
 

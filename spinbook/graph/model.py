@@ -63,7 +63,7 @@ class NodeGraph:
         """Read what `to_json` wrote.
 
         Raises:
-            ValueError: if the text is no such graph.
+            ValueError: if the text is not such a graph.
         """
         try:
             message = json.loads(text)

@@ -53,7 +53,7 @@ class _Stream:
 
 @dataclass
 class Counted:
-    """The messages of a topic with so many publishers that were received, kept apart by publisher.
+    """The messages received on a topic with this many publishers, kept apart by publisher.
 
     Each publisher numbers its messages, so that what was missed in between is counted too (RTPS 2.5, 8.3.5.4), and
     stamps them when it sends them, so that the time that they took to come does not matter.
@@ -75,7 +75,7 @@ class Counted:
             nearest.last = (number, sent_ns)
 
     def rate_hz(self) -> float | None:
-        """Messages a second of all publishers together; None before enough has been heard of each."""
+        """Messages per second of all publishers together; None until enough has been received from each."""
         rates = []
         for stream in self._streams:
             seconds = (stream.last[1] - stream.first[1]) / _NS

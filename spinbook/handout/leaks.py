@@ -15,12 +15,12 @@ from typing import Any
 from grader.exercise.exercise import Exercise
 from grader.exercise.starter import hidden_blocks, starter
 
-#: A line with so many characters besides spaces is not a coincidence, nor are so many lines with so many together.
+#: A line with this many characters besides spaces is not a coincidence, nor are this many lines with this many in all.
 _ONE_LINE = 40
 _LINES, _CHARACTERS = 3, 40
 #: Spinbook's own modules, in a wheel or in what a page loads.
 _OWN = re.compile(r"\.(whl|zip)/(spinbook|grader|interface_compiler|rcl_python|rmw_lockstep)/")
-#: So many characters of a secret are looked up before the whole of it is compared.
+#: How many characters of a secret are looked up before the whole of it is compared.
 _PIECE = 8
 
 
@@ -280,7 +280,7 @@ def _chapter_line(content: bytes, secret: Secret) -> str:
 
 
 def _readable(name: str, content: bytes) -> str:
-    """Return a file's text; for a notebook its texts, one after the other, as they are shown."""
+    """Return a file's text; for a notebook its texts, one after another, as they are shown."""
     text = content.decode("utf-8", errors="replace")
     if name.endswith((".ipynb", ".json")):
         try:

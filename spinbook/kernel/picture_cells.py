@@ -26,7 +26,7 @@ _GRAPH_LIMIT_S = 20.0
 
 
 def show_graph(seconds: float) -> None:
-    """Look at the graph, count messages for so many seconds, and show it. Raises CellFailed."""
+    """Look at the graph, count messages for this many seconds, and show it. Raises CellFailed."""
     process = KeptProcess([sys.executable, "-m", "spinbook.graph.watcher", "now", str(seconds)], os.environ, Path.cwd())
     try:
         status = process.wait(seconds + _GRAPH_LIMIT_S)
@@ -72,12 +72,12 @@ def show_turtle() -> None:
 #: How long the recorder may take to start, and a topic's first message to come after that (s).
 _STARTING_S = 30.0
 _APPEAR_S = 7.0
-#: How often a watched plot is drawn anew (s).
+#: How often a watched plot is redrawn (s).
 _REDRAW_S = 0.5
 
 
 def show_plot(paths: list[str], seconds: float, title: str) -> None:
-    """Record these paths for so many seconds from the first sample on, and show the plot. Raises CellFailed."""
+    """Record these paths for this many seconds from the first sample on, and show the plot. Raises CellFailed."""
     argv = [sys.executable, "-u", "-m", "spinbook.kernel.plot.recorder", *paths]
     process = KeptProcess(argv, os.environ, Path.cwd())
     recording = Recording()
@@ -114,7 +114,7 @@ class RecordingTime:
 
 
 def _record(process: KeptProcess, recording: Recording, seconds: float, title: str) -> Any:
-    """Take in what comes. Returns the handle of the picture that is being watched, if one is."""
+    """Take in what arrives. Returns the handle of the picture that is being watched, if one is."""
     watched = EXECUTING not in os.environ
     handle: Any = None
     rest = ""

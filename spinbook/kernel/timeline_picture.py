@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-#: What took longer (s) is shown so many times as fast that it takes no longer.
+#: A longer recording (s) is shown faster, so that it takes no longer than this.
 LONGEST_S = 20.0
 #: More ticks than this on one lane are thinned out: they would be one bar.
 MOST_TICKS = 150

@@ -53,7 +53,7 @@ To show it in a chapter, write this line there:  <!-- exercise: {name} -->"""
 
 _SOLUTION = """\
 Made {path}: a program with every topic, service, action and parameter of exercises/{name}/exercise.toml.
-Write what it does between its markers. The starter is this file without what stands there: move a marker up if
+Write what it does between its markers. The starter is this file without those parts: move a marker up if
 students are to create an end themselves."""
 
 

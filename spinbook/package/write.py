@@ -32,7 +32,7 @@ def write_package(
     interfaces: Sequence[str] = (),
     extra: Mapping[str, str] | None = None,
 ) -> Path:
-    """Make the package's sources exactly these modules; files that a person put beside them stay. Returns its folder.
+    """Make the package's sources exactly these modules; files that a person put next to them stay. Returns its folder.
 
     A module that was written before and is no longer among them is removed: its executable is gone too.
     `interfaces` are the course's own packages of interfaces, on which modules may depend. `extra` are launch and
@@ -78,7 +78,7 @@ def _written_modules(folder: Path, package: Package) -> list[Module]:
 
 
 def add_module(workspace: Path, package: Package, module: Module) -> Path:
-    """Put one module into the package, beside those that are there. Returns the module's file."""
+    """Put one module into the package, next to those that are there. Returns the module's file."""
     folder = package_folder(workspace, package)
     others = [other for other in _written_modules(folder, package) if other.name != module.name]
     write_package(workspace, package, [*others, module], extra=_written_files(folder))

@@ -209,7 +209,7 @@ class Graph:
     # Working
 
     def spin_once(self) -> None:
-        """Handle what came, waiting a moment for it. A signal is raised when that has been done: see cli.py."""
+        """Handle what has arrived, waiting a moment for it. A signal is raised when that has been done: see cli.py."""
         with held_back():
             self.executor.spin_once(timeout_sec=NAP)
 
@@ -253,7 +253,7 @@ class Graph:
         self.node.destroy_client(client)
 
     def spin_until(self, done: Callable[[], bool], deadline: float | None = None) -> bool:
-        """Handle what comes until `done()`, at most `deadline` seconds; whether it is done."""
+        """Handle what arrives until `done()`, at most `deadline` seconds; whether it is done."""
         end = None if deadline is None else time.monotonic() + deadline
         while not done():
             if end is not None and time.monotonic() >= end:

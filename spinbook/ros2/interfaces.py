@@ -105,7 +105,7 @@ KINDS: dict[Kind, str] = {"msg": "message", "srv": "service", "action": "action"
 
 
 def message_class(name: str) -> Any:
-    """The class of a message type. Raises `CommandError` for a name that is no type installed here.
+    """The class of a message type. Raises `CommandError` for a name that is not a type installed here.
 
     An action's feedback topic has a type of its own, such as `turtlesim/action/RotateAbsolute_FeedbackMessage`.
     """

@@ -93,7 +93,7 @@ def _give_log_folder() -> None:
 _FIRST_PORT = 7400
 _PORTS_A_DOMAIN = 250
 _FIRST_UNICAST = 10
-#: How often the table of sockets is read anew, at most, when it changes meanwhile.
+#: How often the table of sockets is read again, at most, when it changes meanwhile.
 _READINGS = 5
 
 

@@ -338,7 +338,7 @@ def load(
     spin_time: float | None,
     use_sim_time: bool,
 ) -> None:
-    """Set a running node's parameters from a parameter file, one after the other.
+    """Set a running node's parameters from a parameter file, one after another.
 
     \b
       ros2 param load /joint_state_monitor monitor.yaml

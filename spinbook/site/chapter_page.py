@@ -37,7 +37,7 @@ class Ran:
 
 @dataclass(frozen=True)
 class ExerciseCard:
-    """What a chapter's page says of an exercise, whose task stands on a page of its own."""
+    """What a chapter's page says about an exercise, whose task is on a page of its own."""
 
     name: str
     title: str
@@ -192,7 +192,7 @@ __all__ = [
     "read_node_graph",
 ]
 
-#: So many parts of a graph are enough to show what one looks like.
+#: How many parts of a graph are enough to show what one looks like.
 _PARTS = 2
 
 

@@ -201,7 +201,7 @@ _SAYS = re.compile(r"^\s*acc(?:Title|Descr)\s*:\s*(.+)$", re.MULTILINE)
 def in_words(code: str) -> str:
     """What a drawing says, for those who don't see it: its own accDescr, otherwise which node leads to which.
 
-    "" where it is no flowchart, or one whose edges can't be read.
+    "" if it is not a flowchart, or one whose edges can't be read.
     """
     if titles := _SAYS.findall(code):
         return ". ".join(line.strip().rstrip(".") for line in titles) + "."

@@ -85,7 +85,7 @@ class Page:
     """One page. `name` is its path without a suffix, such as chapters/03-nodes-and-topics.
 
     `text` is a notebook or Markdown, by `suffix`. `notebook` names the notebook that its reader can run, `about` is
-    what the theme shows of it beside the text. `summary` is one sentence, for search engines and the home page. `runs`
+    what the theme shows of it next to the text. `summary` is one sentence, for search engines and the home page. `runs`
     says whether its cells can run in the browser.
     """
 
@@ -124,7 +124,7 @@ GLOSSARY = "glossary"
 ABOUT = "about"
 SEARCH = "search"
 
-#: Ends the name of the file that stands beside a staged page, with what the theme shows around it.
+#: Ends the name of the file next to a staged page, with what the theme shows around it.
 FRAME_SUFFIX = ".frame.json"
 
 

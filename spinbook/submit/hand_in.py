@@ -162,7 +162,7 @@ def default_target(exercise: Exercise, folder: Path) -> Path:
 
 
 def _now() -> datetime:
-    """The time, to the second; SOURCE_DATE_EPOCH (s) stands in for the clock where uploads have to be reproducible."""
+    """The time, to the second; SOURCE_DATE_EPOCH (s) replaces the clock if uploads have to be reproducible."""
     given = os.environ.get("SOURCE_DATE_EPOCH", "")
     if given.isdigit():
         return datetime.fromtimestamp(int(given), timezone.utc)

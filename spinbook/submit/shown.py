@@ -35,7 +35,7 @@ LAST_LINES = 12
 class Row:
     """One check as it is shown. `facts` are label and value; `remark` is what they leave out.
 
-    `before` stands above the first of several checks that all wait for the same one.
+    `before` is above the first of several checks that all wait for the same one.
     """
 
     check: ShownCheck
@@ -116,7 +116,7 @@ def _rows(grade: Grade, exercise: Exercise) -> list[Row]:
         first, *rest = group
         if needs:
             which = f"The next {len(rest) + 1} checks" if rest else "The next check"
-            before = f"{which} can't be judged before this is right: {' '.join(needs)}"
+            before = f"{which} can't be judged until this is right: {' '.join(needs)}"
             rows += [Row(first, before=before), *(Row(check) for check in rest)]
         else:
             rows += [_row(check, grade, exercise) for check in (first, *rest)]

@@ -15,7 +15,7 @@ class Canvas:
     """500 by 500 pixels of 45 a unit; x to the right and y down from the upper left corner.
 
     Unpainted pixels read white, as they do in turtlesim, whose canvas is transparent white over the background.
-    A pixel's centre is at whole numbers, so that a turtle always stands on the pixel nearest to it.
+    A pixel's centre is at whole numbers, so that a turtle is always on the pixel nearest to it.
     """
 
     def __init__(self) -> None:

@@ -22,7 +22,7 @@ from spinbook.turtlesim.world_picture import Color, TrackPicture, TurtlePicture,
 
 #: A wait of all turtles that is longer is shown as this long (s).
 LONGEST_WAIT_S = 0.6
-#: What would take longer than this (s) is shown so many times as fast that it does not.
+#: A longer animation (s) is shown faster, so that it takes no longer than this.
 LONGEST_S = 30.0
 
 
@@ -150,7 +150,7 @@ def _at(radius: float, angle: float) -> tuple[float, float]:
 # still: every trail drawn, the turtles where they are now.
 
 
-#: Samples of all tracks together; more are thinned until so many are left, which costs precision.
+#: Samples of all tracks together; more are thinned until this many are left, which costs precision.
 MOST_SAMPLES = 200
 #: Trails that are drawn as one sees; where they are more, they are there from the beginning.
 MOST_TRAILS = 30

@@ -32,7 +32,7 @@ from spinbook.turtlesim.program import Pose
 from spinbook.turtlesim.trail import Point, Track, Trail
 from spinbook.turtlesim.world_picture import BLUE, Color, TurtlePicture, WorldPicture, caption, strokes, tracks
 
-#: The world's side on paper, and the room around it, in inches.
+#: The world's side on paper, and the margin around it, in inches.
 _SIDE_IN, _LEFT, _RIGHT, _BOTTOM, _TOP = 4.4, 0.42, 0.12, 0.36, 0.34
 #: Dots per inch of a PNG.
 _DPI = 120
@@ -211,7 +211,7 @@ def fetch(timeout_s: float = TIMEOUT_S, listen_s: float = LISTEN_S, node: str = 
         try:
             client = ears.create_client(Trigger, f"{node}/picture")
         except InvalidServiceNameException as error:
-            raise NoPictureError(f"{node!r} is no name of a node: give one such as {NODE}") from error
+            raise NoPictureError(f"{node!r} is not a valid node name: give one such as {NODE}") from error
         start = time.monotonic()
         while not client.service_is_ready() and time.monotonic() < start + timeout_s:
             heard.look()

@@ -84,7 +84,7 @@ def keys(terminal: int) -> Iterator[bytes]:
     escape = b""
     while (byte := os.read(terminal, 1)) not in (b"", b"q", b"Q"):
         escape = (escape + byte)[-3:]
-        # A letter alone is no arrow: those send ESC [ A, or ESC O A.
+        # A letter alone is not an arrow: those send ESC [ A, or ESC O A.
         if byte not in ARROWS or escape[:2] in (b"\x1b[", b"\x1bO"):
             yield byte
         elif byte.lower() in HEADINGS:

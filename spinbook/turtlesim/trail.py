@@ -14,9 +14,9 @@ Point = tuple[float, float]
 TOLERANCE = 0.004
 #: Beyond this many points the oldest are forgotten, so that a turtle may drive forever.
 MAX_POINTS = 30_000
-#: A stroke's colour, width and name count as so many points: they take that much room in a message.
+#: A stroke's colour, width and name count as this many points: they take that much room in a message.
 _STROKE_COST = 6
-#: So many points of a long stroke are forgotten at a time.
+#: How many points of a long stroke are forgotten at a time.
 _FORGET = 1_000
 
 
@@ -118,7 +118,7 @@ class Trail:
 
 #: Between two samples the turtle is within this of a steady move (units; rad): half a pixel, one degree.
 PLACE_TOLERANCE, HEADING_TOLERANCE = 0.01, 0.02
-#: Beyond this many samples the oldest are forgotten, so many at a time.
+#: Beyond this many samples the oldest are forgotten, this many at a time.
 MAX_SAMPLES, _TRACK_FORGET = 3_000, 500
 
 

@@ -18,7 +18,7 @@ from spinbook.update.merging import Cell, MergeReport, content, merged, merged_w
 
 
 class NoNotebook(Exception):
-    """Raised when a file is no notebook that can be read; says why."""
+    """Raised when a file is not a notebook that can be read; says why."""
 
 
 def read(data: bytes) -> dict[str, Any]:

@@ -47,10 +47,10 @@ def test_the_starter_gets_no_points_and_is_told_what_to_fix_first(kernel: Kernel
         assert "This is a self-check, not your grade." in message
         assert "Next:" in message
         assert "fix the first ✗, run the cell that begins with %%node joint_velocity, then this one again." in message
-    assert text.count("Can't be judged before this is right: It subscribes to /joint_commands") == PUBLIC - 1
+    assert text.count("Can't be judged until this is right: It subscribes to /joint_commands") == PUBLIC - 1
     assert html.count('class="sb-failed"') == 1
     assert html.count('class="sb-blocked"') == PUBLIC - 1
-    waiting = f"The next {PUBLIC - 1} checks can&#39;t be judged before this is right: It subscribes to /joint_commands"
+    waiting = f"The next {PUBLIC - 1} checks can&#39;t be judged until this is right: It subscribes to /joint_commands"
     assert html.count(waiting) == 1, "what all wait for is said once"
 
 

@@ -40,7 +40,7 @@ def test_a_failed_public_check_tells_what_was_expected_and_got_when_and_where(
 
 def test_what_is_blocked_says_what_to_fix_first(graded: dict[str, Grade], exercise: Exercise) -> None:
     shown = text(page_of(graded["position_for_velocity"], exercise))
-    assert "can't be judged before this is right: Each joint's velocity is its change of position" in shown
+    assert "can't be judged until this is right: Each joint's velocity is its change of position" in shown
 
 
 def test_of_a_hidden_check_only_title_points_outcome_and_hint_are_reported(

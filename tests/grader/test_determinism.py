@@ -82,7 +82,7 @@ def test_graded_two_hundred_times_half_of_them_beside_busy_loops_it_is_the_same(
             "import rclpy\n": "import time\nimport rclpy\n",
         },
     ],
-    ids=["no parameter services", "no services at all", "deaf to the command line", "asleep between its looks"],
+    ids=["no parameter services", "no services at all", "without the command line", "asleep between its looks"],
 )
 def test_however_a_node_is_made_and_spun_its_grade_is_right(grading: Grading, change: dict[str, str]) -> None:
     source = (SOLUTIONS / "solution.py").read_text(encoding="utf-8")

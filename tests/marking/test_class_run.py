@@ -60,8 +60,8 @@ def test_students_stand_under_the_mistakes_that_they_make(graded: tuple[SmallCla
     groups = re.findall(r"<summary><b>(\d+)</b> students?: (.*?)</summary>(.*?)</details>", page, re.DOTALL)
     found = {what: re.findall(r'href="students/(\w+)/feedback.html"', names) for _, what, names in groups}
     assert found == {
-        "Limits the speed forwards, and not backwards.": ["carl", "emil"],
-        "Never asks whether the speed is a number.": ["dora", "emil"],
+        "Limits the speed forwards, but not backwards.": ["carl", "emil"],
+        "Never checks whether the speed is a number.": ["dora", "emil"],
     }
 
 

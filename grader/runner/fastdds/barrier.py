@@ -32,7 +32,7 @@ AFTER_MESSAGES = 2
 #: A node without a synchronization method counts as idle when none of its threads ran for this long.
 STILL_S = 0.004
 
-#: A node that is never idle is given this long, so often, before the runner relies on its answers alone.
+#: A node that is never idle is given this long, this many times, before the runner relies on its answers alone.
 RESTLESS_S, RESTLESS_TIMES = 0.25, 3
 
 ENDLESS = "Your node used {0:g} s of computing time on one message and did not finish. Is there an endless loop?"
@@ -45,7 +45,7 @@ SLEEPY = "Your node waits and sleeps instead of answering: {0:g} s in this scena
 #: How often to check that the student's program is still running, while waiting for an answer.
 CHECK_S = 0.02
 
-#: After so much idle time, a call that has had no answer is repeated.
+#: A call that has had no answer is repeated after this much idle time.
 AGAIN_S = 0.5
 
 #: How often to look for changes of the graph.

@@ -190,7 +190,7 @@ def wait_for_nodes(graph: Graph, barrier: Barrier, watch: Watch) -> list[str]:
     return nodes
 
 
-#: Graph data that got lost on its way is sent again once a second (Fast DDS 2.14, `edp_heartbeat_period`).
+#: Graph data that got lost on its way is sent again once per second (Fast DDS 2.14, `edp_heartbeat_period`).
 TOLD_AGAIN_S = 1.5
 
 #: A program that computes for this long (s) is not about to change the graph.

@@ -1,4 +1,4 @@
-"""Asks also when the service is not there: the request is lost.
+"""Asks even if the service is not there: the request is lost.
 
 Caught by:
 - test_service_appears_late

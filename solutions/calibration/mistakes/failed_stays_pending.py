@@ -1,4 +1,4 @@
-"""Counts a joint whose calibration failed as pending, until it gives it up.
+"""Counts a joint whose calibration failed as pending, until it gives up on it.
 
 Caught by:
 - test_failed_is_not_pending

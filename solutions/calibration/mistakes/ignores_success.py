@@ -1,4 +1,4 @@
-"""Publishes an offset also when the calibration failed.
+"""Publishes an offset even if the calibration failed.
 
 Caught by:
 - test_failed_calibration

@@ -1,4 +1,4 @@
-"""The lambda takes its joint when it is called, not when it was made.
+"""The lambda looks up its joint when it is called, not when it is created.
 
 Caught by:
 - test_answers_in_another_order

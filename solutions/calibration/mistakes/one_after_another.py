@@ -1,4 +1,4 @@
-"""Asks for the next joint only when the one before has an answer.
+"""Asks for the next joint only after the one before has been answered.
 
 Caught by:
 - test_asks_at_once

@@ -1,4 +1,4 @@
-"""Calls a service of another name.
+"""Calls a service with another name.
 
 Caught by:
 - test_asks

@@ -1,4 +1,4 @@
-"""With a MultiThreadedExecutor: each question waits in a callback of its own, beside the timer."""
+"""With a MultiThreadedExecutor: each request waits in a callback of its own, while the timer continues."""
 
 import math
 import threading

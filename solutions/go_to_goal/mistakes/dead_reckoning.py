@@ -1,4 +1,4 @@
-"""Computes once how long to turn and to drive, and looks at no pose on the way.
+"""Computes once how long to turn and to drive, and ignores the poses on the way.
 
 Caught by:
 - test_reaches_the_goal

@@ -1,4 +1,4 @@
-"""Drives at full speed while it turns, and circles round the goal.
+"""Drives at full speed while it turns, and circles around the goal.
 
 Caught by:
 - test_reaches_the_goal

@@ -1,4 +1,4 @@
-"""Publishes nothing any more at the goal, so that the turtle rolls on for a second.
+"""Stops publishing at the goal, so that the turtle rolls on for a second.
 
 Caught by:
 - test_stops_at_the_goal

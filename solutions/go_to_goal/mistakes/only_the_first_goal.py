@@ -1,4 +1,4 @@
-"""Keeps the first goal until it is there.
+"""Keeps the first goal until the turtle has reached it.
 
 Caught by:
 - test_takes_a_new_goal_on_its_way

@@ -1,4 +1,4 @@
-"""Sleeps for a second when a goal comes, and does not steer meanwhile.
+"""Sleeps for a second when a goal arrives, and does not steer meanwhile.
 
 Caught by:
 - test_keeps_steering

@@ -1,4 +1,4 @@
-"""Places and headings as complex numbers."""
+"""Positions and headings as complex numbers."""
 
 import cmath
 

@@ -1,4 +1,4 @@
-"""Beats once a second.
+"""Beats once per second.
 
 Caught by:
 - test_four_beats_a_second

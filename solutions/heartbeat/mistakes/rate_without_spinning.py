@@ -1,4 +1,4 @@
-"""Rate.sleep() without anybody who spins: it waits forever.
+"""Rate.sleep() in a node that nothing spins: it waits forever.
 
 Caught by:
 - test_publishes_beats

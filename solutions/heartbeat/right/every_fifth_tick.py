@@ -1,4 +1,4 @@
-"""A timer at 20 Hz, of which each fifth call is a beat."""
+"""A timer at 20 Hz: every fifth call is a beat."""
 
 import rclpy
 from rclpy.executors import ExternalShutdownException

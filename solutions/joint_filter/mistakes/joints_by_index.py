@@ -1,4 +1,4 @@
-"""Finds joints by place and not by name.
+"""Finds joints by index instead of by name.
 
 Caught by:
 - test_joints_in_another_order

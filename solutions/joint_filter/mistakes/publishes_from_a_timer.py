@@ -1,4 +1,4 @@
-"""Publishes the newest positions at 10 Hz, and not for each message.
+"""Publishes the newest positions at 10 Hz instead of for each message.
 
 Caught by:
 - test_answers_each_message

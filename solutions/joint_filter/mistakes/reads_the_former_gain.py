@@ -1,4 +1,4 @@
-"""Reads the gain in the on-set callback, where it is still the former one.
+"""Reads the gain in the on-set callback, where it still has its old value.
 
 Caught by:
 - test_gain_that_changes

@@ -1,4 +1,4 @@
-"""Compares with the last position and not with the smooth one.
+"""Compares with the last position instead of the smooth one.
 
 Caught by:
 - test_filters_with_the_default

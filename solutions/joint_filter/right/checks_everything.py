@@ -1,4 +1,4 @@
-"""One callback checks everything; the range is told to `ros2 param describe` all the same."""
+"""One callback checks everything; `ros2 param describe` shows the range all the same."""
 
 import math
 

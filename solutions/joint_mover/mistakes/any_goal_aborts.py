@@ -1,4 +1,4 @@
-"""Aborts the goal that runs as soon as another one comes, also if that one is rejected.
+"""Aborts the running goal as soon as another one arrives, even if that one is rejected.
 
 Caught by:
 - test_rejected_goal_changes_nothing

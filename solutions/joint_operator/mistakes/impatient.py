@@ -1,4 +1,4 @@
-"""Counts a goal as rejected that the server has not accepted after 1 s.
+"""Counts a goal as rejected if the server has not accepted it after 1 s.
 
 Caught by:
 - test_server_that_answers_late

@@ -1,4 +1,4 @@
-"""Sends goals also when the server is not there: they are lost.
+"""Sends goals even if the server is not there: they are lost.
 
 Caught by:
 - test_server_appears_late

@@ -1,4 +1,4 @@
-"""Has another action's name.
+"""Uses another action name.
 
 Caught by:
 - test_sends_a_goal

@@ -1,4 +1,4 @@
-"""Publishes the change of position and does not divide by dt.
+"""Publishes the change of position without dividing it by dt.
 
 Caught by:
 - test_velocity_of_each_joint

@@ -1,4 +1,4 @@
-"""Uses only nanosec, so that dt is negative once a second.
+"""Uses only nanosec, so that dt is negative once per second.
 
 Caught by:
 - test_answers_each_message_once

@@ -1,4 +1,4 @@
-"""Leaves the header as it is made, without a stamp.
+"""Leaves the header as it was created, without a stamp.
 
 Caught by:
 - test_stamp_is_copied

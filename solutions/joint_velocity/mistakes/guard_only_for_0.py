@@ -1,4 +1,4 @@
-"""Looks for dt = 0 and forgets that it can be negative.
+"""Checks for dt = 0 and forgets that it can be negative.
 
 Caught by:
 - test_backward_stamp

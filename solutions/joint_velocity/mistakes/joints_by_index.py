@@ -1,4 +1,4 @@
-"""Compares joints by their place in the list.
+"""Compares joints by their index in the list.
 
 Caught by:
 - test_joints_in_another_order

@@ -1,4 +1,4 @@
-"""Takes the QoS of sensors, which loses messages.
+"""Uses the QoS for sensors, which loses messages.
 
 Caught by:
 - test_quality_of_service

@@ -1,4 +1,4 @@
-"""Inside an asyncio loop, which turns the node a little at a time."""
+"""Inside an asyncio loop, which spins the node a little at a time."""
 
 import asyncio
 import math

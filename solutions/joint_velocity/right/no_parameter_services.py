@@ -1,4 +1,4 @@
-"""Without parameter services, and deaf to the command line: rclpy.init(args=[])."""
+"""Without parameter services, and without the command line: rclpy.init(args=[])."""
 
 import math
 

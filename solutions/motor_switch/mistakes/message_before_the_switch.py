@@ -1,4 +1,4 @@
-"""The message says how it was before.
+"""The message gives the state before the request.
 
 Caught by:
 - test_message

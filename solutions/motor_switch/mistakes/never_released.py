@@ -1,4 +1,4 @@
-"""Treats every message as an emergency stop, also False.
+"""Treats every message as an emergency stop, even False.
 
 Caught by:
 - test_released

@@ -1,4 +1,4 @@
-"""Publishes for each request, also when nothing changes.
+"""Publishes for each request, even if nothing changes.
 
 Caught by:
 - test_nothing_to_do

@@ -1,4 +1,4 @@
-"""Says success when it has refused.
+"""Reports success when it has refused.
 
 Caught by:
 - test_refuses_in_an_emergency

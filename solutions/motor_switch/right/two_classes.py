@@ -1,4 +1,4 @@
-"""The rules in a class that knows no ROS."""
+"""The rules in a class that knows nothing about ROS."""
 
 import rclpy
 from rclpy.executors import ExternalShutdownException

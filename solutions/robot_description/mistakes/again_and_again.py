@@ -1,4 +1,4 @@
-"""Publishes once a second, instead of a latched topic.
+"""Publishes once per second, instead of using a latched topic.
 
 Caught by:
 - test_late_subscriber

@@ -1,4 +1,4 @@
-"""Is latched, but still publishes once a second.
+"""Is latched, but still publishes once per second.
 
 Caught by:
 - test_late_subscriber

@@ -1,4 +1,4 @@
-"""Looks only whether the text has <robot in it.
+"""Only checks whether the text contains <robot.
 
 Caught by:
 - test_refuses_what_is_no_robot

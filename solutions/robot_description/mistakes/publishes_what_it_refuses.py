@@ -1,4 +1,4 @@
-"""Publishes in the on-set callback before it has looked at the text.
+"""Publishes in the on-set callback before it has checked the text.
 
 Caught by:
 - test_publishes_nothing_refused

@@ -1,4 +1,4 @@
-"""Publishes in the on-set callback, where the parameter still has its former value.
+"""Publishes in the on-set callback, where the parameter still has its old value.
 
 Caught by:
 - test_description_that_changes

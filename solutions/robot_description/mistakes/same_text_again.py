@@ -1,4 +1,4 @@
-"""Publishes also when the text is the one it was.
+"""Publishes even if the text has not changed.
 
 Caught by:
 - test_same_text_again

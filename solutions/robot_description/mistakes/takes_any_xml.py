@@ -1,4 +1,4 @@
-"""Accepts any XML, also without a <robot>.
+"""Accepts any XML, even without a <robot>.
 
 Caught by:
 - test_refuses_what_is_no_robot

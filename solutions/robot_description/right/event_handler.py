@@ -1,4 +1,4 @@
-"""Hears of the change as a parameter event."""
+"""Learns of the change from a parameter event."""
 
 from xml.dom import minidom
 from xml.parsers.expat import ExpatError

@@ -1,4 +1,4 @@
-"""Without a main function; the default and the check stand at the top."""
+"""Without a main function; the default and the check are at the top."""
 
 import xml.sax
 

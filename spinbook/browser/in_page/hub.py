@@ -95,8 +95,8 @@ class PageConnection(Link):
     def close(self) -> None:
         """Do nothing: there is nothing to close."""
 
-    def rests(self, now: int, until: int | None, in_ros: int) -> None:
-        """Note that the program is idle until `until` (ns), or until a frame arrives; so many threads wait in ROS."""
+    def report_idle(self, now: int, until: int | None, in_ros: int) -> None:
+        """Note that the program is idle until `until` (ns), or until a frame arrives; `in_ros` threads wait in ROS."""
         self.believe(Idle(self.handled, now, -1 if until is None else until, in_ros, 0, 0, 0, 1, ()))
 
 

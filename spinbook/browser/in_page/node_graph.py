@@ -24,7 +24,7 @@ def now() -> str:
 
 
 def counted(seconds: float) -> str:
-    """Return the same as `now`, with the rates counted over so many seconds."""
+    """Return the same as `now`, with the rates counted over this many seconds."""
     from spinbook.graph.watcher import graph_now
 
     return _shown(graph_now(seconds))

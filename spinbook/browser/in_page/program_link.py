@@ -41,13 +41,13 @@ class Looks:
     """How often a thread has looked in a row without anything happening in between."""
 
     activity: int = 0
-    rests: int = 0
-    quiet: int = 0
+    waits: int = 0
+    unchanged: int = 0
 
-    def count(self, activity: int, rests: int) -> None:
+    def count(self, activity: int, waits: int) -> None:
         """One more, at these numbers of what has happened so far, and of how often the thread has waited."""
-        self.quiet = self.quiet + 1 if (activity, rests) == (self.activity, self.rests) else 0
-        self.activity, self.rests = activity, rests
+        self.unchanged = self.unchanged + 1 if (activity, waits) == (self.activity, self.waits) else 0
+        self.activity, self.waits = activity, waits
 
 
 class ProgramLink:
@@ -110,7 +110,7 @@ class ProgramLink:
     # --- time
 
     def wait(self, nanoseconds: int | None) -> None:
-        """Wait for what comes, for another thread, or for so long."""
+        """Wait for a frame, for another thread, or for this long."""
         held = self.lock._release_save()  # type: ignore[attr-defined]
         try:
             self.scheduler.wait(nanoseconds, in_ros=True)
@@ -124,10 +124,10 @@ class ProgramLink:
             self.scheduler.wait(until - self._now, in_ros=False)
             participant.current().pump()
 
-    def rest(self, until: int | None, in_ros: int) -> None:
-        """All threads wait, of which so many in ROS: until something has come, or the time has, or a signal."""
+    def wait_for_hub(self, until: int | None, in_ros: int) -> None:
+        """All threads wait, `in_ros` of them in ROS: until a frame, the time or a signal arrives."""
         while not self._goes_on(until) and not self._turns.is_done and not self._turns.signal:
-            self._connection.rests(self._now, until, in_ros)
+            self._connection.report_idle(self._now, until, in_ros)
             self._turns.let_hub_go_on()
 
     def heed(self) -> None:
@@ -179,10 +179,10 @@ class ProgramLink:
             return 0
         thread = self.scheduler.number()
         mine = self._looks.setdefault(thread, Looks())
-        mine.count(self._activity, self.scheduler.rests[thread])
-        if mine.quiet < _LOOKS:
+        mine.count(self._activity, self.scheduler.waits[thread])
+        if mine.unchanged < _LOOKS:
             return 0
-        mine.rests += 1  # this one is not the program's own
+        mine.waits += 1  # this one is not the program's own
         return _LOOK
 
     def steady(self) -> int:

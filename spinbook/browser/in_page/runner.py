@@ -190,7 +190,7 @@ def _as_main(program: Program, scenario: Scenario, log: io.StringIO, link: Progr
     sys.argv = [program.file, *arguments(scenario)]
     logs.write = lambda line: print(line, file=log)
     abort.end = link.abort
-    threads.govern(link.scheduler)
+    threads.use_scheduler(link.scheduler)
     try:
         with redirect_stdout(log), redirect_stderr(log), _time_of(link):
             yield
@@ -219,7 +219,7 @@ def _time_of(link: ProgramLink) -> Iterator[None]:
 
     def choose(name: str) -> Callable[..., float | None]:
         def clock(*given: float) -> float | None:
-            return (theirs if link.scheduler.governs(threads.get_ident()) else ours)[name](*given)
+            return (theirs if link.scheduler.schedules(threads.get_ident()) else ours)[name](*given)
 
         return clock
 

@@ -16,7 +16,7 @@ from spinbook.browser.in_page import threads
 if TYPE_CHECKING:
     from spinbook.browser.in_page.program_link import ProgramLink
 
-#: A thread that is to end may wait so many times more, such as in a `finally`.
+#: How many more times a thread that has to end may wait, such as in a `finally`.
 _WAITS_AFTER_END = 100
 
 
@@ -31,7 +31,7 @@ class Scheduler:
         self._in_ros: set[int] = set()
         self._to_check: set[int] = set()
         self._numbers = {self._main: 1}
-        self.rests: Counter[int] = Counter()
+        self.waits: Counter[int] = Counter()
         """How often each thread has waited, by its number."""
         self._waits_after_end: Counter[int] | None = None
         """How often each thread wanted to wait after the program's end; None before that."""
@@ -42,10 +42,10 @@ class Scheduler:
         for thread in [thread for thread in self._gates if thread != self._main]:
             self._gates[thread].release()
             self._gates[self._main].acquire()
-        threads.govern(None)
+        threads.use_scheduler(None)
         threads.forget(number for number in self._numbers if number != self._main)
 
-    def governs(self, thread: int) -> bool:
+    def schedules(self, thread: int) -> bool:
         """Return whether a thread is one of the program's."""
         return thread in self._gates
 
@@ -89,7 +89,7 @@ class Scheduler:
         """Let others have their turns: for so long, or until there is anything new to look at."""
         mine = threads.get_ident()
         self._end_after_program(mine)
-        self.rests[self.number()] += 1
+        self.waits[self.number()] += 1
         self._due[mine] = None if nanoseconds is None else self._link.steady() + nanoseconds
         if in_ros:
             self._in_ros.add(mine)
@@ -139,7 +139,7 @@ class Scheduler:
 
     def _let_hub_go_on(self) -> None:
         dues = [due for due in self._due.values() if due is not None]
-        self._link.rest(min(dues, default=None), len(self._in_ros))
+        self._link.wait_for_hub(min(dues, default=None), len(self._in_ros))
         if not self._in_ros and self._link.has_frames:
             # No other thread takes them in.
             participant.current().pump()

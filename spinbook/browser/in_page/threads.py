@@ -30,22 +30,22 @@ _heed: Callable[[], None]
 _waiting = 0
 
 
-class Governor(Protocol):
+class ThreadScheduler(Protocol):
     """Decides whose turn it is among the threads of a program that is being checked (scheduler.py)."""
 
-    def governs(self, thread: int) -> bool: ...
+    def schedules(self, thread: int) -> bool: ...
     def pause(self, milliseconds: float) -> None: ...
     def changed(self) -> None: ...
     def start(self, run: Callable[[], None]) -> int: ...
 
 
-_governor: Governor | None = None
+_scheduler: ThreadScheduler | None = None
 
 
-def govern(governor: Governor | None) -> None:
-    """Let this governor decide from now on, or none."""
-    global _governor
-    _governor = governor
+def use_scheduler(scheduler: ThreadScheduler | None) -> None:
+    """Let this scheduler decide from now on; None for no scheduler."""
+    global _scheduler
+    _scheduler = scheduler
 
 
 def get_ident() -> int:
@@ -55,12 +55,12 @@ def get_ident() -> int:
 
 def pause(milliseconds: float, for_frames: bool) -> None:
     """Let others run for so long (-1: without a limit), or until something has changed, or a frame has arrived."""
-    if _governor and _governor.governs(get_ident()):
-        _governor.pause(milliseconds)
+    if _scheduler and _scheduler.schedules(get_ident()):
+        _scheduler.pause(milliseconds)
     elif _page:
         _pause_in_page(milliseconds, for_frames)
     else:
-        raise RuntimeError("a thread waits that nobody governs")
+        raise RuntimeError("a thread waits that no scheduler manages")
 
 
 def _pause_in_page(milliseconds: float, for_frames: bool) -> None:
@@ -80,8 +80,8 @@ def _pause_in_page(milliseconds: float, for_frames: bool) -> None:
 
 def changed() -> None:
     """Let all waiting threads check again."""
-    if _governor:
-        _governor.changed()
+    if _scheduler:
+        _scheduler.changed()
     if _waiting:
         _page.wake()
 
@@ -134,7 +134,7 @@ class Lock:
 
 
 class _RawLock(Lock):
-    """A lock without a governor."""
+    """A lock without a scheduler."""
 
     def release(self) -> None:
         """Release it."""
@@ -182,12 +182,12 @@ class Handle:
 
 
 def raw_lock() -> Any:
-    """Return a lock for governors: it waits without one."""
+    """Return a lock for schedulers: it waits without one."""
     return _RawLock() if _page else _thread.allocate_lock()
 
 
 def raw_start(run: Callable[[], None]) -> int:
-    """Start a thread without a governor; return its number."""
+    """Start a thread without a scheduler; return its number."""
     if not _page:
         return _thread.start_new_thread(run, ())
     from pyodide.ffi import create_proxy  # type: ignore[import-not-found]
@@ -204,8 +204,8 @@ def raw_start(run: Callable[[], None]) -> int:
 
 
 def _begin(run: Callable[[], None]) -> int:
-    if _governor and _governor.governs(get_ident()):
-        return _governor.start(run)
+    if _scheduler and _scheduler.schedules(get_ident()):
+        return _scheduler.start(run)
     return raw_start(run)
 
 
@@ -258,7 +258,7 @@ def use(page: Any, heed: Callable[[], None]) -> None:
 
 
 def replace_threading() -> None:
-    """Let `threading` and what is built on it use these threads. Without a page, threads must have a governor."""
+    """Let `threading` and what is built on it use these threads. Without a page, threads must have a scheduler."""
     patched: dict[str, Any] = {
         "Lock": Lock,
         "_allocate_lock": Lock,

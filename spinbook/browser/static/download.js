@@ -11,7 +11,7 @@ export function download(say) {
 }
 
 async function load(say) {
-  if (!(await keeper())) return;
+  if (!(await serviceWorker())) return;
   const { version, files } = await (await fetch(new URL("files.json", base))).json();
   for (const name of await caches.keys()) if (name.startsWith("run-") && name !== `run-${version}`) await caches.delete(name);
   const kept = await caches.open(`run-${version}`);
@@ -21,8 +21,8 @@ async function load(say) {
   }
   const whole = missing.reduce((sum, [, size]) => sum + size, 0);
   let loaded = 0;
-  const tell = (size) => say(`Loading ${megabytes((loaded += size))} of ${megabytes(whole)} MB, once for this course …`);
-  await Promise.all(missing.map(([name]) => fetchInto(kept, new URL(name, base), tell)));
+  const report = (size) => say(`Loading ${megabytes((loaded += size))} of ${megabytes(whole)} MB, once for this course …`);
+  await Promise.all(missing.map(([name]) => fetchInto(kept, new URL(name, base), report)));
   if (missing.length) keepPages();
 }
 
@@ -38,18 +38,18 @@ async function keepPages() {
 
 const megabytes = (size) => (size / 1e6).toFixed(1);
 
-async function fetchInto(kept, address, tell) {
+async function fetchInto(kept, address, report) {
   const response = await fetch(address, { cache: "reload" });
   if (!response.ok) throw new Error(`${address}: ${response.status}`);
   const [counted, stored] = response.body.tee();
   const storing = kept.put(address.href, new Response(stored, { headers: response.headers }));
   const reader = counted.getReader();
-  for (let part = await reader.read(); !part.done; part = await reader.read()) tell(part.value.length);
+  for (let part = await reader.read(); !part.done; part = await reader.read()) report(part.value.length);
   await storing;
 }
 
 // The service worker, once it serves this page; null if there can be none.
-async function keeper() {
+async function serviceWorker() {
   if (!("serviceWorker" in navigator) || !window.isSecureContext) return null;
   const known = await navigator.serviceWorker.register(new URL("../offline.js", base), { scope: new URL("../", base).href });
   if (navigator.serviceWorker.controller) return known;

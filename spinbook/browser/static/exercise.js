@@ -29,7 +29,7 @@ async function check(exercise, source, say) {
 
 function row(found) {
   const { status, title, earned, points, text, hint, needs } = found;
-  const notes = [text, needs.length ? `Can't be judged before this is right: ${needs.join(" ")}` : "", hint && `Hint: ${hint}`];
+  const notes = [text, needs.length ? `Can't be judged until this is right: ${needs.join(" ")}` : "", hint && `Hint: ${hint}`];
   return element(
     "li",
     { className: `check-${status}` },

@@ -82,7 +82,7 @@ def as_png(figure: Figure) -> bytes:
 
 @dataclass(frozen=True)
 class Scale:
-    """`low` stands at `start`, `high`, which is greater, at `end` (px)."""
+    """`low` is at `start`, `high`, which is greater, at `end` (px)."""
 
     low: float
     high: float
@@ -111,7 +111,7 @@ def around(values: list[float], start: float, end: float) -> Scale:
     return Scale(low - room, high + room, start, end)
 
 
-#: A curve is drawn within so many pixels of its samples, or coarser, where it would have more points than this.
+#: A curve is drawn to within this many pixels of its samples, or more coarsely if it would have more points than this.
 PRECISION_PX, MOST_POINTS = 0.5, 120
 #: Width of a plot, of the axis' numbers, and height of a panel (px).
 WIDTH, LEFT, RIGHT, HEIGHT = 420, 50, 10, 150
@@ -186,7 +186,7 @@ def _polyline(curve: Curve, across: Scale, up: Scale, start: float) -> str:
 # Then a rest, then again. In print, and for readers who prefer no motion, it is still: the whole curves.
 
 
-#: What was recorded for longer (s) is shown so many times as fast that it takes no longer.
+#: A longer recording (s) is shown faster, so that it takes no longer than this.
 LONGEST_S = 20.0
 #: More curves than this do not move: the picture would be large, and nobody could follow.
 MOST_CURVES = 12

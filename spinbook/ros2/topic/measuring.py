@@ -44,7 +44,7 @@ class Rate:
         self._reported = 0
 
     def arrived(self, now: int) -> None:
-        """A message came at `now`; a clock that went back begins anew."""
+        """A message came at `now`; a clock that went back starts over."""
         if self._latest is None or now < self._latest:
             self._intervals.clear()
         else:
@@ -52,13 +52,13 @@ class Rate:
         self._latest = now
 
     def reset(self) -> bool:
-        """Forget the intervals, as when a simulation begins anew; whether there were any."""
+        """Forget the intervals, as when a simulation starts over; whether there were any."""
         had = bool(self._intervals)
         self._intervals.clear()
         return had
 
     def report(self) -> str | None:
-        """The two lines to print, at most once a second of arrivals; None if none are due."""
+        """The two lines to print, at most once per second of arrivals; None if none are due."""
         if not self._intervals or self._latest is None:
             return None
         if self._reported == 0 or self._latest < self._reported:
@@ -138,13 +138,13 @@ def _unit(rate: float) -> Callable[[float], str]:
     return lambda size: f"{size / 1_000_000:.2f} MB"
 
 
-#: So many messages are averaged over, and so many for the bandwidth.
+#: How many messages are averaged over, and how many for the bandwidth.
 WINDOW = 10000
 BANDWIDTH_WINDOW = 100
 
 
 def _window_option(messages: int) -> Callable[[F], F]:
-    """The option `--window`; by default so many messages."""
+    """The option `--window`; by default this many messages."""
     return click.option(
         "-w",
         "--window",

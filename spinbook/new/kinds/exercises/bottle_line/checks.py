@@ -10,7 +10,7 @@ from grader.checking import Run, check
     hint="From 490 g to 510 g a bottle is full.",
 )
 def test_scale_says_which_bottles_are_full(line: Run) -> None:
-    """The scale says of each bottle whether it is full."""
+    """The scale publishes whether each bottle is full."""
     line.must_have_interface()
     line.must_match_series("data", topic="/full")
 

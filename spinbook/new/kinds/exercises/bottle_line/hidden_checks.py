@@ -1,4 +1,4 @@
-"""What students may not read: the rest of `bottle_line`. Every rule that is relied on is in task.md."""
+"""Checks that students may not read: the rest of `bottle_line`. Every rule that they rely on is in task.md."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from grader.checking import Run, check, fail
 
 SORTS = ["test_sorter_moves_the_gate"]
 
-#: What each node publishes and hears.
+#: What each node publishes and subscribes to.
 ENDS = (
     ("/bottle_scale", "publisher", "/full"),
     ("/bottle_scale", "subscription", "/weight"),
@@ -20,7 +20,7 @@ OF_EVERY_NODE = {"publisher": ("/rosout", "/parameter_events"), "subscription": 
 
 @check(
     points=3,
-    hint="A timer of 2 s that starts again with each message, and is canceled when it has fired.",
+    hint="Use a timer of 2 s. Restart it with each message, and cancel it when it has fired.",
     depends=SORTS,
     misconception="never closes, or again and again",
     rule="since the last message on /full, it publishes closed, once.",
@@ -48,14 +48,14 @@ def test_gate_without_a_bottle(nothing: Run) -> None:
     rule="The next message on /full is answered as usual, and the 2 s start again with each.",
 )
 def test_scale_is_killed_and_comes_back(scale_ends: Run) -> None:
-    """When the scale is killed the gate closes, and when it comes back all goes on."""
+    """When the scale is killed, the gate closes. When the scale comes back, everything continues."""
     scale_ends.must_survive("bottle_sorter.py")
     scale_ends.must_match_series("data", topic="/gate", time=0.05)
 
 
 @check(
     points=3,
-    hint="Create subscriptions and publishers, and spin. Wait for nobody.",
+    hint="Create subscriptions and publishers, and spin. Do not wait for anybody.",
     depends=["test_gate_closes_when_the_scale_is_silent"],
     misconception="waits for the other node",
     rule="Neither node waits for the other.",
@@ -72,7 +72,7 @@ def test_either_starts_late(scale_late: Run, sorter_late: Run) -> None:
     points=1,
     hint="Compare the names and the queue depths in __init__ with the task.",
     depends=SORTS,
-    rule="The nodes have these ends and no others: the sorter hears the scale, and not the weights.",
+    rule="The nodes have these ends and no others: the sorter subscribes to the scale's topic, not to the weights.",
 )
 def test_node_is_as_described(line: Run) -> None:
     """The node has the name and the quality of service of the task."""

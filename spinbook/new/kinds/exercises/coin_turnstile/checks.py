@@ -7,7 +7,7 @@ from grader.checking import Run, check
 
 @check(
     points=2,
-    hint='create_service(Trigger, "/push", …), and a callback that returns the response.',
+    hint='Use create_service(Trigger, "/push", …), and a callback that returns the response.',
 )
 def test_serves_push(visitors: Run) -> None:
     """It responds to each request to /push."""
@@ -21,7 +21,7 @@ def test_serves_push(visitors: Run) -> None:
     depends=[test_serves_push],
 )
 def test_a_visitor_with_enough_gets_through(visitors: Run) -> None:
-    """A push succeeds with a credit of 100 cents or more, and with no less."""
+    """A push succeeds with a credit of 100 cents or more, but not with less."""
     visitors.must_match_responses("success")
 
 

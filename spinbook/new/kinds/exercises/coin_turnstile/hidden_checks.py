@@ -1,4 +1,4 @@
-"""What students may not read: the rest of `coin_turnstile`. Every rule that is relied on is in task.md."""
+"""Checks that students may not read: the rest of `coin_turnstile`. Every rule that they rely on is in task.md."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MESSAGE = ["test_a_visitor_with_less_is_told_what_is_missing"]
     rule="The visitor pays 100 cents; the rest of the credit stays for the next visitor.",
 )
 def test_change_stays_for_the_next_visitor(change: Run) -> None:
-    """A visitor pays 100 cents, and what is left is the next visitor's."""
+    """A visitor pays 100 cents, and the rest stays for the next visitor."""
     change.must_match_responses("success")
 
 
@@ -33,13 +33,13 @@ def test_every_coin_counts(all_coins: Run) -> None:
 
 @check(
     points=3,
-    hint="Compare the value with the coins that there are.",
+    hint="Compare the value with the coins that exist.",
     depends=MESSAGE,
     misconception="counts every value as a coin",
     rule="It falls through: the credit stays as it is.",
 )
 def test_what_is_no_coin_falls_through(not_coins: Run) -> None:
-    """A value that is no coin leaves the credit as it is."""
+    """A value that is not a coin leaves the credit as it is."""
     not_coins.must_match_responses()
 
 
@@ -50,7 +50,7 @@ def test_what_is_no_coin_falls_through(not_coins: Run) -> None:
     rule="Every push gets one response, at once, however many come and however quickly.",
 )
 def test_five_pushes_at_one_moment(crowd: Run) -> None:
-    """Five pushes at one moment get five responses, each in its turn."""
+    """Five pushes at the same moment get five responses, one after another."""
     crowd.must_match_responses("success")
 
 
@@ -59,10 +59,10 @@ def test_five_pushes_at_one_moment(crowd: Run) -> None:
     hint="Never sleep in a callback: nothing else runs meanwhile.",
     depends=["test_serves_push"],
     misconception="sleeps in a callback",
-    rule="A response that comes within 0.1 s comes at once.",
+    rule="A response that arrives within 0.1 s arrives at once.",
 )
 def test_answers_at_once(visitors: Run) -> None:
-    """Each response comes at once."""
+    """Each response arrives at once."""
     visitors.must_respond(within=0.1)
 
 

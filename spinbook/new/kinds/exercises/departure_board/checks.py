@@ -22,7 +22,7 @@ def test_shows_destination_and_delay(one_train: Run) -> None:
     misconception="volatile where transient local is needed",
 )
 def test_a_late_passenger_sees_the_line(passenger: Run) -> None:
-    """Whoever subscribes to /board late gets the line that it shows."""
+    """Late subscribers to /board get the current line."""
     passenger.must_match_series("data", subscriber="late")
 
 

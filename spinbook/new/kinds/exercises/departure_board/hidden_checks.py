@@ -1,4 +1,4 @@
-"""What students may not read: the rest of `departure_board`. Every rule that is relied on is in task.md."""
+"""Checks that students may not read: the rest of `departure_board`. Every rule that they rely on is in task.md."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ def test_shows_each_change_once(delays: Run) -> None:
     hint="The depth says how many messages are kept for late subscribers.",
     depends=["test_shows_each_change_once", "test_a_late_passenger_sees_the_line"],
     misconception="keeps old messages",
-    rule="Whoever subscribes late gets the line of that moment, and no older one.",
+    rule="Late subscribers get the current line, and no older one.",
 )
 def test_a_late_passenger_sees_no_older_line(delays: Run) -> None:
-    """Whoever subscribes late gets the latest line and nothing else."""
+    """Late subscribers get the latest line and nothing else."""
     delays.must_match_series("data", subscriber="latest")
 
 

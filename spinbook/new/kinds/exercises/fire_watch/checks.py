@@ -33,13 +33,13 @@ def test_siren_goes_on(fire: Run) -> None:
     depends=[test_calls_the_sprinkler],
 )
 def test_one_call_for_each_change(fire: Run) -> None:
-    """It calls once when a fire begins, and once when it is over: at once."""
+    """It calls once when a fire begins and once when it is over, each time at once."""
     fire.must_match_requests("data", time=0.05)
 
 
 @check(
     points=2,
-    hint="What call_async() returns is a future. Add a done-callback.",
+    hint="call_async() returns a future. Add a done-callback to it.",
     depends=[test_calls_the_sprinkler],
 )
 def test_reports_the_answer(fire: Run) -> None:

@@ -7,7 +7,7 @@ from grader.checking import Run, check
 
 @check(
     points=2,
-    hint="A timer made in __init__ calls a method, and the method calls publish().",
+    hint="Create a timer in __init__. It calls a method, and the method calls publish().",
 )
 def test_publishes_the_beam(six_seconds: Run) -> None:
     """It publishes messages on /beam."""
@@ -17,7 +17,7 @@ def test_publishes_the_beam(six_seconds: Run) -> None:
 
 @check(
     points=4,
-    hint="self.create_timer(0.2, …) counts the node's time. time.sleep() counts the computer's.",
+    hint="self.create_timer(0.2, …) uses the node's clock. time.sleep() uses the computer's.",
     depends=[test_publishes_the_beam],
     misconception="the computer's clock",
 )

@@ -1,4 +1,4 @@
-"""What students may not read: the rest of `lighthouse_beam`. Every rule that is relied on is in task.md."""
+"""Checks that students may not read: the rest of `lighthouse_beam`. Every rule that they rely on is in task.md."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ def test_frame_is_the_lighthouse(six_seconds: Run) -> None:
 
 @check(
     points=3,
-    hint="Is the timer's period exactly 0.2 s? What is lost with each message adds up.",
+    hint="Is the timer's period exactly 0.2 s? Small errors add up.",
     depends=[*PACE, "test_beam_turns"],
     rule="After a minute the messages are as punctual as at the start.",
 )
 def test_punctual_after_a_minute(minute: Run) -> None:
-    """After a minute each message still comes at its time."""
+    """After a minute, each message still arrives on time."""
     minute.must_match_series("vector", tolerance=1e-3, time=0.02)
 
 

@@ -1,4 +1,4 @@
-"""What students may not read: the rest of `night_observer`. Every rule that is relied on is in task.md."""
+"""Checks that students may not read: the rest of `night_observer`. Every rule that they rely on is in task.md."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def _must_observe(run: Run, time: float = 0.1) -> None:
 
 @check(
     points=2,
-    hint="Stars wait in a queue. What ends a goal sends the next.",
+    hint="Let stars wait in a queue. When a goal ends, send the next one.",
     depends=PHOTO,
     misconception="all goals at once",
     rule="The next goal is sent when the one before is done, and then at once.",
@@ -35,7 +35,7 @@ def test_one_goal_at_a_time(three_stars: Run) -> None:
     rule="A goal that is rejected, aborted or canceled is a miss: publish the star on /missed.",
 )
 def test_a_goal_that_is_rejected(rejected: Run) -> None:
-    """A star whose goal is rejected is missed, and the next one has its turn."""
+    """A star whose goal is rejected is missed, and the next one follows."""
     rejected.must_ask_only_for_accepted()
     _must_observe(rejected)
 
@@ -48,7 +48,7 @@ def test_a_goal_that_is_rejected(rejected: Run) -> None:
     rule="A goal that is rejected, aborted or canceled is a miss: publish the star on /missed.",
 )
 def test_a_goal_that_is_aborted(aborted: Run) -> None:
-    """A star whose goal is aborted is missed, and the next one has its turn."""
+    """A star whose goal is aborted is missed, and the next one follows."""
     _must_observe(aborted)
 
 
@@ -59,7 +59,7 @@ def test_a_goal_that_is_aborted(aborted: Run) -> None:
     rule="When a message on /clouds arrives while a goal is being served, ask the telescope to cancel that goal.",
 )
 def test_clouds_cancel_the_goal(cloudy: Run) -> None:
-    """Clouds cancel the goal that is served, and the next star has its turn."""
+    """Clouds cancel the running goal, and the next star follows."""
     _must_observe(cloudy)
 
 
@@ -81,7 +81,7 @@ def test_a_telescope_that_refuses_to_cancel(stubborn: Run) -> None:
     rule="Without a goal, clouds change nothing.",
 )
 def test_clouds_without_a_goal(idle_clouds: Run) -> None:
-    """Clouds change nothing while no goal is served."""
+    """Clouds change nothing while no goal is running."""
     _must_observe(idle_clouds)
     if any(goal.cancels for goal in idle_clouds.goals(by="node")):
         fail("Your node asked to cancel a goal that was done.", expected="no request", got="one")
@@ -101,12 +101,12 @@ def test_a_telescope_that_appears_late(late: Run) -> None:
 
 @check(
     points=1,
-    hint="Between sending a goal and its acceptance there is a goal already.",
+    hint="A goal that has been sent and not yet accepted counts as a goal, too.",
     depends=TURNS,
     rule="The next goal is sent when the one before is done, and then at once.",
 )
 def test_a_telescope_that_accepts_late(slow: Run) -> None:
-    """A telescope that accepts goals late is waited for."""
+    """It waits for a telescope that accepts goals late."""
     _must_observe(slow)
 
 

@@ -43,7 +43,7 @@ def test_parameters_at_the_start(started: Run) -> None:
     misconception="reads parameters once",
 )
 def test_parameters_set_while_it_runs(changed: Run) -> None:
-    """It takes values that are set while it runs, and uses them from the next temperature on."""
+    """It accepts values that are set while it runs, and uses them from the next temperature on."""
     changed.must_take("target", 22.0)
     changed.must_take("margin", 3.0)
     changed.must_match("data")

@@ -1,4 +1,4 @@
-"""What students may not read: the rest of `room_thermostat`. Every rule that is relied on is in task.md."""
+"""Checks that students may not read: the rest of `room_thermostat`. Every rule that they rely on is in task.md."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ CHANGES = ["test_parameters_set_while_it_runs"]
     rule="A value outside of its range is refused, with a reason, and everything continues as before.",
 )
 def test_refuses_what_is_out_of_range(refused: Run) -> None:
-    """It refuses values outside of their ranges, and goes on as before."""
+    """It refuses values outside their ranges, and continues as before."""
     refused.must_refuse("target")
     refused.must_refuse("margin")
     refused.must_match("data")
@@ -33,7 +33,7 @@ def test_refuses_what_is_out_of_range(refused: Run) -> None:
     rule="The ends of the ranges are allowed.",
 )
 def test_takes_the_ends_of_the_ranges(ends: Run) -> None:
-    """It takes the values at the ends of their ranges."""
+    """It accepts the values at the ends of their ranges."""
     ends.must_take("target")
     ends.must_take("margin")
     ends.must_match("data")
@@ -41,12 +41,12 @@ def test_takes_the_ends_of_the_ranges(ends: Run) -> None:
 
 @check(
     points=1,
-    hint="A parameter declared with 20.0 takes nothing but doubles.",
+    hint="A parameter that is declared with 20.0 accepts only doubles.",
     depends=SWITCHES,
     rule="A value of another type is refused, such as the integer 22.",
 )
 def test_refuses_other_types(types: Run) -> None:
-    """It refuses an integer and a text where a double is declared, and goes on as before."""
+    """It refuses an integer and a string for a double, and continues as before."""
     types.must_refuse("target", 22)
     types.must_refuse("margin", "wide")
     types.must_match("data")

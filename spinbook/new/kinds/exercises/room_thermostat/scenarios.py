@@ -5,7 +5,7 @@ from __future__ import annotations
 from grader.scenario import Scenario, at
 from grader.scenario.numbers import numbers
 
-#: Down and up again, slowly (degrees Celsius). It crosses every border that a scenario sets, and meets some exactly.
+#: Down and up again, slowly (degrees Celsius). It crosses every limit that a scenario sets, and equals some exactly.
 ROOM = (21.0, 20.0, 19.75, 19.5, 19.25, 19.5, 19.75, 20.0, 20.5, 19.75, 19.0, 18.0, 19.0, 21.0, 23.0, 24.0, 22.5)
 
 

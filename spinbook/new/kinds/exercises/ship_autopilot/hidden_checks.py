@@ -1,4 +1,4 @@
-"""What students may not read: the rest of `ship_autopilot`. Every rule that is relied on is in task.md."""
+"""Checks that students may not read: the rest of `ship_autopilot`. Every rule that they rely on is in task.md."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_does_not_overshoot(left: Run, right: Run) -> None:
     rule="From 3.0 rad to −3.0 rad it is 0.28 rad through π, and not 6 rad back through 0.",
 )
 def test_turns_the_short_way_round(across: Run) -> None:
-    """It turns the short way round, through pi."""
+    """It turns the shorter way, through pi."""
     across.must_reach("/turned", {"data": 2 * math.pi - 6.0}, tolerance=0.05, within=12.0, overshoot=0.01, start=1.05)
 
 

@@ -43,7 +43,7 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         ship = World(Ship, heading=heading, period=0.1)
         return Scenario(name, title, steps, world=ship, duration=duration, rate=20.0)
 
-    # As fast as the ship can turn: a rudder that also minds how fast it turns is right, too.
+    # As fast as the ship can turn: a controller that also takes the turn rate into account is right, too.
     turning = [(time, 1.1 - 0.3 * time) for time in every(0.1, 4.0)]
     bench = (numbers("/heading", turning), at(1.05).publish("/course", data=0.5))
     return (

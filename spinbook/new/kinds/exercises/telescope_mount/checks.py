@@ -21,7 +21,7 @@ def test_serves_a_goal(one_goal: Run) -> None:
     depends=[test_serves_a_goal],
 )
 def test_feedback_after_each_step(one_goal: Run) -> None:
-    """After each step it publishes how far it has to turn."""
+    """After each step, it publishes how far it still has to turn."""
     one_goal.must_match_feedback("remaining", tolerance=1e-4, time=0.05)
 
 

@@ -1,4 +1,4 @@
-"""What students may not read: the rest of `telescope_mount`. Every rule that is relied on is in task.md."""
+"""Checks that students may not read: the rest of `telescope_mount`. Every rule that they rely on is in task.md."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ def test_goals_one_after_another(in_turn: Run) -> None:
 
 @check(
     points=1,
-    hint="Look whether there is anything to turn before the first step.",
+    hint="Check whether there is anything to turn before the first step.",
     depends=IN_TURN,
     rule="If it pointed there from the start, the goal succeeds at once, without feedback.",
 )
 def test_a_goal_where_it_is(there: Run) -> None:
-    """A goal to which it points already succeeds at once."""
+    """A goal to which it already points succeeds at once."""
     _must_serve(there, 1, 2, 3)
 
 
@@ -71,14 +71,14 @@ def test_goals_that_are_too_far(too_far: Run) -> None:
     rule="Every other goal is rejected: one that is too far, and one that comes while the telescope is turning.",
 )
 def test_a_second_goal_while_one_is_served(busy: Run) -> None:
-    """It rejects a goal that comes while it is turning, and goes on with the first."""
+    """It rejects a goal that arrives while it is turning, and continues with the first."""
     busy.must_reject(2)
     _must_serve(busy, 1, 3)
 
 
 @check(
     points=2,
-    hint="Accept in a cancel callback, look at is_cancel_requested after each wait, and call canceled().",
+    hint="Accept in a cancel callback, check is_cancel_requested after each wait, and call canceled().",
     depends=SERVES,
     misconception="ignores the request to cancel",
     rule="A request to cancel is accepted.",
@@ -92,7 +92,7 @@ def test_cancel(canceled: Run) -> None:
 
 @check(
     points=1,
-    hint="What you do at the end of execute is due after a cancel, too.",
+    hint="What you do at the end of execute must also happen after a cancel.",
     depends=["test_cancel", *IN_TURN],
     rule="After a goal, however it ended, the telescope stays where it is, and the next goal begins there.",
 )
@@ -103,7 +103,7 @@ def test_a_goal_after_a_cancel(after_cancel: Run) -> None:
 
 @check(
     points=1,
-    hint="Look at the name that __init__ gives to the node.",
+    hint="Check the name that __init__ gives to the node.",
     depends=["test_serves_a_goal"],
     rule="Its node is called telescope_mount.",
 )

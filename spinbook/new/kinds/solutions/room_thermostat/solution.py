@@ -11,7 +11,7 @@ WIDEST = 5.0  # degrees Celsius, of the margin
 
 
 class RoomThermostat(Node):
-    """Hears temperatures and switches the heater."""
+    """Receives temperatures and switches the heater."""
 
     def __init__(self):
         super().__init__("room_thermostat")
@@ -28,7 +28,7 @@ class RoomThermostat(Node):
 
     # BEGIN SOLUTION
     def on_set(self, parameters):
-        """Called before parameters change. Says whether they may."""
+        """Called before parameters change. Returns whether they may."""
         for parameter in parameters:
             if parameter.name == "target" and not LOWEST <= parameter.value <= HIGHEST:
                 return SetParametersResult(successful=False, reason="target must be from 5 to 30")

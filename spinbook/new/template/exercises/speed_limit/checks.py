@@ -10,7 +10,7 @@ FLOAT = "std_msgs/msg/Float64"
 
 @check(points=2, hint="Create the subscription and the publisher in __init__, and call publish() in the callback.")
 def test_publishes_safe_speeds(gentle: Run) -> None:
-    """It hears /wanted_speed and publishes Float64 messages on /safe_speed."""
+    """It subscribes to /wanted_speed and publishes Float64 messages on /safe_speed."""
     if not gentle.subscriptions(WANTED):
         heard = ", ".join(gentle.topics("subscription")) or "none"
         fail("Your node does not subscribe to the topic.", expected=WANTED, got=heard)

@@ -34,7 +34,7 @@ def test_not_a_number(not_a_number: Run) -> None:
 
 @check(
     points=2,
-    hint="Look at the names in __init__: of the node, of its topics. Is a plain 10 the last argument of both?",
+    hint="Check the names of the node and of its topics in __init__. Is a plain 10 the last argument of both?",
     depends=PUBLISHES,
     rule="The node `speed_limit` has these two ends and no others.",
 )

@@ -1,4 +1,4 @@
-"""What a speed limit is spun against. Each scenario is a fixture, by its name, in checks.py and hidden_checks.py."""
+"""What a speed limit is run against. Each scenario is a fixture, by its name, in checks.py and hidden_checks.py."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pass on the speed that a driver wishes for, within a limit."""
+"""Pass on the speed that a driver asks for, within a limit."""
 
 import math
 
@@ -11,7 +11,7 @@ LIMIT = 1.0  # m/s
 
 
 class SpeedLimit(Node):
-    """Hears each wish and answers with a safe speed."""
+    """Answers each wanted speed with a safe speed."""
 
     def __init__(self):
         super().__init__("speed_limit")

@@ -1,4 +1,4 @@
-"""The timer does not begin anew with each bottle: the gate closes between bottles.
+"""The timer does not restart with each bottle: the gate closes between bottles.
 
 Caught by:
 - test_sorter_moves_the_gate
@@ -16,7 +16,7 @@ LEAST, MOST = 490.0, 510.0  # g
 
 
 class BottleScale(Node):
-    """Hears weights and says of each whether it is right."""
+    """Receives weights and publishes whether each one is right."""
 
     def __init__(self):
         super().__init__("bottle_scale")
@@ -56,7 +56,7 @@ SILENCE = 2.0  # s
 
 
 class BottleSorter(Node):
-    """Hears what the scale says and moves the gate."""
+    """Receives what the scale publishes and moves the gate."""
 
     def __init__(self):
         super().__init__("bottle_sorter")
@@ -72,7 +72,7 @@ class BottleSorter(Node):
         self.publisher.publish(String(data="pass" if message.data else "reject"))
 
     def on_silence(self):
-        """Called when nothing was heard for SILENCE seconds."""
+        """Called when nothing has arrived for SILENCE seconds."""
         self.timer.cancel()
         self.publisher.publish(String(data="closed"))
 

@@ -16,7 +16,7 @@ LEAST, MOST = 490.0, 510.0  # g
 
 
 class BottleScale(Node):
-    """Hears weights and says of each whether it is right."""
+    """Receives weights and publishes whether each one is right."""
 
     def __init__(self):
         super().__init__("bottle_scale")
@@ -56,7 +56,7 @@ SILENCE = 2.0  # s
 
 
 class BottleSorter(Node):
-    """Hears what the scale says and moves the gate."""
+    """Receives what the scale publishes and moves the gate."""
 
     def __init__(self):
         super().__init__("bottle_scale")
@@ -71,7 +71,7 @@ class BottleSorter(Node):
         self.publisher.publish(String(data="pass" if message.data else "reject"))
 
     def on_silence(self):
-        """Called when nothing was heard for SILENCE seconds."""
+        """Called when nothing has arrived for SILENCE seconds."""
         self.timer.cancel()
         self.publisher.publish(String(data="closed"))
 

@@ -1,4 +1,4 @@
-"""Measures the silence from its own start: the gate closes before there was a bottle.
+"""Measures the silence from its own start: the gate closes before the first bottle.
 
 Caught by:
 - test_gate_without_a_bottle
@@ -17,7 +17,7 @@ LEAST, MOST = 490.0, 510.0  # g
 
 
 class BottleScale(Node):
-    """Hears weights and says of each whether it is right."""
+    """Receives weights and publishes whether each one is right."""
 
     def __init__(self):
         super().__init__("bottle_scale")
@@ -59,7 +59,7 @@ PERIOD = 0.05  # s, between two looks at the clock
 
 
 class BottleSorter(Node):
-    """Hears what the scale says and moves the gate."""
+    """Receives what the scale publishes and moves the gate."""
 
     def __init__(self):
         super().__init__("bottle_sorter")

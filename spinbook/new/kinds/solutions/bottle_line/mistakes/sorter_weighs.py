@@ -1,4 +1,4 @@
-"""The sorter hears the weights itself and does not need the scale.
+"""The sorter reads the weights itself and does not need the scale.
 
 Caught by:
 - test_scale_is_killed_and_comes_back
@@ -18,7 +18,7 @@ LEAST, MOST = 490.0, 510.0  # g
 
 
 class BottleScale(Node):
-    """Hears weights and says of each whether it is right."""
+    """Receives weights and publishes whether each one is right."""
 
     def __init__(self):
         super().__init__("bottle_scale")
@@ -58,7 +58,7 @@ SILENCE = 2.0  # s
 
 
 class BottleSorter(Node):
-    """Hears what the scale says and moves the gate."""
+    """Receives what the scale publishes and moves the gate."""
 
     def __init__(self):
         super().__init__("bottle_sorter")
@@ -73,7 +73,7 @@ class BottleSorter(Node):
         self.publisher.publish(String(data="pass" if 490.0 <= message.data <= 510.0 else "reject"))
 
     def on_silence(self):
-        """Called when nothing was heard for SILENCE seconds."""
+        """Called when nothing has arrived for SILENCE seconds."""
         self.timer.cancel()
         self.publisher.publish(String(data="closed"))
 

@@ -1,4 +1,4 @@
-"""Hears coins with the quality of service of sensors: a coin may get lost.
+"""Subscribes to coins with the quality of service for sensors: a coin may get lost.
 
 Caught by:
 - test_node_is_as_described

@@ -1,4 +1,4 @@
-"""The till is a class of its own that knows nothing of ROS."""
+"""The till is a class of its own that knows nothing about ROS."""
 
 import rclpy
 from rclpy.executors import ExternalShutdownException

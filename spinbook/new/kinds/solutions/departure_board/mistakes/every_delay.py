@@ -1,4 +1,4 @@
-"""Shows each delay that arrives, also when it is the same.
+"""Shows each delay that arrives, even if it has not changed.
 
 Caught by:
 - test_shows_each_change_once
@@ -12,7 +12,7 @@ from std_msgs.msg import Int32, String
 
 
 class DepartureBoard(Node):
-    """Hears the destination once and delays now and then; shows both in one line."""
+    """Receives the destination once and delays now and then; shows both in one line."""
 
     def __init__(self):
         super().__init__("departure_board")

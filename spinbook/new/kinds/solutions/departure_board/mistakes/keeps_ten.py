@@ -1,4 +1,4 @@
-"""Keeps ten lines and not one: a late subscriber gets old ones, too.
+"""Keeps ten lines instead of one: a late subscriber gets old ones, too.
 
 Caught by:
 - test_a_late_passenger_sees_no_older_line
@@ -12,7 +12,7 @@ from std_msgs.msg import Int32, String
 
 
 class DepartureBoard(Node):
-    """Hears the destination once and delays now and then; shows both in one line."""
+    """Receives the destination once and delays now and then; shows both in one line."""
 
     def __init__(self):
         super().__init__("departure_board")

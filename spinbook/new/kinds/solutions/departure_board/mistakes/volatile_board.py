@@ -13,7 +13,7 @@ from std_msgs.msg import Int32, String
 
 
 class DepartureBoard(Node):
-    """Hears the destination once and delays now and then; shows both in one line."""
+    """Receives the destination once and delays now and then; shows both in one line."""
 
     def __init__(self):
         super().__init__("departure_board")

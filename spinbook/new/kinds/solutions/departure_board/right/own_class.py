@@ -1,4 +1,4 @@
-"""A train knows its line; the node publishes the line whenever it is another one or the destination was announced."""
+"""A train knows its line; the node publishes it when it has changed or the destination was announced."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""The callbacks put what they hear into a queue; a thread of its own writes the board."""
+"""The callbacks put what they receive into a queue; a thread of its own writes the board."""
 
 import queue
 import threading

@@ -1,4 +1,4 @@
-"""Calls without looking whether the sprinkler is there: the request is lost.
+"""Calls without checking whether the sprinkler is there: the request is lost.
 
 Caught by:
 - test_a_sprinkler_that_appears_late

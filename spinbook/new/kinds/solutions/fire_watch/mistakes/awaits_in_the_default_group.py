@@ -1,4 +1,4 @@
-"""Awaits the answer in the default group, whose callbacks exclude one another: the answer never gets its turn.
+"""Awaits the answer in the default group, whose callbacks exclude one another: the answer is never handled.
 
 Caught by:
 - test_siren_goes_on

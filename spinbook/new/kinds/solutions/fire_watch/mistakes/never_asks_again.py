@@ -1,4 +1,4 @@
-"""Forgets a change for which the sprinkler was not there.
+"""Forgets a change that happened while the sprinkler was not there.
 
 Caught by:
 - test_a_sprinkler_that_appears_late

@@ -1,4 +1,4 @@
-"""Reports what is wanted by now, and not what the answer was to.
+"""Reports the newest request instead of the one that was answered.
 
 Caught by:
 - test_a_change_before_the_answer

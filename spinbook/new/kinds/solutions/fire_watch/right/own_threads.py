@@ -1,4 +1,4 @@
-"""Threads: the call waits for its response in a thread of its own, and all other callbacks go on."""
+"""Threads: the call waits for its response in a thread of its own, and all other callbacks continue."""
 
 import threading
 

@@ -1,4 +1,4 @@
-"""Gives degrees to cos() and sin().
+"""Passes degrees to cos() and sin().
 
 Caught by:
 - test_beam_turns
@@ -16,7 +16,7 @@ STEP = 18.0  # the beam turns this far from one message to the next
 
 
 class LighthouseBeam(Node):
-    """Publishes by a timer of its own."""
+    """Publishes with a timer of its own."""
 
     def __init__(self):
         super().__init__("lighthouse_beam")

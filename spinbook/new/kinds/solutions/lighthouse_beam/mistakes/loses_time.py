@@ -1,4 +1,4 @@
-"""Takes a new timer for each message, and rounds its period up, so that it falls behind little by little.
+"""Creates a new timer for each message, and rounds its period up, so that it falls behind little by little.
 
 Caught by:
 - test_punctual_after_a_minute
@@ -16,7 +16,7 @@ STEP = math.radians(18.0)  # the beam turns this far from one message to the nex
 
 
 class LighthouseBeam(Node):
-    """Publishes by a timer of its own."""
+    """Publishes with a timer of its own."""
 
     def __init__(self):
         super().__init__("lighthouse_beam")

@@ -1,4 +1,4 @@
-"""Takes the time once, at the start, for all stamps.
+"""Reads the time once, at the start, for all stamps.
 
 Caught by:
 - test_stamp_is_the_nodes_clock
@@ -16,7 +16,7 @@ STEP = math.radians(18.0)  # the beam turns this far from one message to the nex
 
 
 class LighthouseBeam(Node):
-    """Publishes by a timer of its own."""
+    """Publishes with a timer of its own."""
 
     def __init__(self):
         super().__init__("lighthouse_beam")

@@ -15,7 +15,7 @@ STEP = math.radians(18.0)  # the beam turns this far from one message to the nex
 
 
 class LighthouseBeam(Node):
-    """Publishes by a timer of its own."""
+    """Publishes with a timer of its own."""
 
     def __init__(self):
         super().__init__("lighthouse_beam")

@@ -1,4 +1,4 @@
-"""The lamp is a class that knows nothing of ROS: it turns a vector, step by step."""
+"""The lamp is a class that knows nothing about ROS: it turns a vector, step by step."""
 
 import cmath
 import math

@@ -62,7 +62,7 @@ class NightObserver(Node):
         self.finish(self.missed if bad else self.photo, star)
 
     def finish(self, publisher, star):
-        """Publish what became of the star, and go on with the next one."""
+        """Publish the outcome for the star, and continue with the next one."""
         self.busy = False
         self.goal_handle = None
         publisher.publish(Float32(data=star))

@@ -1,4 +1,4 @@
-"""A thread of its own photographs: it may wait, and the callbacks go on."""
+"""A thread of its own photographs: it may wait, and the callbacks continue."""
 
 import queue
 import threading

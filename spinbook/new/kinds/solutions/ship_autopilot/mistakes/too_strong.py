@@ -1,4 +1,4 @@
-"""Has a gain that is too large: the ship swings to and fro.
+"""Has a gain that is too large: the ship swings back and forth.
 
 Caught by:
 - test_does_not_overshoot

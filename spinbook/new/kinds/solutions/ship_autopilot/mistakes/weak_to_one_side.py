@@ -1,4 +1,4 @@
-"""Has a typing error in one of the two limits: to the right the rudder hardly moves.
+"""Has a typo in one of the two limits: to the right the rudder hardly moves.
 
 Caught by:
 - test_reaches_a_course_to_the_right

@@ -1,4 +1,4 @@
-"""The callbacks hand on what they hear; a thread of its own steers."""
+"""The callbacks pass on what they receive; a thread of its own steers."""
 
 import cmath
 import queue

@@ -1,4 +1,4 @@
-"""Waits and gives feedback before it looks whether there is anything to turn.
+"""Waits and gives feedback before it checks whether there is anything to turn.
 
 Caught by:
 - test_a_goal_where_it_is
@@ -35,7 +35,7 @@ class TelescopeMount(Node):
         )
 
     def on_goal(self, goal):
-        """Called once for each goal. Says whether it is accepted."""
+        """Called once for each goal. Returns whether it is accepted."""
         if self.busy or not -LIMIT <= goal.theta <= LIMIT:
             return GoalResponse.REJECT
         self.busy = True

@@ -1,4 +1,4 @@
-"""Accepts a cancel and never looks whether one was requested.
+"""Accepts a cancel and never checks whether one was requested.
 
 Caught by:
 - test_cancel
@@ -35,7 +35,7 @@ class TelescopeMount(Node):
         )
 
     def on_goal(self, goal):
-        """Called once for each goal. Says whether it is accepted."""
+        """Called once for each goal. Returns whether it is accepted."""
         if self.busy or not -LIMIT <= goal.theta <= LIMIT:
             return GoalResponse.REJECT
         self.busy = True

@@ -15,7 +15,7 @@ class Mount:
         self.angle = 0.0
 
     def step(self, goal):
-        """Turn, and give what remains."""
+        """Turn, and return what remains."""
         self.angle += max(-0.1, min(0.1, goal - self.angle))
         if math.isclose(self.angle, goal, abs_tol=1e-12):
             self.angle = goal

@@ -1,4 +1,4 @@
-"""Publishes the last speed from a timer, and not for each message.
+"""Publishes the last speed from a timer instead of for each message.
 
 Caught by:
 - test_answers_each_message_once
@@ -17,7 +17,7 @@ LIMIT = 1.0  # m/s
 
 
 class SpeedLimit(Node):
-    """Hears each wish and answers with a safe speed."""
+    """Answers each wanted speed with a safe speed."""
 
     def __init__(self):
         super().__init__("speed_limit")

@@ -1,4 +1,4 @@
-"""Limits the speed forwards, and not backwards.
+"""Limits the speed forwards, but not backwards.
 
 Caught by:
 - test_too_fast_backwards

@@ -1,4 +1,4 @@
-"""Never asks whether the speed is a number.
+"""Never checks whether the speed is a number.
 
 Caught by:
 - test_not_a_number

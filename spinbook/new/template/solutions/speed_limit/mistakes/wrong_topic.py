@@ -15,7 +15,7 @@ LIMIT = 1.0  # m/s
 
 
 class SpeedLimit(Node):
-    """Hears each wish and answers with a safe speed."""
+    """Answers each wanted speed with a safe speed."""
 
     def __init__(self):
         super().__init__("speed_limit")

@@ -10,7 +10,7 @@ def safe(speed):
         return 1.0
     if speed < -1.0:
         return -1.0
-    # Only what is not a number differs from itself.
+    # Only NaN differs from itself.
     return speed if speed == speed else 0.0
 
 

@@ -1,4 +1,4 @@
-"""The limit is a class of its own that knows nothing of ROS."""
+"""The limit is a class of its own that knows nothing about ROS."""
 
 import math
 
