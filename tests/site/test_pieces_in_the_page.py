@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Iterator
 
 import pytest
-from browser import opened
+from browser import Opened, opened
 from course_folder import CourseFolder
 from playwright.sync_api import Browser, expect
 from small_course import served
@@ -52,35 +52,7 @@ from setuptools import setup
 setup(name="arm", entry_points={"console_scripts": ["counter_node = arm.counter:main"]})
 ```
 """
-
-
-def test_a_node_in_pieces_runs_with_the_messages_of_its_chapter(tmp_path: Path, browser: Browser) -> None:
-    course = CourseFolder(tmp_path).write(pieces=CHAPTER + SETUP)
-    made = course.spinbook("site", "--strict")
-    assert made.returncode == 0, made.stdout + made.stderr
-    with served(tmp_path / "build" / "site") as address, opened(browser, f"{address}/chapters/pieces.html") as shown:
-        cell = shown.page.locator(".cell-node")
-        cell.get_by_role("button", name="Run counter.py").click()
-        expect(cell.get_by_role("log")).to_contain_text("[counter]: counted 7", timeout=DEADLINE_MS)
-
-        shown.page.get_by_role("button", name="Run robot_interfaces/msg/Count.msg").click()
-        interface = shown.page.locator(".cell-interface").get_by_role("log")
-        expect(interface).to_contain_text("robot_interfaces/msg/Count: ready.", timeout=DEADLINE_MS)
-
-        part = shown.page.locator(".cell-part")
-        part.get_by_role("button", name="Run cell 2", exact=True).click()
-        expect(shown.page.locator("#said")).to_have_text("cell 2: done", timeout=DEADLINE_MS)
-
-        terminal = shown.page.locator(".cell-shell")
-        terminal.get_by_role("button", name="Run cell 4", exact=True).click()
-        expect(terminal.get_by_role("log")).to_contain_text("[counter]: counted 7", timeout=DEADLINE_MS)
-        assert shown.violations() == []
-        assert shown.faults == []
-
-
-DEMOS = """\
-# Demos
-
+DEMOS = """
 ```bash until="World: 2"
 ros2 run demo_nodes_cpp talker
 ```
@@ -91,15 +63,41 @@ ros2 run demo_nodes_py listener --ros-args -r __node:=ear
 """
 
 
-def test_demo_nodes_run_in_a_page(tmp_path: Path, browser: Browser) -> None:
-    course = CourseFolder(tmp_path).write(demos=DEMOS)
-    made = course.spinbook("site", "--strict")
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator[Opened]:
+    """The page of one chapter, in which all tests run their cells: Pyodide starts once."""
+    root = tmp_path_factory.mktemp("course")
+    made = CourseFolder(root).write(pieces=CHAPTER + SETUP + DEMOS).spinbook("site", "--strict")
     assert made.returncode == 0, made.stdout + made.stderr
-    with served(tmp_path / "build" / "site") as address, opened(browser, f"{address}/chapters/demos.html") as shown:
-        talker, listener = shown.page.locator(".cell-shell").all()
-        talker.get_by_role("button", name="Run cell 1", exact=True).click()
-        expect(talker.get_by_role("log")).to_contain_text("[talker]: Publishing: 'Hello World: 1'", timeout=DEADLINE_MS)
+    with served(root / "build" / "site") as address, opened(browser, f"{address}/chapters/pieces.html") as page:
+        yield page
 
-        listener.get_by_role("button", name="Run cell 2", exact=True).click()
-        expect(listener.get_by_role("log")).to_contain_text("[ear]: I heard: [Hello World: ", timeout=DEADLINE_MS)
-        assert shown.faults == []
+
+def test_a_node_in_pieces_runs_with_the_messages_of_its_chapter(shown: Opened) -> None:
+    cell = shown.page.locator(".cell-node")
+    cell.get_by_role("button", name="Run counter.py").click()
+    expect(cell.get_by_role("log")).to_contain_text("[counter]: counted 7", timeout=DEADLINE_MS)
+
+    shown.page.get_by_role("button", name="Run robot_interfaces/msg/Count.msg").click()
+    interface = shown.page.locator(".cell-interface").get_by_role("log")
+    expect(interface).to_contain_text("robot_interfaces/msg/Count: ready.", timeout=DEADLINE_MS)
+
+    part = shown.page.locator(".cell-part")
+    part.get_by_role("button", name="Run cell 2", exact=True).click()
+    expect(shown.page.locator("#said")).to_have_text("cell 2: done", timeout=DEADLINE_MS)
+
+    terminal = shown.page.locator(".cell-shell").first
+    terminal.get_by_role("button", name="Run cell 4", exact=True).click()
+    expect(terminal.get_by_role("log")).to_contain_text("[counter]: counted 7", timeout=DEADLINE_MS)
+    assert shown.violations() == []
+    assert shown.faults == []
+
+
+def test_demo_nodes_run_in_a_page(shown: Opened) -> None:
+    _, talker, listener = shown.page.locator(".cell-shell").all()
+    talker.get_by_role("button", name="Run cell 5", exact=True).click()
+    expect(talker.get_by_role("log")).to_contain_text("[talker]: Publishing: 'Hello World: 1'", timeout=DEADLINE_MS)
+
+    listener.get_by_role("button", name="Run cell 6", exact=True).click()
+    expect(listener.get_by_role("log")).to_contain_text("[ear]: I heard: [Hello World: ", timeout=DEADLINE_MS)
+    assert shown.faults == []
