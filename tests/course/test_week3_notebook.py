@@ -7,47 +7,28 @@ The whole chapter takes minutes, and `make course` runs it, too: `make test` run
 from __future__ import annotations
 
 import re
-import shutil
 from base64 import b64decode
-from pathlib import Path
 from typing import Any
 
 import nbformat
 import pytest
-from course_folder import CourseFolder
+from executed_chapter import ROOT, executed
 
-ROOT = Path(__file__).parents[2]
 NAME = "03-nodes-and-topics"
 JOINTS = [f"{side}_{joint}" for side in ("left", "right") for joint in ("shoulder_pitch", "shoulder_roll", "elbow")]
 
-#: The sections that depend on one another from the first node to the package, and those that every chapter has.
+#: The sections that depend on one another from the first node to the package, and one exercise of three.
 THE_JOINTS = (
-    *("A publisher: the joint commands", "A subscriber: the joint monitor", "Look into the running system"),
-    *("See it move", "As a ROS 2 package", "Practice: joint velocities"),
+    *("A publisher: the joint commands", "A subscriber: the joint monitor", "Are the warnings real?"),
+    *("Look into the running system", "See it move", "As a ROS 2 package", "Practice: joint velocities"),
 )
 WHOLE = pytest.param((), id="whole chapter", marks=[pytest.mark.soak, pytest.mark.timeout(900)])
-
-
-def only(chapter: Path, titles: tuple[str, ...]) -> None:
-    """Remove every section of a chapter but these."""
-    head, *sections = re.split(r"(?m)^(?=## )", chapter.read_text(encoding="utf-8"))
-    kept = [section for section in sections if section[3:].partition("\n")[0] in titles]
-    assert len(kept) == len(titles), "a section has another title now"
-    chapter.write_text(head + "".join(kept), encoding="utf-8")
 
 
 @pytest.fixture(scope="module", params=[pytest.param(THE_JOINTS, id="the joints"), WHOLE])
 def notebook(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Any:
     """The chapter's notebook with its outputs, made from a copy of the course."""
-    root = tmp_path_factory.mktemp("course")
-    shutil.copy(ROOT / "course.toml", root)
-    for folder in ("chapters", "exercises", "solutions"):
-        shutil.copytree(ROOT / folder, root / folder)
-    if request.param:
-        only(root / "chapters" / f"{NAME}.md", request.param)
-    said = CourseFolder(root).spinbook("build", "--execute", NAME)
-    assert said.returncode == 0, said.stdout + said.stderr
-    return nbformat.read(root / "build" / "executed" / f"{NAME}.ipynb", as_version=4)
+    return executed(tmp_path_factory.mktemp("course"), NAME, request.param)
 
 
 def cell(notebook: Any, cell_id: str) -> Any:

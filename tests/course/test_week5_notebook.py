@@ -1,32 +1,27 @@
-"""The real Week 5 chapter, built and run: every cell does what the chapter says about it."""
+"""The real Week 5 chapter, built and run: every cell does what the chapter says about it.
+
+`make soak` runs the whole chapter, `make test` a few sections in which `ros2 param` refuses values.
+"""
 
 from __future__ import annotations
 
 import re
-import shutil
 from pathlib import Path
 from typing import Any
 
-import nbformat
 import pytest
-from course_folder import CourseFolder
+from executed_chapter import executed
 
-pytestmark = pytest.mark.soak
-
-ROOT = Path(__file__).parents[2]
 NAME = "05-parameters-and-qos"
+
+#: A node that checks its parameters and one that forgets to answer: values are set, and refused.
+CHECKED = ("Check a new value, then use it", "A callback that forgets to answer", "Two values at once")
 
 
 @pytest.fixture(scope="module")
 def notebook(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """The chapter's notebook with its outputs, made from a copy of the course."""
-    root = tmp_path_factory.mktemp("course")
-    shutil.copy(ROOT / "course.toml", root)
-    for folder in ("chapters", "exercises", "solutions"):
-        shutil.copytree(ROOT / folder, root / folder)
-    said = CourseFolder(root).spinbook("build", "--execute", NAME)
-    assert said.returncode == 0, said.stdout + said.stderr
-    return nbformat.read(root / "build" / "executed" / f"{NAME}.ipynb", as_version=4)
+    return executed(tmp_path_factory.mktemp("course"), NAME)
 
 
 def shown(notebook: Any, begins: str) -> list[str]:
@@ -38,14 +33,32 @@ def shown(notebook: Any, begins: str) -> list[str]:
     ]
 
 
+def code_of(notebook: Any) -> list[Any]:
+    return [cell for cell in notebook.cells if cell.cell_type == "code"]
+
+
+def failed_unexpectedly(notebook: Any) -> set[str]:
+    """Return the cells that failed and should not have, and those that should have and did not."""
+    failed = {cell.id for cell in code_of(notebook) if any(output.output_type == "error" for output in cell.outputs)}
+    return failed ^ {cell.id for cell in code_of(notebook) if "raises-exception" in cell.metadata.get("tags", [])}
+
+
+@pytest.mark.soak
 def test_every_code_cell_ran_and_only_those_that_should_fail_did(notebook: Any) -> None:
-    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
-
-    assert len(code) > 70
-    failed = {cell.id for cell in code if any(output.output_type == "error" for output in cell.outputs)}
-    assert failed == {cell.id for cell in code if "raises-exception" in cell.metadata.get("tags", [])}
+    assert len(code_of(notebook)) > 70
+    assert failed_unexpectedly(notebook) == set()
 
 
+def test_where_values_are_refused_only_the_cells_fail_that_should(tmp_path: Path) -> None:
+    notebook = executed(tmp_path, NAME, CHECKED)
+
+    refused = shown(notebook, "%ros2 --seconds 30 param set")
+    assert len(refused) == 3
+    assert all("failed" in text.lower() for text in refused)
+    assert failed_unexpectedly(notebook) == set()
+
+
+@pytest.mark.soak
 def test_the_plots_show_the_swings_that_the_text_names(notebook: Any) -> None:
     ranges = [re.findall(r"([\d.]+) … ([\d.]+) rad", text) for text in shown(notebook, "%plot")]
 
@@ -56,6 +69,7 @@ def test_the_plots_show_the_swings_that_the_text_names(notebook: Any) -> None:
     ]
 
 
+@pytest.mark.soak
 def test_the_queues_keep_and_age_as_the_text_says(notebook: Any) -> None:
     assert "depth 5 received [16, 17, 18, 19, 20]" in shown(notebook, "%%node burst")[0]
     deep, shallow = (
@@ -65,6 +79,7 @@ def test_the_queues_keep_and_age_as_the_text_says(notebook: Any) -> None:
     assert deep > 5 * shallow
 
 
+@pytest.mark.soak
 def test_the_log_of_the_watch_and_of_the_launch_tell_what_happened(notebook: Any) -> None:
     silent, dead = shown(notebook, "%log tilt_watch")
     assert "deadline missed" in silent
