@@ -10,17 +10,18 @@ from __future__ import annotations
 
 import importlib
 import itertools
+import signal
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import rclpy
-from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import String
 
-from spinbook.ros2.spinning import spin_until_stopped
+from spinbook.ros2.spinning import NOTICE_S, spin_until_stopped
 
 #: The time between two messages, and how long the client waits before it says that there is no service (s).
 PERIOD_S = 1.0
@@ -86,8 +87,13 @@ def add_two_ints_server(language: Language) -> Node:
 
 
 def add_two_ints_client(language: Language) -> int:
-    """Wait for the service, ask it for 2 + 3 and log the answer; return the exit code."""
-    rclpy.init()
+    """Wait for the service, ask it for 2 + 3 and log the answer; return the exit code.
+
+    The signals are ours and not rclpy's, for the reason that `spin_until_stopped` gives.
+    """
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.default_int_handler)
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     try:
         node = Node("add_two_ints_client")
         say = node.get_logger().info if language.logs_waiting else _print
@@ -95,12 +101,13 @@ def add_two_ints_client(language: Language) -> int:
         while not client.wait_for_service(timeout_sec=PERIOD_S):
             say("service not available, waiting again...")
         answer = client.call_async(_add_two_ints().Request(a=2, b=3))
-        rclpy.spin_until_future_complete(node, answer)
+        while not answer.done():
+            rclpy.spin_once(node, timeout_sec=NOTICE_S)
         node.get_logger().info(f"Result of add_two_ints: {answer.result().sum}")
-    except (KeyboardInterrupt, ExternalShutdownException):
+    except KeyboardInterrupt:
         pass
     finally:
-        rclpy.try_shutdown()
+        rclpy.shutdown()
     return 0
 
 

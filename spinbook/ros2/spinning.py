@@ -12,7 +12,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 #: A signal is noticed within this long even where no timer runs, in s.
-_NOTICE_S = 0.1
+NOTICE_S = 0.1
 
 
 def spin_until_stopped(make: Callable[[], Node]) -> int:
@@ -36,7 +36,7 @@ def spin_until_stopped(make: Callable[[], Node]) -> int:
         executor = SingleThreadedExecutor()
         executor.add_node(make())
         while not stopped:
-            executor.spin_once(timeout_sec=_NOTICE_S)
+            executor.spin_once(timeout_sec=NOTICE_S)
         executor.shutdown()
     finally:
         rclpy.shutdown()
