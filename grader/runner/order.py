@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
 from rmw_lockstep.hub import Asked, Heard
@@ -15,12 +15,12 @@ Place = tuple[int, str, int, int]
 Source = tuple[int, str]
 
 
-def in_canonical_order(heard: Sequence[tuple[int, Heard]]) -> list[tuple[int, Heard]]:
+def in_canonical_order(heard: Sequence[tuple[int, Heard]], threaded: Collection[Source]) -> list[tuple[int, Heard]]:
     """Sort messages by their moment; at the same moment by topic and node, and within these as they were sent.
 
-    What several threads may have published on one topic at the same moment has no order, so it is sorted by its bytes.
+    What several threads (`threaded`: see `from_other_threads`) may have published on one topic at the same moment has
+    no order, so it is sorted by its bytes.
     """
-    threaded = from_other_threads(heard)
     alone = len({one.publisher.process for _, one in heard}) <= 1
 
     def key(entry: tuple[int, Heard]) -> tuple[Any, ...]:
@@ -31,9 +31,8 @@ def in_canonical_order(heard: Sequence[tuple[int, Heard]]) -> list[tuple[int, He
     return sorted(heard, key=key)
 
 
-def without_order(heard: Sequence[tuple[int, Heard]]) -> set[Place]:
-    """Return where and when several threads may have published more than one message."""
-    threaded = from_other_threads(heard)
+def without_order(heard: Sequence[tuple[int, Heard]], threaded: Collection[Source]) -> set[Place]:
+    """Return where and when several threads (`threaded`) may have published more than one message."""
     counts = Counter(place_of(number, one) for number, one in heard if (number, one.node) in threaded)
     return {place for place, count in counts.items() if count > 1}
 

@@ -12,7 +12,14 @@ from hypothesis import strategies as st
 
 from grader.runner.budget import Allowance, Budget, HostStalled
 from grader.runner.ends import BETWEEN_MESSAGES, Clocks
-from grader.runner.order import from_other_threads, in_canonical_order, place_of, requests_in_order, without_order
+from grader.runner.order import (
+    Place,
+    from_other_threads,
+    in_canonical_order,
+    place_of,
+    requests_in_order,
+    without_order,
+)
 from grader.scenario.scenario import SECOND, START
 from rmw_lockstep.hub import Asked, EndPoint, Heard, Moment, Qos
 
@@ -52,7 +59,11 @@ def heard(cdr: bytes, main: bool, now: int = 5, process: int = 1, node: str = "/
 
 
 def order(entries: Sequence[tuple[int, Heard]]) -> list[bytes]:
-    return [one.cdr for _, one in in_canonical_order(entries)]
+    return [one.cdr for _, one in in_canonical_order(entries, from_other_threads(entries))]
+
+
+def unordered(*entries: tuple[int, Heard]) -> set[Place]:
+    return without_order(entries, from_other_threads(entries))
 
 
 def test_what_the_main_thread_publishes_stays_in_its_order() -> None:
@@ -72,9 +83,9 @@ def test_whatever_another_thread_than_the_main_one_publishes_has_no_order() -> N
 
 
 def test_only_messages_of_one_moment_can_be_without_an_order() -> None:
-    assert without_order([heard(b"a", OTHER), heard(b"b", OTHER, now=9)]) == set()
+    assert unordered(heard(b"a", OTHER), heard(b"b", OTHER, now=9)) == set()
     first = [heard(b"a", OTHER), heard(b"b", OTHER), heard(b"c", OTHER, now=9)]
-    assert without_order(first) == {place_of(0, first[0][1])}
+    assert unordered(*first) == {place_of(0, first[0][1])}
 
 
 def asked(cdr: bytes, main: bool, now: int = 5, process: int = 1, node: str = "/node") -> Asked:
