@@ -1,6 +1,7 @@
 // The computer's clocks, as the hub says.
 #include <errno.h>
 
+#include "polling.hpp"
 #include "real.hpp"
 #include "sleeping.hpp"
 
@@ -34,6 +35,15 @@ int64_t moment(clockid_t clock) {
   count_reading();
   const bool calendar = clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_TAI;
   return core().now() + (calendar ? core().epoch() : 0);
+}
+
+constexpr int OK = 0, INVALID_ARGUMENT = 11;  // of rcutils/types/rcutils_ret.h
+
+int read_for_ros(clockid_t clock, int64_t * now) {
+  if (!now) return INVALID_ARGUMENT;
+  polling.forget();
+  *now = virtual_time() ? moment(clock) : real::now(clock);
+  return OK;
 }
 
 }  // namespace
@@ -71,5 +81,9 @@ LOCKSTEP_API time_t time(time_t * out) {
   if (out) *out = seconds;
   return seconds;
 }
+
+// ROS 2's own (rcutils/time.h), which it calls for a timer, and only then while it polls.
+LOCKSTEP_API int rcutils_steady_time_now(int64_t * now) { return read_for_ros(CLOCK_MONOTONIC, now); }
+LOCKSTEP_API int rcutils_system_time_now(int64_t * now) { return read_for_ros(CLOCK_REALTIME, now); }
 
 }  // extern "C"

@@ -6,8 +6,10 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "bytes.hpp"
+#include "polling.hpp"
 #include "real.hpp"
 #include "signals.hpp"
 
@@ -16,7 +18,12 @@ namespace lockstep {
 thread_local uint64_t sleeps = 0;
 thread_local bool reads_clock_freely = false;
 
-namespace { thread_local Sleeper * own_sleeper = nullptr; }
+namespace {
+
+thread_local Sleeper * own_sleeper = nullptr;
+constexpr pid_t ALL_THREADS = std::numeric_limits<pid_t>::max();
+
+}  // namespace
 
 Core & core() {
   static Core * const only = new Core;
@@ -80,6 +87,7 @@ lockstep_moment Core::here() { return {handled_, now(), static_cast<uint32_t>(th
 // ---- sleeping
 
 void Core::fall_asleep(Sleeper & sleeper) {
+  if (may_lengthen(sleeper)) lengthen(sleeper, now());
   ++sleeps;
   sleeper.thread = thread_number();
   sleepers_.push_back(&sleeper);
@@ -133,6 +141,21 @@ bool Core::nudge(const Sleeper & sleeper) {
   return true;
 }
 
+bool Core::may_lengthen(const Sleeper & sleeper) const {
+  return sleeper.period && sleeper.period <= LONGEST_SLEEP / 2 && !has_own_pace_ && polling.can_wait();
+}
+
+// Something happens that threads may look for. At one moment, those with a higher number look after this `thread`.
+void Core::shorten_sleeps(pid_t thread) {
+  for (Sleeper * sleeper : sleepers_)
+    if (sleeper->lengthened) shorten(*sleeper, sleeper->thread > thread ? now() - 1 : now());
+}
+
+void Core::sent_output() {
+  sent_output_ = true;
+  has_own_pace_ |= polling.in_vain();
+}
+
 // ---- idle
 
 Core::Idle Core::idle() {
@@ -174,7 +197,7 @@ void Core::step() {
     }
     if (frame && !time_runs_ && !gate) {
       if (kind == '?') asked_ = true;
-      else if (participant_) participant_->frame(frame, size);
+      else take(frame, size);
       pop();
       continue;
     }
@@ -189,6 +212,11 @@ void Core::step() {
       announce();
     }
   }
+}
+
+void Core::take(const uint8_t * frame, uint32_t size) {
+  shorten_sleeps(ALL_THREADS);
+  if (participant_) participant_->frame(frame, size);
 }
 
 void Core::begin_time(const uint8_t * frame, uint32_t size) {
@@ -211,11 +239,14 @@ void Core::go_on() {
     const int64_t own = participant_ ? participant_->next() : NEVER;
     if (own <= until_ && (!next || own <= next->deadline)) {
       now_ = std::max(now(), own);
+      shorten_sleeps(ALL_THREADS);
       participant_->due(now());
       return;
     }
     if (next) {
       now_ = std::max(now(), next->deadline);
+      next->lengthened = false;
+      shorten_sleeps(next->thread);
       wake(*next, true);
       return;
     }
@@ -278,7 +309,7 @@ void Core::reset_in_child(bool connect_again) {
   const bool was_connected = connected_;
   connected_ = false;
   handled_ = 0;
-  time_runs_ = asked_ = false;
+  time_runs_ = asked_ = has_own_pace_ = false;
   if (participant_) participant_->reset();
   if (was_connected && connect_again) connect(std::string(path_));
 }

@@ -21,6 +21,9 @@ constexpr int64_t NEVER = LOCKSTEP_NEVER;
 // asleep until after it has woken, so that a thread on its way into or out of its sleep is never considered asleep.
 struct Sleeper {
   int64_t deadline = NEVER;          // on the steady clock (ns)
+  int64_t period = 0;                // what the program asked for (ns), if it may sleep longer while nothing happens
+  int64_t begin = 0;                 // of a sleep that has been lengthened
+  bool lengthened = false;
   pid_t thread = 0;
   std::atomic<uint32_t> awake{0};    // what the thread sleeps on; not 0 once it has been told to wake up
   bool due = false;                  // woken because its deadline has passed
@@ -57,7 +60,7 @@ public:
   void participate(const lockstep_participant * participant) { participant_ = participant; }
   // What the hub is sent about the graph, or a message: it considers the process busy from then on.
   void tell(const uint8_t * frame, size_t size);
-  void sent_output() { sent_output_ = true; }
+  void sent_output();
   lockstep_moment here();
   void call_later(void (*function)(const void *, size_t), const void * data, size_t count);
 
@@ -86,6 +89,8 @@ private:
   struct Later { void (*function)(const void *, size_t); const void * data; size_t count; };
   enum class Idle { yes, no, look_again };
 
+  bool may_lengthen(const Sleeper & sleeper) const;
+  void shorten_sleeps(pid_t thread);
   void send(const uint8_t * frame, size_t size);
   void listen_to_hub();            // the listener: the library's own thread
   static void * listener_thread(void * core);
@@ -94,6 +99,7 @@ private:
   void step();                     // handle what may be handled now
   const uint8_t * front(uint32_t & size) const;
   void pop();
+  void take(const uint8_t * frame, uint32_t size);
   void begin_time(const uint8_t * frame, uint32_t size);
   void go_on();                    // one step of time
   Idle idle();
@@ -124,6 +130,7 @@ private:
   uint64_t handled_ = 0;
   bool changed_ = false;           // since the process reported to be idle
   std::atomic<bool> disturbed_{false};  // by a signal
+  bool has_own_pace_ = false;      // it has sent something at a time of its own, between looks in vain
   bool asked_ = false;             // by the hub, whether it still is idle
   bool time_runs_ = false, stop_at_output_ = false, sent_output_ = false;
   int64_t until_ = 0;

@@ -33,6 +33,7 @@ int poll_until(const pollfd * files, nfds_t count, int64_t deadline, const sigse
   out.push_back({event.get(), POLLIN, 0});
   Sleeper sleeper;
   sleeper.deadline = deadline;
+  sleeper.period = deadline - core().now();
   sleeper.event = event.get();
   sleeper.files = files;
   sleeper.file_count = count;

@@ -75,6 +75,10 @@ LOCKSTEP_API void lockstep_settle_signals(void);
 /// How often the calling thread has waited for anything so far: two equal answers mean that it never waited in between.
 LOCKSTEP_API uint64_t lockstep_sleeps(void);
 
+/// Report that the calling thread has looked for something without waiting. `in_vain`: it found nothing, and nothing has
+/// happened since it looked before. While that goes on, its short sleeps become longer: see PROTOCOL.md, "Idle".
+LOCKSTEP_API void lockstep_looked(int in_vain);
+
 /// Call `function(data, count)` once the lock is released.
 LOCKSTEP_API void lockstep_call_later(void (*function)(const void *, size_t), const void * data, size_t count);
 

@@ -19,6 +19,7 @@ int futex_wait(std::atomic<uint32_t> & word, uint32_t while_it_is, bool shared, 
 int sleep_until(int64_t deadline, bool holds_interpreter) {
   Sleeper sleeper;
   sleeper.deadline = deadline;
+  sleeper.period = holds_interpreter ? 0 : deadline - core().now();
   sleeper.holds_interpreter = holds_interpreter;
   Asleep asleep(sleeper);
   while (!sleeper.awake)

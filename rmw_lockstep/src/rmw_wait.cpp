@@ -18,9 +18,11 @@ constexpr int UNCHANGED_POLLS = 2;
 struct Polls {
   uint64_t activity = 0, sleeps = 0;
   int unchanged = 0;
-  void count() {
+  void count(bool ready) {
     const uint64_t now = graph().activity, slept = lockstep_sleeps();
-    unchanged = activity == now && sleeps == slept ? unchanged + 1 : 0;
+    const bool in_vain = !ready && activity == now;
+    lockstep_looked(in_vain);
+    unchanged = in_vain && sleeps == slept ? unchanged + 1 : 0;
     activity = now;
     sleeps = slept;
   }
@@ -36,9 +38,10 @@ int64_t deadline_of(const rmw_time_t * timeout) {
 // True if the thread is one that polls, and has waited.
 bool wait_as_poll(Waiter & waiter) {
   // rclpy's spin_once(timeout_sec=0) triggers a guard condition of its own each time, which does not count as activity.
-  if (!lockstep_virtual() || waiter.ready(false)) return false;
-  polls.count();
-  if (polls.unchanged < UNCHANGED_POLLS) return false;
+  if (!lockstep_virtual()) return false;
+  const bool ready = waiter.ready(false);
+  polls.count(ready);
+  if (ready || polls.unchanged < UNCHANGED_POLLS) return false;
   lockstep_wait(&waiter.thread, lockstep_now() + POLL);
   polls.sleeps = lockstep_sleeps();
   return true;

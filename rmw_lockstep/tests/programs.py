@@ -130,6 +130,11 @@ class Watch:
         while not done():
             self.go_on(step)
 
+    @property
+    def elapsed_s(self) -> float:
+        """How far time has been advanced so far."""
+        return (self.hub.now - BEGIN) / SECOND
+
     def said(self) -> list[tuple[float, str]]:
         """Return what was said, and when: milliseconds since the beginning."""
         return [((heard.now - BEGIN) / MS, text(heard.cdr)) for heard in self._said.heard]
