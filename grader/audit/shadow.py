@@ -26,6 +26,16 @@ OUTCOME = "outcome"
 
 INFERRED = "over Fast DDS the grader could only infer from sleeping threads when the node was done"
 
+CALLED = (
+    "over Fast DDS the grader has to call a service of each node to know that it is done, "
+    "and a node that the program creates but never spins does not answer"
+)
+
+PILED_UP = (
+    "over Fast DDS messages follow one another at once while a sleep takes real time, "
+    "so answers from a thread that sleeps pile up, and a publisher keeps only as many as its queue depth"
+)
+
 
 def shadow(exercise: Exercise, options: Options, workers: WorkerPool, progress: Progress) -> Shadow:
     """Grade every file of the exercise's solutions over both middlewares, and compare.
@@ -77,13 +87,28 @@ def _opinion(verdict: Verdict) -> Opinion:
 
 
 def _reason(lockstep: Grade, fast_dds: Grade, scenario: str) -> str:
-    """Why the two differ, as far as the recordings of a scenario show it."""
-    ours, theirs = lockstep.recordings.get(scenario), fast_dds.recordings.get(scenario)
-    if ours is None or theirs is None:
-        return ""
+    """Why the two differ, as far as the recordings show it: those of the finding's scenario, or of the first to differ.
+
+    A check that could not be judged, because another one failed, has no finding.
+    """
+    names = [scenario] if scenario else list(lockstep.recordings)
+    both = [(name, lockstep.recordings.get(name), fast_dds.recordings.get(name)) for name in names]
+    return next(filter(None, (_explained(name, *pair) for name, *pair in both if None not in pair)), "")
+
+
+def _explained(scenario: str, ours: Recording, theirs: Recording) -> str:
     seen = _seen(ours, theirs)
-    inferred = INFERRED if theirs.synchronization == "idle" else ""
-    return "; ".join(filter(None, (f"scenario {scenario}: {seen}" if seen else "", inferred)))
+    return "; ".join(filter(None, (f"scenario {scenario}: {seen}" if seen else "", _limit(ours, theirs))))
+
+
+def _limit(ours: Recording, theirs: Recording) -> str:
+    """The limit of grading over Fast DDS that can have made these two differ."""
+    if theirs.synchronization == "idle":
+        return INFERRED
+    if theirs.ending.outcome == "timed-out" and len(theirs.nodes) > 1:
+        return CALLED
+    lost = ours.ending.outcome == theirs.ending.outcome and len(theirs.received) < len(ours.received)
+    return PILED_UP if lost else ""
 
 
 def _seen(ours: Recording, theirs: Recording) -> str:

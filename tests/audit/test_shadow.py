@@ -48,6 +48,9 @@ def test_each_verdict_that_differs_is_listed_with_the_reason(small: SmallExercis
     # Over Fast DDS a node has a network.
     (right / "has_a_network.py").write_text("import socket\n\nsocket.socket(socket.AF_INET)\n" + solution.read_text())
 
+    second = "    rclpy.create_node('never_spun')\n    try:\n"
+    (right / "has_a_second_node.py").write_text(solution.read_text().replace("    try:\n", second, 1))
+
     done = run("doubler", "--shadow")
 
     assert done.exit_code == 1, done.stdout
@@ -56,6 +59,9 @@ def test_each_verdict_that_differs_is_listed_with_the_reason(small: SmallExercis
     assert "A node has no network while it is graded" in text
     assert "fastdds graded" in text
     assert "its run is did-not-start over lockstep, completed over Fast DDS" in text
+    assert "its run is completed over lockstep, timed-out over Fast DDS" in text
+    assert "a node that the program creates but never spins does not answer" in text
+    assert "no reason is known" not in text
 
 
 def test_it_goes_with_no_other_option() -> None:
