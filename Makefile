@@ -10,6 +10,9 @@ BIN    := $(VENV)/bin
 # Set by another environment's ROS wheels, it would keep ours from finding their libraries.
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 
+# Without __pycache__, each of some thousand Pythons would compile Spinbook's modules again.
+unexport PYTHONDONTWRITEBYTECODE
+
 # A sourced ROS 2 brings pytest plugins that do not load with a current pytest: only those named here are.
 PYTEST := PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(BIN)/pytest -p pytest_timeout -p xdist.plugin -p _hypothesis_pytestplugin
 

@@ -8,14 +8,23 @@ from xdist.scheduler import LoadScopeScheduling
 from xdist.workermanage import WorkerController
 
 #: All tests of one file run in one worker. So do those of each of these folders, whose files share something that is
-#: expensive to make: a chapter that has run, a whole site, a class that was graded.
-TOGETHER = ("audit", "check", "feedback", "graph", "handout", "interfaces", "marking", "site")
+#: expensive to make: a chapter that has run, a whole site, a class that was graded, a sandbox at each level.
+TOGETHER = ("audit", "check", "feedback", "graph", "handout", "interfaces", "marking", "sandbox", "site")
 
 #: What takes longest, in this order. It is started first: started last, it would leave the other workers idle.
 LONGEST = (
-    *("site", "audit", "handout", "marking", "interfaces", "course/test_week3_notebook.py", "build/test_execution.py"),
+    *(
+        "site",
+        "audit",
+        "handout",
+        "sandbox",
+        "marking",
+        "interfaces",
+        "course/test_week3_notebook.py",
+        "build/test_execution.py",
+    ),
     *("new/test_kinds.py", "grader/test_course_solutions.py", "hostile/test_through_the_grader.py", "check"),
-    *("sandbox/test_hostile_submissions.py", "sandbox/test_limits.py", "sandbox/test_over_a_hub.py", "feedback"),
+    *("feedback",),
     *("grader/test_outcomes.py", "grader/test_determinism.py", "grader/test_solutions.py", "gradescope", "graph"),
     *("runtime/test_commands.py", "runtime/test_nodes.py", "turtlesim/test_turtle_node.py", "chapters", "package"),
 )

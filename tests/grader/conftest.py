@@ -30,5 +30,9 @@ def workers() -> Iterator[WorkerPool]:
 
 @pytest.fixture(scope="session")
 def grading(exercise: Exercise, workers: WorkerPool) -> Grading:
-    """A grading of joint_velocity; its solution has been verified in this run of the tests."""
-    return grading_of(exercise, Options(), workers)
+    """A grading of joint_velocity; its solution has been verified in this run of the tests.
+
+    It runs one scenario at a time: where the first decides, as often in test_outcomes.py, no other is begun in vain.
+    Several at once, as by default, run in test_determinism.py, test_command.py and test_course_solutions.py.
+    """
+    return grading_of(exercise, Options(parallel=1), workers)

@@ -11,16 +11,24 @@ from pathlib import Path
 
 import pytest
 
-from grader.grading import Grade
+from grader.exercise import Exercise
+from grader.grading import Grade, Options, grading_of
 from grader.grading.grading import Grading
 from grader.recording.recording import to_json
 from grader.submission import read
 from grader.submission.reading import of_source
+from grader.workers import WorkerPool
 
 SOLUTIONS = Path(__file__).parents[2] / "solutions" / "joint_velocity"
 
 #: Neither misuses the computer's clock, whose time may differ from one run to the next.
 SUBMISSIONS = ("mistakes/joints_by_index.py", "right/several_threads.py")
+
+
+@pytest.fixture(scope="module")
+def grading(exercise: Exercise, workers: WorkerPool) -> Grading:
+    """A grading of joint_velocity that runs several scenarios at once, as by default."""
+    return grading_of(exercise, Options(), workers)
 
 
 @contextmanager

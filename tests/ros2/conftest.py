@@ -21,12 +21,9 @@ def _own_command(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def terminal() -> Iterator[Terminal]:
     """A terminal; everything it started that the test did not stop is killed."""
-    it = Terminal()
+    it = Terminal(prepared=True)
     yield it
-    for process in it.started:
-        if process.poll() is None:
-            process.kill()
-            process.communicate()
+    it.close()
 
 
 def start(*parts: str) -> subprocess.Popen[str]:

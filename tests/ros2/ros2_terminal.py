@@ -9,6 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from prepared_python import run_prepared
+
 ROBOT = Path(__file__).parent / "ros2_robot.py"
 
 #: Seconds after which something that should have happened has failed. Generous: the machine may be busy.
@@ -48,10 +50,16 @@ class Running:
         return Answer(self.process.returncode, out, err)
 
 
+#: Nouns that ask or tell other nodes something and end. The others start programs, or look at this Python itself.
+ASKING = ("action", "interface", "node", "param", "service", "topic")
+
+
 class Terminal:
     """Runs `python -m spinbook.ros2` in children, as a notebook does."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, prepared: bool = False) -> None:
+        """Have a terminal; `prepared` is whether commands may run in forks of a process that has imported rclpy."""
+        self.prepared = prepared
         self.started: list[subprocess.Popen[str]] = []
 
     def start(self, *arguments: str, cwd: Path | None = None) -> Running:
@@ -67,17 +75,27 @@ class Terminal:
         return Running(process)
 
     def ros2(self, *arguments: str, cwd: Path | None = None, stdin: str = "") -> Answer:
-        done = subprocess.run(
-            [sys.executable, "-m", "spinbook.ros2", *arguments],
-            cwd=cwd,
-            input=stdin,
-            capture_output=True,
-            text=True,
-            timeout=DEADLINE_S,
-            check=False,
-        )
+        if self.prepared and arguments[:1] and arguments[0] in ASKING:
+            done = run_prepared("spinbook.ros2", *arguments, cwd=cwd, text=stdin, limit_s=DEADLINE_S)
+        else:
+            done = subprocess.run(
+                [sys.executable, "-m", "spinbook.ros2", *arguments],
+                cwd=cwd,
+                input=stdin,
+                capture_output=True,
+                text=True,
+                timeout=DEADLINE_S,
+                check=False,
+            )
         assert "Traceback" not in done.stderr, done.stderr
         return Answer(done.returncode, done.stdout, done.stderr)
+
+    def close(self) -> None:
+        """Kill everything it started that the test did not stop."""
+        for process in self.started:
+            if process.poll() is None:
+                process.kill()
+                process.communicate()
 
 
 Robot = Callable[..., subprocess.Popen[str]]

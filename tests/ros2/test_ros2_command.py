@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import sysconfig
+from collections.abc import Iterator
 from pathlib import Path
 
 import click
@@ -17,6 +18,14 @@ from ros2_terminal import Robot, Terminal
 from spinbook.cli import spinbook
 from spinbook.ros2.cli import Menu
 from spinbook.ros2.command import NOUNS, ros2
+
+
+@pytest.fixture
+def terminal() -> Iterator[Terminal]:
+    """A terminal each of whose commands is a new Python: how the command starts is the point here."""
+    it = Terminal()
+    yield it
+    it.close()
 
 
 def helps() -> list[list[str]]:

@@ -5,6 +5,7 @@ Also as a user who is not root, when the tests are run as root: the runner's pro
 
 from __future__ import annotations
 
+import json
 import multiprocessing
 import os
 import subprocess
@@ -134,19 +135,29 @@ def become_nobody() -> None:
     os.chdir("/")
 
 
-@cache
 def reason_against(level: Isolation, rootless: bool) -> str | None:
     """Return why a level cannot be tested here; None if it can."""
     if not rootless:
-        return available()[level]
+        return _reasons()[level]
     if os.geteuid() != 0:
         return "the tests are not run as root: what is tested without root is the same as the case above"
+    return _reasons_without_root()[level]
+
+
+@cache
+def _reasons() -> dict[Isolation, str | None]:
+    return available()
+
+
+@cache
+def _reasons_without_root() -> dict[Isolation, str | None]:
     code = (
-        f"import sys; sys.path[:0] = [{str(Path(__file__).parent)!r}, {str(Path(__file__).parents[2])!r}]\n"
+        f"import json, sys; sys.path[:0] = [{str(Path(__file__).parent)!r}, {str(Path(__file__).parents[2])!r}]\n"
         "from sandbox_runner import become_nobody\n"
         "become_nobody()\n"
-        "from grader.sandbox import Isolation, available, choose\n"
-        f"print(available()[Isolation({level.value!r})] or '')"
+        "from grader.sandbox import available\n"
+        "print(json.dumps({level.value: reason for level, reason in available().items()}))"
     )
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    return said.stdout.strip() or said.stderr.strip() or None
+    assert said.returncode == 0, said.stderr
+    return {Isolation(level): reason for level, reason in json.loads(said.stdout).items()}
