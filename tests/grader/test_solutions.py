@@ -23,12 +23,10 @@ USUAL = {
 }
 
 #: Graded by every `make test`; `make soak` grades all. tests/audit/test_course_exercises.py also tests, for all of them
-#: and in less time, that each mistake loses exactly the checks that it names. asyncio_loop looks for messages 80,000
-#: times: tests/runner/test_hard_programs.py records such a node, and test_determinism.py grades one that looks as often
-#: as it needs to.
+#: and in less time, that each mistake loses exactly the checks that it names.
 ALWAYS = {
     *("fixed_dt", "traceback_on_ctrl_c"),
-    *("numpy_arrays", "without_main", "several_threads"),
+    *("numpy_arrays", "without_main", "several_threads", "asyncio_loop"),
 }
 
 
