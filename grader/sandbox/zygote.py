@@ -10,7 +10,6 @@ import importlib
 import importlib.machinery
 import io
 import itertools
-import linecache
 import os
 import pickle
 import signal
@@ -21,7 +20,7 @@ import warnings
 from pathlib import Path
 from typing import NoReturn
 
-from grader.sandbox import filesystem, middleware, seccomp
+from grader.sandbox import callers, filesystem, middleware, seccomp
 from grader.sandbox import middleware as type_support
 from grader.sandbox.middleware import choosable
 from grader.sandbox.program import Middleware, Paths, Program
@@ -180,10 +179,7 @@ def _prepare_for_forks() -> None:
     if seccomp.supported():
         seccomp.program(network=False, no_signals=False)
         seccomp.program(network=False)
-    with contextlib.suppress(Exception):  # rclpy's logger may work differently
-        # The logger reads the file of every module when it is first asked for a caller: half a step's time each.
-        importlib.import_module("rclpy.impl.rcutils_logger").CallerId()
-    linecache.cache.pop(__file__, None)
+    callers.remember_files()
     sys.path_importer_cache.clear()  # emptied here, it need not be copied to be emptied in each fork
     _note_modules()
 
