@@ -20,7 +20,7 @@ import warnings
 from pathlib import Path
 from typing import NoReturn
 
-from grader.sandbox import callers, filesystem, middleware, seccomp
+from grader.sandbox import callers, filesystem, heap, middleware, seccomp
 from grader.sandbox import middleware as type_support
 from grader.sandbox.middleware import choosable
 from grader.sandbox.program import Middleware, Paths, Program
@@ -165,6 +165,7 @@ def main(arguments: list[str]) -> None:
     _prepare_for_forks()
     gc.collect()
     gc.freeze()
+    heap.fill_gaps()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # supervisors need no reaping
     job = serve(requests, fault)
