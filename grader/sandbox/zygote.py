@@ -33,6 +33,8 @@ def fork() -> int:
     Those besides Python's own are LTTng's: ROS 2's tracing starts two when rclpy is imported. They wait for a tracing
     daemon (lttng-ust(3), "LTTNG_UST_REGISTER_TIMEOUT"), and a child has no use for them.
     """
+    if sys.version_info < (3, 12):
+        return os.fork()
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "This process .* is multi-threaded", DeprecationWarning)
         return os.fork()
@@ -54,8 +56,11 @@ def run_program(program: Program, paths: Paths) -> None:
     """
     path = str(Path(paths.folder, program.main))
     variables = filesystem.environment(program, paths)
-    os.environ.clear()
-    os.environ.update(variables)
+    for name in os.environ.keys() - variables.keys():
+        del os.environ[name]
+    for name, value in variables.items():
+        if os.environ.get(name) != value:
+            os.environ[name] = value
     if not program.preloaded:
         os.execv(sys.executable, [sys.executable, path, *program.arguments])
     if paths.hub:
