@@ -12,14 +12,17 @@ import os
 import resource
 import shutil
 import signal
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from grader.sandbox import seccomp, syscalls
+from grader.sandbox import filesystem, seccomp, syscalls
 from grader.sandbox.filesystem import Mount
 from grader.sandbox.namespaces import Builder, Namespaces
 
 _HOLDER_BYTES = 64 * 1024 * 1024
+
+#: The descriptors from which bubblewrap reads the texts, in the order of `filesystem.TEXTS`: above those of its own.
+_FIRST_TEXT = 100
 
 
 def find() -> str | None:
@@ -27,10 +30,18 @@ def find() -> str | None:
     return shutil.which("bwrap")
 
 
-def build(plan: Sequence[Mount], user_namespace: int, *, network: bool) -> Namespaces:
+def options(plan: Sequence[Mount]) -> bytes:
+    """Return the options that build a root, as bubblewrap reads them from a file."""
+    return b"".join(os.fsencode(option) + b"\0" for option in _options(plan))
+
+
+def build(root: bytes, user_namespace: int, *, network: bool) -> Namespaces:
     """Make the namespaces and their root, and move this process into them (except the pid namespace's children).
 
-    With `network` the process keeps its current network; otherwise there is none, not even loopback.
+    Args:
+        root: the `options` that build it.
+        user_namespace: that of the student.
+        network: keep the current network; otherwise there is none, not even loopback.
 
     Raises:
         OSError: if bubblewrap could not be run or ended early; the text has its output.
@@ -38,10 +49,10 @@ def build(plan: Sequence[Mount], user_namespace: int, *, network: bool) -> Names
     program = find()
     if program is None:
         raise OSError("bubblewrap (bwrap) is not installed")
-    texts = {step.path: _memory_file(step.content.encode()) for step in plan if step.action == "text"}
+    texts = {_FIRST_TEXT + at: _memory_file(text.encode()) for at, text in enumerate(filesystem.TEXTS.values())}
     filters = [_memory_file(seccomp.program(network=network))] if seccomp.supported() else []
     # Not on the command line, which the student can read and which would show what is hidden.
-    arguments = _memory_file(b"".join(os.fsencode(option) + b"\0" for option in _options(plan, texts)))
+    arguments = _memory_file(root)
     information, information_end = os.pipe()
     command = [
         *(program, "--userns", str(user_namespace), "--unshare-pid", "--unshare-ipc", "--unshare-uts"),
@@ -49,8 +60,9 @@ def build(plan: Sequence[Mount], user_namespace: int, *, network: bool) -> Names
         *(option for number in filters for option in ("--seccomp", str(number))),
         *("--args", str(arguments), "--", "cat"),
     ]
-    passed = (user_namespace, information_end, arguments, *texts.values(), *filters)
-    builder = _start(command, passed)
+    for number in (user_namespace, information_end, arguments, *filters):
+        os.set_inheritable(number, True)
+    builder = _start(command, texts)
     os.close(information_end)
     with contextlib.suppress(BrokenPipeError):
         os.write(builder.input, b"!")
@@ -69,23 +81,21 @@ def build(plan: Sequence[Mount], user_namespace: int, *, network: bool) -> Names
     return Namespaces(init, own_processes, builder)
 
 
-def _start(command: list[str], passed: Iterable[int]) -> Builder:
-    """Run bubblewrap with pipes to it, and with the descriptors `passed`.
+def _start(command: list[str], passed: Mapping[int, int]) -> Builder:
+    """Run bubblewrap with pipes to it, with the inheritable descriptors, and with others: our number for each of its.
 
-    By posix_spawn, which does not copy this process's memory as a fork does. Every other descriptor has to be one that
-    no program inherits; Python's own are.
+    By posix_spawn, which does not copy this process's memory as a fork does. Python's own descriptors are not
+    inheritable.
     """
     input_at, input_to = os.pipe()
     output_at, output_to = os.pipe()
     errors_at, errors_to = os.pipe()
-    for number in passed:
-        os.set_inheritable(number, True)
     ends = (input_at, output_to, errors_to)
     pid = os.posix_spawn(
         command[0],
         command,
         {"PATH": "/usr/bin:/bin"},
-        file_actions=[(os.POSIX_SPAWN_DUP2, end, number) for number, end in enumerate(ends)],
+        file_actions=[(os.POSIX_SPAWN_DUP2, ours, number) for number, ours in (*enumerate(ends), *passed.items())],
         setsigdef=(signal.SIGPIPE, signal.SIGXFSZ),  # which Python ignores
     )
     for end in ends:
@@ -93,7 +103,8 @@ def _start(command: list[str], passed: Iterable[int]) -> Builder:
     return Builder(pid, input_to, output_at, errors_at)
 
 
-def _options(plan: Sequence[Mount], texts: dict[str, int]) -> Iterator[str]:
+def _options(plan: Sequence[Mount]) -> Iterator[str]:
+    texts = {path: _FIRST_TEXT + at for at, path in enumerate(filesystem.TEXTS)}
     for step in plan:
         if step.action == "folder":
             yield from ("--perms", "0755", "--dir", step.path)

@@ -24,7 +24,8 @@ class Start:
         isolation: how far to confine it.
         limits: the resources it may use.
         core: the CPU to stay on; None for any.
-        plan: the steps that build its root, at the levels that have one.
+        plan: the steps that build its root, for the level `namespaces`.
+        options: the same for bubblewrap, ready for it.
     """
 
     program: Program
@@ -32,6 +33,7 @@ class Start:
     limits: Limits
     core: int | None
     plan: tuple[filesystem.Mount, ...] = ()
+    options: bytes = b""
 
 
 def confine(

@@ -30,7 +30,8 @@ def dedicated_user() -> int:
 _PARTS = ("bin", "sbin", "lib", "lib32", "lib64", "libx32", "libexec", "share", "pyvenv.cfg")
 _DEVICES = ("null", "zero", "full", "random", "urandom")
 _ETC = ("ld.so.cache", "alternatives", "localtime", "timezone")
-_TEXTS = {
+#: The text files of every sandbox.
+TEXTS = {
     "/etc/passwd": f"student:x:{USER_ID}:{USER_ID}:student:{HOME}:/bin/sh\n",
     "/etc/group": f"student:x:{USER_ID}:\n",
     "/etc/hosts": "127.0.0.1 localhost\n",
@@ -89,7 +90,7 @@ def mounts(readonly: tuple[Path, ...], hidden: tuple[Path, ...], scratch_bytes: 
         plan.add("bind", str(path))
     for path in links:
         plan.add("link", str(path), str(path.readlink()))
-    for path_of_text, text in _TEXTS.items():
+    for path_of_text, text in TEXTS.items():
         plan.add("text", path_of_text, text)
     masks = sorted(set(_masks((*own_packages(), *hidden), bound)))
     for mask in masks:

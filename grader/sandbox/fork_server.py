@@ -13,7 +13,7 @@ import sys
 from collections.abc import Sequence
 from types import TracebackType
 
-from grader.sandbox import filesystem, namespaces
+from grader.sandbox import bubblewrap, filesystem, namespaces
 from grader.sandbox.confine import Start
 from grader.sandbox.isolation import Isolation, forget
 from grader.sandbox.middleware import variables
@@ -180,12 +180,9 @@ class ForkServer:
         """
         limits = limits or Limits()
         self.prepare(program.middleware)
-        apart = isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES)
-        plan = filesystem.mounts(program.readonly, program.hidden, limits.file_bytes) if apart else ()
-        if apart and program.hub:
-            plan = filesystem.with_hub(plan, program.hub)
-        passed = [_memory_file(pickle.dumps(Start(program, isolation, limits, core, plan)))]
-        if apart:
+        start = Start(program, isolation, limits, core, *_root(program, isolation, limits))
+        passed = [_memory_file(pickle.dumps(start))]
+        if isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
             passed += _namespaces(program)
         ours, control = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         output, output_end = os.pipe2(os.O_CLOEXEC)
@@ -255,6 +252,16 @@ class _Process:
             with contextlib.suppress(ProcessLookupError):
                 self._process.send_signal(signal.SIGTERM)
             self._process.wait()
+
+
+def _root(program: Program, isolation: Isolation, limits: Limits) -> tuple[tuple[filesystem.Mount, ...], bytes]:
+    """Return what builds the root of a program's sandbox: steps, or options for bubblewrap."""
+    if isolation not in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
+        return (), b""
+    plan = filesystem.mounts(program.readonly, program.hidden, limits.file_bytes)
+    if program.hub:
+        plan = filesystem.with_hub(plan, program.hub)
+    return ((), bubblewrap.options(plan)) if isolation is Isolation.BUBBLEWRAP else (plan, b"")
 
 
 def _namespaces(program: Program) -> list[int]:

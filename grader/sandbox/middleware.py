@@ -98,13 +98,16 @@ def _library() -> Library:
     return found
 
 
+_this_process = ctypes.CDLL(None)
+
+
 def connect(hub: str) -> None:
     """Connect this process, into which liblockstep was preloaded, to the hub; from now on the hub sets its time.
 
     Raises:
         OSError: if there is no hub, or it does not answer.
     """
-    error = ctypes.CDLL(None).lockstep_connect(os.fsencode(hub))
+    error = _this_process.lockstep_connect(os.fsencode(hub))
     if error:
         raise OSError(error, f"no connection to the hub {hub}: {os.strerror(error)}")
 

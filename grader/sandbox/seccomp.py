@@ -167,12 +167,14 @@ def program(*, network: bool = True, no_signals: bool = False) -> bytes:
     return b"".join(struct.pack("=HBBI", *line) for line in lines)
 
 
+class _Program(ctypes.Structure):
+    """`struct sock_fprog`."""
+
+    _fields_ = (("length", ctypes.c_ushort), ("filter", ctypes.c_char_p))
+
+
 def install(filter_program: bytes) -> None:
     """Install the filter in this process and all that it will start, for good. Needs no_new_privs: prctl(2)."""
-
-    class _Program(ctypes.Structure):
-        _fields_ = (("length", ctypes.c_ushort), ("filter", ctypes.c_char_p))
-
     described = _Program(len(filter_program) // 8, filter_program)
     syscalls.prctl(syscalls.PR_SET_SECCOMP, _MODE_FILTER, ctypes.byref(described))
 

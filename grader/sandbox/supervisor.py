@@ -74,8 +74,10 @@ def refuse(control: int, reason: str) -> NoReturn:
 def _build(start: Start, users: int) -> tuple[namespaces.Namespaces | processes.ProcessTree, Paths]:
     program = start.program
     if start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
-        builder = bubblewrap if start.isolation is Isolation.BUBBLEWRAP else namespaces
-        sandbox = builder.build(start.plan, users, network=not program.hub)
+        if start.isolation is Isolation.BUBBLEWRAP:
+            sandbox = bubblewrap.build(start.options, users, network=not program.hub)
+        else:
+            sandbox = namespaces.build(start.plan, users, network=not program.hub)
         namespaces.write_files(program.files)
         return sandbox, Paths(SUBMISSION, filesystem.HOME, "/tmp", HUB if program.hub else None)
     owner = _owner(start.isolation)

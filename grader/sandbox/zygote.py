@@ -11,7 +11,6 @@ import importlib.machinery
 import inspect
 import io
 import itertools
-import linecache
 import os
 import pickle
 import signal
@@ -22,7 +21,7 @@ import warnings
 from pathlib import Path
 from typing import NoReturn
 
-from grader.sandbox import filesystem, middleware, seccomp
+from grader.sandbox import callers, filesystem, heap, middleware, seccomp
 from grader.sandbox import middleware as type_support
 from grader.sandbox.middleware import choosable
 from grader.sandbox.program import Middleware, Paths, Program
@@ -35,6 +34,8 @@ def fork() -> int:
     Those besides Python's own are LTTng's: ROS 2's tracing starts two when rclpy is imported. They wait for a tracing
     daemon (lttng-ust(3), "LTTNG_UST_REGISTER_TIMEOUT"), and a child has no use for them.
     """
+    if sys.version_info < (3, 12):
+        return os.fork()
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "This process .* is multi-threaded", DeprecationWarning)
         return os.fork()
@@ -56,8 +57,11 @@ def run_program(program: Program, paths: Paths) -> None:
     """
     path = str(Path(paths.folder, program.main))
     variables = filesystem.environment(program, paths)
-    os.environ.clear()
-    os.environ.update(variables)
+    for name in os.environ.keys() - variables.keys():
+        del os.environ[name]
+    for name, value in variables.items():
+        if os.environ.get(name) != value:
+            os.environ[name] = value
     if not program.preloaded:
         os.execv(sys.executable, [sys.executable, path, *program.arguments])
     if paths.hub:
@@ -169,6 +173,7 @@ def main(arguments: list[str]) -> None:
     _prepare_for_forks()
     gc.collect()
     gc.freeze()
+    heap.fill_gaps()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # supervisors need no reaping
     job = serve(requests, fault)
@@ -183,10 +188,7 @@ def _prepare_for_forks() -> None:
     if seccomp.supported():
         seccomp.program(network=False, no_signals=False)
         seccomp.program(network=False)
-    with contextlib.suppress(Exception):  # rclpy's logger may work differently
-        # The logger reads the file of every module when it is first asked for a caller: half a step's time each.
-        importlib.import_module("rclpy.impl.rcutils_logger").CallerId()
-    linecache.cache.pop(__file__, None)
+    callers.remember_files()
     sys.path_importer_cache.clear()  # emptied here, it need not be copied to be emptied in each fork
     _note_modules()
 

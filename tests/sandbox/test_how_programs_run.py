@@ -29,6 +29,19 @@ PROGRAMS = {
     "is a dataclass": "from dataclasses import dataclass\n@dataclass\nclass A:\n    x: 'int' = 1\nprint(A())",
     "pickles itself": "import pickle\nclass A: pass\nprint(type(pickle.loads(pickle.dumps(A()))).__module__)",
     "reads its input": "import sys\nprint(repr(sys.stdin.read()))",
+    "logs from several lines": (
+        "import os\n"
+        "os.environ['RCUTILS_CONSOLE_OUTPUT_FORMAT'] = '{file_name}:{line_number} {function_name} {message}'\n"
+        "from rclpy.logging import get_logger\n"
+        "log = get_logger('n')\n"
+        "def tell(text, **filters):\n"
+        "    log.info(text, **filters)\n"
+        "for i in range(3):\n"
+        "    log.info(f'first {i}', once=True)\n"
+        "    log.info(f'second {i}', skip_first=True)\n"
+        "    tell(f'third {i}', once=True); tell(f'fourth {i}', once=True)\n"
+        "exec(compile('log.info(\"from a file that does not exist\")', 'nowhere.py', 'exec'))\n"
+    ),
 }
 
 
