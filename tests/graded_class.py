@@ -61,7 +61,7 @@ def _grades(exercise: Exercise, cache: Path) -> dict[str, Grade]:
     patch.setenv("SPINBOOK_CACHE", str(cache))
     try:
         with WorkerPool() as workers:
-            grading = grading_of(exercise, Options(), workers)
+            grading = grading_of(exercise, Options(parallel=1), workers)
             grades = {name: grading.grade(submission) for name, submission in _submissions(exercise).items()}
         # The worker is gone by now: a fault of ours, as the grader reports it.
         grades["host_error"] = grading.grade(_submissions(exercise)["solution"])

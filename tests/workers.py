@@ -11,22 +11,13 @@ from xdist.workermanage import WorkerController
 #: expensive to make: a chapter that has run, a whole site, a class that was graded, a sandbox at each level.
 TOGETHER = ("audit", "check", "feedback", "graph", "handout", "interfaces", "marking", "sandbox", "site")
 
-#: What takes longest, in this order. It is started first: started last, it would leave the other workers idle.
+#: What takes longest, in this order: pieces, and folders whose files are pieces. It is started first: started last, it
+#: would leave the other workers idle.
 LONGEST = (
-    *(
-        "site",
-        "audit",
-        "handout",
-        "sandbox",
-        "marking",
-        "interfaces",
-        "course/test_week3_notebook.py",
-        "build/test_execution.py",
-    ),
-    *("new/test_kinds.py", "grader/test_course_solutions.py", "hostile/test_through_the_grader.py", "check"),
-    *("feedback",),
-    *("grader/test_outcomes.py", "grader/test_determinism.py", "grader/test_solutions.py", "gradescope", "graph"),
-    *("runtime/test_commands.py", "runtime/test_nodes.py", "turtlesim/test_turtle_node.py", "chapters", "package"),
+    *("audit", "marking", "site", "handout", "interfaces", "sandbox", "check", "runtime/test_commands.py"),
+    *("build/test_execution.py", "course", "grader/test_solutions.py", "gradescope", "grader/test_course_solutions.py"),
+    *("hostile/test_through_the_grader.py", "runtime", "feedback", "grader", "ros2", "runner", "turtlesim", "new"),
+    *("graph", "chapters", "browser", "submit", "doctor", "package", "setup", "build", "rcl"),
 )
 
 

@@ -28,7 +28,7 @@ EXPECTED: dict[str, dict[str, Any]] = tomllib.loads((HOSTILE / "expected.toml").
 PROFILE = Path(__file__).parents[2] / "grader" / "loopback.xml"
 # Right, and with nothing of its own to hide.
 HONEST = HOSTILE / "submissions" / "sets_use_sim_time_itself.py"
-LIMITS = Limits(cpu_s=4.0, output_bytes=4 << 20, file_bytes=16 << 20, processes=96, wall_s=90.0)
+LIMITS = Limits(cpu_s=2.0, output_bytes=4 << 20, file_bytes=16 << 20, processes=96, wall_s=90.0)
 # The folders that are watched for files that a student has left.
 WATCHED = (Path("/tmp"), Path("/dev/shm"), Path("/var/tmp"), Path.home(), HOSTILE, HOSTILE.parents[1])
 # Attacks on the machine are tried at every level; others (on the grading, or on nothing) at the strongest only.

@@ -6,10 +6,11 @@ import gzip
 import io
 import json
 import statistics
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from browser import opened
+from browser import Opened, opened
 from PIL import Image
 from playwright.sync_api import Browser, Locator, expect
 from small_course import SmallCourse
@@ -26,13 +27,20 @@ PAGES = [
 DEADLINE_MS = 60_000
 
 
+@pytest.fixture(scope="module", params=[(1280, False), (390, True)], ids=["desk", "phone"])
+def shown(request: pytest.FixtureRequest, browser: Browser, address: str) -> Iterator[Opened]:
+    """A window at a desk, and one on a phone in the dark."""
+    width, dark = request.param
+    with opened(browser, f"{address}/{PAGES[0]}", width=width, dark=dark) as window:
+        yield window
+
+
 @pytest.mark.parametrize("page", PAGES)
-@pytest.mark.parametrize(("width", "dark"), [(1280, False), (390, True)])
-def test_a_page_is_without_fault(browser: Browser, address: str, page: str, width: int, dark: bool) -> None:
-    with opened(browser, f"{address}/{page}", width=width, dark=dark) as shown:
-        assert shown.violations() == []
-        assert not shown.scrolls_sideways()
-        assert shown.faults == []
+def test_a_page_is_without_fault(shown: Opened, address: str, page: str) -> None:
+    shown.show(f"{address}/{page}")
+    assert shown.violations() == []
+    assert not shown.scrolls_sideways()
+    assert shown.faults == []
 
 
 @pytest.mark.parametrize("from_folder", [True, False])
