@@ -91,12 +91,14 @@ def _reason(lockstep: Grade, fast_dds: Grade, scenario: str) -> str:
 
     A check that could not be judged, because another one failed, has no finding.
     """
-    names = [scenario] if scenario else list(lockstep.recordings)
-    both = [(name, lockstep.recordings.get(name), fast_dds.recordings.get(name)) for name in names]
-    return next(filter(None, (_explained(name, *pair) for name, *pair in both if None not in pair)), "")
+    scenarios = [scenario] if scenario else list(lockstep.recordings)
+    reasons = (_explained(one, lockstep.recordings.get(one), fast_dds.recordings.get(one)) for one in scenarios)
+    return next(filter(None, reasons), "")
 
 
-def _explained(scenario: str, ours: Recording, theirs: Recording) -> str:
+def _explained(scenario: str, ours: Recording | None, theirs: Recording | None) -> str:
+    if ours is None or theirs is None:
+        return ""
     seen = _seen(ours, theirs)
     return "; ".join(filter(None, (f"scenario {scenario}: {seen}" if seen else "", _limit(ours, theirs))))
 
