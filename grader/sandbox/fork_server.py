@@ -20,6 +20,9 @@ from grader.sandbox.middleware import variables
 from grader.sandbox.monitor import Exit, Monitor, Output
 from grader.sandbox.program import Limits, Middleware, Program, SandboxError
 
+#: The message to the fork server that requests a supervisor. Any other one is the name of a module to import.
+START = b" start"
+
 _START_S = 30.0
 _DEATH_S = 30.0
 
@@ -149,7 +152,7 @@ class ForkServer:
             middlewares: those that runners will need. A runner that needs another one waits for its own process.
             preload: the modules to import beforehand; those that are not installed are left out.
         """
-        self._preload = preload
+        self._preload = tuple(preload)
         self._servers: dict[Middleware, _Process] = {}
         for middleware in middlewares:
             self.prepare(middleware)
@@ -162,6 +165,13 @@ class ForkServer:
         """
         if middleware not in self._servers:
             self._servers[middleware] = _Process(middleware, self._preload)
+
+    def preload(self, module: str) -> None:
+        """Import one more module for the programs that are started from now on: the types that an exercise uses."""
+        if module not in self._preload:
+            self._preload = (*self._preload, module)
+            for server in self._servers.values():
+                server.preload(module)
 
     def start(
         self, program: Program, isolation: Isolation, limits: Limits | None = None, core: int | None = None
@@ -243,7 +253,12 @@ class _Process:
 
     def request(self, passed: Sequence[int]) -> None:
         """Request a student. Raises OSError if the process has ended."""
-        socket.send_fds(self._socket, [b"start"], passed)
+        socket.send_fds(self._socket, [START], passed)
+
+    def preload(self, module: str) -> None:
+        """Have a module imported before the next request. If the process has ended, that request says so."""
+        with contextlib.suppress(OSError):
+            self._socket.send(module.encode())
 
     def close(self) -> None:
         """End the process, if it belongs to this process."""

@@ -22,6 +22,7 @@ from typing import NoReturn
 
 from grader.sandbox import callers, filesystem, heap, middleware, seccomp
 from grader.sandbox import middleware as type_support
+from grader.sandbox.fork_server import START
 from grader.sandbox.middleware import choosable
 from grader.sandbox.program import Middleware, Paths, Program
 from grader.sandbox.supervisor import Request, refuse, supervise
@@ -104,15 +105,15 @@ def _prepare_main(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
     return module
 
 
-# The names of Spinbook's modules, and the number of all, before the first fork. Each name that a fork looks at is
-# copied from the fork server's memory.
+# The names of Spinbook's modules, and the number of all, before a fork. Each name that a fork looks at is copied from
+# the fork server's memory.
 _own_modules: list[str] = []
 _count_of_modules: list[int] = []
 
 
 def _note_modules() -> None:
-    _own_modules.extend(filter(_is_own, sys.modules))
-    _count_of_modules.append(len(sys.modules))
+    _own_modules[:] = filter(_is_own, sys.modules)
+    _count_of_modules[:] = [len(sys.modules)]
 
 
 def _is_own(module: str) -> bool:
@@ -150,16 +151,9 @@ def _die_of_interrupt() -> None:
 # python -m grader.sandbox.zygote DESCRIPTOR MIDDLEWARE MODULE…
 
 
+#: In bytes. The longest is the name of a module.
+_LONGEST_MESSAGE = 1024
 _MOST_DESCRIPTORS = 8
-_USED_BY_MOST_NODES = (
-    "rcl_interfaces",
-    "rosgraph_msgs",
-    "builtin_interfaces",
-    "std_msgs",
-    "geometry_msgs",
-    "sensor_msgs",
-    "type_description_interfaces",
-)
 
 
 def main(arguments: list[str]) -> None:
@@ -168,9 +162,6 @@ def main(arguments: list[str]) -> None:
     os.chdir("/")
     fault = _load(modules, middleware)
     _prepare_for_forks()
-    gc.collect()
-    gc.freeze()
-    heap.fill_gaps()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # supervisors need no reaping
     job = serve(requests, fault)
@@ -188,18 +179,28 @@ def _prepare_for_forks() -> None:
     callers.remember_files()
     sys.path_importer_cache.clear()  # emptied here, it need not be copied to be emptied in each fork
     _note_modules()
+    gc.collect()
+    gc.freeze()
+    heap.fill_gaps()
 
 
 def serve(requests: int, fault: str | None) -> Request | None:
-    """Fork a supervisor for each request. Return what to run in each student, and None at the end of all requests.
+    """Fork a supervisor for each request for one, and import the modules that others name.
+
+    Return what to run in each student, and None at the end of all requests.
 
     With a `fault` nothing is started: it is the answer to each request.
     """
     listening = socket.socket(fileno=requests)
     while True:
-        message, passed, _, _ = socket.recv_fds(listening, 64, _MOST_DESCRIPTORS)
+        message, passed, _, _ = socket.recv_fds(listening, _LONGEST_MESSAGE, _MOST_DESCRIPTORS)
         if not message:
             return None
+        if message != START:
+            with contextlib.suppress(Exception):  # a program that imports it is told why
+                _import(message.decode())
+            _prepare_for_forks()
+            continue
         if fork() == 0:
             listening.detach()
             os.close(requests)
@@ -233,8 +234,9 @@ def _load(modules: list[str], middleware: Middleware) -> str | None:
 
 
 def _import(name: str) -> None:
-    """Import a module and, if most nodes use its message types, load their compiled support."""
-    if name.split(".")[0] in _USED_BY_MOST_NODES:
+    """Import a module and, if it is one of message, service or action types, load their compiled support."""
+    package, _, kind = name.partition(".")
+    if package != "rclpy" and kind in ("msg", "srv", "action"):
         type_support.load_type_support(name)
     else:
         with contextlib.suppress(ImportError):

@@ -88,7 +88,9 @@ def main() -> None:
             if command == PREPARE_TO_JUDGE:
                 preload_judging()
             elif command.startswith(PREPARE_TYPES):
-                preload_types(command.removeprefix(PREPARE_TYPES).decode())
+                module = command.removeprefix(PREPARE_TYPES).decode()
+                fork_server.preload(module)
+                preload_types(module)
             elif command == SHARE:
                 take_shared(descriptors[0])
             elif command == PROCESS:

@@ -99,6 +99,30 @@ def test_the_fork_server_is_not_to_be_seen_in_the_program(either_runner: Runner)
     assert either_runner.run(code).text == "[]\n"
 
 
+def start_with_preloaded(fork_server: ForkServer, level: Isolation, modules: list[str], code: str) -> str:
+    for module in modules:
+        fork_server.preload(module)
+    with fork_server.start(Program("n.py", {"n.py": code.encode()}), level) as student:
+        student.wait(60.0)
+        return student.output().text
+
+
+def test_types_of_an_exercise_are_there_already(either_runner: Runner) -> None:
+    code = (
+        "import sys\nprint('std_srvs.srv' in sys.modules)\nfrom std_srvs.srv import Trigger\nprint(Trigger.Request())"
+    )
+
+    text = either_runner.do(start_with_preloaded, ["std_srvs.srv"], code)
+
+    assert text.splitlines() == ["True", "std_srvs.srv.Trigger_Request()"]
+
+
+def test_a_module_that_can_not_be_preloaded_is_the_programs_own_business(either_runner: Runner) -> None:
+    text = either_runner.do(start_with_preloaded, ["there_is_none.msg", "a" * 900], "import there_is_none.msg")
+
+    assert text.splitlines()[-1] == "ModuleNotFoundError: No module named 'there_is_none'"
+
+
 def interrupt_a_spinning_node(fork_server: ForkServer, level: Isolation) -> tuple[Exit | None, str]:
     code = "import time\ntry:\n    print('ready')\n    while True: time.sleep(0.01)\nfinally:\n    print('finally')\n"
     with fork_server.start(Program("n.py", {"n.py": code.encode()}), level) as student:
