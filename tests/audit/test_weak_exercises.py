@@ -45,7 +45,7 @@ def test_a_weak_copy_is_reported_check_by_check(small: SmallExercise, audited: A
         "    assert positive.received is not None, 'an answer was expected'\n\n\n"
         '@check(points=1, hint="Look at the name',
     )
-    result = audited(small, quick=False, most=24)
+    result = audited(small, quick=False, most=12)
     for (_, check), mistake in removed.items():
         assert any(mistake in found and "there is no such check" in found for found in advice(result, check)), check
     assert advice(result, "test_any_answer") == ["no mutant and no mistake fails test_any_answer: can it fail at all?"]

@@ -42,8 +42,9 @@ def every() -> list[Any]:
 
 @pytest.fixture(scope="module")
 def grading() -> Iterator[Grading]:
+    """A grading that runs two scenarios at once: a second one beside each attack, and no four fork bombs."""
     with WorkerPool() as workers:
-        yield grading_of(load(EXERCISE), Options(), workers)
+        yield grading_of(load(EXERCISE), Options(parallel=2), workers)
 
 
 def shown(grade: Grade) -> str:
