@@ -20,7 +20,7 @@ import warnings
 from pathlib import Path
 from typing import NoReturn
 
-from grader.sandbox import callers, filesystem, heap, middleware, seccomp
+from grader.sandbox import callers, filesystem, heap, middleware, preloaded, seccomp
 from grader.sandbox import middleware as type_support
 from grader.sandbox.fork_server import START
 from grader.sandbox.middleware import choosable
@@ -102,6 +102,7 @@ def _prepare_main(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
     sys.modules["__main__"] = module
     for name in (*_own_modules, *filter(_is_own, _modules_of_this_fork())):
         _ours.append(sys.modules.pop(name))
+    preloaded.hide()
     return module
 
 
@@ -177,6 +178,7 @@ def _prepare_for_forks() -> None:
         seccomp.program(network=False, no_signals=False)
         seccomp.program(network=False)
     callers.remember_files()
+    preloaded.choose()
     sys.path_importer_cache.clear()  # emptied here, it need not be copied to be emptied in each fork
     _note_modules()
     gc.collect()
@@ -236,10 +238,10 @@ def _load(modules: list[str], middleware: Middleware) -> str | None:
 def _import(name: str) -> None:
     """Import a module and, if it is one of message, service or action types, load their compiled support."""
     package, _, kind = name.partition(".")
-    if package != "rclpy" and kind in ("msg", "srv", "action"):
-        type_support.load_type_support(name)
-    else:
-        with contextlib.suppress(ImportError):
+    with preloaded.noted(), contextlib.suppress(ImportError):
+        if package != "rclpy" and kind in ("msg", "srv", "action"):
+            type_support.load_type_support(name)
+        else:
             importlib.import_module(name)
 
 

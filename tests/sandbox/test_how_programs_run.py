@@ -10,6 +10,17 @@ from sandbox_runner import Runner
 from grader.runner.fastdds.idle import Threads
 from grader.sandbox import Exit, ForkServer, Isolation, Program
 
+#: Prints the modules of ROS that are there, and those that their packages have as attributes.
+SHOW = """
+import sys
+def show():
+    there = lambda name: name.startswith('rclpy') or name.count('.') == 1 and name.endswith(('.msg', '.srv', '.action'))
+    names = [name for name in sys.modules if there(name) and 'pybind11' not in name]
+    print(sorted(names))
+    for name in sorted(names):
+        print(name, sorted(key for key, value in vars(sys.modules[name]).items() if type(value) is type(sys)))
+"""
+
 PROGRAMS = {
     "says who it is": "import sys\nprint(__name__, __file__, sys.argv, sys.path[0], __spec__, __builtins__)",
     "prints to both": "import sys\nprint('out')\nprint('err', file=sys.stderr)\nprint('out again')",
@@ -29,6 +40,16 @@ PROGRAMS = {
     "is a dataclass": "from dataclasses import dataclass\n@dataclass\nclass A:\n    x: 'int' = 1\nprint(A())",
     "pickles itself": "import pickle\nclass A: pass\nprint(type(pickle.loads(pickle.dumps(A()))).__module__)",
     "reads its input": "import sys\nprint(repr(sys.stdin.read()))",
+    "imports rclpy alone": SHOW + "import rclpy\nshow()\nprint(rclpy.node)",
+    "imports a package of messages alone": "import rclpy\nimport sensor_msgs\nprint(sensor_msgs.msg.JointState)",
+    "imports what it uses": SHOW
+    + "import rclpy\nfrom rclpy.node import Node\nshow()\n"
+    + "import sensor_msgs.msg\nfrom geometry_msgs.msg import Twist\nshow()\n"
+    + "print(sensor_msgs.msg.JointState(), Twist())\nshow()\n"
+    + "import rclpy.action\nfrom rclpy import executors, qos\nfrom std_srvs import srv\nshow()\n"
+    + "print(srv.Trigger.Request(), rclpy.action.ActionClient, executors, qos.QoSProfile(depth=3))\n"
+    + "print(rclpy.__spec__.name, rclpy.action.__spec__.loader.path, sensor_msgs.msg.__spec__.origin)",
+    "starts a node": SHOW + "import rclpy\nrclpy.init()\nnode = rclpy.create_node('n')\nshow()\nprint(node.get_name())",
     "logs from several lines": (
         "import os\n"
         "os.environ['RCUTILS_CONSOLE_OUTPUT_FORMAT'] = '{file_name}:{line_number} {function_name} {message}'\n"
