@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from spinbook.ros2 import interfaces
-from spinbook.ros2.cli import CONTEXT, CommandError, Entry, Menu, Stopped, discovery_options
+from spinbook.ros2.cli import CONTEXT, CommandError, Entry, Menu, Stopped, discovery_options, held_back
 from spinbook.ros2.opening import open_graph
 
 if TYPE_CHECKING:
@@ -150,7 +150,9 @@ def send_goal(
                 return
             print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n", flush=True)
             news.print_from_now_on()
-            answer = _done(graph, handle.get_result_async(), "getting result")
+            with held_back():
+                result = handle.get_result_async()
+            answer = _done(graph, result, "getting result")
             graph.spin_arrived()
         except Stopped:
             _cancel(graph, sent)
