@@ -128,14 +128,15 @@ def start_with_preloaded(fork_server: ForkServer, level: Isolation, modules: lis
         return student.output().text
 
 
-def test_types_of_an_exercise_are_there_already(either_runner: Runner) -> None:
+def test_types_of_an_exercise_are_loaded_already_and_hidden(either_runner: Runner) -> None:
     code = (
-        "import sys\nprint('std_srvs.srv' in sys.modules)\nfrom std_srvs.srv import Trigger\nprint(Trigger.Request())"
+        "import sys\nprint([name for name in ('std_srvs.srv._trigger', 'std_srvs.srv') if name in sys.modules])\n"
+        "from std_srvs.srv import Trigger\nprint(Trigger.Request())"
     )
 
     text = either_runner.do(start_with_preloaded, ["std_srvs.srv"], code)
 
-    assert text.splitlines() == ["True", "std_srvs.srv.Trigger_Request()"]
+    assert text.splitlines() == ["['std_srvs.srv._trigger']", "std_srvs.srv.Trigger_Request()"]
 
 
 def test_a_module_that_can_not_be_preloaded_is_the_programs_own_business(either_runner: Runner) -> None:
