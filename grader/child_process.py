@@ -4,9 +4,12 @@ for trusted programs. Students' programs run in `grader.sandbox`, nodes of noteb
 
 from __future__ import annotations
 
+import contextlib
 import os
+import select
+import signal
 import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import psutil
@@ -41,16 +44,33 @@ def run_program(
     return subprocess.CompletedProcess([os.fspath(word) for word in argv], process.returncode, out, err)
 
 
+#: A killed process ends as soon as the kernel lets it; one that waits for a disk that is gone may never do so (s).
+_DEATH_S = 10.0
+
+
 def _kill_family(pid: int) -> None:
-    """Kill a process and its descendants. The parent is killed first, so that it starts no more."""
+    """Kill a process and its descendants, and wait until they are dead.
+
+    The parent is killed first, so that it starts no more.
+    """
     try:
         parent = psutil.Process(pid)
         parent.suspend()
         family = [parent, *parent.children(recursive=True)]
     except psutil.NoSuchProcess:
         return
-    for member in family:
-        try:
-            member.kill()
-        except psutil.NoSuchProcess:
-            continue
+    with contextlib.ExitStack() as stack:
+        deaths = [death for member in family for death in _killed(member.pid, stack)]
+        for death in deaths:
+            poll = select.poll()
+            poll.register(death, select.POLLIN)
+            poll.poll(_DEATH_S * 1000)
+
+
+def _killed(pid: int, stack: contextlib.ExitStack) -> Iterator[int]:
+    """Kill a process, and yield a descriptor that is readable once it is dead: pidfd_open(2)."""
+    with contextlib.suppress(ProcessLookupError):
+        death = os.pidfd_open(pid)
+        stack.callback(os.close, death)
+        signal.pidfd_send_signal(death, signal.SIGKILL)
+        yield death
