@@ -9,7 +9,7 @@ import os
 import select
 import signal
 import subprocess
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import psutil
@@ -59,18 +59,24 @@ def _kill_family(pid: int) -> None:
         family = [parent, *parent.children(recursive=True)]
     except psutil.NoSuchProcess:
         return
-    with contextlib.ExitStack() as stack:
-        deaths = [death for member in family for death in _killed(member.pid, stack)]
-        for death in deaths:
-            poll = select.poll()
-            poll.register(death, select.POLLIN)
-            poll.poll(_DEATH_S * 1000)
+    for death in [_kill(member.pid) for member in family]:
+        if death is not None:
+            _wait(death)
 
 
-def _killed(pid: int, stack: contextlib.ExitStack) -> Iterator[int]:
-    """Kill a process, and yield a descriptor that is readable once it is dead: pidfd_open(2)."""
-    with contextlib.suppress(ProcessLookupError):
+def _kill(pid: int) -> int | None:
+    """Kill a process. Return a descriptor that is readable once it is dead (pidfd_open(2)); None if it is gone."""
+    try:
         death = os.pidfd_open(pid)
-        stack.callback(os.close, death)
+    except ProcessLookupError:
+        return None
+    with contextlib.suppress(ProcessLookupError):
         signal.pidfd_send_signal(death, signal.SIGKILL)
-        yield death
+    return death
+
+
+def _wait(death: int) -> None:
+    poll = select.poll()
+    poll.register(death, select.POLLIN)
+    poll.poll(_DEATH_S * 1000)
+    os.close(death)
