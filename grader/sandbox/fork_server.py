@@ -18,10 +18,7 @@ from grader.sandbox.confine import Start
 from grader.sandbox.isolation import Isolation, forget
 from grader.sandbox.middleware import variables
 from grader.sandbox.monitor import Exit, Monitor, Output
-from grader.sandbox.program import Limits, Middleware, Program, SandboxError
-
-#: The message to the fork server that requests a supervisor. Any other one is the name of a module to import.
-START = b" start"
+from grader.sandbox.program import START_REQUEST, Limits, Middleware, Program, SandboxError
 
 _START_S = 30.0
 _DEATH_S = 30.0
@@ -253,7 +250,7 @@ class _Process:
 
     def request(self, passed: Sequence[int]) -> None:
         """Request a student. Raises OSError if the process has ended."""
-        socket.send_fds(self._socket, [START], passed)
+        socket.send_fds(self._socket, [START_REQUEST], passed)
 
     def preload(self, module: str) -> None:
         """Have a module imported before the next request. If the process has ended, that request says so."""

@@ -67,8 +67,13 @@ def _note(name: str, importer: Mapping[str, Any], fromlist: Sequence[str], level
 
 def _is_of_ros(name: str) -> bool:
     """Return whether this is a module of rclpy, or one of messages, services or actions."""
+    return name.partition(".")[0] == "rclpy" or is_of_interfaces(name)
+
+
+def is_of_interfaces(name: str) -> bool:
+    """Return whether this is a package's module of messages, services or actions."""
     package, _, rest = name.partition(".")
-    return package == "rclpy" or rest in _INTERFACES
+    return package != "rclpy" and rest in _INTERFACES
 
 
 # What to hide: filled before the forks, because each name that a fork looks at is copied.

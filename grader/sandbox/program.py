@@ -15,6 +15,9 @@ from rmw_lockstep.library import IDENTIFIER
 SUBMISSION = "/submission"
 HUB = "/run/lockstep/hub"
 
+#: The message to the fork server that requests a supervisor. Any other one is the name of a module to import.
+START_REQUEST = b" start"
+
 
 class SandboxUnavailable(Exception):
     """Raised when this machine does not allow the wanted sandbox or middleware, or any at all."""

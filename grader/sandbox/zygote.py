@@ -22,9 +22,8 @@ from typing import NoReturn
 
 from grader.sandbox import callers, filesystem, heap, middleware, preloaded, seccomp
 from grader.sandbox import middleware as type_support
-from grader.sandbox.fork_server import START
 from grader.sandbox.middleware import choosable
-from grader.sandbox.program import Middleware, Paths, Program
+from grader.sandbox.program import START_REQUEST, Middleware, Paths, Program
 from grader.sandbox.supervisor import Request, refuse, supervise
 
 
@@ -198,7 +197,7 @@ def serve(requests: int, fault: str | None) -> Request | None:
         message, passed, _, _ = socket.recv_fds(listening, _LONGEST_MESSAGE, _MOST_DESCRIPTORS)
         if not message:
             return None
-        if message != START:
+        if message != START_REQUEST:
             with contextlib.suppress(Exception):  # a program that imports it is told why
                 _import(message.decode())
             _prepare_for_forks()
@@ -237,9 +236,8 @@ def _load(modules: list[str], middleware: Middleware) -> str | None:
 
 def _import(name: str) -> None:
     """Import a module and, if it is one of message, service or action types, load their compiled support."""
-    package, _, kind = name.partition(".")
     with preloaded.noted(), contextlib.suppress(ImportError):
-        if package != "rclpy" and kind in ("msg", "srv", "action"):
+        if preloaded.is_of_interfaces(name):
             type_support.load_type_support(name)
         else:
             importlib.import_module(name)
