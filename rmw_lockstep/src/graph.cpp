@@ -87,7 +87,7 @@ std::vector<EndPoint *> Graph::named(const std::string & name) const {
 void Graph::changed() {
   ++activity;
   for (auto & [_, node] : nodes_)
-    if (node->graph_changed) static_cast<Guard *>(node->graph_changed->data)->triggered = true;
+    if (node->graph_changed) static_cast<Guard *>(node->graph_changed->data)->trigger(lockstep_here().thread);
   notify();
 }
 

@@ -12,6 +12,7 @@
 
 #include "../lockstep/lockstep.h"
 #include "end_points.hpp"
+#include "guards.hpp"
 
 namespace rmw_lockstep {
 
@@ -26,8 +27,6 @@ public:
 private:
   bool held_ = true;
 };
-
-struct Guard { bool triggered = false; };
 
 struct Node {
   uint64_t id = 0;

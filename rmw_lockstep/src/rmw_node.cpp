@@ -90,7 +90,7 @@ RMW_LOCKSTEP_API rmw_ret_t rmw_destroy_guard_condition(rmw_guard_condition_t * h
 RMW_LOCKSTEP_API rmw_ret_t rmw_trigger_guard_condition(const rmw_guard_condition_t * handle) {
   REQUIRE_OURS(handle);
   Lock lock;
-  static_cast<Guard *>(handle->data)->triggered = true;
+  static_cast<Guard *>(handle->data)->trigger(lockstep_here().thread);
   graph().notify();
   return RMW_RET_OK;
 }

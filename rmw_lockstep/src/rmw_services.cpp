@@ -32,6 +32,7 @@ Handle * create(
   Handle * handle = named(allocate(), name);
   Lock lock;
   made->id = graph().new_id();
+  expect_end_point();
   handle->data = &graph().add(std::move(made));
   return handle;
 }
@@ -43,6 +44,7 @@ rmw_ret_t take_call(EndPoint & end_point, Callbacks callbacks, rmw_service_info_
   Message message;
   {
     Lock lock;
+    expect_callback();
     *taken = graph().take(end_point, message);
   }
   if (!*taken) return RMW_RET_OK;

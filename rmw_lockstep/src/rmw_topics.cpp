@@ -44,6 +44,7 @@ Handle * create(
   Lock lock;
   auto made = end_point_of(kind, node, type, topic, *qos);
   made->ignores_local = ignores_local(*options);
+  expect_end_point();
   handle->data = &graph().add(std::move(made));
   return handle;
 }
@@ -70,6 +71,7 @@ void describe(const Message & message, rmw_message_info_t & info) {
 
 bool take_message(const rmw_subscription_t * handle, Message & message, rmw_message_info_t * info) {
   Lock lock;
+  expect_callback();
   if (!graph().take(of(handle), message)) return false;
   if (info) describe(message, *info);
   return true;

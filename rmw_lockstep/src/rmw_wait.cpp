@@ -65,10 +65,7 @@ void keep_ready(size_t count, void ** items) {
 
 // Keeps what is ready, and sets everything else to null.
 void keep_what_is_ready(Waiter & waiter) {
-  if (auto guards = waiter.guards)
-    for (size_t i = 0; i < guards->guard_condition_count; ++i)
-      if (auto guard = static_cast<Guard *>(guards->guard_conditions[i]); guard && !std::exchange(guard->triggered, false))
-        guards->guard_conditions[i] = nullptr;
+  if (waiter.guards) keep_triggered(*waiter.guards);
   if (waiter.subscriptions) keep_ready(waiter.subscriptions->subscriber_count, waiter.subscriptions->subscribers);
   if (waiter.services) keep_ready(waiter.services->service_count, waiter.services->services);
   if (waiter.clients) keep_ready(waiter.clients->client_count, waiter.clients->clients);
@@ -84,6 +81,7 @@ bool wait_for(Waiter & waiter, const rmw_time_t * timeout) {
   auto & waiters = graph().waiters;
   waiters.push_back(&waiter);
   const int64_t deadline = deadline_of(timeout);
+  if (lockstep_virtual() && waiter.guards && wakes_only_itself(*waiter.guards) && !waiter.ready(false)) take_all(*waiter.guards);
   if (deadline > lockstep_now()) wait_until(waiter, deadline);
   else wait_as_poll(waiter);
   waiters.erase(std::find(waiters.begin(), waiters.end(), &waiter));
