@@ -2,6 +2,9 @@
 
 HOW is `--main` or `--class A [--class B …]`. `--main` calls the file's `main`, as the executable of an installed
 package does. `--class` spins Node classes that come without a main, all in one process.
+
+This file imports nothing of ROS before the code has run, since code that forgets an import must fail here as it does
+anywhere else.
 """
 
 from __future__ import annotations
@@ -13,9 +16,6 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
-
-import rclpy
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 
 
 def main() -> None:
@@ -45,9 +45,14 @@ def _call(start: Any) -> Any:
 
 def _spin(classes: Sequence[Any]) -> None:
     """Make a node of each class and spin them until Ctrl-C."""
+    import rclpy
+
     rclpy.init()
-    together = SingleThreadedExecutor()
     made = [make() for make in classes]
+
+    from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+
+    together = SingleThreadedExecutor()
     with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
         if all(together.add_node(one) for one in made):
             together.spin()

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from collections.abc import Callable
 
 import pytest
@@ -133,6 +135,31 @@ def test_a_class_without_a_main_is_spun(kernel: Kernel) -> None:
 
     assert "[INFO] [quiet]: here" in shown.text
     assert kernel.run("%stop quiet").text == "quiet stopped.\n"
+
+
+#: Prints which modules of ROS are there already.
+IMPORTED = """import sys
+print([name for name in sys.modules if re.match(r"rclpy|.*\\.(msg|srv|action)$", name)])
+"""
+
+
+def test_a_class_that_forgets_an_import_fails_as_in_a_new_python(kernel: Kernel) -> None:
+    code = f"import re\n{IMPORTED}import rclpy\nclass Quiet(rclpy.node.Node):\n    pass\n"
+
+    shown = kernel.run(f"%%node quiet --seconds 60 --class Quiet\n{code}")
+
+    file = kernel.folder / "robot_ws" / "src" / "robot" / "robot" / "quiet.py"
+    python = subprocess.run([sys.executable, str(file)], capture_output=True, text=True, check=False)
+    error = python.stderr.splitlines()[1:]
+    assert error[-1] == "AttributeError: module 'rclpy' has no attribute 'node'"
+    assert shown.text.splitlines()[0] == python.stdout.strip() == "[]"
+    assert shown.text.splitlines()[-len(error) :] == error
+
+
+def test_plain_cells_do_not_have_what_spinbook_imports(kernel: Kernel) -> None:
+    kernel.run("%nodes")
+
+    assert kernel.run(f"import re\n{IMPORTED}").text == "[]\n"
 
 
 @pytest.mark.parametrize("end", ["kill", "shut_down"])
