@@ -20,7 +20,8 @@ import warnings
 from pathlib import Path
 from typing import NoReturn
 
-from grader.sandbox import callers, filesystem, heap, middleware, preloaded, seccomp
+from grader import preloaded
+from grader.sandbox import callers, filesystem, heap, middleware, seccomp
 from grader.sandbox import middleware as type_support
 from grader.sandbox.middleware import choosable
 from grader.sandbox.program import START_REQUEST, Middleware, Paths, Program

@@ -106,9 +106,10 @@ def check_archive(exercises: Mapping[str, bytes]) -> bytes:
 
 
 def _used_outside_checks(grader: Path) -> dict[str, bytes]:
-    """Return the grader's files that plots, `ros2` and checks need: messages as fields, problems in files."""
+    """Return the grader's files that every process of a page may need: hidden modules, messages as fields, problems."""
     empty = {f"grader/{name}": b"" for name in ("__init__.py", "runner/__init__.py")}
-    return empty | {f"grader/{name}": (grader / name).read_bytes() for name in ("problem.py", "runner/message.py")}
+    used = ("preloaded.py", "problem.py", "runner/message.py")
+    return empty | {f"grader/{name}": (grader / name).read_bytes() for name in used}
 
 
 def _needed(name: str) -> bool:

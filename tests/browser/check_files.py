@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import Any
 
 import rcl_python
-from spinbook.browser.in_page import threads
+from spinbook.browser.in_page import program_imports, threads
 
 threads.replace_threading()
 rcl_python.install()
+program_imports.watch()
 
 from grader.exercise import load  # noqa: E402
 from grader.recording.recording import plain  # noqa: E402

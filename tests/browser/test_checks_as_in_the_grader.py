@@ -22,6 +22,33 @@ NEEDS_MORE = {
 }
 
 
+#: Uses messages without importing them when the grader has published some, and after programs that import them.
+FORGETFUL = """
+import rclpy
+import sensor_msgs
+from rclpy.node import Node
+from std_msgs.msg import Float64MultiArray
+
+
+class JointVelocity(Node):
+    def __init__(self):
+        super().__init__("joint_velocity")
+        self.publisher = self.create_publisher(Float64MultiArray, "/joint_velocities", 10)
+        self.ticks = 0
+        self.create_timer(0.1, self.tick)
+
+    def tick(self):
+        self.ticks += 1
+        self.publisher.publish(Float64MultiArray(data=[float(hasattr(sensor_msgs, "msg"))]))
+        if self.ticks == 5:
+            self.create_subscription(sensor_msgs.msg.JointState, "/joint_states", print, 10)
+
+
+rclpy.init()
+rclpy.spin(JointVelocity())
+"""
+
+
 def found(exercise: str, *names: str) -> dict[str, str]:
     """Return the comparison's result for each program."""
     command = [sys.executable, os.fspath(IN_BOTH), exercise, *names]
@@ -38,8 +65,12 @@ def differing(exercise: str, said: dict[str, str]) -> dict[str, str]:
     return {name: words for name, words in said.items() if words != "same" and name not in refused}
 
 
-def test_a_check_in_the_page_comes_to_the_same() -> None:
-    assert differing("joint_velocity", found("joint_velocity", *ALWAYS)) == {}
+def test_a_check_in_the_page_comes_to_the_same(tmp_path: Path) -> None:
+    forgetful = tmp_path / "forgetful.py"
+    forgetful.write_text(FORGETFUL, encoding="utf-8")
+    said = found("joint_velocity", *ALWAYS, str(forgetful))
+    assert len(said) == len(ALWAYS) + 1
+    assert differing("joint_velocity", said) == {}
 
 
 @pytest.mark.soak

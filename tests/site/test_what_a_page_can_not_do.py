@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import pytest
@@ -50,6 +51,13 @@ for thread in waiting:
 print('all threads went on')
 """
 
+#: The lines on which the program is to blame, and no others.
+FORGOT = re.compile(
+    r"Traceback \(most recent call last\):\s*"
+    r'File "talker\.py", line 3, in <module>\s*rclpy\.node\.Node\(\'talker\'\)[\s^]*'
+    r"AttributeError: module 'rclpy' has no attribute 'node'\s*"
+)
+
 
 @pytest.fixture(scope="module")
 def shown(browser: Browser, address: str) -> Iterator[Opened]:
@@ -79,6 +87,7 @@ SENTENCES = {
     "raise MemoryError": "This program needs more memory than a web page has.",
     "from time import sleep\nsleep(0.01)\nprint('slept')": "slept",
     "import threading\nprint(threading.Event().wait(0.01))": "False",
+    "import rclpy\nrclpy.node": "AttributeError: module 'rclpy' has no attribute 'node'",
 }
 
 
@@ -86,6 +95,12 @@ def test_a_program_that_needs_more_than_a_page_has_is_reported(shown: Opened) ->
     cell = shown.page.locator(".cell-snippet").first
     for code, sentence in SENTENCES.items():
         expect(run(cell, code)).to_contain_text(sentence, timeout=DEADLINE_MS)
+    assert shown.faults == []
+
+
+def test_a_node_that_forgets_an_import_fails_as_in_a_new_python(shown: Opened) -> None:
+    output = run(shown.page.locator(".cell-node").first, "import rclpy\nrclpy.init()\nrclpy.node.Node('talker')")
+    expect(output).to_have_text(FORGOT, timeout=DEADLINE_MS)
     assert shown.faults == []
 
 

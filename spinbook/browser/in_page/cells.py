@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from spinbook.browser.in_page import program_imports
 from spinbook.browser.in_page.process import status_of
 
 _variables: dict[str, Any] = {"__name__": "__main__"}
@@ -20,7 +21,8 @@ _variables: dict[str, Any] = {"__name__": "__main__"}
 
 def run_python(source: str) -> int:
     """Run a plain cell and show the value of its last expression, as a notebook does; return 0 if it succeeded."""
-    return status_of(lambda: _run(source))
+    with program_imports.programs_turn():
+        return status_of(lambda: _run(source))
 
 
 def _run(source: str) -> None:

@@ -14,7 +14,7 @@ from rmw_lockstep.hub.frames import Hello, Idle
 from rmw_lockstep.hub.limits import Use
 from rmw_lockstep.hub.link import Link
 from rmw_lockstep.hub.router import Router
-from spinbook.browser.in_page import threads
+from spinbook.browser.in_page import program_imports, threads
 
 #: The number of the program among the processes of its run.
 PROGRAM = 1
@@ -49,8 +49,10 @@ class Turns:
     def let_program_go_on(self) -> None:
         """Wait, on the hub's side, until the program is idle or has ended. Raises the `fault` kept meanwhile."""
         if not self.has_ended:
+            program_imports.turn_to_program()
             self._program.release()
             self._hub.acquire()
+            program_imports.turn_to_page()
         fault, self.fault = self.fault, None
         if fault is not None:
             raise fault

@@ -13,9 +13,10 @@ import types
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import grader
 import rcl_python
 from rcl_python import abort, logs, participant
-from spinbook.browser.in_page import threads
+from spinbook.browser.in_page import program_imports, threads
 from spinbook.browser.in_page.link import PageLink
 
 _FAILED, _INTERRUPTED = 1, 130
@@ -39,6 +40,7 @@ def open_process(page: Any, identity: str) -> None:
     # A pool of one thread would be none; how many there are is not the page's to know.
     os.cpu_count = lambda: _PROCESSORS
     rcl_python.install()
+    program_imports.watch()
     builtins.input = _refuse_input
 
 
@@ -51,10 +53,15 @@ def _refuse_input(prompt: object = "") -> str:
 
 
 def import_rclpy() -> None:
-    """Import what nearly every program imports, so that the first one starts at once."""
+    """Import what nearly every program imports, so that it starts at once."""
     import rclpy.executors
     import rclpy.node
     import rclpy.qos  # noqa: F401
+
+
+def find_grader_in(archive: str) -> None:
+    """Let Python find the grader in this archive, where it is complete, and no longer in that of every process."""
+    grader.__path__[:] = [f"{archive}/grader"]
 
 
 def run_program(source: str, file: str, args: Sequence[str], environment: Mapping[str, str]) -> int:
@@ -66,6 +73,7 @@ def run_program(source: str, file: str, args: Sequence[str], environment: Mappin
     sys.argv = [file, *args]
     # Tracebacks show lines of the program, which is not in a file.
     linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
+    program_imports.begin_program()
     return status_of(lambda: _to_its_end(source, file, main))
 
 

@@ -21,7 +21,7 @@ from rcl_python.link import Frame
 from rmw_lockstep.hub import EPOCH, frames
 from rmw_lockstep.hub.hashes import NO_HASH
 from rmw_lockstep.hub.qos import AUTOMATIC, INFINITE, Qos
-from spinbook.browser.in_page import threads
+from spinbook.browser.in_page import program_imports, threads
 from spinbook.browser.in_page.hub import PROGRAM, Over, PageHub, Turns
 from spinbook.browser.in_page.scheduler import Scheduler
 
@@ -74,12 +74,20 @@ class ProgramLink:
         self._activity += 1
         for kind, payload in _encoded(frame, data, (self._connection.handled, self._now, thread)):
             try:
-                self._hub.router.handle(self._connection, ord(kind), payload)
+                self._handle(kind, payload)
             except Exception as fault:
                 # The hub's thread raises it, and the program stops here.
                 self._turns.fault = fault
                 self._turns.let_hub_go_on()
                 self.heed()
+
+    def _handle(self, kind: str, payload: bytes) -> None:
+        """Let the hub handle a frame, which may be a request to one of the grader's own servers."""
+        program_imports.turn_to_page()
+        try:
+            self._hub.router.handle(self._connection, ord(kind), payload)
+        finally:
+            program_imports.turn_to_program()
 
     def _in_order(self, frame: Frame) -> bool:
         """Whether to tell the hub. Garbage has no order, but end points leave before their node, and only once."""

@@ -28,7 +28,7 @@ from grader.runner.student import Task
 from grader.scenario.command_line import arguments
 from grader.scenario.scenario import Scenario
 from rcl_python import abort, logs
-from spinbook.browser.in_page import threads
+from spinbook.browser.in_page import program_imports, threads
 from spinbook.browser.in_page.hub import Over, PageHub, Turns
 from spinbook.browser.in_page.program_link import ProgramLink, join
 
@@ -130,6 +130,7 @@ def run(exercise: Exercise, scenario: Scenario, program: Program) -> Recording:
     with _as_main(program, scenario, log, link):
         link.run(lambda: _main(program, student, log))
     over.acquire()
+    program_imports.show_all()
     if isinstance(found[0], BaseException):
         raise found[0]
     return found[0]
@@ -137,6 +138,7 @@ def run(exercise: Exercise, scenario: Scenario, program: Program) -> Recording:
 
 def _main(program: Program, student: PageStudent, log: io.StringIO) -> None:
     """Run the program as Python runs a script, up to its exit status."""
+    program_imports.begin_program()
     try:
         try:
             exec(compile(program.source, program.file, "exec"), sys.modules["__main__"].__dict__)

@@ -131,8 +131,8 @@ const does = {
     return py.pyimport("spinbook.browser.in_page.turtle").show.callPromising(page);
   },
   check: async ({ exercise, source }) => {
-    const { py } = await ready;
-    if (!py.checks) py.checks = archive(py, "check.zip", "checks");
+    const { py, process } = await ready;
+    py.checks ??= archive(py, "check.zip", "checks").then(() => process.find_grader_in("/check.zip"));
     await Promise.all([py.checks, shares(py)]);
     const result = await py.pyimport("spinbook.browser.in_page.check").check.callPromising(exercise, source);
     return JSON.parse(result);
