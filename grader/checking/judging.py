@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.checking.plugin import Checks, fixtures_of
+from grader.checking.plugin import Checks, ReportsWithoutTracebacks, fixtures_of
 from grader.checking.run import Run
 from grader.checking.verdict import Finding, Verdict
 from grader.exercise.exercise import Exercise, ExerciseError
@@ -57,7 +57,7 @@ def run_pytest(exercise: Exercise, runs: Mapping[str, Run | None], checks: Check
         exercise.folder,
         *("--import-mode=importlib", "-o", "python_files=*.py", "--capture=fd"),
         *(str(file) for file in exercise.check_files),
-        plugins=[checks, fixtures_of(runs)],
+        plugins=[ReportsWithoutTracebacks(), checks, fixtures_of(runs)],
     )
     if checks.problem:
         raise checks.problem
