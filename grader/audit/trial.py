@@ -139,7 +139,7 @@ class Trials:
         """The verdicts on these recordings, by check."""
         runner = self.grading.runner
         titles = {scenario.name: scenario.title for scenario in runner.scenarios}
-        verdicts: tuple[Verdict, ...] = runner.workers.do(JudgeJob(runner.exercise, recordings, references, titles))
+        verdicts = runner.workers.judge(JudgeJob(runner.exercise, recordings, references, titles))
         return {verdict.name: verdict for verdict in verdicts}
 
     def trial_of_recordings(self, recordings: dict[str, Recording]) -> Trial:

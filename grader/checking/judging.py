@@ -9,7 +9,7 @@ import os
 import re
 import sys
 import tempfile
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -30,8 +30,26 @@ def judge(
     `recordings` are the student's and `references` the solution's, by scenario. Raises `ExerciseError` if the files of
     checks are unusable. Runs pytest in this process, without the plugins that are installed on this machine.
     """
-    runs = {name: Run(exercise, recordings[name], references[name], titles.get(name, "")) for name in recordings}
-    checks = Checks()
+    runs = runs_of(exercise, recordings, references, titles)
+    return judge_when_collected(exercise, runs, lambda: runs)
+
+
+def runs_of(
+    exercise: Exercise, recordings: dict[str, Recording], references: dict[str, Recording], titles: dict[str, str]
+) -> dict[str, Run]:
+    """What a check sees of each scenario."""
+    return {name: Run(exercise, recordings[name], references[name], titles.get(name, "")) for name in recordings}
+
+
+def judge_when_collected(
+    exercise: Exercise, scenarios: Iterable[str], given: Callable[[], Mapping[str, Run]]
+) -> tuple[Verdict, ...]:
+    """The same as `judge`, on what `given` returns for these scenarios.
+
+    It is called once all checks are collected. Each process that it forks may return other runs, for its own verdicts.
+    """
+    runs: dict[str, Run | None] = dict.fromkeys(scenarios)
+    checks = Checks(before_the_first=lambda: runs.update(given()))
     run_pytest(exercise, runs, checks)
     topics = [topic.name for topic in exercise.topics]
     node = f"/{exercise.node_name}"

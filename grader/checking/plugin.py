@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import traceback
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Literal
@@ -17,15 +17,16 @@ from grader.exercise.exercise import ExerciseError
 
 
 def fixtures_of(runs: Mapping[str, Run | None]) -> ModuleType:
-    """A module with one fixture for each scenario, by its name."""
+    """A module with one fixture for each scenario, by its name, which gives what `runs` has when a check asks."""
     module = ModuleType("scenarios")
-    for name, run in runs.items():
-        setattr(module, name, pytest.fixture(name=name)(_giving(run)))
+    for name in runs:
+        setattr(module, name, pytest.fixture(name=name)(_giving(runs, name)))
     return module
 
 
-def _giving(run: Run | None) -> Any:
+def _giving(runs: Mapping[str, Run | None], name: str) -> Any:
     def scenario() -> Run:
+        run = runs[name]
         assert run, "checks that are only listed are not run"
         if run.ending.outcome != "completed":
             raise Wrong(Finding(f"{run.ending.message} ({run.title})", run.scenario))
@@ -48,11 +49,13 @@ class ReportsWithoutTracebacks:
 
 class Checks:
     """Collects an exercise's checks and keeps their verdicts. If `run` is False, none is run and each counts as
-    blocked. `fixtures` are the names that each check uses, directly or by another fixture.
+    blocked. `before_the_first` is called between collecting and running them. `fixtures` are the names that each check
+    uses, directly or by another fixture.
     """
 
-    def __init__(self, run: bool = True) -> None:
+    def __init__(self, run: bool = True, before_the_first: Callable[[], None] = lambda: None) -> None:
         self._run = run
+        self._before_the_first = before_the_first
         self.fixtures: dict[str, tuple[str, ...]] = {}
         self.scenarios: tuple[str, ...] = ()
         """The known scenarios; empty if they do not matter."""
@@ -107,6 +110,12 @@ class Checks:
             text = (str(error).strip().splitlines() or [""])[0]
             found = f"it can't be read: {type(error).__name__}: {text}"
             self.problem = ExerciseError(node.path, found, "It must import.", _line(error, node.path))
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtestloop(self, session: pytest.Session) -> None:
+        """Say that the checks are collected, if they can be run; pytest's own implementation runs them."""
+        if session.items and not session.testsfailed:
+            self._before_the_first()
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:

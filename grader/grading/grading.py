@@ -48,7 +48,7 @@ class Grading:
         titles = {scenario.name: scenario.title for scenario in self.runner.scenarios}
         job = JudgeJob(self.runner.exercise, recordings, self.references, titles)
         try:
-            verdicts: tuple[Verdict, ...] = self.runner.workers.do(job)
+            verdicts = self.runner.workers.judge(job)
         except HostFault as fault:
             text = str(fault).strip().splitlines()[-1]
             return self._grade(submission, {}, (), "host-error", f"This is not your fault: {text}", began)

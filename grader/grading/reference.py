@@ -11,7 +11,6 @@ from functools import cache
 from importlib import metadata
 from pathlib import Path
 
-from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.starter import MarkerError, starter
 from grader.files import cached, write_if_changed
@@ -138,7 +137,7 @@ def _prove(runner: ScenarioRunner, recordings: dict[str, Recording]) -> None:
 
     exercise = runner.exercise
     titles = {scenario.name: scenario.title for scenario in runner.scenarios}
-    verdicts: tuple[Verdict, ...] = runner.workers.do(JudgeJob(exercise, recordings, recordings, titles))
+    verdicts = runner.workers.judge(JudgeJob(exercise, recordings, recordings, titles))
     for verdict in verdicts:
         file = exercise.folder / ("hidden_checks.py" if verdict.hidden else "checks.py")
         line = line_with(file, rf"def {re.escape(verdict.name)}\b")

@@ -20,6 +20,7 @@ from grader.sandbox.program import Limits, Middleware, Program
 from grader.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
+    from grader.checking.run import Run
     from grader.sandbox.fork_server import (
         ForkServer,  # the worker hands it in
         Student,
@@ -129,6 +130,12 @@ class JudgeJob:
 
         ready()
         return judge(self.exercise, self.recordings, self.references, self.titles)
+
+    def runs(self) -> dict[str, Run]:
+        """Return what is judged, for a process that has collected the checks."""
+        from grader.checking.judging import runs_of
+
+        return runs_of(self.exercise, self.recordings, self.references, self.titles)
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -19,7 +20,8 @@ from grader.sandbox.program import Middleware
 from grader.workers.shared import SharedObjects
 
 if TYPE_CHECKING:
-    from grader.workers.jobs import Job
+    from grader.checking.verdict import Verdict
+    from grader.workers.jobs import Job, JudgeJob
 
     Connection: TypeAlias = multiprocessing.connection.Connection[Any, Any]
 
@@ -129,7 +131,7 @@ STUDENT_ENVIRONMENT = {
 }
 
 
-PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, SHARE = b"p", b"t", b"j", b"s"
+PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, SHARE, JUDGE = b"p", b"t", b"j", b"s", b"c"
 
 
 class WorkerPool:
@@ -170,6 +172,14 @@ class WorkerPool:
         with self.reserve() as worker:
             return worker.do(job, cancelled)
 
+    def judge(self, job: JudgeJob) -> tuple[Verdict, ...]:
+        """Do the same with a judging. If the exercise is shared, its checks are collected once for all judgings."""
+        collected = self._shared.to_collect(job.exercise, job.recordings)
+        command = PROCESS if collected is None else JUDGE + collected
+        with Worker(partial(self._process, command), self._shared) as worker:
+            verdicts: tuple[Verdict, ...] = worker.do(job)
+            return verdicts
+
     def reserve(self) -> Worker:
         """A process that does one job after another."""
         return Worker(self._process, self._shared)
@@ -201,11 +211,11 @@ class WorkerPool:
         with self._lock, contextlib.suppress(OSError):  # a worker that died is restarted with the next job
             self._control.send(command)
 
-    def _process(self) -> Connection:
+    def _process(self, command: bytes = PROCESS) -> Connection:
         """Return a connection to a new process that does jobs. Raises OSError if none can be had."""
         ours, theirs = socket.socketpair()
         try:
-            self._hand_over(theirs.fileno())
+            self._hand_over(command, theirs.fileno())
         except OSError:
             ours.close()
             raise
@@ -213,11 +223,11 @@ class WorkerPool:
             theirs.close()
         return multiprocessing.connection.Connection(ours.detach())
 
-    def _hand_over(self, descriptor: int) -> None:
+    def _hand_over(self, command: bytes, descriptor: int) -> None:
         """Request one more process from the worker; if it has died, for example for lack of memory, start another."""
         with self._lock:
             try:
-                socket.send_fds(self._control, [PROCESS], [descriptor])
+                socket.send_fds(self._control, [command], [descriptor])
             except OSError:
                 if self._closed:
                     raise
@@ -225,7 +235,7 @@ class WorkerPool:
                 self._worker.kill()
                 self._worker.wait()
                 self._start()
-                socket.send_fds(self._control, [PROCESS], [descriptor])
+                socket.send_fds(self._control, [command], [descriptor])
 
     def close(self) -> None:
         """End the worker, and with it every job and every student's program."""

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import contextlib
 import io
+import json
 import pickle
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from grader.exercise.exercise import Exercise
 
 
 @dataclass(frozen=True)
@@ -40,6 +44,11 @@ class SharedObjects:
         self._numbers |= {id(one): first + i for i, one in enumerate(new)}
         return pickle.dumps((first, new))
 
+    def to_collect(self, exercise: Exercise, scenarios: Iterable[str]) -> bytes | None:
+        """What a process needs to know to collect the checks of an exercise; None if the exercise is not shared."""
+        number = self._numbers.get(id(exercise))
+        return None if number is None else json.dumps([number, *scenarios]).encode()
+
     def pickled(self, job: Any, known: int) -> bytes:
         """`job` for a process that has the first `known` objects."""
         stream = io.BytesIO()
@@ -66,6 +75,12 @@ _objects: dict[int, Any] = {}
 def shared_object(number: int) -> Any:
     """The object of this number."""
     return _objects[number]
+
+
+def what_to_collect(content: bytes) -> tuple[Exercise, list[str]]:
+    """The exercise, and the names of the scenarios, from `SharedObjects.to_collect`."""
+    number, *scenarios = json.loads(content)
+    return shared_object(number), scenarios
 
 
 def receive(content: bytes) -> None:

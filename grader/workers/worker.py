@@ -22,7 +22,8 @@ from grader.sandbox import filesystem, middleware
 from grader.sandbox.fork_server import ForkServer
 from grader.sandbox.program import Middleware
 from grader.sandbox.zygote import fork
-from grader.workers.pool import PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, PROFILE, SHARE
+from grader.workers.judges import Judges
+from grader.workers.pool import JUDGE, PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, PROFILE, SHARE
 from grader.workers.shared import receive
 
 if TYPE_CHECKING:
@@ -52,8 +53,8 @@ def take_shared(descriptor: int) -> None:
     _share()
 
 
-#: In bytes. The longest is the name of a module.
-LONGEST_COMMAND = 1024
+#: In bytes. The longest holds the names of all scenarios.
+LONGEST_COMMAND = 65536
 
 
 @functools.cache
@@ -80,6 +81,7 @@ def main() -> None:
     with ForkServer([Middleware(name) for name in sys.argv[2:]]) as fork_server:
         preload()
         working: set[int] = set()
+        judges = Judges(working)
         while True:
             command, descriptors, _, _ = socket.recv_fds(control, LONGEST_COMMAND, 1)
             _reap(working)
@@ -93,10 +95,15 @@ def main() -> None:
                 preload_types(module)
             elif command == SHARE:
                 take_shared(descriptors[0])
+                judges.close()  # they don't have it
+            elif command.startswith(JUDGE):
+                judges.request(command.removeprefix(JUDGE), descriptors[0], control)
+                os.close(descriptors[0])
             elif command == PROCESS:
                 pid = fork()
                 if pid == 0:
                     control.close()
+                    judges.close()
                     _work(descriptors[0], fork_server)
                 os.close(descriptors[0])
                 working.add(pid)

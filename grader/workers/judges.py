@@ -1,0 +1,137 @@
+"""The processes that judge: one collects an exercise's checks, and each judging is a fork of it from there on."""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import multiprocessing.connection
+import os
+import signal
+import socket
+import threading
+import traceback
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, NoReturn
+
+from grader.exercise.exercise import ExerciseError
+from grader.sandbox.zygote import fork
+from grader.workers.shared import what_to_collect
+
+if TYPE_CHECKING:
+    from grader.checking.run import Run
+    from grader.workers.jobs import JudgeJob
+    from grader.workers.pool import Connection
+
+_REQUEST = b"j"
+
+
+class Judges:
+    """The worker's side. A process is started when it is first needed, and again if it has died."""
+
+    def __init__(self, working: set[int]) -> None:
+        """`working` are the worker's processes, which this adds to."""
+        self._working = working
+        self._requests: dict[bytes, socket.socket] = {}
+
+    def request(self, collected: bytes, descriptor: int, control: socket.socket) -> None:
+        """Have one judging done for the other end of the socket `descriptor`.
+
+        Args:
+            collected: what `SharedObjects.to_collect` returned.
+            descriptor: the socket from which the `JudgeJob` comes, and to which its result goes.
+            control: what only the worker may hold.
+        """
+        for _ in range(2):
+            requests = self._requests.get(collected) or self._start(collected, descriptor, control)
+            try:
+                socket.send_fds(requests, [_REQUEST], [descriptor])
+                return
+            except OSError:
+                self._requests.pop(collected).close()
+
+    def _start(self, collected: bytes, descriptor: int, control: socket.socket) -> socket.socket:
+        ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        pid = fork()
+        if pid == 0:
+            control.close()
+            ours.close()
+            os.close(descriptor)
+            self.close()
+            _judge(theirs, collected)
+        theirs.close()
+        self._working.add(pid)
+        self._requests[collected] = ours
+        return ours
+
+    def close(self) -> None:
+        """Let each process end once it has forked for the requests that it already has."""
+        for requests in self._requests.values():
+            requests.close()
+        self._requests.clear()
+
+
+# --- in the process that collects the checks, and in its forks
+
+
+def _judge(requests: socket.socket, collected: bytes) -> NoReturn:
+    from grader.checking.judging import judge_when_collected
+
+    exercise, scenarios = what_to_collect(collected)
+    judging = _Judging(requests)
+    try:
+        answer: tuple[str, object] = "result", judge_when_collected(exercise, scenarios, judging.runs)
+    except ExerciseError as error:
+        answer = "author", error
+    except BaseException:
+        answer = "host", traceback.format_exc()
+    judging.end(answer)
+
+
+class _Judging:
+    """One judging, which begins with the fork of this process."""
+
+    def __init__(self, requests: socket.socket) -> None:
+        self._requests = requests
+        self._connection: Connection | None = None
+
+    def runs(self) -> Mapping[str, Run]:
+        """Wait for requests, and return, in a fork for each, what is to be judged."""
+        connection = self._fork_for_each()
+        try:
+            job: JudgeJob = connection.recv()
+        except (EOFError, OSError):
+            os._exit(1)
+        except Exception:
+            self.end(("host", traceback.format_exc()))
+        threading.Thread(target=_end_with, args=(connection,), daemon=True).start()
+        return job.runs()
+
+    def end(self, answer: tuple[str, object]) -> NoReturn:
+        """Answer and exit. Without a request so far it is the answer to each: the checks can't be used."""
+        connection = self._connection or self._fork_for_each()
+        with contextlib.suppress(OSError):
+            connection.send(answer)
+        os._exit(0)
+
+    def _fork_for_each(self) -> Connection:
+        gc.collect()  # later, in each fork, it would be copied there
+        gc.freeze()
+        signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # forks need no reaping
+        while True:
+            message, descriptors, _, _ = socket.recv_fds(self._requests, len(_REQUEST), 1)
+            if not message:
+                os._exit(0)
+            if fork() == 0:
+                break
+            os.close(descriptors[0])
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        self._requests.close()
+        self._connection = multiprocessing.connection.Connection(descriptors[0])
+        return self._connection
+
+
+def _end_with(connection: Connection) -> None:
+    """End this process when nobody waits for its answer any more."""
+    with contextlib.suppress(EOFError, OSError):
+        connection.recv()
+    os._exit(1)

@@ -1,0 +1,166 @@
+"""The processes that judge: what they share, and what they do not."""
+
+from __future__ import annotations
+
+import shutil
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import psutil
+import pytest
+from small_class import ROOT, wait_until
+
+from grader.checking.verdict import Verdict
+from grader.exercise import Exercise, ExerciseError, load
+from grader.recording.recording import Ending, Recording
+from grader.workers import WorkerPool
+from grader.workers.jobs import JudgeJob
+
+BEGINNING = "from grader.checking import Run, check\nFILE = {file!r}\n"
+
+CHECK = '''
+with open(FILE, "a") as stream:
+    print("imported", file=stream)
+SEEN = []
+
+@check(points=1, hint="None.")
+def test_once(first: Run) -> None:
+    """It is new."""
+    SEEN.append(first)
+    assert len(SEEN) == 1, "something is left of another judging"
+    assert first.recording.log == "right", f"it is {first.recording.log}"
+'''
+
+
+@pytest.fixture
+def exercise(tmp_path: Path) -> Exercise:
+    """An exercise whose only check passes with the log `right`; it writes down when it is imported."""
+    folder = tmp_path / "exercises" / "small"
+    shutil.copytree(ROOT / "exercises" / "joint_velocity", folder)
+    (folder / "hidden_checks.py").unlink()
+    write(folder, CHECK)
+    return load(folder)
+
+
+def write(folder: Path, checks: str) -> None:
+    (folder / "checks.py").write_text(BEGINNING.format(file=str(folder / "imports.txt")) + checks)
+
+
+def recording(log: str, scenario: str = "first") -> dict[str, Recording]:
+    return {scenario: Recording(scenario, (), (), (), (), "none", True, Ending("completed", ""), log=log)}
+
+
+def job_of(exercise: Exercise, log: str = "right") -> JudgeJob:
+    return JudgeJob(exercise, recording(log), recording("right"), {})
+
+
+def imports(exercise: Exercise) -> int:
+    return len((exercise.folder / "imports.txt").read_text().splitlines())
+
+
+def judged(workers: WorkerPool, job: JudgeJob) -> Verdict:
+    [verdict] = workers.judge(job)
+    return verdict
+
+
+def test_checks_are_imported_once_and_each_judging_finds_them_new(exercise: Exercise) -> None:
+    with WorkerPool() as workers:
+        workers.share([exercise])
+        first = [judged(workers, job_of(exercise)) for _ in range(3)]
+    assert [verdict.status for verdict in first] == ["passed"] * 3
+    assert imports(exercise) == 1
+
+
+def test_judgings_at_the_same_time_do_not_mix(exercise: Exercise) -> None:
+    logs = [f"log {i}" for i in range(12)]
+    with WorkerPool() as workers, ThreadPoolExecutor(4) as pool:
+        workers.share([exercise])
+        verdicts = list(pool.map(lambda log: judged(workers, job_of(exercise, log)), logs))
+    assert [verdict.finding and verdict.finding.text.splitlines()[0] for verdict in verdicts] == [
+        f"it is {log}" for log in logs
+    ]
+
+
+def test_an_exercise_that_is_not_shared_is_judged_as_well(exercise: Exercise) -> None:
+    with WorkerPool() as workers:
+        verdicts = [judged(workers, job_of(exercise)) for _ in range(2)]
+    assert [verdict.status for verdict in verdicts] == ["passed"] * 2
+
+
+def test_recordings_that_are_shared_later_are_judged(exercise: Exercise) -> None:
+    with WorkerPool() as workers:
+        workers.share([exercise])
+        judged(workers, job_of(exercise))
+        job = job_of(exercise, "shared later")
+        workers.share([*job.recordings.values(), *job.references.values()])
+        verdict = judged(workers, job)
+    assert verdict.finding is not None
+    assert "shared later" in verdict.finding.text
+
+
+@pytest.mark.parametrize("checks", ["import no_such_module\n", "", "def test_plain(first): pass\n"])
+def test_checks_that_cannot_be_used_are_the_authors_fault_in_each_judging(exercise: Exercise, checks: str) -> None:
+    write(exercise.folder, checks)
+    with WorkerPool() as workers:
+        workers.share([exercise])
+        for _ in range(2):
+            with pytest.raises(ExerciseError, match=r"checks\.py"):
+                workers.judge(job_of(exercise))
+
+
+def test_a_scenario_that_did_not_exist_before_is_found(exercise: Exercise) -> None:
+    with WorkerPool() as workers:
+        workers.share([exercise])
+        judged(workers, job_of(exercise))
+        job = job_of(exercise)
+        more = recording("right", "second")
+        both = JudgeJob(exercise, job.recordings | more, job.references | more, {})
+        assert judged(workers, both).status == "passed"
+
+
+def processes_of(pool: psutil.Process) -> list[psutil.Process]:
+    return [one for one in pool.children() if "grader.workers.worker" in " ".join(one.cmdline())]
+
+
+def test_a_process_that_has_died_is_replaced_and_all_end_with_the_pool(exercise: Exercise) -> None:
+    others = set(psutil.Process().children())
+    with WorkerPool() as workers:
+        workers.share([exercise])
+        judged(workers, job_of(exercise))
+        [worker] = set(psutil.Process().children()) - others
+        [collected] = processes_of(worker)
+        collected.kill()
+        wait_until(lambda: collected.status() == psutil.STATUS_ZOMBIE)
+        assert judged(workers, job_of(exercise)).status == "passed"
+        left = [one for one in processes_of(worker) if one != collected]
+        assert left
+    assert not any(one.is_running() for one in left)
+    assert imports(exercise) == 2
+
+
+def test_checks_may_use_what_pytest_offers(exercise: Exercise) -> None:
+    text = '''
+import logging, warnings
+import pytest
+
+@pytest.fixture
+def twice(first: Run) -> str:
+    return 2 * first.recording.log
+
+@check(points=1, hint="None.")
+@pytest.mark.parametrize("times", [1])
+def test_fixtures(twice, times, tmp_path, monkeypatch, capfd, caplog) -> None:
+    """It works."""
+    (tmp_path / "file").write_text(twice)
+    monkeypatch.setenv("SOMETHING", "1")
+    print("printed")
+    logging.warning("logged")
+    warnings.warn("warned")
+    assert capfd.readouterr().out == "printed\\n"
+    assert caplog.messages == ["logged"]
+'''
+    write(exercise.folder, text)
+    with WorkerPool() as workers:
+        workers.share([exercise])
+        verdicts = [judged(workers, job_of(exercise)) for _ in range(2)]
+    assert [verdict.status for verdict in verdicts] == ["passed"] * 2
