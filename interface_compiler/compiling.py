@@ -113,22 +113,25 @@ def compile_package(generated: Generated, work: Path, dependencies: Sequence[Dep
 def _units(generated: Generated, work: Path) -> list[Path]:
     """Return the compiler's inputs: as few as possible, as most of its time is spent on reading headers."""
     c, introspection = generated.c / generated.package, generated.introspection / generated.package
-    units = []
-    for kind in ("msg", "srv", "action"):
-        detail = c / kind / "detail"
-        cpp = [*sorted(detail.glob("*.cpp")), *sorted((c / kind).glob("*__type_support.cpp"))]
-        plain = [*sorted(detail.glob("*__functions.c")), *sorted(detail.glob("*__type_support.c"))]
-        units += _joined(work / f"{kind}_fastrtps.cpp", cpp)
-        units += _joined(work / f"{kind}_introspection.c", sorted((introspection / kind / "detail").glob("*.c")))
-        units += _joined(work / f"{kind}_functions.c", plain)
-        # These define the same static names and can't be joined.
-        units += sorted(detail.glob("*__description.c"))
+    kinds = ("msg", "srv", "action")
+    details = [c / kind / "detail" for kind in kinds]
+    cpp = [*_each(details, "*.cpp"), *_each([c / kind for kind in kinds], "*__type_support.cpp")]
     for source in _python_sources(generated):
         _limit(source)
-    units += _joined(work / _PYTHON_UNIT, _python_sources(generated))
     dispatch = work / "dispatch.cpp"
     dispatch.write_text(_dispatch(c), encoding="utf-8")
-    return [*units, dispatch]
+    return [
+        *_joined(work / "fastrtps.cpp", [*cpp, dispatch]),
+        *_joined(work / _PYTHON_UNIT, _python_sources(generated)),
+        *_joined(work / "functions.c", [*_each(details, "*__functions.c"), *_each(details, "*__type_support.c")]),
+        *_joined(work / "introspection.c", _each([introspection / kind / "detail" for kind in kinds], "*.c")),
+        # These define the same static names and can't be joined.
+        *_each(details, "*__description.c"),
+    ]
+
+
+def _each(folders: Iterable[Path], pattern: str) -> list[Path]:
+    return [source for folder in folders for source in sorted(folder.glob(pattern))]
 
 
 def _joined(unit: Path, sources: Sequence[Path]) -> list[Path]:

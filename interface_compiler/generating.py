@@ -63,6 +63,7 @@ def generate(sources: Sources, work: Path, python: Path, templates: Path) -> Gen
     for folder in (generated.c / sources.package, generated.introspection / sources.package, python):
         folder.mkdir(parents=True, exist_ok=True)
     _read_each_idl_once()
+    _search_each_template_once()
     # The generators print what they write.
     with contextlib.redirect_stdout(io.StringIO()):
         _write_idl(sources)
@@ -171,3 +172,31 @@ def _read_each_idl_once() -> None:
     ]
     for module in modules:
         module.parse_idl_file = parse_idl_file  # type: ignore[attr-defined]
+
+
+@functools.cache
+def _search_each_template_once() -> None:
+    """Let the template engine remember where expressions end: it searches a template again for each message."""
+    import em
+
+    for name in ("complex", "next"):
+        setattr(em.Scanner, name, _remembered(getattr(em.Scanner, name), (em.ParseError, em.TransientParseError)))
+
+
+def _remembered(search: Callable[..., int], failures: tuple[type[Exception], ...]) -> Callable[..., int]:
+    """Remember what a search found, or how it failed, by the text, the position in it, and the arguments."""
+    found: dict[tuple[object, ...], int | Exception] = {}
+
+    def remembered(scanner: Any, *words: object) -> int:
+        key = (scanner.buffer, scanner.head + scanner.pointer, *words)
+        if key not in found:
+            try:
+                found[key] = search(scanner, *words)
+            except failures as failure:
+                found[key] = failure
+        result = found[key]
+        if isinstance(result, Exception):
+            raise result.with_traceback(None)
+        return result
+
+    return remembered
