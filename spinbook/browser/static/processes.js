@@ -11,6 +11,8 @@ export const changes = new EventTarget();
 const base = new URL("./", import.meta.url);
 const all = new Map();
 let count = 0;
+// What the first process has compiled, so that the others start sooner.
+let compiled = null;
 
 export const running = () => [...all.values()].filter((process) => process.running);
 export const working = () => [...all.values()].filter((process) => process.task);
@@ -44,7 +46,7 @@ export class Process {
     this.worker.onmessage = ({ data }) => this.#heard(data);
     this.worker.onerror = (event) => this.#broke(event.message || "The browser could not start it.");
     all.set(this.identity, this);
-    this.ready = this.call("start", { identity: this.identity });
+    this.ready = this.call("start", { identity: this.identity, compiled });
     this.ready.catch(() => this.end());
   }
 
@@ -61,6 +63,7 @@ export class Process {
     else if (message.op === "output") this.hears.output?.(message.text, message.stream);
     else if (message.op === "picture") this.hears.picture?.(message.text);
     else if (message.op === "progress") this.hears.progress?.(message.part);
+    else if (message.op === "compiled") compiled = message.code;
     else if (message.op === "here") this.#listens();
     else if (message.op === "done") {
       const { resolve, reject } = this.calls.get(message.id);

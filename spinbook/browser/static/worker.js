@@ -57,7 +57,8 @@ const lacking = new Promise((resolve, reject) => {
   }
 });
 
-async function start(identity) {
+// `known` is what an earlier process of the page has compiled.
+async function start(identity, known) {
   self.postMessage({ op: "progress", part: "Python" });
   const loading = loadPyodide({
     indexURL: new URL("./", import.meta.url).href,
@@ -66,17 +67,21 @@ async function start(identity) {
   });
   const py = await Promise.race([loading, lacking]);
   await archive(py, "ros.zip", "ROS 2");
+  const compiled = py.pyimport("spinbook.browser.in_page.compiled");
+  if (known) compiled.use(py.toPy(known));
+  else compiled.keep();
   const process = py.pyimport("spinbook.browser.in_page.process");
   process.open_process(page, identity);
   process.import_rclpy();
+  if (!known) self.postMessage({ op: "compiled", code: compiled.kept().toJs() });
   return { py, process };
 }
 
 let ready = null;
 
 const does = {
-  start: ({ identity }) => {
-    ready = start(identity);
+  start: ({ identity, compiled }) => {
+    ready = start(identity, compiled);
     return ready.then(() => null);
   },
   program: async ({ source, file, args, environment, files }) => {
