@@ -16,6 +16,7 @@ import pytest
 from latex2mathml.converter import convert
 from small_course import ROOT, SmallCourse
 
+from spinbook.browser.files import pyodide_files, pyodide_folder
 from spinbook.site.extension import spaced
 from spinbook.site.page import Repository
 from spinbook.site.prose import Links, rich
@@ -201,8 +202,12 @@ def test_no_solution_and_no_hidden_check_is_published(built: SmallCourse, folder
     secrets |= {"NOTE_OF_THE_CHAPTER", "NOTE_IN_A_LINE", "NOTE_OF_THE_GLOSSARY", "NOTE_OF_THE_TASK"}
     seen = [file for file in (built.root / "build" / folder).rglob("*") if file.is_file()]
     assert ".ipynb" in {file.suffix for file in seen}
+    # Pyodide's own files are large, and have nothing of a course in them while they are the same byte for byte.
+    place = pyodide_folder()
+    of_pyodide = pyodide_files(place) if place else {}
     for file in seen:
-        assert_holds_none(file, secrets)
+        if of_pyodide.get(file.name) != file.read_bytes():
+            assert_holds_none(file, secrets)
 
 
 def test_hidden_checks_are_not_named(built: SmallCourse) -> None:
@@ -220,7 +225,7 @@ def assert_holds_none(file: Path, secrets: set[str]) -> None:
     text = file.read_text(encoding="utf-8", errors="replace")
     for html, plain in (("&quot;", '"'), ("&#39;", "'"), ("&lt;", "<"), ("&gt;", ">"), ("&amp;", "&")):
         text = text.replace(html, plain)
-    for version in (text, re.sub(r"</?span[^>]*>", "", text), text.replace('\\"', '"')):
+    for version in {text, re.sub(r"</?span[^>]*>", "", text), text.replace('\\"', '"')}:
         found = [line for line in secrets if line in version]
         assert not found, f"{file}: {found[:3]}"
 
