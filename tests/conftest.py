@@ -23,7 +23,6 @@ from xdist.remote import Producer
 
 from interface_compiler import activation
 
-
 # What is collected and imported stays to the end: looking for garbage in it would be a fifth of the time for it, in
 # each of pytest-xdist's processes.
 gc.disable()

@@ -15,6 +15,9 @@ from spinbook.handout.student_copy import exercise_files
 ROOT = Path(__file__).parents[2]
 SOLUTIONS = ROOT / "solutions" / "joint_velocity"
 
+#: How many public checks the exercise has.
+PUBLIC = (ROOT / "exercises" / "joint_velocity" / "checks.py").read_text(encoding="utf-8").count("\n@check(")
+
 
 @pytest.fixture(scope="session")
 def workers() -> Iterator[WorkerPool]:
