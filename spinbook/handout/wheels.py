@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import shutil
 import subprocess
 import sys
@@ -12,9 +14,11 @@ from importlib import metadata
 from pathlib import Path
 
 import spinbook
+from grader.files import cached, write_if_changed
 from interface_compiler import shipped, store
 from interface_compiler.checks import dependencies
 from interface_compiler.wheel import record, wheel, wheel_platform, zipped
+from spinbook.build.digest import digest, files_digest
 from spinbook.course.course import Course
 from spinbook.interfaces.compiling import FOLDER, collect, compile_course
 from spinbook.problem import Problem, SpinbookError
@@ -45,7 +49,40 @@ def spinbook_wheel() -> tuple[str, bytes]:
 
 
 def _built(source: Path) -> dict[str, bytes]:
-    """Return what setuptools makes from a checkout, which is left as it is."""
+    """Return what setuptools makes from a checkout, which is left as it is: made again only if a file has changed."""
+    kept = cached("wheels") / f"{_key(source)}.whl"
+    try:
+        content = kept.read_bytes()
+    except OSError:
+        content = _build(source)
+        with contextlib.suppress(OSError):  # where nothing can be kept, it is made each time
+            write_if_changed(kept, content)
+            _remove_all_but(kept)
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        return {name: archive.read(name) for name in archive.namelist() if not name.endswith("/")}
+
+
+def _key(source: Path) -> str:
+    """Return a digest of everything that decides the wheel."""
+    tools = [sys.version, *(found.version for found in metadata.distributions(name="setuptools"))]
+    files = (file for name in _SOURCES for file in _files(source / name))
+    return digest(files_digest(files, source), *tools)[:16]
+
+
+def _files(path: Path) -> Iterable[Path]:
+    if path.is_file():
+        return [path]
+    return (file for file in path.rglob("*") if file.is_file() and "__pycache__" not in file.parts)
+
+
+def _remove_all_but(kept: Path) -> None:
+    for other in kept.parent.glob("*.whl"):
+        if other != kept:
+            other.unlink(missing_ok=True)
+
+
+def _build(source: Path) -> bytes:
+    """Let setuptools build the wheel, in a copy of the checkout."""
     with tempfile.TemporaryDirectory(prefix="spinbook-") as temporary:
         copy, out = Path(temporary) / "source", Path(temporary) / "out"
         copy.mkdir()
@@ -62,8 +99,7 @@ def _built(source: Path) -> dict[str, bytes]:
             error = (done.stderr.strip().splitlines() or ["setuptools said nothing"])[-1]
             fix = 'It is built with setuptools: pip install "setuptools>=77,<80"'
             raise SpinbookError(Problem(source, None, f"the wheel of Spinbook could not be built: {error}", fix))
-        with zipfile.ZipFile(wheels[0]) as archive:
-            return {name: archive.read(name) for name in archive.namelist() if not name.endswith("/")}
+        return wheels[0].read_bytes()
 
 
 def _installed() -> dict[str, bytes]:

@@ -7,6 +7,7 @@ import io
 import json
 import re
 import shutil
+import sys
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,6 +17,7 @@ import pytest
 import yaml
 from course_folder import CourseFolder
 
+import spinbook
 from grader.exercise import load
 from handout.conftest import CHAPTER, NOTE, ROOT, HandedOut, append, copy_course
 from interface_compiler.wheel import zipped
@@ -154,6 +156,32 @@ def test_the_wheel_holds_every_package_of_ours_that_its_modules_import() -> None
     ours = {file.parent.name for file in ROOT.glob("*/__init__.py")}
     assert imported & ours >= {"spinbook", "grader", "rmw_lockstep"}
     assert {package for package in imported & ours if f"{package}/__init__.py" not in files} == set()
+
+
+@pytest.fixture
+def tiny_checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A checkout of a Spinbook with one file, which is the one that runs, and nothing kept yet."""
+    folder = tmp_path / "checkout"
+    (folder / "spinbook").mkdir(parents=True)
+    (folder / "spinbook" / "__init__.py").write_text("first = 1\n")
+    (folder / "pyproject.toml").write_text('[project]\nname = "spinbook"\nversion = "0.1.0"\n')
+    monkeypatch.setattr(spinbook, "__file__", str(folder / "spinbook" / "__init__.py"))
+    monkeypatch.setenv("SPINBOOK_CACHE", str(tmp_path / "cache"))
+    return folder
+
+
+def test_the_wheel_is_built_once_and_again_when_a_file_has_changed(
+    tiny_checkout: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = spinbook_wheel()
+    with monkeypatch.context() as patch:
+        patch.setattr(sys, "executable", str(tmp_path / "no-python"))
+        assert spinbook_wheel() == first, "nothing is built"
+
+    (tiny_checkout / "spinbook" / "second.py").write_text("second = 2\n")
+    with zipfile.ZipFile(io.BytesIO(spinbook_wheel()[1])) as archive:
+        assert "spinbook/second.py" in archive.namelist()
+    assert len(list((tmp_path / "cache" / "wheels").iterdir())) == 1, "the older one is not kept"
 
 
 def imported_by(node: ast.AST) -> list[str]:
