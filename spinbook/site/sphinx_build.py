@@ -16,6 +16,7 @@ from sphinx.errors import SphinxError
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
 from grader.files import write_if_changed
+from spinbook.browser.files import FOLDER, pyodide_files, pyodide_folder
 from spinbook.course.course import Course
 from spinbook.handout.leaks import authors_code, leaks, secrets_of_all
 from spinbook.problem import Problem, Severity, SpinbookError
@@ -108,11 +109,18 @@ def _load(course: Course, name: str) -> Exercise:
 def _published(contents: Contents) -> dict[str, bytes]:
     files: dict[str, str | bytes] = {f"{page.name}{page.suffix}": page.text for page in contents.pages}
     files |= {f"{page.name}.frame": page.frame(contents.openers) for page in contents.pages}
-    files |= {f"site/{path}": content for path, content in contents.files.items()}
+    others = _of_pyodide()
+    files |= {f"site/{path}": content for path, content in contents.files.items() if others.get(path) != content}
     files |= {f"launch/{path}": content for path, content in contents.branch.items()}
     # Packed, nothing could be found in them.
     files |= {f"launch/{path}": content for path, content in contents.copies.items()}
     return {path: content.encode() if isinstance(content, str) else content for path, content in files.items()}
+
+
+def _of_pyodide() -> dict[str, bytes]:
+    """Return Pyodide's own files, by their path in a site. They are large, and have nothing of a course in them."""
+    folder = pyodide_folder()
+    return {f"{FOLDER}/{name}": content for name, content in pyodide_files(folder).items()} if folder else {}
 
 
 _THEMES = Path(__file__).parent
