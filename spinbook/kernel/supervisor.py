@@ -12,6 +12,7 @@ import socket
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -56,16 +57,21 @@ class Printed:
         return first, first - offset, bytes(self._tail[first - start :])
 
 
+def _processes() -> Iterator[tuple[int, bytes, int]]:
+    """Yield the id, the state and the parent's id of each process of this machine; see proc_pid_stat(5)."""
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            with contextlib.suppress(OSError, ValueError, IndexError):
+                state, parent = (entry / "stat").read_bytes().rpartition(b")")[2].split()[:2]
+                yield int(entry.name), state, int(parent)
+
+
 def descendants(root: int) -> list[int]:
     """The process ids of all that `root` started and that still run, zombies left out."""
     children: dict[int, list[int]] = {}
-    for entry in Path("/proc").iterdir():
-        if not entry.name.isdigit():
-            continue
-        with contextlib.suppress(OSError, ValueError, IndexError):
-            state, parent = (entry / "stat").read_bytes().rpartition(b")")[2].split()[:2]
-            if state != b"Z":
-                children.setdefault(int(parent), []).append(int(entry.name))
+    for pid, state, parent in _processes():
+        if state != b"Z":
+            children.setdefault(parent, []).append(pid)
     found, todo = [], [root]
     while todo:
         new = children.get(todo.pop(), [])
@@ -203,7 +209,16 @@ class Supervisor:
             for pid in left:
                 with contextlib.suppress(ProcessLookupError, PermissionError):
                     os.kill(pid, signal.SIGKILL)
+            self._reap_adopted()
             time.sleep(0.002)
+
+    def _reap_adopted(self) -> None:
+        """Reap zombies that others left to this process: the first process of a PID namespace can't end before them."""
+        own = self._process.pid if self._process else 0
+        for pid, state, parent in _processes():
+            if state == b"Z" and parent == os.getpid() and pid != own:
+                with contextlib.suppress(ChildProcessError):
+                    os.waitpid(pid, os.WNOHANG)
 
     def _orphan(self) -> None:
         if not self._orphaned:
