@@ -13,8 +13,8 @@ import traceback
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, NoReturn
 
-from grader.exercise.exercise import ExerciseError
 from grader.sandbox.zygote import fork
+from grader.workers.answers import Answer, answer_of
 from grader.workers.shared import what_to_collect
 
 if TYPE_CHECKING:
@@ -78,13 +78,7 @@ def _judge(requests: socket.socket, collected: bytes) -> NoReturn:
 
     exercise, scenarios = what_to_collect(collected)
     judging = _Judging(requests)
-    try:
-        answer: tuple[str, object] = "result", judge_when_collected(exercise, scenarios, judging.runs)
-    except ExerciseError as error:
-        answer = "author", error
-    except BaseException:
-        answer = "host", traceback.format_exc()
-    judging.end(answer)
+    judging.end(answer_of(lambda: judge_when_collected(exercise, scenarios, judging.runs)))
 
 
 class _Judging:
@@ -106,7 +100,7 @@ class _Judging:
         threading.Thread(target=_end_with, args=(connection,), daemon=True).start()
         return job.runs()
 
-    def end(self, answer: tuple[str, object]) -> NoReturn:
+    def end(self, answer: Answer) -> NoReturn:
         """Answer and exit. Without a request so far it is the answer to each: the checks can't be used."""
         connection = self._connection or self._fork_for_each()
         with contextlib.suppress(OSError):

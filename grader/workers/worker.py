@@ -13,15 +13,13 @@ import signal
 import socket
 import sys
 import threading
-import traceback
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
-from grader.exercise.exercise import ExerciseError
 from grader.sandbox import filesystem, middleware
 from grader.sandbox.fork_server import ForkServer
 from grader.sandbox.program import Middleware
 from grader.sandbox.zygote import fork
+from grader.workers.answers import answer_of
 from grader.workers.judges import Judges
 from grader.workers.pool import JUDGE, PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, PROFILE, SHARE
 from grader.workers.shared import receive
@@ -134,21 +132,13 @@ def _work(descriptor: int, fork_server: ForkServer) -> NoReturn:
     with contextlib.suppress(EOFError, OSError):
         jobs.put(connection.recv())
         while True:
-            kind, result = _answer(jobs.get(), fork_server, ready)
+            job = jobs.get()
+            answer = answer_of(functools.partial(job.run, fork_server, ready))
             ready()
-            connection.send((kind, result))
-            if kind != "result":
+            connection.send(answer)
+            if answer[0] != "result":
                 break
     os._exit(0)
-
-
-def _answer(job: Job, fork_server: ForkServer, ready: Callable[[], None]) -> tuple[str, Any]:
-    try:
-        return "result", job.run(fork_server, ready)
-    except ExerciseError as error:
-        return "author", error
-    except BaseException:
-        return "host", traceback.format_exc()
 
 
 def _listen(connection: Connection, jobs: queue.SimpleQueue[Job]) -> None:
