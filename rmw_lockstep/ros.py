@@ -22,6 +22,10 @@ LIBRARIES = (
     *("rosidl_runtime_c", "rosidl_typesupport_fastrtps_c", "rosidl_typesupport_fastrtps_cpp"),
 )
 
+#: The libraries of Fast DDS alone: its RMW, itself, and what it needs. In the wheels' lib/, and beside their packages.
+_FAST_DDS = ("librmw_fastrtps_shared_cpp.so", "librmw_dds_common*.so", "libfastrtps.so.*")
+_NEEDED_BY_FAST_DDS = ("libtinyxml2-*", "libssl-*", "libcrypto-*")
+
 _PACKAGE_VERSION = re.compile(r"<version>\s*([^<\s]+)\s*</version>")
 _FAST_CDR_VERSION = re.compile(r'FASTCDR_VERSION_STR\s+"([^"]+)"')
 
@@ -53,6 +57,16 @@ class Ros:
     def libraries(self) -> tuple[Path, ...]:
         """The libraries to link."""
         return tuple(self.prefix / "lib" / f"lib{name}.so" for name in LIBRARIES)
+
+    @property
+    def unused_libraries(self) -> tuple[str, ...]:
+        """The names of libraries to which PyPI's wheels are linked, and of which nothing calls anything: Fast DDS's."""
+        if self.chooses_at_run_time:
+            return ()
+        beside = self.prefix.glob("lib/python3*/site-packages/ros_fastrtps.libs")
+        places = {self.prefix / "lib": _FAST_DDS, **dict.fromkeys(beside, _NEEDED_BY_FAST_DDS)}
+        found = (file for folder, patterns in places.items() for one in patterns for file in folder.glob(one))
+        return tuple(sorted({file.name for file in found}))
 
 
 _DECISIVE = ("rmw", "rcutils", "rosidl_runtime_c", "rosidl_typesupport_fastrtps_c")

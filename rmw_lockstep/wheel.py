@@ -26,7 +26,7 @@ setup(
     description="The compiled libraries of rmw_lockstep, for ROS 2 with rmw {rmw} and Fast CDR {fastcdr}.",
     license="Apache-2.0",
     packages=[{name!r}],
-    package_data={{{name!r}: ["*.so", "wheels/*.so", "*.json"]}},
+    package_data={{{name!r}: ["*.so", "wheels/*.so*", "*.json"]}},
 )
 """
 

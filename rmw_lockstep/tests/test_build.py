@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -16,6 +17,7 @@ import pytest
 from rmw_lockstep import library as finding
 from rmw_lockstep.build import build
 from rmw_lockstep.library import PREBUILT, Library, Unavailable, library
+from rmw_lockstep.ros import installed_ros
 
 ROOT = Path(__file__).parents[2]
 
@@ -26,6 +28,9 @@ LOCKSTEP = 'extern "C" __attribute__((visibility("default"))) int lockstep_conne
 RMW = (
     '#include <rmw/rmw.h>\nextern "C" int lockstep_connect(const char *);\nint use() { return lockstep_connect(0); }\n'
 )
+
+
+SOURCED = (found := installed_ros()) is not None and found.chooses_at_run_time
 
 
 class Copy:
@@ -139,6 +144,7 @@ def test_the_wheel_is_found_where_it_is_installed_if_it_fits(copy: Copy, tmp_pat
     assert wheel.name.startswith("rmw_lockstep_prebuilt-")
     assert "-py3-none-linux_" in wheel.name
     with zipfile.ZipFile(wheel) as archive:
+        assert SOURCED or any("/wheels/libfastrtps.so." in name for name in archive.namelist())
         archive.extractall(tmp_path)
 
     assert copy.run("rmw_lockstep.build", CXX="no-such-compiler").stdout.strip() == str(tmp_path / PREBUILT)
@@ -174,13 +180,19 @@ def test_a_sourced_ros_chooses_by_name_and_the_wheels_by_the_order_of_folders(tm
 
 
 @needs_compiler
-def test_rclpy_loads_the_real_one() -> None:
+def test_rclpy_loads_the_real_one_and_nothing_of_fast_dds() -> None:
     found = build()
     assert isinstance(found, Library)
-    code = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
+    code = (
+        "import rclpy; from pathlib import Path; rclpy.init(); rclpy.create_node('node')\n"
+        "print(rclpy.get_rmw_implementation_identifier()); print(Path('/proc/self/maps').read_text())"
+    )
+    environment = {**os.environ, **found.environment(os.environ), "LD_BIND_NOW": "1"}  # every function is looked up
 
-    environment = {**os.environ, **found.environment(os.environ)}
     said = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False)
 
-    assert said.stdout == "rmw_lockstep_cpp\n", said.stderr
+    name, _, loaded = said.stdout.partition("\n")
+    assert name == "rmw_lockstep_cpp", said.stderr
+    assert "librcl.so" in loaded
+    assert not re.search(r"libfastrtps\.so|rmw_fastrtps_shared|rmw_dds_common|libtinyxml2-", loaded)
     assert finding.library() == found
