@@ -50,9 +50,9 @@ _CAPABILITY_VERSION_3 = 0x20080522
 _libc = ctypes.CDLL(None, use_errno=True)
 
 
-def libc_call(name: str, *arguments: object, what: str = "") -> int:
+def libc_call(name: str, *arguments: object, what: str = "", of: ctypes.CDLL = _libc) -> int:
     """Call a C library function and return its result; a result of -1 raises OSError with `what` in its text."""
-    result: int = getattr(_libc, name)(*arguments)
+    result: int = getattr(of, name)(*arguments)
     if result == -1:
         error = ctypes.get_errno()
         raise OSError(error, f"{what or name}: {os.strerror(error)}")

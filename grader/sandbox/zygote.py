@@ -5,6 +5,7 @@ from __future__ import annotations
 import atexit
 import builtins
 import contextlib
+import ctypes
 import gc
 import importlib
 import importlib.machinery
@@ -21,7 +22,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from grader import preloaded
-from grader.sandbox import callers, filesystem, heap, middleware, seccomp
+from grader.sandbox import callers, filesystem, heap, middleware, seccomp, syscalls
 from grader.sandbox import middleware as type_support
 from grader.sandbox.middleware import choosable
 from grader.sandbox.program import START_REQUEST, Middleware, Paths, Program
@@ -203,7 +204,7 @@ def serve(requests: int, fault: str | None) -> Request | None:
                 _import(message.decode())
             _prepare_for_forks()
             continue
-        if fork() == 0:
+        if _fork_supervisor() == 0:
             listening.detach()
             os.close(requests)
             for number in passed:  # no program may inherit what was received
@@ -216,6 +217,18 @@ def serve(requests: int, fault: str | None) -> Request | None:
             return supervise(start, control, output, namespaces)
         for number in passed:
             os.close(number)
+
+
+def _fork_supervisor() -> int:
+    """Fork as the C library does, without what Python does besides: it prepares threads, locks and random numbers anew.
+
+    A supervisor uses none of them. It forks its student as Python does, and there all this is done.
+    """
+    return syscalls.libc_call("fork", of=_with_python)
+
+
+# Keeps Python's lock during a call, as a process must that is to go on in Python after it.
+_with_python = ctypes.PyDLL(None, use_errno=True)
 
 
 def _load(modules: list[str], middleware: Middleware) -> str | None:
