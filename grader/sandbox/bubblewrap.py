@@ -12,7 +12,8 @@ import os
 import resource
 import shutil
 import signal
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from functools import cache
 from pathlib import Path
 
 from grader.sandbox import filesystem, seccomp, syscalls
@@ -32,7 +33,7 @@ def find() -> str | None:
 
 def options(plan: Sequence[Mount]) -> bytes:
     """Return the options that build a root, as bubblewrap reads them from a file."""
-    return b"".join(os.fsencode(option) + b"\0" for option in _options(plan))
+    return b"".join(map(_encoded, plan))
 
 
 def build(root: bytes, user_namespace: int, *, network: bool) -> Namespaces:
@@ -103,27 +104,28 @@ def _start(command: list[str], passed: Mapping[int, int]) -> Builder:
     return Builder(pid, input_to, output_at, errors_at)
 
 
-def _options(plan: Sequence[Mount]) -> Iterator[str]:
-    texts = {path: _FIRST_TEXT + at for at, path in enumerate(filesystem.TEXTS)}
-    for step in plan:
-        if step.action == "folder":
-            yield from ("--perms", "0755", "--dir", step.path)
-        elif step.action == "scratch":
-            yield from ("--perms", "1777", "--size", str(step.size), "--tmpfs", step.path)
-        elif step.action == "bind":
-            yield from ("--ro-bind", step.content or step.path, step.path)
-        elif step.action == "mask":
-            yield from ("--ro-bind", "/dev/null", step.path) if Path(step.path).is_file() else ("--tmpfs", step.path)
-        elif step.action == "device":
-            yield from ("--dev-bind", step.path, step.path)
-        elif step.action == "link":
-            yield from ("--symlink", step.content, step.path)
-        elif step.action == "text":
-            yield from ("--perms", "0644", "--file", str(texts[step.path]), step.path)
-        elif step.action == "processes":
-            yield from ("--proc", step.path)
-        elif step.action == "seal":
-            yield from ("--remount-ro", step.path)
+# Most steps are the same for every program.
+@cache
+def _encoded(step: Mount) -> bytes:
+    return b"".join(os.fsencode(option) + b"\0" for option in _options(step))
+
+
+def _options(step: Mount) -> tuple[str, ...]:
+    if step.action == "folder":
+        return ("--perms", "0755", "--dir", step.path)
+    if step.action == "scratch":
+        return ("--perms", "1777", "--size", str(step.size), "--tmpfs", step.path)
+    if step.action == "bind":
+        return ("--ro-bind", step.content or step.path, step.path)
+    if step.action == "mask":
+        return ("--ro-bind", "/dev/null", step.path) if Path(step.path).is_file() else ("--tmpfs", step.path)
+    if step.action == "device":
+        return ("--dev-bind", step.path, step.path)
+    if step.action == "link":
+        return ("--symlink", step.content, step.path)
+    if step.action == "text":
+        return ("--perms", "0644", "--file", str(_FIRST_TEXT + list(filesystem.TEXTS).index(step.path)), step.path)
+    return ("--proc" if step.action == "processes" else "--remount-ro", step.path)
 
 
 def _starve(holder: int) -> None:
