@@ -85,6 +85,7 @@ class Hub:
         self._ticks = 0
         self._router = Router(self._use, lambda: self._epoch + self._until, epoch)
         self._poll = select.poll()
+        self._new = select.poll()
         self._listeners = [self._listen(folder)]
 
     def _listen(self, folder: Path) -> socket.socket:
@@ -94,7 +95,8 @@ class Hub:
         path.chmod(0o666)
         folder.chmod(0o711)
         listener.listen(self._use.limits.connections)
-        self._poll.register(listener, select.POLLIN)
+        for poll in (self._poll, self._new):
+            poll.register(listener, select.POLLIN)
         return listener
 
     # --- for the owner of the hub
@@ -317,6 +319,8 @@ class Hub:
 
     def _accept(self) -> bool:
         """Accept connections at all sockets. Return whether there were any."""
+        if not self._new.poll(0):
+            return False
         accepted = [self._accept_from(number, listener) for number, listener in enumerate(self._listeners)]
         return any(accepted)
 
