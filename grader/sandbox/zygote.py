@@ -103,7 +103,6 @@ def _prepare_main(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
     sys.modules["__main__"] = module
     for name in (*_own_modules, *filter(_is_own, _modules_of_this_fork())):
         _ours.append(sys.modules.pop(name))
-    preloaded.hide()
     return module
 
 
@@ -180,6 +179,7 @@ def _prepare_for_forks() -> None:
         seccomp.program(network=False)
     callers.remember_files()
     preloaded.choose()
+    preloaded.hide()
     sys.path_importer_cache.clear()  # emptied here, it need not be copied to be emptied in each fork
     _note_modules()
     gc.collect()
@@ -200,6 +200,7 @@ def serve(requests: int, fault: str | None) -> Request | None:
         if not message:
             return None
         if message != START_REQUEST:
+            preloaded.show_all()
             with contextlib.suppress(Exception):  # a program that imports it is told why
                 _import(message.decode())
             _prepare_for_forks()
