@@ -36,8 +36,6 @@ class Router:
         self.graph = Graph()
         self.links: list[Link] = []
         self.published = 0
-        self.serves = False
-        """Whether the hub itself answers anything."""
         self._use, self._calendar, self._epoch = use, calendar, epoch
         self._numbers = count(1)
         self._ends: dict[int, End] = {}
@@ -305,7 +303,6 @@ class Router:
     def add_end(self, end: End) -> None:
         """Add it to the graph."""
         self._ends[end.end_point.id] = end
-        self._look_for_servers()
         self._add(end.end_point)
         self._broadcast(frames.to_end_point(end.end_point))
         if isinstance(end, Publisher):
@@ -321,12 +318,13 @@ class Router:
     def remove_end(self, end: End) -> None:
         """Remove it from the graph."""
         del self._ends[end.end_point.id]
-        self._look_for_servers()
         self._remove(end.end_point.id)
         self._broadcast(frames.to_gone(b"e", end.end_point.id))
 
-    def _look_for_servers(self) -> None:
-        self.serves = any(isinstance(end, Server) for end in self._ends.values())
+    @property
+    def serves(self) -> bool:
+        """Whether the hub itself answers anything."""
+        return any(isinstance(end, Server) for end in self._ends.values())
 
     def matched(self, end_point: EndPoint) -> tuple[EndPoint, ...]:
         """Return the processes' end points that exchange messages with one of the hub's end points."""
