@@ -17,7 +17,6 @@ import signal
 import socket
 import sys
 import types
-import warnings
 from pathlib import Path
 from typing import NoReturn
 
@@ -27,20 +26,6 @@ from grader.sandbox import middleware as type_support
 from grader.sandbox.middleware import choosable
 from grader.sandbox.program import START_REQUEST, Middleware, Paths, Program
 from grader.sandbox.supervisor import Request, refuse, supervise
-
-
-def fork() -> int:
-    """Fork as `os.fork` does, without the warning that Python 3.12 and later print if a process has several threads.
-
-    Those besides Python's own are LTTng's: ROS 2's tracing starts two when rclpy is imported. They wait for a tracing
-    daemon (lttng-ust(3), "LTTNG_UST_REGISTER_TIMEOUT"), and a child has no use for them.
-    """
-    if sys.version_info < (3, 12):
-        return os.fork()
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "This process .* is multi-threaded", DeprecationWarning)
-        return os.fork()
-
 
 #: The number of cores that a program sees. It runs on one, but rclpy's MultiThreadedExecutor uses this as its number of
 #: threads, and with a single thread a program would hang here that works on every other machine.

@@ -13,8 +13,8 @@ import traceback
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, NoReturn
 
-from grader.sandbox.zygote import fork
 from grader.workers.answers import Answer, answer_of
+from grader.workers.forking import fork
 from grader.workers.shared import what_to_collect
 
 if TYPE_CHECKING:

@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, NoReturn
 from grader.sandbox import filesystem, middleware
 from grader.sandbox.fork_server import ForkServer
 from grader.sandbox.program import Middleware
-from grader.sandbox.zygote import fork
 from grader.workers.answers import answer_of
+from grader.workers.forking import fork
 from grader.workers.judges import Judges
 from grader.workers.pool import JUDGE, PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, PROFILE, SHARE
 from grader.workers.shared import receive
