@@ -126,7 +126,7 @@ def sources() -> list[Path]:
 def sources_digest() -> str:
     """Return the SHA-256 of the C++ sources and of how they are compiled."""
     total = hashlib.sha256()
-    for file in (*sources(), SOURCES / "build.py"):
+    for file in (*sources(), SOURCES / "build.py", SOURCES / "ros.py"):
         content = file.read_bytes()
         total.update(f"{file.relative_to(SOURCES)} {len(content)}\n".encode())
         total.update(content)
