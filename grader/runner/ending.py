@@ -5,16 +5,14 @@ from __future__ import annotations
 import contextlib
 import re
 import time
-from dataclasses import dataclass
 
 from grader.recording.recording import Ending
 from grader.runner.budget import Allowance, Budget, Gone
 from grader.runner.student import Exit, Stopped, Student
+from grader.runner.tracebacks import error_on_interrupt, last_error
 from grader.scenario.scenario import SECOND
 from rmw_lockstep.hub import TICK_S, Hub, Violation
 
-FRAME = re.compile(r'^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)', re.MULTILINE)
-TRACEBACK = "Traceback (most recent call last):"
 LIMITS = {
     "cpu": "it used more computing time than a node may",
     "memory": "it used more memory than a node may",
@@ -37,50 +35,6 @@ _PARAMETERS = {
         "A parameter has the type of its default: 1 declares an integer, 1.0 a double."
     ),
 }
-
-
-@dataclass(frozen=True)
-class LastError:
-    """The error that ended a program: its last line, such as `ZeroDivisionError: float division by zero`, and the line
-    of the student's file that raised it, if there is one."""
-
-    error: str
-    line: int | None
-    text: str = ""
-
-
-def last_error(log: str, file_name: str, source: str = "") -> LastError | None:
-    """Return the last error in `log`, or None if there is none."""
-    start = log.rfind(TRACEBACK)
-    if start < 0:
-        start = log.rfind('  File "')
-        if start < 0:
-            return None
-    block = log[start:]
-    error = ""
-    for row in block.splitlines()[1:]:
-        if row and not row[0].isspace() and re.match(r"[A-Za-z_][\w.]*(:|$)", row):
-            error = row.strip()
-            break
-    lines = [int(m["line"]) for m in FRAME.finditer(block) if m["file"].rpartition("/")[2] == file_name]
-    line = lines[-1] if lines else None
-    rows = source.splitlines()
-    return LastError(error, line, rows[line - 1].strip() if line and line <= len(rows) else "")
-
-
-def is_rclpys_own(log: str, file_name: str, source: str) -> bool:
-    """Return whether the last error in `log` is a race in rclpy, and so not the fault of a correct program.
-
-    On Ctrl-C a thread of rclpy shuts ROS 2 down. If it does so between the `ok()` and the `shutdown()` of a program
-    that checks first, as `rclpy.try_shutdown()` does, the program's call fails (rclpy 7.1, `Context.try_shutdown`).
-    """
-    last = last_error(log, file_name, source)
-    if last is None or "rcl_shutdown already called" not in last.error:
-        return False
-    if ", in try_shutdown" in log[log.rfind(TRACEBACK) :]:
-        return True
-    rows = source.splitlines()[: last.line or 0]
-    return any("ok()" in row for row in rows[-2:])
 
 
 def _advice(error: str, block: str) -> str:
@@ -108,7 +62,7 @@ def of_exit(exit_: Exit, log: str, file_name: str, source: str) -> tuple[str, in
         return f"{LIMITS.get(exit_.limit, exit_.limit)}.", None
     last = last_error(log, file_name, source)
     if last and last.error:
-        advice = _advice(last.error, log[log.rfind(TRACEBACK) :])
+        advice = _advice(last.error, last.traceback)
         place = f" in line {last.line}" if last.line else ""
         text = f": {last.text}" if last.text else ""
         return f"{last.error}{place}{text}{advice}", last.line
@@ -146,15 +100,13 @@ def interrupted(hub: Hub, budget: Budget, student: Student, file_name: str, sour
     There is no way to know when the signal has reached the program. So from here on the computer's clock runs as fast
     as a real one, and a program that waits for a time waits as long as it would in real life.
     """
-    before = student.output().text.count(TRACEBACK)
+    before = student.output().text
     student.interrupt()
     budget.begin(_ALLOWANCE)
     if not _ends(hub, budget):
         return Ending("completed", interrupted=True, ended_in_time=False)
-    log = student.output().text
-    broke = log.count(TRACEBACK) > before and not is_rclpys_own(log, file_name, source)
-    last = last_error(log, "") if broke else None
-    return Ending("completed", interrupted=True, traceback=last.error if last else "")
+    error = error_on_interrupt(before, student.output().text, file_name, source)
+    return Ending("completed", interrupted=True, traceback=error)
 
 
 def _ends(hub: Hub, budget: Budget) -> bool:

@@ -18,10 +18,9 @@ import socket
 import sys
 import types
 from pathlib import Path
-from typing import NoReturn
 
 from grader import preloaded
-from grader.sandbox import callers, filesystem, heap, middleware, seccomp, syscalls
+from grader.sandbox import callers, filesystem, heap, middleware, seccomp, syscalls, uncaught
 from grader.sandbox import middleware as type_support
 from grader.sandbox.middleware import choosable
 from grader.sandbox.program import START_REQUEST, Middleware, Paths, Program
@@ -59,7 +58,7 @@ def run_program(program: Program, paths: Paths) -> None:
     except SystemExit:
         raise
     except BaseException as fault:
-        _die_of(fault)
+        uncaught.end(fault)
 
 
 def _prepare_main(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
@@ -83,7 +82,7 @@ def _prepare_main(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
     module.__loader__ = importlib.machinery.SourceFileLoader("__main__", path)
     module.__dict__["__builtins__"] = builtins
     module.__dict__["__cached__"] = None
-    atexit.register(_die_of_interrupt)  # the first to be registered is the last to be called
+    atexit.register(uncaught.end_of_interrupt)  # the first to be registered is the last to be called
     _ours.append(sys.modules["__main__"])
     sys.modules["__main__"] = module
     for name in (*_own_modules, *filter(_is_own, _modules_of_this_fork())):
@@ -113,25 +112,6 @@ def _modules_of_this_fork() -> list[str]:
 
 # The modules whose code is still running below the student's: without a reference they would be torn down.
 _ours: list[types.ModuleType] = []
-# Not empty when an uncaught KeyboardInterrupt ends the program.
-_interrupted: list[bool] = []
-
-
-def _die_of(fault: BaseException) -> NoReturn:
-    """Print an exception as an interpreter does that ends with it, without the lines of this file."""
-    trace = fault.__traceback__.tb_next if fault.__traceback__ is not None else None
-    _interrupted.extend([True] if isinstance(fault, KeyboardInterrupt) else [])
-    sys.excepthook(type(fault), fault.with_traceback(trace), trace)
-    sys.exit(1)
-
-
-def _die_of_interrupt() -> None:
-    if not _interrupted:
-        return
-    sys.stdout.flush()
-    sys.stderr.flush()
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    os.kill(os.getpid(), signal.SIGINT)
 
 
 # python -m grader.sandbox.zygote DESCRIPTOR MIDDLEWARE MODULE…

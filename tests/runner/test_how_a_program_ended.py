@@ -64,3 +64,31 @@ NO_RESULT = (
 )
 def test_an_end_far_from_its_cause_says_what_to_do(log: str, exit_: Exit, message: str) -> None:
     assert message in of_exit(exit_, log, "turnstile.py", SOURCE)[0]
+
+
+#: As rclpy 7.1.6 wrote them, shortened: while the program ends, rclpy's executor ends the goal that was under way.
+OF_A_GOAL = """\
+Traceback (most recent call last):
+  File "rclpy/action/server.py", line 349, in _execute_goal
+    execute_result = await await_or_execute(execute_callback, goal_handle)
+  File "turnstile.py", line 1, in on_goal
+rclpy._rclpy_pybind11.RCLError: Failed to publish feedback
+"""
+HEADER, FIRST, *OTHERS = OF_A_GOAL.splitlines(keepends=True)
+
+
+@pytest.mark.parametrize(
+    "log",
+    [
+        OF_A_GOAL + RAISES,
+        RAISES + OF_A_GOAL,
+        HEADER + FIRST + RAISES + "".join(OTHERS),
+        RAISES + "".join(OTHERS),
+    ],
+    ids=["before", "after", "around", "the rest after"],
+)
+def test_an_error_that_another_thread_prints_is_not_the_one_that_ended_the_program(log: str) -> None:
+    expected = of_exit(Exit(1, None, None), RAISES, "turnstile.py", SOURCE + "raise ValueError('no coins')")
+
+    assert expected[1] == 3
+    assert of_exit(Exit(1, None, None), log, "turnstile.py", SOURCE + "raise ValueError('no coins')") == expected

@@ -37,6 +37,10 @@ PROGRAMS = {
     ),
     "kills itself": "import os, signal\nos.kill(os.getpid(), signal.SIGTERM)",
     "has a hook": "import sys\nsys.excepthook = lambda *_: print('hooked')\n1 / 0",
+    "has no errors' stream": "import sys\nsys.stderr = None\n1 / 0",
+    "has an errors' stream of its own": "import sys\nsys.stderr = sys.stdout\n1 / 0",
+    "raises several": "raise ExceptionGroup('both', [ValueError(1), KeyError(2)])",
+    "raises what can't be shown": "class A(Exception):\n    def __str__(self): 1 / 0\nraise A()",
     "is a dataclass": "from dataclasses import dataclass\n@dataclass\nclass A:\n    x: 'int' = 1\nprint(A())",
     "pickles itself": "import pickle\nclass A: pass\nprint(type(pickle.loads(pickle.dumps(A()))).__module__)",
     "reads its input": "import sys\nprint(repr(sys.stdin.read()))",
@@ -76,6 +80,35 @@ def test_a_warm_start_behaves_as_a_new_python(either_runner: Runner, name: str) 
         assert len(preloaded.text.splitlines()) == len(cold.text.splitlines())
     else:
         assert (preloaded.exit, preloaded.text) == (cold.exit, cold.text)
+
+
+#: While its main thread ends with a long traceback, another one prints all the time.
+PRINTS_MEANWHILE = """
+import sys, threading
+started = threading.Event()
+def prints():
+    while threading.main_thread().is_alive():
+        print('meanwhile', file=sys.stderr)
+        started.set()
+def falls(depth):
+    if depth:
+        return falls(depth - 1) if depth % 2 else rises(depth - 1)
+    raise RuntimeError('in the depth')
+def rises(depth):
+    return falls(depth)
+threading.Thread(target=prints).start()
+started.wait()
+falls(100)
+"""
+
+
+def test_the_traceback_that_ends_a_program_is_not_mixed_with_what_other_threads_print(either_runner: Runner) -> None:
+    run = either_runner.run(PRINTS_MEANWHILE)
+
+    traceback = run.text[run.text.index("Traceback") : run.text.index("in the depth")]
+    assert run.exit == Exit(1, None, None)
+    assert traceback.count('  File "') > 100
+    assert "meanwhile" not in traceback
 
 
 def test_the_source_may_declare_its_encoding(either_runner: Runner) -> None:

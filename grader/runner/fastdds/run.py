@@ -7,29 +7,28 @@ from collections.abc import Callable
 
 from grader.exercise.exercise import Topic
 from grader.recording.recording import Ending, EndPoint, Recording
-from grader.runner.ending import MAY_TAKE_S, TRACEBACK, cut_short, is_rclpys_own, last_error
+from grader.runner.ending import MAY_TAKE_S, cut_short
 from grader.runner.fastdds.barrier import AFTER_CLOCK, AFTER_MESSAGES, CHECK_S, LOOK_S, Barrier, Gone
 from grader.runner.fastdds.graph import Graph
 from grader.runner.fastdds.idle import IdleTime, Receivers, Threads, TimeBudget, Watch
 from grader.runner.fastdds.ros import Clock, Recorder, ReferencePublishers, Ros
 from grader.runner.student import Stopped, Student, Task
+from grader.runner.tracebacks import error_on_interrupt
 from grader.scenario.scenario import SECOND, START
 
 
 def interrupted(watch: Watch, file_name: str, source: str) -> Ending:
     """Ask the program to end, as Ctrl-C does, and return how it ends."""
     student = watch.student
-    before = student.output().text.count(TRACEBACK)
+    before = student.output().text
     student.interrupt()
     budget = TimeBudget(watch, cpu_s=MAY_TAKE_S, blocked_s=MAY_TAKE_S)
     while student.wait(0.02) is None:
         budget.look()
         if budget.blocked + budget.cpu >= MAY_TAKE_S:
             return Ending("completed", interrupted=True, ended_in_time=False)
-    log = student.output().text
-    broke = log.count(TRACEBACK) > before and not is_rclpys_own(log, file_name, source)
-    last = last_error(log, "") if broke else None
-    return Ending("completed", interrupted=True, traceback=last.error if last else "")
+    error = error_on_interrupt(before, student.output().text, file_name, source)
+    return Ending("completed", interrupted=True, traceback=error)
 
 
 #: How long simulated time continues after the last message, for what a node does by timer.

@@ -1,0 +1,95 @@
+"""Finds, in what a program has printed, the error that ended it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+HEADER = "Traceback (most recent call last):"
+
+_FRAME = re.compile(r'^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)', re.MULTILINE)
+_ERROR = re.compile(r"[A-Za-z_][\w.]*(:|$)")
+
+#: How the traceback of an exception begins that nothing has caught in the main thread: in the module itself.
+_OF_THE_PROGRAM = re.compile(re.escape(HEADER) + r'\n\s*File "[^"]+", line \d+, in <module>\n')
+
+#: The text of a SyntaxError has no header.
+_OF_A_SYNTAX_ERROR = '  File "'
+
+
+@dataclass(frozen=True)
+class LastError:
+    """The error that ended a program: its last line, such as `ZeroDivisionError: float division by zero`, and the line
+    of the student's file that raised it, if there is one. `traceback` is the whole text, up to the error."""
+
+    error: str
+    line: int | None
+    text: str = ""
+    traceback: str = ""
+
+
+def last_error(log: str, file_name: str, source: str = "") -> LastError | None:
+    """Return the last error in `log`, or None if there is none.
+
+    An error of the program itself comes before one that another thread printed after it, as rclpy does for the goal
+    that was under way.
+    """
+    start = _beginning(log)
+    if start < 0:
+        return None
+    rows = list(_traceback(log[start:]))
+    error = rows[-1].strip() if _ERROR.match(rows[-1]) else ""
+    block = "\n".join(rows)
+    lines = [int(m["line"]) for m in _FRAME.finditer(block) if m["file"].rpartition("/")[2] == file_name]
+    line = lines[-1] if lines else None
+    return LastError(error, line, _row(source, line), block)
+
+
+def _beginning(log: str) -> int:
+    *_, last = (-1, *(match.start() for match in _OF_THE_PROGRAM.finditer(log)))
+    if last < 0:
+        last = log.rfind(HEADER)
+    return last if last >= 0 else log.rfind(_OF_A_SYNTAX_ERROR)
+
+
+def _traceback(text: str) -> Iterator[str]:
+    """Yield the lines up to the error; all of them if there is none."""
+    first, *others = text.splitlines()
+    yield first
+    for row in others:
+        yield row
+        if _ERROR.match(row):
+            return
+
+
+def _row(source: str, line: int | None) -> str:
+    rows = source.splitlines()
+    return rows[line - 1].strip() if line and line <= len(rows) else ""
+
+
+def is_rclpys_own(log: str, file_name: str, source: str) -> bool:
+    """Return whether the last error in `log` is a race in rclpy, and so not the fault of a correct program.
+
+    On Ctrl-C a thread of rclpy shuts ROS 2 down. If it does so between the `ok()` and the `shutdown()` of a program
+    that checks first, as `rclpy.try_shutdown()` does, the program's call fails (rclpy 7.1, `Context.try_shutdown`).
+    """
+    last = last_error(log, file_name, source)
+    if last is None or "rcl_shutdown already called" not in last.error:
+        return False
+    if ", in try_shutdown" in last.traceback:
+        return True
+    rows = source.splitlines()[: last.line or 0]
+    return any("ok()" in row for row in rows[-2:])
+
+
+def error_on_interrupt(before: str, log: str, file_name: str, source: str) -> str:
+    """Return the last line of the error that a program printed after it was interrupted; "" if it printed none.
+
+    `before` is what it had printed until then, and `log` is everything.
+    """
+    new = log.removeprefix(before)
+    if log.count(HEADER) <= before.count(HEADER) or is_rclpys_own(new, file_name, source):
+        return ""
+    last = last_error(new, "")
+    return last.error if last else ""
