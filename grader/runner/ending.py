@@ -9,7 +9,7 @@ import time
 from grader.recording.recording import Ending
 from grader.runner.budget import Allowance, Budget, Gone
 from grader.runner.student import Exit, Stopped, Student
-from grader.runner.tracebacks import error_on_interrupt, last_error
+from grader.runner.tracebacks import LastError, error_on_interrupt, last_error
 from grader.scenario.scenario import SECOND
 from rmw_lockstep.hub import TICK_S, Hub, Violation
 
@@ -37,11 +37,12 @@ _PARAMETERS = {
 }
 
 
-def _advice(error: str, block: str) -> str:
+def _advice(last: LastError) -> str:
     """Return advice about an error that rclpy raises far from the student's line which caused it (rclpy 7.1)."""
+    error, block = last.error, last.traceback
     if error.startswith("TypeError") and ", in send_response" in block:
         return ". A service's callback has to return the response: end each way through it with `return response`."
-    if ", in _execute_goal" in block or ", in _send_result_response" in block:
+    if not last.raised_there and (", in _execute_goal" in block or ", in _send_result_response" in block):
         return f". {_RESULT.format(action='Fibonacci')}"
     if "await_or_execute(srv.callback" in block:
         return ". An exception in a callback ends the whole node: say in the response what is wrong, and return it."
@@ -62,7 +63,7 @@ def of_exit(exit_: Exit, log: str, file_name: str, source: str) -> tuple[str, in
         return f"{LIMITS.get(exit_.limit, exit_.limit)}.", None
     last = last_error(log, file_name, source)
     if last and last.error:
-        advice = _advice(last.error, last.traceback)
+        advice = _advice(last)
         place = f" in line {last.line}" if last.line else ""
         text = f": {last.text}" if last.text else ""
         return f"{last.error}{place}{text}{advice}", last.line

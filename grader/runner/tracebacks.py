@@ -21,11 +21,15 @@ _OF_A_SYNTAX_ERROR = '  File "'
 @dataclass(frozen=True)
 class LastError:
     """The error that ended a program: its last line, such as `ZeroDivisionError: float division by zero`, and the line
-    of the student's file that raised it, if there is one. `traceback` is the whole text, up to the error."""
+    of the student's file that raised it, or from which it was called, if there is one.
+
+    `raised_there` is whether this line itself raised it, and `traceback` is the whole text, up to the error.
+    """
 
     error: str
     line: int | None
     text: str = ""
+    raised_there: bool = False
     traceback: str = ""
 
 
@@ -41,9 +45,9 @@ def last_error(log: str, file_name: str, source: str = "") -> LastError | None:
     rows = list(_traceback(log[start:]))
     error = rows[-1].strip() if _ERROR.match(rows[-1]) else ""
     block = "\n".join(rows)
-    lines = [int(m["line"]) for m in _FRAME.finditer(block) if m["file"].rpartition("/")[2] == file_name]
-    line = lines[-1] if lines else None
-    return LastError(error, line, _row(source, line), block)
+    frames = [(m["file"].rpartition("/")[2] == file_name, int(m["line"])) for m in _FRAME.finditer(block)]
+    *_, line = (None, *(number for of_student, number in frames if of_student))
+    return LastError(error, line, _row(source, line), frames[-1:] == [(True, line)], block)
 
 
 def _beginning(log: str) -> int:

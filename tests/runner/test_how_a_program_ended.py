@@ -66,6 +66,37 @@ def test_an_end_far_from_its_cause_says_what_to_do(log: str, exit_: Exit, messag
     assert message in of_exit(exit_, log, "turnstile.py", SOURCE)[0]
 
 
+#: As rclpy 7.1.6 wrote them, shortened: an execute callback that returns nothing, and one that raises.
+NOTHING_RETURNED = """\
+Traceback (most recent call last):
+  File "turnstile.py", line 2, in <module>
+    rclpy.spin(node)
+  File "rclpy/action/server.py", line 366, in _execute_goal
+    result_response.result = execute_result
+  File "turnstile_interfaces/action/_push.py", line 301, in result
+    assert \\
+AssertionError: The 'result' field must be a sub message of type 'Push_Result'
+"""
+GOAL_RAISES = """\
+Traceback (most recent call last):
+  File "turnstile.py", line 2, in <module>
+    rclpy.spin(node)
+  File "rclpy/action/server.py", line 349, in _execute_goal
+    execute_result = await await_or_execute(execute_callback, goal_handle)
+  File "turnstile.py", line 1, in on_goal
+RuntimeError: stuck
+"""
+
+
+def test_the_advice_to_return_a_result_is_not_for_an_error_of_the_students_own() -> None:
+    returned, raised = (
+        of_exit(Exit(1, None, None), log, "turnstile.py", SOURCE)[0] for log in (NOTHING_RETURNED, GOAL_RAISES)
+    )
+
+    assert "has to return a Result" in returned
+    assert raised == "RuntimeError: stuck in line 1: import rclpy"
+
+
 #: As rclpy 7.1.6 wrote them, shortened: while the program ends, rclpy's executor ends the goal that was under way.
 OF_A_GOAL = """\
 Traceback (most recent call last):
