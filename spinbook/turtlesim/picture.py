@@ -241,9 +241,11 @@ def _spinning() -> Iterator[tuple[SingleThreadedExecutor, Node]]:
         )
         executor = SingleThreadedExecutor(context=context)
         executor.add_node(ears)
-        yield executor, ears
-        executor.shutdown()
-        ears.destroy_node()
+        try:
+            yield executor, ears
+        finally:
+            executor.shutdown()
+            ears.destroy_node()
     finally:
         context.try_shutdown()
 

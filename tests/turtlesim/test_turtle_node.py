@@ -427,6 +427,23 @@ def test_without_any_turtlesim_the_reader_is_reported(ros_domain: int, tmp_path:
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_look_in_vain_leaves_no_node_behind(outside: Outside) -> None:
+    kept: list[NoPictureError] = []  # a kept error keeps what its functions held
+
+    def look() -> None:
+        try:
+            fetch(timeout_s=0.0, listen_s=1.0)
+        except NoPictureError as error:
+            kept.append(error)
+
+    looking = threading.Thread(target=look)
+    looking.start()
+    outside.until(lambda: "turtle_picture" in outside.node.get_node_names(), "the node that looks")
+    outside.until(lambda: bool(kept), "the end of the look")
+    outside.until(lambda: "turtle_picture" not in outside.node.get_node_names(), "the node's end")
+    looking.join()
+
+
 def test_a_topic_of_another_type_is_reported(outside: Outside) -> None:
     outside.node.create_publisher(String, "/turtle1/pose", 10)
     deadline, message = time.monotonic() + DEADLINE_S, ""
