@@ -82,6 +82,7 @@ class Run:
         except Gone:
             ending = cut_short(self._student, *program, self._met, f"at message {len(self._publishers.sent)}")
         end_points = self._end_points or self._graph.end_points()
+        nodes = self._nodes if self._met else sorted({*self._nodes, *self._graph.nodes()})  # one was enough to begin
         self._student.kill()  # before the last look at what has arrived: it may never stop publishing
         self._watch.receivers.wait()
         self._watch.close()
@@ -90,7 +91,7 @@ class Run:
             scenario=self._task.scenario.name,
             sent=tuple(self._publishers.sent),
             received=tuple(self._recorder.received),
-            nodes=tuple(self._nodes),
+            nodes=tuple(nodes),
             end_points=end_points,
             synchronization=self._barrier.synchronization if self._met else "none",
             uses_sim_time=self._sim_time,
