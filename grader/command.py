@@ -138,7 +138,9 @@ def grade(
         if Path(submission).is_dir() or submission.endswith(".csv"):
             raise click.UsageError(f"{submission}: to grade a class, give a folder for the results with --out.")
         handed_in = read(submission, found)
-        result = _graded(found, handed_in, wanted)
+        with WorkerPool(wanted["middleware"]) as workers:
+            result = _graded(found, handed_in, wanted, workers)
+            _show(result, found, json_, verbose)
     except NoSubmission as error:
         raise click.UsageError(str(error)) from None
     except ExerciseError as error:
@@ -147,7 +149,6 @@ def grade(
         _stop(str(error))
     except HostFault as error:
         _stop(f"The machine or the grader is at fault, not the submission: {error}")
-    _show(result, found, json_, verbose)
     _write(result, found, plot, bag)
     sys.exit(OUR_FAULT if result.outcome == "host-error" else NOT_FULL_MARKS if not result.full_marks else FULL_MARKS)
 
@@ -175,12 +176,11 @@ def _class(exercise: Exercise, submissions: Path, out: Path, wanted: dict[str, A
         raise click.UsageError(str(error)) from None
 
 
-def _graded(exercise: Exercise, submission: Submission, wanted: dict[str, Any]) -> Grade:
+def _graded(exercise: Exercise, submission: Submission, wanted: dict[str, Any], workers: WorkerPool) -> Grade:
     """Grade one submission. The imports run while the worker starts, which takes longer."""
-    with WorkerPool(wanted["middleware"]) as workers:
-        from grader.grading.grading import grading_of
+    from grader.grading.grading import grading_of
 
-        return grading_of(exercise, _options(wanted), workers).grade(submission)
+    return grading_of(exercise, _options(wanted), workers).grade(submission)
 
 
 def _show(result: Grade, exercise: Exercise, as_json: bool, verbose: bool) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import atexit
+import gc
 import importlib
 import importlib.util
 import sys
@@ -155,6 +157,7 @@ def spinbook() -> None:
 
 def main() -> None:
     """Run `spinbook` as a program; bad input is reported in words and exits with 1, bad usage with 2."""
+    atexit.register(gc.freeze)  # the last to be called: what the system takes back anyway needs no collecting
     try:
         spinbook()
     except SpinbookError as error:
