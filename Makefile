@@ -45,7 +45,7 @@ test: setup   ## Check style, types and the direction of imports, then run every
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(PYTEST) -n 3
+	$(PYTEST) -n 4
 
 soak: setup   ## Run the long suites in full, and count how often the same program gets another recording or grade.
 	$(PYTEST) -m soak
