@@ -17,7 +17,6 @@ from grader.grading.grading import Grading
 from grader.recording.recording import Ending, Received, Recording
 from grader.scenario.scenario import Scenario
 from grader.submission.reading import Submission
-from grader.workers.jobs import JudgeJob
 from grader.workers.pool import Worker
 
 
@@ -138,8 +137,7 @@ class Trials:
     def judge(self, recordings: dict[str, Recording], references: dict[str, Recording]) -> dict[str, Verdict]:
         """The verdicts on these recordings, by check."""
         runner = self.grading.runner
-        titles = {scenario.name: scenario.title for scenario in runner.scenarios}
-        verdicts = runner.workers.judge(JudgeJob(runner.exercise, recordings, references, titles))
+        verdicts = runner.judge(recordings, references)
         return {verdict.name: verdict for verdict in verdicts}
 
     def trial_of_recordings(self, recordings: dict[str, Recording]) -> Trial:

@@ -17,7 +17,6 @@ from grader.sandbox.program import SandboxUnavailable
 from grader.scenario.declared import declared
 from grader.scenario.scenario import Scenario
 from grader.submission.reading import Submission
-from grader.workers.jobs import JudgeJob
 from grader.workers.pool import HostFault, WorkerPool
 
 
@@ -45,10 +44,8 @@ class Grading:
         return self._judged(submission, recordings, time.monotonic())
 
     def _judged(self, submission: Submission, recordings: dict[str, Recording], began: float) -> Grade:
-        titles = {scenario.name: scenario.title for scenario in self.runner.scenarios}
-        job = JudgeJob(self.runner.exercise, recordings, self.references, titles)
         try:
-            verdicts = self.runner.workers.judge(job)
+            verdicts = self.runner.judge(recordings, self.references)
         except HostFault as fault:
             text = str(fault).strip().splitlines()[-1]
             return self._grade(submission, {}, (), "host-error", f"This is not your fault: {text}", began)

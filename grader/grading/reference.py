@@ -18,7 +18,6 @@ from grader.grading.running import ScenarioRunner
 from grader.recording.recording import Recording, from_json, to_json
 from grader.sandbox.program import Middleware
 from grader.submission.reading import of_source
-from grader.workers.jobs import JudgeJob
 from interface_compiler import activation
 from rmw_lockstep.library import sources
 
@@ -136,8 +135,7 @@ def _prove(runner: ScenarioRunner, recordings: dict[str, Recording]) -> None:
     from grader.checking.proofreading import line_with, points_that_do_not_add_up, same_name_twice
 
     exercise = runner.exercise
-    titles = {scenario.name: scenario.title for scenario in runner.scenarios}
-    verdicts = runner.workers.judge(JudgeJob(exercise, recordings, recordings, titles))
+    verdicts = runner.judge(recordings, recordings)
     for verdict in verdicts:
         file = exercise.folder / ("hidden_checks.py" if verdict.hidden else "checks.py")
         line = line_with(file, rf"def {re.escape(verdict.name)}\b")

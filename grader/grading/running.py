@@ -11,6 +11,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Options
 from grader.recording.recording import Recording, likewise
@@ -20,7 +21,7 @@ from grader.sandbox.program import Middleware, Program
 from grader.scenario.command_line import ARGUMENTS, arguments
 from grader.scenario.scenario import Companion, Scenario
 from grader.submission.reading import Submission
-from grader.workers.jobs import RunJob
+from grader.workers.jobs import JudgeJob, RunJob
 from grader.workers.pool import FAST_DDS_ENVIRONMENT, PROFILE, STUDENT_ENVIRONMENT, WorkerPool
 from grader.workers.shared import Sandbox
 
@@ -162,6 +163,11 @@ class ScenarioRunner:
                 return {scenario.name: queue.recording(scenario.name) for scenario in self.scenarios}
             finally:
                 queue.give_up()
+
+    def judge(self, recordings: dict[str, Recording], references: dict[str, Recording]) -> tuple[Verdict, ...]:
+        """Return the verdicts on a submission's recordings, by scenario. Raises `HostFault` when there are none."""
+        titles = {scenario.name: scenario.title for scenario in self.scenarios}
+        return self.workers.judge(JudgeJob(self.exercise, recordings, references, titles))
 
     def share(self, references: Iterable[Recording] = ()) -> None:
         """Let the worker have what all jobs need: call it once, before the first submission."""
