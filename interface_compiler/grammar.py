@@ -41,7 +41,7 @@ _C_KEYWORDS = (
 )
 _C_WORDS = frozenset(_C_KEYWORDS.split())
 _FIELD_NAME = re.compile(r"(?!.*__)(?!.*_$)[a-z][a-z0-9_]*")
-_CONSTANT_NAME = re.compile(r"[A-Z]([A-Z0-9_]?[A-Z0-9]+)*")
+_CONSTANT_NAME = re.compile(r"[A-Z](_?[A-Z0-9])*")
 _TYPE = re.compile(r"(?P<base>[^\[\]<]+)(?P<bound><=[^\[]*)?(?P<array>\[[^\]]*\])?")
 _ARRAY = re.compile(r"\[(?:(?:<=)?[1-9]\d*)?\]")
 
