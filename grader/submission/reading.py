@@ -215,11 +215,16 @@ def not_python(code: bytes) -> str:
 DEEPEST = 5_000
 
 
+#: Text in quotes; up to the end of the line if they are not closed. It can be read in one way only: otherwise a line
+#: of backslashes would take forever.
+_QUOTED = re.compile(rb"""(['"])(?:\\.|(?!\1)[^\\])*(?:(?P<end>\1)|\\?$)""", re.DOTALL)
+
+
 def _nested(line: bytes) -> int:
     """Return about how deeply the expressions of a line are nested; text in quotes is left out."""
     if len(line) <= DEEPEST:
         return 0
-    bare = re.sub(rb"""(['"])(?:\\.|(?!\1).)*\1""", b"", line)
+    bare = _QUOTED.sub(lambda quoted: b"" if quoted["end"] else quoted[0], line)
     depth = deepest = 0
     for bracket in re.findall(rb"[([{)\]}]", bare):
         depth += 1 if bracket in b"([{" else -1

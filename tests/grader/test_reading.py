@@ -117,3 +117,13 @@ def test_what_python_can_not_read_is_named(tmp_path: Path, exercise: Exercise, c
 def test_a_long_line_of_data_is_read(tmp_path: Path, exercise: Exercise) -> None:
     (tmp_path / "node.py").write_text(f"x = [{'[-1, 1], ' * 20_000}]\ny = '{'-' * 20_000}'\n")
     assert read(str(tmp_path / "node.py"), exercise).program
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["# it's " + r"\a" * 100_000, "# it's " + r"\'" * 100_000, "#" + "\"'" * 100_000, "# it's " + "\\" * 100_001],
+    ids=["backslashes", "escaped quotes", "quotes of both kinds", "a backslash at the end"],
+)
+def test_a_long_line_with_a_quote_that_is_not_closed_is_read(tmp_path: Path, exercise: Exercise, line: str) -> None:
+    (tmp_path / "node.py").write_text(f"{line}\nx = 1\n")
+    assert read(str(tmp_path / "node.py"), exercise).program
