@@ -153,9 +153,9 @@ class Checks:
         if isinstance(error, pytest.skip.Exception):
             return Verdict(item.name, title, "blocked", *common, blocked_by=self._blocking(item.name))
         if isinstance(error, Wrong):
-            return Verdict(item.name, title, "failed", *common, finding=error.finding)
+            return Verdict(item.name, title, "failed", *common, finding=error.finding.shortened())
         if isinstance(error, AssertionError):
-            return Verdict(item.name, title, "failed", *common, finding=Finding(str(error)))
+            return Verdict(item.name, title, "failed", *common, finding=Finding(str(error)).shortened())
         return Verdict(item.name, title, "error", *common, error=_describe(error, item.path))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, NoReturn, TypeVar
 
 
@@ -11,7 +11,8 @@ from typing import Any, Literal, NoReturn, TypeVar
 class Finding:
     """What is wrong, in words for the student, and in parts if there are any.
 
-    `at` is in seconds after the scenario's start, `message` counts the messages sent from 1.
+    `at` is in seconds after the scenario's start, `message` counts the messages sent from 1. `shortened` bounds the
+    texts, which may repeat what the student's program printed or published.
     """
 
     text: str
@@ -21,6 +22,18 @@ class Finding:
     part: str = ""
     expected: str = ""
     got: str = ""
+
+    def shortened(self) -> Finding:
+        """Return the finding with at most `LONGEST_TEXT` characters in each of its texts."""
+        return replace(self, text=_shortened(self.text), expected=_shortened(self.expected), got=_shortened(self.got))
+
+
+#: In characters. Whoever reads all findings of a class compares them word by word.
+LONGEST_TEXT = 4000
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]}…"
 
 
 class Wrong(AssertionError):

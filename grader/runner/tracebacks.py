@@ -8,11 +8,14 @@ from dataclasses import dataclass
 
 HEADER = "Traceback (most recent call last):"
 
-_FRAME = re.compile(r'^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)', re.MULTILINE)
+_FRAME = re.compile(r'^[ \t]*File "(?P<file>[^"]+)", line (?P<line>\d{1,9})', re.MULTILINE)
 _ERROR = re.compile(r"[A-Za-z_][\w.]*(:|$)")
 
+#: An error's last line is as long as the student likes; more of it than this helps nobody.
+_LONGEST_ERROR = 500
+
 #: How the traceback of an exception begins that nothing has caught in the main thread: in the module itself.
-_OF_THE_PROGRAM = re.compile(re.escape(HEADER) + r'\n\s*File "[^"]+", line \d+, in <module>\n')
+_OF_THE_PROGRAM = re.compile(re.escape(HEADER) + r'\n[ \t]*File "[^"]+", line \d{1,9}, in <module>\n')
 
 #: The text of a SyntaxError has no header.
 _OF_A_SYNTAX_ERROR = '  File "'
@@ -43,7 +46,7 @@ def last_error(log: str, file_name: str, source: str = "") -> LastError | None:
     if start < 0:
         return None
     rows = list(_traceback(log[start:]))
-    error = rows[-1].strip() if _ERROR.match(rows[-1]) else ""
+    error = _shortened(rows[-1].strip()) if _ERROR.match(rows[-1]) else ""
     block = "\n".join(rows)
     frames = [(m["file"].rpartition("/")[2] == file_name, int(m["line"])) for m in _FRAME.finditer(block)]
     *_, line = (None, *(number for of_student, number in frames if of_student))
@@ -65,6 +68,10 @@ def _traceback(text: str) -> Iterator[str]:
         yield row
         if _ERROR.match(row):
             return
+
+
+def _shortened(error: str) -> str:
+    return error if len(error) <= _LONGEST_ERROR else f"{error[:_LONGEST_ERROR]}…"
 
 
 def _row(source: str, line: int | None) -> str:

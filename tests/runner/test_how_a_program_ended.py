@@ -123,3 +123,30 @@ def test_an_error_that_another_thread_prints_is_not_the_one_that_ended_the_progr
 
     assert expected[1] == 3
     assert of_exit(Exit(1, None, None), log, "turnstile.py", SOURCE + "raise ValueError('no coins')") == expected
+
+
+FORGED = "Traceback (most recent call last):\n"
+
+
+@pytest.mark.parametrize(
+    "log",
+    [
+        FORGED + " \n" * 60_000,
+        FORGED + '  File "' * 20_000,
+        FORGED + f'  File "turnstile.py", line {"1" * 60_000}\n',
+        (FORGED + '  File "turnstile.py", line 1, in <module>\n') * 2_000,
+    ],
+    ids=["blank lines", "names without an end", "a line number without an end", "no errors"],
+)
+def test_a_forged_traceback_is_read_and_changes_nothing(log: str) -> None:
+    assert of_exit(Exit(1, None, None), log, "turnstile.py", SOURCE)[0] == "it gave up with exit code 1."
+
+
+def test_of_an_error_as_long_as_a_book_the_beginning_is_told() -> None:
+    log = RAISES.replace("no coins", "1" * 60_000)
+
+    text, line = of_exit(Exit(1, None, None), log, "turnstile.py", SOURCE)
+
+    assert line == 3
+    assert text.startswith("ValueError: 11111")
+    assert len(text) < 1_000
