@@ -9,13 +9,15 @@ import json
 import os
 import re
 import stat
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from grader.exercise.exercise import Exercise
 from grader.sandbox.program import Program
+from grader.submission.several_files import MOST_FILES, files_in, joined, parts
+from grader.submission.unreadable import not_python
 from grader.submission.upload import NoUpload, Upload, unpack
 
 
@@ -112,7 +114,7 @@ def cells_of(content: bytes, exercise: Exercise) -> list[str]:
         [code for _, code in codes if node.search(code)],
     ):
         if found:
-            return [_without_magic(code) for code in found]
+            return [_storable(_without_magic(code)) for code in found]
     what = f"class {exercise.class_name}" if exercise.class_name else f"node {exercise.node_name}"
     raise NoCell(
         f"None of the notebook's {len(codes)} code cells is the exercise's. Write the {what} in the cell that the "
@@ -133,6 +135,17 @@ def _source(cell: dict[str, Any]) -> str:
 
 def _without_magic(code: str) -> str:
     return "\n".join("" if line.startswith(("%", "!")) else line for line in code.split("\n"))
+
+
+def _storable(code: str) -> str:
+    """Raise `NoCell` for half of a character, which JSON can hold and no file can."""
+    try:
+        code.encode()
+    except UnicodeEncodeError as error:
+        line = code.count("\n", 0, error.start) + 1
+        found = f"Line {line} of the exercise's cell holds {code[error.start]!r}, half of a character."
+        raise NoCell(f"{found} Delete it and type the character again.") from None
+    return code
 
 
 MOST_BYTES = {".py": 1_000_000, ".ipynb": 30_000_000, ".zip": 5_000_000}
@@ -183,54 +196,21 @@ def of_source(name: str, code: bytes, exercise: Exercise, digest: str = "") -> S
     source = code.decode("utf-8", errors="replace")
     problem = not_python(code) if code.strip() else "Your file is empty."
     files = {exercise.file_name: code}
-    if exercise.programs:
-        files = {file: text.encode() for file, text in parts(source).items()}
-        missing = [one.file for one in exercise.programs if one.file not in files]
-        if missing and not problem:
-            problem = f"There is no {missing[0]} in it. Begin its part of the file with a line: # file: {missing[0]}"
+    if exercise.programs and not problem:
+        files, problem = _several(source, exercise)
     program = None if problem else Program(next(iter(files)), files)
     return Submission(name, digest or _digest(code), exercise.file_name, source, program, problem)
 
 
-#: How the ways to save text begin that are not UTF-8 (Unicode 15, chapter 23.8, "Byte Order Mark").
-UTF_16 = (b"\xff\xfe", b"\xfe\xff")
-
-
-def not_python(code: bytes) -> str:
-    """Say why Python can't read a file, if Python's own message is unclear; otherwise empty."""
-    if code.startswith(UTF_16):
-        return (
-            "Your file is saved as UTF-16, which Python can't read. Save it as UTF-8: in VS Code, click UTF-16 below."
-        )
-    if b"\0" in code:
-        line = code[: code.index(b"\0")].count(b"\n") + 1
-        return f"Line {line} of your file holds a NUL byte, so it is not a text file. Save your code as text, in UTF-8."
-    deepest = max(map(_nested, code.splitlines()), default=0)
-    if deepest > DEEPEST:
-        return f"A line of your file nests {deepest:,} operators or brackets. Python can't read such deep nesting."
-    return ""
-
-
-#: Python's parser gives up, or takes all memory, at some thousands (CPython, Parser/parser.c, MAXSTACK).
-DEEPEST = 5_000
-
-
-#: Text in quotes; up to the end of the line if they are not closed. It can be read in one way only: otherwise a line
-#: of backslashes would take forever.
-_QUOTED = re.compile(rb"""(['"])(?:\\.|(?!\1)[^\\])*(?:(?P<end>\1)|\\?$)""", re.DOTALL)
-
-
-def _nested(line: bytes) -> int:
-    """Return about how deeply the expressions of a line are nested; text in quotes is left out."""
-    if len(line) <= DEEPEST:
-        return 0
-    bare = _QUOTED.sub(lambda quoted: b"" if quoted["end"] else quoted[0], line)
-    depth = deepest = 0
-    for bracket in re.findall(rb"[([{)\]}]", bare):
-        depth += 1 if bracket in b"([{" else -1
-        deepest = max(deepest, depth)
-    operators = (len(re.findall(rb"[-+~*/%@&|^]|\bnot\b", part)) for part in re.split(rb"[,:()\[\]{}]", bare))
-    return deepest + max(operators, default=0)
+def _several(source: str, exercise: Exercise) -> tuple[dict[str, bytes], str]:
+    """The programs of an exercise with several, by their files, and what is wrong with them."""
+    if (count := files_in(source)) > MOST_FILES:
+        return {}, f"There are {count} files in it. Hand in at most {MOST_FILES}."
+    files = {file: text.encode() for file, text in parts(source).items()}
+    missing = [one.file for one in exercise.programs if one.file not in files]
+    if missing:
+        return files, f"There is no {missing[0]} in it. Begin its part of the file with a line: # file: {missing[0]}"
+    return files, ""
 
 
 def of_upload(name: str, content: bytes, exercise: Exercise) -> Submission:
@@ -267,9 +247,9 @@ def _codes(upload: Upload, exercise: Exercise) -> Iterator[bytes]:
 
 
 def _folder(path: Path) -> dict[str, bytes]:
-    """The Python files in a folder."""
+    """The Python files in a folder; of too many the first, which show that they are."""
     found = {}
-    for file in sorted(path.glob("*.py")):
+    for file in sorted(path.glob("*.py"))[: MOST_FILES + 1]:
         with contextlib.suppress(_Unusable):
             found[file.name] = _content(file)
     return found
@@ -309,28 +289,3 @@ def _executable(given: str, exercise: Exercise) -> Submission:
 
 def _digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
-
-
-#: Several programs in one file: each begins with such a line.
-_BEGIN = re.compile(r"# file: (?P<name>[a-z_][a-z0-9_]*\.py)\s*")
-
-
-def parts(source: str) -> dict[str, str]:
-    """The programs in a file, by their names. What stands before the first one belongs to none.
-
-    Each has as many empty lines in front as it has lines before it, so that line numbers are those of the whole file.
-    """
-    found: dict[str, list[str]] = {}
-    current: list[str] | None = None
-    for number, line in enumerate(source.splitlines()):
-        if begins := _BEGIN.fullmatch(line):
-            current = found.setdefault(begins["name"], [""] * number)
-        if current is not None:
-            current.append(line)
-    return {name: "\n".join(lines) + "\n" for name, lines in found.items()}
-
-
-def joined(files: Mapping[str, bytes]) -> str:
-    """Several files as one."""
-    texts = (f"# file: {name}\n{code.decode(errors='replace').rstrip()}\n" for name, code in files.items())
-    return "\n\n".join(texts)

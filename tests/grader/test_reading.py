@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from grader.exercise import Exercise
+from grader.exercise.exercise import ProgramFile
 from grader.submission import NoSubmission, read
 
 CELL = "%%node joint_velocity\nclass JointVelocity:\n    pass\n"
@@ -127,3 +129,44 @@ def test_a_long_line_of_data_is_read(tmp_path: Path, exercise: Exercise) -> None
 def test_a_long_line_with_a_quote_that_is_not_closed_is_read(tmp_path: Path, exercise: Exercise, line: str) -> None:
     (tmp_path / "node.py").write_text(f"{line}\nx = 1\n")
     assert read(str(tmp_path / "node.py"), exercise).program
+
+
+def test_half_of_a_character_in_a_notebook_is_reported_with_its_line(tmp_path: Path, exercise: Exercise) -> None:
+    submission = read(notebook(tmp_path, (CELL + "name = '\ud83e'\n", {})), exercise)
+    assert submission.program is None
+    assert submission.problem.startswith("Line 4 of the exercise's cell holds '\\ud83e', half of a character.")
+
+
+@pytest.fixture
+def pair(exercise: Exercise) -> Exercise:
+    """An exercise with two programs in one submission."""
+    return replace(exercise, programs=(ProgramFile("speaker.py", "speaker"), ProgramFile("hearer.py", "hearer")))
+
+
+def test_several_programs_are_handed_in_as_a_folder_or_as_one_file(tmp_path: Path, pair: Exercise) -> None:
+    folder = tmp_path / "package"
+    folder.mkdir()
+    for name in ("speaker", "hearer", "words"):
+        (folder / f"{name}.py").write_text(f"name = '{name}'\n")
+    of_folder = read(str(folder), pair)
+    (tmp_path / "both.py").write_text(of_folder.source)
+    of_file = read(str(tmp_path / "both.py"), pair)
+
+    for submission in (of_folder, of_file):
+        assert submission.program
+        assert sorted(submission.program.files) == ["hearer.py", "speaker.py", "words.py"]
+        assert b"name = 'words'" in submission.program.files["words.py"]
+
+
+@pytest.mark.parametrize("as_folder", [True, False], ids=["folder", "file"])
+def test_files_without_end_are_refused(tmp_path: Path, pair: Exercise, as_folder: bool) -> None:
+    given = tmp_path / ("package" if as_folder else "all.py")
+    if as_folder:
+        given.mkdir()
+        for number in range(100):
+            (given / f"file_{number}.py").write_text("x = 1\n")
+    else:
+        given.write_text("".join(f"# file: file_{number}.py\n" for number in range(40_000)))
+    submission = read(str(given), pair)
+    assert submission.program is None
+    assert submission.problem.endswith("Hand in at most 20.")

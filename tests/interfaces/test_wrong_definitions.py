@@ -43,7 +43,11 @@ def faults(*definitions: Definition) -> list[Fault]:
         ("float64 class", "reserved word of C or C++", "class_value"),
         ("float64 lambda", "reserved word of Python", "lambda_value"),
         ("int32 limit=3", "`limit` can't be a constant's name.", "leave out the `=`: int32 limit 3"),
-        ("int32 MAX_VELOCITY_OF_BOTH_SHOULDERS_AND_OF_THE_ELBOWs=3", "can't be a constant's name.", "MAX_VELOCITY_OF_BOTH_SHOULDERS"),
+        (
+            "int32 MAX_VELOCITY_OF_BOTH_SHOULDERS_AND_OF_THE_ELBOWs=3",
+            "can't be a constant's name.",
+            "MAX_VELOCITY_OF_BOTH_SHOULDERS",
+        ),
         ("geometry_msgs/Pose HOME=3", "has the type `geometry_msgs/Pose`", "can't be constants"),
         ("int32 x abc", "`abc`, which is not a valid int32", "-2147483648"),
         ("uint8 x 256", "`256`, which is not a valid uint8", "<= 255"),

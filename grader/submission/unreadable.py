@@ -1,0 +1,45 @@
+"""Says why Python can't read a file, where Python itself says it unclearly, or takes all memory."""
+
+from __future__ import annotations
+
+import re
+
+#: How the ways to save text begin that are not UTF-8 (Unicode 15, chapter 23.8, "Byte Order Mark").
+UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+
+
+def not_python(code: bytes) -> str:
+    """Say why Python can't read a file, if Python's own message is unclear; otherwise empty."""
+    if code.startswith(UTF_16):
+        return (
+            "Your file is saved as UTF-16, which Python can't read. Save it as UTF-8: in VS Code, click UTF-16 below."
+        )
+    if b"\0" in code:
+        line = code[: code.index(b"\0")].count(b"\n") + 1
+        return f"Line {line} of your file holds a NUL byte, so it is not a text file. Save your code as text, in UTF-8."
+    deepest = max(map(_nested, code.splitlines()), default=0)
+    if deepest > DEEPEST:
+        return f"A line of your file nests {deepest:,} operators or brackets. Python can't read such deep nesting."
+    return ""
+
+
+#: Python's parser gives up, or takes all memory, at some thousands (CPython, Parser/parser.c, MAXSTACK).
+DEEPEST = 5_000
+
+
+#: Text in quotes; up to the end of the line if they are not closed. It can be read in one way only: otherwise a line
+#: of backslashes would take forever.
+_QUOTED = re.compile(rb"""(['"])(?:\\.|(?!\1)[^\\])*(?:(?P<end>\1)|\\?$)""", re.DOTALL)
+
+
+def _nested(line: bytes) -> int:
+    """Return about how deeply the expressions of a line are nested; text in quotes is left out."""
+    if len(line) <= DEEPEST:
+        return 0
+    bare = _QUOTED.sub(lambda quoted: b"" if quoted["end"] else quoted[0], line)
+    depth = deepest = 0
+    for bracket in re.findall(rb"[([{)\]}]", bare):
+        depth += 1 if bracket in b"([{" else -1
+        deepest = max(deepest, depth)
+    operators = (len(re.findall(rb"[-+~*/%@&|^]|\bnot\b", part)) for part in re.split(rb"[,:()\[\]{}]", bare))
+    return deepest + max(operators, default=0)
