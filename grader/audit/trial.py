@@ -136,8 +136,7 @@ class Trials:
 
     def judge(self, recordings: dict[str, Recording], references: dict[str, Recording]) -> dict[str, Verdict]:
         """The verdicts on these recordings, by check."""
-        runner = self.grading.runner
-        verdicts = runner.judge(recordings, references)
+        verdicts = self.grading.runner.judge(recordings, references)
         return {verdict.name: verdict for verdict in verdicts}
 
     def trial_of_recordings(self, recordings: dict[str, Recording]) -> Trial:

@@ -152,10 +152,9 @@ class Checks:
             return Verdict(item.name, title, "passed", *common)
         if isinstance(error, pytest.skip.Exception):
             return Verdict(item.name, title, "blocked", *common, blocked_by=self._blocking(item.name))
-        if isinstance(error, Wrong):
-            return Verdict(item.name, title, "failed", *common, finding=error.finding.shortened())
         if isinstance(error, AssertionError):
-            return Verdict(item.name, title, "failed", *common, finding=Finding(str(error)).shortened())
+            finding = error.finding if isinstance(error, Wrong) else Finding(str(error))
+            return Verdict(item.name, title, "failed", *common, finding=finding.shortened())
         return Verdict(item.name, title, "error", *common, error=_describe(error, item.path))
 
 

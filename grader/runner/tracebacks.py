@@ -79,28 +79,26 @@ def _row(source: str, line: int | None) -> str:
     return rows[line - 1].strip() if line and line <= len(rows) else ""
 
 
-def is_rclpys_own(log: str, file_name: str, source: str) -> bool:
-    """Return whether the last error in `log` is a race in rclpy, and so not the fault of a correct program.
-
-    On Ctrl-C a thread of rclpy shuts ROS 2 down. If it does so between the `ok()` and the `shutdown()` of a program
-    that checks first, as `rclpy.try_shutdown()` does, the program's call fails (rclpy 7.1, `Context.try_shutdown`).
-    """
-    last = last_error(log, file_name, source)
-    if last is None or "rcl_shutdown already called" not in last.error:
-        return False
-    if ", in try_shutdown" in last.traceback:
-        return True
-    rows = source.splitlines()[: last.line or 0]
-    return any("ok()" in row for row in rows[-2:])
-
-
 def error_on_interrupt(before: str, log: str, file_name: str, source: str) -> str:
     """Return the last line of the error that a program printed after it was interrupted; "" if it printed none.
 
     `before` is what it had printed until then, and `log` is everything.
     """
-    new = log.removeprefix(before)
-    if log.count(HEADER) <= before.count(HEADER) or is_rclpys_own(new, file_name, source):
+    if log.count(HEADER) <= before.count(HEADER):
         return ""
-    last = last_error(new, "")
-    return last.error if last else ""
+    last = last_error(log.removeprefix(before), file_name)
+    return "" if last is None or _is_rclpys_own(last, source) else last.error
+
+
+def _is_rclpys_own(last: LastError, source: str) -> bool:
+    """Return whether an error is a race in rclpy, and so not the fault of a correct program.
+
+    On Ctrl-C a thread of rclpy shuts ROS 2 down. If it does so between the `ok()` and the `shutdown()` of a program
+    that checks first, as `rclpy.try_shutdown()` does, the program's call fails (rclpy 7.1, `Context.try_shutdown`).
+    """
+    if "rcl_shutdown already called" not in last.error:
+        return False
+    if ", in try_shutdown" in last.traceback:
+        return True
+    rows = source.splitlines()[: last.line or 0]
+    return any("ok()" in row for row in rows[-2:])

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import itertools
 import re
 from collections.abc import Mapping
 
 #: Several programs in one file: each begins with such a line.
 _BEGIN = re.compile(r"# file: (?P<name>[a-z_][a-z0-9_]*\.py)\s*")
-
 
 #: Each is as long as the whole, by its empty lines.
 MOST_FILES = 20
@@ -35,7 +33,6 @@ def parts(source: str) -> dict[str, str]:
 
 
 def joined(files: Mapping[str, bytes]) -> str:
-    """Return several files as one. Those beyond the most that are read only show that there are too many."""
-    first = itertools.islice(files.items(), MOST_FILES + 1)
-    texts = (f"# file: {name}\n{code.decode(errors='replace').rstrip()}\n" for name, code in first)
+    """Return several files as one."""
+    texts = (f"# file: {name}\n{code.decode(errors='replace').rstrip()}\n" for name, code in files.items())
     return "\n\n".join(texts)
