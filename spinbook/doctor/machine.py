@@ -15,6 +15,7 @@ from typing import Any
 
 from grader.child_process import run_program
 from interface_compiler import prefixes, shipped, toolchain
+from spinbook.doctor import python_build
 from spinbook.doctor.diagnosis import Finding, missing, ok, warning
 from spinbook.ros2.executables import is_built_in, real_ros2
 
@@ -22,11 +23,24 @@ OLDEST, NEWEST = (3, 10), (3, 14)
 
 
 def examine_python(name: str) -> Finding:
-    """Look at the version of the Python that runs this."""
+    """Look at the Python that runs this: its version, and how it was compiled."""
     found = f"{platform.python_implementation()} {platform.python_version()}, {sys.executable}"
-    if OLDEST <= sys.version_info[:2] <= NEWEST and platform.python_implementation() == "CPython":
+    if not (OLDEST <= sys.version_info[:2] <= NEWEST and platform.python_implementation() == "CPython"):
+        return missing(name, found, "Spinbook needs CPython 3.10 to 3.14. Name one: make PYTHON=python3.12 setup")
+    if python_build.is_optimized():
         return ok(name, found)
-    return missing(name, found, "Spinbook needs CPython 3.10 to 3.14. Name one: make PYTHON=python3.12 setup")
+    return warning(name, f"{found}, compiled without optimizations", _faster_build())
+
+
+def _faster_build() -> str:
+    this = python_build.this_build()
+    if build := python_build.faster_build(this, os.environ.get("PATH", "")):
+        advice = f"There is a faster build of it here: make PYTHON={build} setup"
+    else:
+        advice = f'pyenv can: PYTHON_CONFIGURE_OPTS="--enable-optimizations --with-lto" pyenv install {this.version}'
+    return (
+        f"All works, but a class takes a tenth to a fifth longer to grade than with a Python that has them.\n{advice}"
+    )
 
 
 def examine_folder(name: str) -> Finding:

@@ -24,11 +24,11 @@ def test_here_everything_that_is_needed_works() -> None:
 
 
 def test_a_person_reads_a_line_for_each_check_and_a_sum() -> None:
-    run = doctor("python", "middleware")
+    run = doctor("folder", "middleware", HOME="/", COLUMNS="1000")
     assert run.returncode == 0
     first, second, *_, last = run.stdout.splitlines()
-    assert first.startswith("✓  Python")
-    assert sys.executable in run.stdout
+    assert first.startswith("✓  Folder")
+    assert f"(environment: {sys.prefix})" in first
     assert second.startswith("✓  Middleware")
     assert last == "Courses can be built and graded here."
 

@@ -6,13 +6,15 @@ import importlib
 import json
 import os
 import sys
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 from running import doctor, finding_of
 
 from grader.sandbox import isolation
-from spinbook.doctor import machine, sandbox
+from spinbook.doctor import machine, python_build, sandbox
+from spinbook.doctor.diagnosis import State
 from spinbook.doctor.ros import wheels_installed
 from spinbook.ros2.executables import GUARD
 
@@ -180,3 +182,27 @@ def test_the_strongest_sandbox_that_works_decides(
 def test_a_python_that_is_not_supported_is_a_fault(monkeypatch: pytest.MonkeyPatch, version: tuple[int, ...]) -> None:
     monkeypatch.setattr(sys, "version_info", version)
     assert machine.examine_python("Python").state.value == "missing"
+
+
+def test_a_python_without_optimizations_is_a_warning_that_names_a_faster_build(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    version = "{}.{}".format(*sys.version_info[:2])
+    build = python_build.Build("/usr/bin/python", version, optimized=True, complete=True)
+    monkeypatch.setattr(python_build, "is_optimized", lambda: False)
+    monkeypatch.setenv("PATH", program(tmp_path, f"python{version}", f"echo '{json.dumps(asdict(build))}'"))
+    finding = machine.examine_python("Python")
+    assert finding.state is State.WARNING
+    assert finding.found.endswith("compiled without optimizations")
+    assert "make PYTHON=/usr/bin/python setup" in finding.fix
+
+
+def test_without_a_faster_build_the_warning_says_how_to_make_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(python_build, "is_optimized", lambda: False)
+    monkeypatch.setenv("PATH", "")
+    assert "--enable-optimizations" in machine.examine_python("Python").fix
+
+
+def test_a_python_with_optimizations_is_fine(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(python_build, "is_optimized", lambda: True)
+    assert machine.examine_python("Python").state is State.OK

@@ -24,6 +24,7 @@ case "$1 $2" in
         mkdir -p "$3/bin" && cp "$STAGE/environment-python" "$3/bin/python"
         exit ;;
     "-c import ensurepip, venv") [ ! -e "$STAGE/no-ensurepip" ]; exit ;;
+    "-I spinbook/doctor/python_build.py") cat "$STAGE/faster-build" 2>/dev/null; exit 0 ;;
     "-c "*base_prefix*) [ -e "$STAGE/is-active" ] && echo True || echo False; exit ;;
     "-c "*_base_executable*) cat "$STAGE/is-active"; exit ;;
     "- ") [ ! -e "$STAGE/version" ] || exec @REAL@ -c "import sys; sys.version_info = ($(cat "$STAGE/version"))
