@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import inspect
+import tempfile
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Literal
@@ -45,6 +47,19 @@ class ReportsWithoutTracebacks:
             outcome = "skipped" if isinstance(call.excinfo.value, pytest.skip.Exception) else "failed"
         assert call.when != "collect"
         return pytest.TestReport(item.nodeid, item.location, {}, outcome, None, call.when)
+
+
+@contextlib.contextmanager
+def _temporary_folder() -> Iterator[None]:
+    """Give `tmp_path` a folder for these checks alone. pytest's own is for all that this user tests: it removes there
+    what others have left, which may take a minute, and what they still want to look at.
+    """
+    with contextlib.ExitStack() as stack:
+        with contextlib.suppress(OSError):  # a full disk matters to the checks that use it, to no other
+            made = tempfile.TemporaryDirectory(prefix="spinbook-checks-", ignore_cleanup_errors=True)
+            patch = stack.enter_context(pytest.MonkeyPatch.context())
+            patch.setenv("PYTEST_DEBUG_TEMPROOT", stack.enter_context(made))
+        yield
 
 
 class Checks:
@@ -111,11 +126,13 @@ class Checks:
             found = f"it can't be read: {type(error).__name__}: {text}"
             self.problem = ExerciseError(node.path, found, "It must import.", _line(error, node.path))
 
-    @pytest.hookimpl(tryfirst=True)
-    def pytest_runtestloop(self, session: pytest.Session) -> None:
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, object, object]:
         """Say that the checks are collected, if they can be run; pytest's own implementation runs them."""
         if session.items and not session.testsfailed:
             self._before_the_first()
+        with _temporary_folder():  # only now: this may be a fork of the process that collected them
+            return (yield)
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import getpass
 import shutil
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -29,6 +30,14 @@ def test_once(first: Run) -> None:
     SEEN.append(first)
     assert len(SEEN) == 1, "something is left of another judging"
     assert first.recording.log == "right", f"it is {first.recording.log}"
+'''
+
+WRITES_A_FILE = '''
+@check(points=1, hint="None.")
+def test_writing(first: Run, tmp_path) -> None:
+    """It writes a file."""
+    (tmp_path / "file").write_text("text")
+    raise AssertionError(tmp_path)
 '''
 
 
@@ -164,3 +173,21 @@ def test_fixtures(twice, times, tmp_path, monkeypatch, capfd, caplog) -> None:
         workers.share([exercise])
         verdicts = [judged(workers, job_of(exercise)) for _ in range(2)]
     assert [verdict.status for verdict in verdicts] == ["passed"] * 2
+
+
+def test_what_checks_write_is_gone_when_they_end_and_pytests_folders_of_others_stay(
+    exercise: Exercise, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write(exercise.folder, WRITES_A_FILE)
+    # pytest keeps the last three in its own folder, and removes the others there.
+    others = [tmp_path / f"pytest-of-{getpass.getuser()}" / f"pytest-{number}" for number in range(5)]
+    for other in others:
+        other.mkdir(parents=True)
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    with WorkerPool() as workers:
+        verdicts = [judged(workers, job_of(exercise)) for _ in range(2)]
+    texts = [verdict.finding.text for verdict in verdicts if verdict.finding]
+    assert len(set(texts)) == 2, "both wrote into the same folder"
+    assert all(text.startswith(f"{tmp_path}/spinbook-checks-") for text in texts)
+    assert sorted(others[0].parent.iterdir()) == others
+    assert list(tmp_path.glob("spinbook-checks-*")) == []
