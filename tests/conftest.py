@@ -36,6 +36,9 @@ def pytest_collection_finish() -> None:
 def pytest_configure(config: pytest.Config) -> None:
     # Started in a shell's background, tests would make every program that they start ignore Ctrl-C.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    # numpy, which ROS's message classes import, starts a thread per CPU, which computes for 0.1 s before it waits: in
+    # each of some thousand processes that tests start, it would take that from the others.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     # Hypothesis fails an example that takes longer than 200 ms, unless told otherwise: on a busy machine, many do.
     settings.register_profile("no deadline", deadline=None)
     settings.load_profile("no deadline")
@@ -60,6 +63,7 @@ def ros_domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
         for name, value in ros_domains.environment(domain).items():
             monkeypatch.setenv(name, value)
         yield domain
+        assert not ros_domains.threads_of_nodes(), "a node is left in this process: the domain's next test would see it"
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -35,3 +35,9 @@ def environment(domain: int) -> dict[str, str]:
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
         "FASTRTPS_DEFAULT_PROFILES_FILE": str(LOOPBACK),
     }
+
+
+def threads_of_nodes() -> list[str]:
+    """Return the names of the threads in this process that Fast DDS runs as long as there is a node."""
+    names = (task.read_text().strip() for task in Path("/proc/self/task").glob("*/comm"))
+    return [name for name in names if name.startswith("dds.")]

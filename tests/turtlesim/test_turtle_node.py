@@ -85,9 +85,12 @@ class Outside:
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
         self._publishers: dict[str, Any] = {}
+        self._clients: list[ActionClient[Any, Any, Any]] = []
 
     def close(self) -> None:
         self._executor.shutdown()
+        for client in self._clients:  # rclpy's destroy_node leaves them, and with them the node in its ROS domain
+            client.destroy()
         self.node.destroy_node()
         self._context.try_shutdown()
 
@@ -107,6 +110,11 @@ class Outside:
         heard: list[Any] = []
         self.node.create_subscription(kind, topic, heard.append, 100)
         return heard
+
+    def action_client(self, kind: Any, name: str) -> ActionClient[Any, Any, Any]:
+        """Return a client for an action, which ends with this node."""
+        self._clients.append(ActionClient(self.node, kind, name))
+        return self._clients[-1]
 
     def say(self, topic: str, message: Any) -> None:
         """Publish once, when there is a subscriber."""
@@ -287,7 +295,7 @@ def test_a_name_that_is_taken_or_unknown_is_reported_in_the_log(turtlesim: Runni
 
 def rotate(outside: Outside, theta: float, remaining: list[float]) -> Any:
     """Return the handle of an accepted goal, whose feedback goes into `remaining`."""
-    client = ActionClient(outside.node, RotateAbsolute, "/turtle1/rotate_absolute")
+    client = outside.action_client(RotateAbsolute, "/turtle1/rotate_absolute")
     outside.until(client.server_is_ready, "the action")
     goal = client.send_goal_async(
         RotateAbsolute.Goal(theta=theta), feedback_callback=lambda arrived: remaining.append(arrived.feedback.remaining)
