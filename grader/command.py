@@ -14,7 +14,7 @@ from grader.sandbox.isolation import Isolation
 from grader.sandbox.middleware import choose_middleware, to_be_compiled
 from grader.sandbox.program import Middleware, SandboxUnavailable
 from grader.submission.reading import NoSubmission, Submission, read
-from grader.workers.pool import HostFault, WorkerPool
+from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
 
 if TYPE_CHECKING:
     from grader.grading.grade import Grade, Options
@@ -117,6 +117,7 @@ def grade(
       spinbook grade joint_velocity submissions/ --out results/ --regrade anna
       spinbook grade joint_velocity submissions/ --out results/ --rejudge
     """
+    leave_cpus_to_workers()
     wanted: dict[str, Any] = {
         "isolation": Isolation(isolation) if isolation else None,
         "seed": seed,

@@ -16,7 +16,7 @@ from grader.exercise.loading import NoExercise, find, load
 from grader.grading.grade import Options
 from grader.sandbox.middleware import choose_middleware
 from grader.sandbox.program import Middleware, SandboxUnavailable
-from grader.workers.pool import HostFault, WorkerPool
+from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
 from interface_compiler.near import use_near
 
 #: Exit codes, besides click's 2 for usage and a shell's 130 for Ctrl-C.
@@ -75,6 +75,7 @@ def audit(
 
     Exit codes: 0 nothing to fix, 1 there is something to fix, 2 wrong usage, 3 a fault of the machine or the grader.
     """
+    leave_cpus_to_workers()
     for option, file in (("--json", json_), ("--html", html)):
         if file and (file.is_dir() or not file.absolute().parent.is_dir()):
             text = "that is a folder" if file.is_dir() else f"there is no folder {file.parent}"

@@ -115,13 +115,15 @@ FAST_DDS_ENVIRONMENT = {
     "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
 }
 
+_THREADS_OF_NUMPY = "OPENBLAS_NUM_THREADS"
+
 #: For the worker and its runners. A second RMW or the user's ROS_STATIC_PEERS would separate runner and student.
 WORKER_ENVIRONMENT = {
     **FAST_DDS_ENVIRONMENT,
     "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp",
     "ROS_STATIC_PEERS": "",
     "PYTHONHASHSEED": "0",
-    "OPENBLAS_NUM_THREADS": "1",
+    _THREADS_OF_NUMPY: "1",
 }
 
 #: For students' programs. No time stamps in the log, so that two runs log the same.
@@ -129,6 +131,13 @@ STUDENT_ENVIRONMENT = {
     "RCUTILS_CONSOLE_OUTPUT_FORMAT": "[{severity}] [{name}]: {message}",
     "RCUTILS_COLORIZED_OUTPUT": "0",
 }
+
+
+def leave_cpus_to_workers() -> None:
+    """Keep numpy, which ROS's message classes import, from starting a thread per CPU in this process: each of them
+    computes for 0.1 s before it waits. For commands; processes that they start have it from them.
+    """
+    os.environ.setdefault(_THREADS_OF_NUMPY, "1")
 
 
 PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, SHARE, JUDGE = b"p", b"t", b"j", b"s", b"c"

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import pickle
 import signal
+import subprocess
+import sys
 
 import psutil
 import pytest
@@ -83,3 +85,10 @@ def test_a_pool_that_was_closed_does_no_more_jobs() -> None:
         pass
     with pytest.raises(HostFault, match="the worker process is gone"):
         workers.do(ListJob(load(EXERCISE)))
+
+
+def test_a_command_that_leaves_the_cpus_to_its_workers_has_one_thread_with_numpy() -> None:
+    code = "from grader.workers.pool import leave_cpus_to_workers; leave_cpus_to_workers(); import numpy, os"
+    code += "; print(len(os.listdir('/proc/self/task')))"
+    unset = {name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"}
+    assert subprocess.run([sys.executable, "-c", code], env=unset, capture_output=True, check=True).stdout == b"1\n"
