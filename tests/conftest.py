@@ -63,7 +63,7 @@ def ros_domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
         for name, value in ros_domains.environment(domain).items():
             monkeypatch.setenv(name, value)
         yield domain
-        assert not ros_domains.threads_of_nodes(), "a node is left in this process: the domain's next test would see it"
+        assert not ros_domains.nodes_left(), "a node is left in this process: the domain's next test would see it"
 
 
 @pytest.fixture(scope="module", autouse=True)
