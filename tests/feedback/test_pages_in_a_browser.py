@@ -25,8 +25,8 @@ EVIL = (
 )
 
 
-@pytest.fixture
-def site(graded: dict[str, Grade], exercise: Exercise, tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def site(graded: dict[str, Grade], exercise: Exercise, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder of results: index.html and one page per student, one of whom is hostile in every field."""
     names = {"solution": "Grace Hopper", "fixed_dt": "Jörg Müller", "breaks_pages": EVIL}
     entries = [entry(grade, names.get(name, "Ada Lovelace")) for name, grade in graded.items() if name != "host_error"]
@@ -40,13 +40,14 @@ def site(graded: dict[str, Grade], exercise: Exercise, tmp_path: Path) -> Path:
     dt = Signature(("fixed_dt",), ("dt is always 0.1 s.",), failures_of(graded["fixed_dt"]))
     skipped = [Skipped(f"s77/{EVIL}", EVIL)]
     page = overview_page(exercise, entries, skipped, faults, grouped(entries, [dt]))
-    (tmp_path / "index.html").write_text(page, encoding="utf-8")
+    results = tmp_path_factory.mktemp("results")
+    (results / "index.html").write_text(page, encoding="utf-8")
     for number, one in enumerate([*entries, *faults]):
-        folder = tmp_path / "students" / (f"evil{number}" if one.student.name == EVIL else one.student.id)
+        folder = results / "students" / (f"evil{number}" if one.student.name == EVIL else one.student.id)
         folder.mkdir(parents=True)
         page = feedback_page(one, exercise, feedback_plot(one.grade, exercise))
         (folder / "feedback.html").write_text(page, encoding="utf-8")
-    return tmp_path
+    return results
 
 
 def every_page(site: Path) -> list[Path]:
@@ -77,8 +78,7 @@ def test_everybody_can_read_them_at_a_desk_and_on_a_phone(browser: Browser, site
     with opened(browser, site / "index.html", width=width, dark=dark) as shown:
         for page in every_page(site):
             shown.show(page)
-            for details in shown.page.locator("details").all():
-                details.evaluate("details => details.open = true")
+            shown.page.evaluate("document.querySelectorAll('details').forEach((details) => (details.open = true))")
             assert shown.violations() == [], page
             assert not shown.scrolls_sideways(), page
 
