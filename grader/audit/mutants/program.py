@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TypeVar, cast
 
 import libcst as cst
@@ -113,12 +113,28 @@ class Program:
 
     def changed(self, change: Change) -> str:
         """The source with one change made."""
-        if change.old is self.module:
-            result = cast(cst.Module, change.new).code
-        else:
-            result = cast(cst.Module, self.module.deep_replace(change.old, change.new)).code
+        result = self._with(change.old, change.new).code
         missing = [name for name in change.imports if f"import {name}\n" not in result]
         return "".join(_with_imports(result.splitlines(keepends=True), missing))
+
+    def _with(self, old: cst.CSTNode, new: cst.CSTNode) -> cst.Module:
+        """The module with one part replaced. libcst's `deep_replace` would make what is not around it anew, too."""
+        above = self.parent(old)
+        while above is not None:
+            old, new = above, _with_child(above, old, new)
+            above = self.parent(above)
+        return cast(cst.Module, new)
+
+
+def _with_child(node: cst.CSTNode, old: cst.CSTNode, new: cst.CSTNode) -> cst.CSTNode:
+    """The node with another child in place of `old`."""
+    for field in fields(node):
+        value = getattr(node, field.name)
+        if value is old:
+            return node.with_changes(**{field.name: new})
+        if isinstance(value, (list, tuple)) and any(item is old for item in value):
+            return node.with_changes(**{field.name: [new if item is old else item for item in value]})
+    raise ValueError(f"a {type(old).__name__} is no child of this {type(node).__name__}")
 
 
 def _with_imports(lines: list[str], names: list[str]) -> Iterator[str]:
