@@ -205,8 +205,9 @@ def located(files: Mapping[str, bytes], known: list[Secret]) -> Iterator[Leak]:
 class _Search:
     """Finds secrets in a text in one pass, however many there are.
 
-    Wherever a secret of n characters is, a piece of `_PIECE` characters of it begins at a multiple of n - _PIECE + 1.
-    So the text's pieces at the multiples for the shortest secret are looked up, and the secrets that have one compared.
+    Wherever a secret is, one of the pieces of `_PIECE` characters that begin at its first n characters begins at a
+    multiple of n. So the text's pieces at multiples of n are looked up, and the secrets that have one there compared.
+    n is as large as the shortest secret allows.
     """
 
     def __init__(self, known: Sequence[Secret]) -> None:
@@ -216,7 +217,7 @@ class _Search:
         self._step = min((len(text) for _, text in long), default=2 * _PIECE) - _PIECE + 1
         self._having: dict[str, list[tuple[int, int]]] = {}
         for number, text in long:
-            for at in range(len(text) - _PIECE + 1):
+            for at in range(self._step):
                 self._having.setdefault(text[at : at + _PIECE], []).append((number, at))
 
     def found_in(self, text: str) -> list[Secret]:
