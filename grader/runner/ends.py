@@ -18,7 +18,7 @@ from grader.exercise.exercise import Qos
 from grader.scenario.scenario import SECOND, START, ComputerTime
 from rmw_lockstep.hub import Hub, HubNode
 from rmw_lockstep.hub import Qos as HubQos
-from rmw_lockstep.hub.ends import Moment
+from rmw_lockstep.hub.ends import Heard, Moment
 from rmw_lockstep.hub.qos import BEST_EFFORT, RELIABLE, TRANSIENT_LOCAL, VOLATILE
 
 #: How much of the computer's time passes per unit of simulated time, by a scenario's `computer_time`.
@@ -91,7 +91,7 @@ class Ends:
     node: HubNode
     clocks: Clocks
 
-    def at(self, moment: Moment) -> int:
+    def at(self, moment: Moment | Heard) -> int:
         """Return the simulated time of a moment (ns); anything before simulated time begins counts as its beginning."""
         return max(START, self.clocks.simulated(moment.now, moment.stage))
 

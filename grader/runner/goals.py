@@ -149,7 +149,7 @@ class ActionClient:
         return {goal: tuple(messages) for goal, messages in found.items()}
 
     def _at(self, heard: Heard) -> int:
-        return self._ends.at(Moment(heard.now, heard.stage, heard.handled, heard.main))
+        return self._ends.at(heard)
 
 
 def state_name(number: int) -> str:

@@ -43,12 +43,12 @@ def place_of(number: int, one: Heard) -> Place:
 
 
 def from_other_threads(heard: Sequence[tuple[int, Heard]]) -> set[Source]:
-    """Return the subscriptions and nodes for which any thread but the main one published.
+    """Return the subscriptions and nodes for which any thread but the main one published, or several processes.
 
     It could be one thread or several: how many of a pool's threads get something to do is chance, so they count as
     several.
     """
-    return {(number, one.node) for number, one in heard if not one.main}
+    return {(number, one.node) for number, one in heard if not one.ordered}
 
 
 def requests_in_order(asked: Sequence[Asked], content: Callable[[bytes], bytes] = bytes) -> list[Asked]:

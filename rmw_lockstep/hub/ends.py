@@ -14,7 +14,9 @@ class Heard(NamedTuple):
     """A message that arrived from a process.
 
     `now` is the time of the process (ns). `stage` is the number of the hub's last publication that the process had
-    handled. `handled` counts the hub's frames that it had handled. `main` tells whether its main thread sent it.
+    handled. `handled` counts the hub's frames that it had handled. `ordered` tells whether this node's messages on this
+    topic have an order: the main thread of its process sent this one, and no other process publishes there under the
+    same node's name.
     """
 
     publisher: EndPoint
@@ -22,12 +24,12 @@ class Heard(NamedTuple):
     now: int
     stage: int
     handled: int
-    main: bool
+    ordered: bool
     cdr: bytes
 
 
 class Moment(NamedTuple):
-    """When a process sent a request or a response: see `Heard`."""
+    """When a process sent something: see `Heard`. `main` tells whether its main thread sent it."""
 
     now: int
     stage: int

@@ -21,9 +21,14 @@ MOST_REQUESTS = 10_000
 
 @dataclass(frozen=True)
 class Route:
-    """Where the messages of one publisher go: to the hub's subscriptions, and to processes."""
+    """Where the messages of one publisher go: to the hub's subscriptions, and to processes.
+
+    `shared` tells whether another process publishes on the topic under the same node's name. Which of the two is
+    faster is random, and nothing else tells one from the other.
+    """
 
     node: str
+    shared: bool
     subscriptions: list[Subscription]
     links: list[Link]
 
@@ -200,12 +205,12 @@ class Router:
         self._use.data(len(data.cdr))
         publisher = self._own(link, data.publisher, PUBLISHER)
         handled, now = link.moment(data.handled, data.now)
-        main = link.is_main(data.thread)
         route = self._routes.get(publisher.id) or self._route(publisher)
+        ordered = link.is_main(data.thread) and not route.shared
         for subscription in route.subscriptions:
             if data.only in (0, subscription.end_point.id):
                 stage = link.stage(handled)
-                subscription.take(Heard(publisher, route.node, now, stage, handled, main, data.cdr))
+                subscription.take(Heard(publisher, route.node, now, stage, handled, ordered, data.cdr))
         for other in route.links:
             self._pass_on(link, other, frames.to_data(publisher.id, data.only, data.source_time, data.cdr))
 
@@ -229,9 +234,16 @@ class Router:
         others = {reader.process for reader in readers} - {publisher.process}
         subscriptions = [end for end in own if isinstance(end, Subscription)]
         links = [link for link in self.links if link.number in others]
-        route = Route(self.graph.nodes[publisher.node].full_name, subscriptions, links)
+        node = self.graph.nodes[publisher.node].full_name
+        route = Route(node, self._is_shared(publisher, node), subscriptions, links)
         self._routes[publisher.id] = route
         return route
+
+    def _is_shared(self, publisher: EndPoint, node: str) -> bool:
+        rivals = self.graph.of_program(publisher.name, PUBLISHER)
+        return any(
+            rival.process != publisher.process and self.graph.nodes[rival.node].full_name == node for rival in rivals
+        )
 
     def _request(self, link: Link, payload: bytes) -> None:
         call = frames.call(payload)

@@ -139,6 +139,10 @@ class Watch:
         """Return what was said, and when: milliseconds since the beginning."""
         return [((heard.now - BEGIN) / MS, text(heard.cdr)) for heard in self._said.heard]
 
+    def ordered(self) -> dict[str, bool]:
+        """Return what was said, and whether it has an order among what the same node says."""
+        return {text(heard.cdr): heard.ordered for heard in self._said.heard}
+
     def __enter__(self) -> Watch:
         self.hub.__enter__()
         return self

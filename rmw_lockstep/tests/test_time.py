@@ -152,7 +152,20 @@ def test_a_program_that_is_started_by_the_program_is_part_of_the_graph(watch: Wa
             say('child')
     """)
     watch.go_on(1)
-    assert [said for _, said in watch.said()] == ["child", "parent"]
+    assert sorted(watch.said()) == [(10, "child"), (10, "parent")]
+
+
+def test_two_processes_with_one_nodes_name_publish_without_order_and_another_name_has_its_own(watch: Watch) -> None:
+    watch.start("say('first')\nrclpy.spin(node)")
+    watch.go_on(0)
+    watch.start("say('second')\nrclpy.spin(node)")
+    watch.start("""
+        other = rclpy.create_node('other')
+        other.create_publisher(String, '/said', 100).publish(String(data='third'))
+        rclpy.spin(node)
+    """)
+    watch.go_until(lambda: len(watch.said()) == 3)
+    assert watch.ordered() == {"first": True, "second": False, "third": True}
 
 
 @pytest.mark.parametrize("executor", ["SingleThreadedExecutor", "MultiThreadedExecutor", "EventsExecutor"])

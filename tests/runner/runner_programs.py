@@ -119,6 +119,11 @@ TWO_PROCESSES = "import os, sys, signal\nCHILD = os.fork() == 0\n" + program(
     body="if not CHILD:\n    self.inner.publish(Float64(data=message.data))",
 )
 
+#: The same node in two processes: each answers.
+TWO_COPIES = "import os\nCHILD = os.fork() == 0\n" + program(
+    body="self.answer(message.data if CHILD else -message.data)\nself.answer(7.0 if CHILD else 6.0)"
+)
+
 #: One callback in a group of its own sleeps before it answers, while the other continues.
 SLOW_GROUP = program(
     init="group = ReentrantCallbackGroup()\n"
@@ -141,6 +146,7 @@ HARD = {
     "a timer of threading": program(body="threading.Timer(0.025, self.answer, [message.data]).start()"),
     "two nodes": TWO_NODES,
     "two processes": TWO_PROCESSES,
+    "two copies of it": TWO_COPIES,
     "a subprocess": program(body="subprocess.run(['sleep', '0.005'])\nself.answer(message.data)"),
     "its own loop": program(
         spin="while rclpy.ok():\n    rclpy.spin_once(node, timeout_sec=0.002)\n    time.sleep(0.003)"

@@ -35,7 +35,7 @@ def test_a_hard_program_is_recorded_the_same_each_time(run_program: RunProgram, 
     assert first.synchronization == "lockstep"
     assert first.uses_sim_time
     assert seen(first) == seen(second)
-    if name not in ("a thread of its own", "a timer by the computer's clock"):
+    if name not in ("a thread of its own", "a timer by the computer's clock", "two copies of it"):
         assert answers(first) == [2, 4, 6, 8, 10]
 
 
@@ -83,6 +83,17 @@ def test_several_answers_from_a_pool_of_threads_have_no_order_whichever_thread_h
         run_program(program(body=THREE_ANSWERS.replace("3, 1, 2", "1, 2, 3"), spin=THREADS))
     )
     assert all(received.unordered for received in recording.received)
+
+
+def test_two_processes_with_one_nodes_name_have_no_order_whichever_is_faster(run_program: RunProgram) -> None:
+    copies = "import os\nCHILD = os.fork() == 0\n"
+    body = "if {}:\n    sum(range(3_000_000))\nself.answer(message.data if CHILD else -message.data)"
+    slow_child, slow_parent = (
+        run_program(copies + program(body=body.format(slower))) for slower in ("CHILD", "not CHILD")
+    )
+    assert sorted(answers(slow_child)[:2]) == [-2, 2]
+    assert answers(slow_child) == answers(slow_parent)
+    assert all(received.unordered for received in slow_child.received)
 
 
 def test_what_was_published_before_simulated_time_began_has_no_time(run_program: RunProgram) -> None:
