@@ -42,7 +42,7 @@ class Teleop:
         self.node.declare_parameter("scale_linear", 2.0)
         self._twists = self.node.create_publisher(Twist, "turtle1/cmd_vel", 1)
         self._rotation = ActionClient(self.node, RotateAbsolute, "turtle1/rotate_absolute")
-        self._goal: Any = None
+        self._asked: Any = None
 
     def press(self, key: bytes) -> None:
         """Do what a key stands for; others do nothing."""
@@ -50,8 +50,9 @@ class Teleop:
             self._drive(*ARROWS[key])
         elif key.lower() in HEADINGS:
             self._rotate(HEADINGS[key.lower()])
-        elif key.lower() == b"f" and self._goal is not None:
-            self._goal.cancel_goal_async()
+        elif key.lower() == b"f" and self._asked is not None:
+            # At once if the answer has arrived, otherwise as soon as it does.
+            self._asked.add_done_callback(_cancel)
 
     def _drive(self, forward: float, turn: float) -> None:
         twist = Twist()
@@ -60,11 +61,12 @@ class Teleop:
         self._twists.publish(twist)
 
     def _rotate(self, theta: float) -> None:
-        answer = self._rotation.send_goal_async(RotateAbsolute.Goal(theta=theta))
-        answer.add_done_callback(self._accepted)
+        self._asked = self._rotation.send_goal_async(RotateAbsolute.Goal(theta=theta))
 
-    def _accepted(self, answer: Any) -> None:
-        self._goal = answer.result()
+
+def _cancel(asked: Any) -> None:
+    if asked.result().accepted:
+        asked.result().cancel_goal_async()
 
 
 @contextlib.contextmanager
