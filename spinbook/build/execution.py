@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
@@ -235,9 +236,22 @@ def _run(job: Job, raw: Path, on_progress: Callable[[Progress], None], given_up:
     job.folder.mkdir(parents=True)
     for file in (raw, _graph_of(raw)):
         file.unlink(missing_ok=True)
+    # The path of a socket has to be short, so the build folder is not used.
+    with tempfile.TemporaryDirectory(prefix="sb-", ignore_cleanup_errors=True) as sockets:
+        return _follow(job, _start(job, raw, sockets), on_progress, given_up)
+
+
+def _start(job: Job, raw: Path, sockets: str) -> KeptProcess:
     private = {"IPYTHONDIR": str(job.folder / ".ipython"), "ROS_LOG_DIR": str(job.folder / ".ros-log")}
-    argv = [sys.executable, "-m", "spinbook.build.run_notebook", str(job.notebook), str(raw), str(job.deadline_s)]
-    process = KeptProcess(argv, {**os.environ, **private}, job.folder)
+    words = (str(job.notebook), str(raw), str(job.deadline_s), sockets)
+    argv = [sys.executable, "-m", "spinbook.build.run_notebook", *words]
+    return KeptProcess(argv, {**os.environ, **private}, job.folder)
+
+
+def _follow(
+    job: Job, process: KeptProcess, on_progress: Callable[[Progress], None], given_up: threading.Event
+) -> dict[str, Any]:
+    """Report the progress of the notebook's process until it ends, or has to be ended."""
     deadline = time.monotonic() + job.deadline_s + _TO_SAY_SO_S
     cells, ended, rest, output = 0, {"crashed": ""}, "", ""
     try:

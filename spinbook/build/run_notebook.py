@@ -1,8 +1,9 @@
-"""Runs one notebook to its end, in a process of its own: `python -m spinbook.build.run_notebook NOTEBOOK OUT DEADLINE`.
+"""Runs one notebook in a process of its own: `python -m spinbook.build.run_notebook NOTEBOOK OUT DEADLINE FOLDER`.
 
 Prints one JSON object a line: {"cells": N} at first, {"done": K} after each cell, and at the end {"finished": true},
 {"timed_out": INDEX} where the deadline (s) passed in that cell, or {"died": INDEX} where the kernel ended in it.
 What had run by then is written to OUT all the same, and the node graph that was seen to OUT's name with .graph.json.
+FOLDER is for the sockets of the kernel; the caller removes it, as this process may be killed. Its path has to be short.
 """
 
 from __future__ import annotations
@@ -14,7 +15,6 @@ import json
 import os
 import signal
 import sys
-import tempfile
 from asyncio.subprocess import DEVNULL, PIPE, Process
 from pathlib import Path
 from typing import Any
@@ -164,7 +164,7 @@ def _report(**what: Any) -> None:
     print(json.dumps(what), flush=True)
 
 
-async def run(notebook: Any, folder: Path, deadline_s: float, watch: GraphWatch) -> None:
+async def run(notebook: Any, folder: Path, deadline_s: float, watch: GraphWatch, manager: Any) -> None:
     """Run the cells of `notebook` in place, in `folder`, failing ones too, and report how it ended."""
     current = 0
 
@@ -179,7 +179,7 @@ async def run(notebook: Any, folder: Path, deadline_s: float, watch: GraphWatch)
 
     client = NotebookClient(
         notebook,
-        km=_kernel_manager(),
+        km=manager,
         allow_errors=True,
         timeout=None,
         record_timing=False,
@@ -206,25 +206,24 @@ async def run(notebook: Any, folder: Path, deadline_s: float, watch: GraphWatch)
         _report(finished=True)
 
 
-def _kernel_manager() -> Any:
+def _kernel_manager(folder: Path) -> Any:
     manager = AsyncKernelManager(kernel_spec_manager=ThisPython())
     # Sockets in the file system: a kernel that starts beside others never finds its port taken.
     manager.transport = "ipc"
-    manager.ip = str(Path(tempfile.mkdtemp(prefix="sb-")) / "k")
+    manager.ip = str(folder / "k")
+    manager.connection_file = str(folder / "kernel.json")
     return manager
 
 
 def main() -> None:
     """Run the notebook that the command line names."""
-    source, out, deadline_s = Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3])
+    source, out, deadline_s, folder = Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3]), Path(sys.argv[4])
     os.environ[EXECUTING] = "1"
     notebook = nbformat.reads(source.read_text(encoding="utf-8"), as_version=4)
-    with tempfile.TemporaryDirectory(prefix="sb-") as folder:
-        note = Path(folder) / "domain"
-        os.environ[DOMAIN_NOTE] = os.fspath(note)
-        watch = GraphWatch(note)
-        with contextlib.suppress(KeyboardInterrupt):
-            asyncio.run(run(notebook, Path.cwd(), deadline_s, watch))
+    os.environ[DOMAIN_NOTE] = os.fspath(folder / "domain")
+    watch = GraphWatch(folder / "domain")
+    with contextlib.suppress(KeyboardInterrupt):
+        asyncio.run(run(notebook, Path.cwd(), deadline_s, watch, _kernel_manager(folder)))
     if watch.graph is not None:
         write_if_changed(out.with_name(out.name.removesuffix(".ipynb") + ".graph.json"), watch.graph.to_json())
     write_if_changed(out, json.dumps(notebook, ensure_ascii=False, indent=1, sort_keys=True) + "\n")

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import re
 import signal
 import subprocess
 import sys
+import tempfile
 import time
+from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from course_folder import CourseFolder
@@ -244,12 +248,25 @@ def test_notebooks_that_run_at_once_do_not_hear_each_other(course: CourseFolder,
         assert set(re.findall(r"heard from (\w+)", course.outputs(name)["node-listener"])) == {name}
 
 
-def test_ctrl_c_ends_the_build_and_every_notebook_and_node(course: CourseFolder, process_mark: ProcessMark) -> None:
+#: All notebooks of a machine share these, so they stay.
+SHARED = ("spinbook-domains", f"spinbook-ros-log-{os.getuid()}")
+
+
+@pytest.fixture
+def empty_tmp() -> Iterator[Path]:
+    """A folder for temporary files, with a path that is short enough for sockets."""
+    with tempfile.TemporaryDirectory(prefix="t-") as folder:
+        yield Path(folder)
+
+
+def test_ctrl_c_ends_the_build_and_every_notebook_and_node_and_no_temporary_file_is_left(
+    course: CourseFolder, process_mark: ProcessMark, empty_tmp: Path
+) -> None:
     sleeper = "```python\nopen('../reached', 'w').close()\nimport time\ntime.sleep(1000)\n```\n"
     course.write(one=f"# One\n\n{TALKER}\n{sleeper}")
-    build = subprocess.Popen(
-        [sys.executable, "-m", "spinbook", "build", "--execute"], cwd=course.root, stdout=subprocess.PIPE, text=True
-    )
+    command = [sys.executable, "-m", "spinbook", "build", "--execute"]
+    environment = {**os.environ, "TMPDIR": os.fspath(empty_tmp)}
+    build = subprocess.Popen(command, cwd=course.root, env=environment, stdout=subprocess.PIPE, text=True)
     reached = course.root / "build/run/reached"
     deadline = time.monotonic() + 60
     while not reached.exists():
@@ -261,3 +278,4 @@ def test_ctrl_c_ends_the_build_and_every_notebook_and_node(course: CourseFolder,
     assert "Interrupted" in build.communicate(timeout=60)[0]
     assert build.returncode == 130
     process_mark.wait_until_none()
+    assert [left.name for left in empty_tmp.iterdir() if left.name not in SHARED] == []
