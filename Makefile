@@ -39,11 +39,10 @@ course: setup   ## Build, run and package the real course, make its site, and gr
 class: setup   ## Make a class of 200, grade it, and check every grade; the pages are in build/class/results.
 	$(BIN)/python benchmarks/class/grade_all.py --count 200 --out build/class
 
-test: setup   ## Check style, types and the direction of imports, then run every test.
+test: setup   ## Check style and the direction of imports, then run every test; mypy is one of them.
 	@sh test-programs.sh
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(PYTEST) -n 4
 
