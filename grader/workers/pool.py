@@ -177,7 +177,7 @@ class WorkerPool:
             self._send_shared(content)
 
     def do(self, job: Job, cancelled: threading.Event | None = None) -> Any:
-        """Return what `job` returns, done in a process of its own; see `Hand.do`."""
+        """Return what `job` returns, done in a process of its own; see `Worker.do`."""
         with self.reserve() as worker:
             return worker.do(job, cancelled)
 
