@@ -61,11 +61,12 @@ int wait_really(pthread_cond_t * condition, pthread_mutex_t * mutex, int64_t for
 int wait_for_python(pthread_cond_t * condition, pthread_mutex_t * mutex) {
   discount_reading();  // by which Python found out how long to wait
   const int64_t begin = real::now(CLOCK_PROCESS_CPUTIME_ID);
-  ++core().contending;
+  const pid_t thread = thread_number();
+  core().contenders.add(thread);
   int result;
   do result = wait_really(condition, mutex, LOOK);
   while (result == ETIMEDOUT && real::now(CLOCK_PROCESS_CPUTIME_ID) - begin < SWITCH);
-  --core().contending;
+  core().contenders.remove(thread);
   return result;
 }
 

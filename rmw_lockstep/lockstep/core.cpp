@@ -158,7 +158,18 @@ void Core::sent_output() {
 
 // ---- idle
 
+// A child may end at any moment, and its end may wake a thread. So this comes first: a child that ends while threads are
+// looked at is reported as if it lived, and the hub asks again.
+void Core::forget_dead_children() {
+  children_.erase(std::remove_if(children_.begin(), children_.end(), [](pid_t child) {
+    siginfo_t info{};
+    const int result = waitid(P_PID, child, &info, WEXITED | WNOWAIT | WNOHANG);
+    return result != 0 || info.si_pid == child;
+  }), children_.end());
+}
+
 Core::Idle Core::idle() {
+  forget_dead_children();
   if (entering_ || calling_ || !later_.empty()) return Idle::look_again;
   bool holds_interpreter = false;
   std::vector<pid_t> known{listener_};
@@ -168,18 +179,19 @@ Core::Idle Core::idle() {
     if (sleeper->certain()) known.push_back(sleeper->thread);
     holds_interpreter |= sleeper->holds_interpreter;
   }
-  const int contending_now = contending;
-  if (contending_now && !holds_interpreter) return Idle::look_again;
+  const int contending = contenders.count();
+  if (contending && !holds_interpreter) return Idle::look_again;
+  contenders.append_to(known);
   flags_ = 0;
   const unsigned count = threads_.count();
   others_ = count > known.size() ? count - static_cast<unsigned>(known.size()) : 0;
-  if (!others_ || (holds_interpreter && others_ == static_cast<unsigned>(contending_now))) return Idle::yes;
+  if (!others_) return Idle::yes;
   switch (threads_.look(known, !children_.empty())) {
     case Threads::Look::busy: return Idle::look_again;
     case Threads::Look::timed: flags_ = 2; return Idle::look_again;
     case Threads::Look::asleep: break;
   }
-  return entering_ || contending != contending_now ? Idle::look_again : Idle::yes;
+  return entering_ || contenders.count() != contending ? Idle::look_again : Idle::yes;
 }
 
 void Core::step() {
@@ -270,11 +282,6 @@ void Core::announce() {
     writer.put<uint64_t>(handled_).put<int64_t>(now()).put<int64_t>(next == NEVER ? -1 : next);
     writer.put<uint32_t>(participant_ ? participant_->waiting() : 0).put<uint32_t>(timed).put<uint32_t>(others_);
     writer.put<uint8_t>(flags_).put<uint64_t>(runs);
-    children_.erase(std::remove_if(children_.begin(), children_.end(), [](pid_t child) {
-      siginfo_t info{};
-      const int result = waitid(P_PID, child, &info, WEXITED | WNOWAIT | WNOHANG);
-      return result != 0 || info.si_pid == child;
-    }), children_.end());
     const auto count = static_cast<uint16_t>(std::min<size_t>(children_.size(), 1000));
     writer.put<uint16_t>(count);
     for (uint16_t i = 0; i < count; ++i) writer.put<uint32_t>(children_[i]);
@@ -295,7 +302,7 @@ void Core::forked(pid_t child) {
 void Core::reset_in_child(bool connect_again) {
   mutex_ = PTHREAD_MUTEX_INITIALIZER;
   entering_ = calling_ = 0;
-  contending = 0;
+  contenders.forget();
   awaited = 0;
   sleepers_.clear();
   children_.clear();

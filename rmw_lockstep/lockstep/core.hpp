@@ -75,8 +75,8 @@ public:
   void poke();                     // the library's own thread is to look again
   void check_again();              // and is to check whether the process is idle, whatever has changed
 
-  // Threads of Python that wait for its global lock are about to run.
-  std::atomic<int> contending{0};
+  // Threads of Python that are about to run, unless the holder of its global lock sleeps.
+  Contenders contenders;
 
   // How many threads wait for a frame in transit, which may be behind a time or a barrier. With the lock held.
   int awaited = 0;
@@ -103,6 +103,7 @@ private:
   void begin_time(const uint8_t * frame, uint32_t size);
   void go_on();                    // one step of time
   Idle idle();
+  void forget_dead_children();
   bool nudge(const Sleeper & sleeper);
   void announce();
 

@@ -29,7 +29,8 @@ int poll_until(const pollfd * files, nfds_t count, int64_t deadline, const sigse
   out.assign(files, files + count);
   const timespec now{0, 0};
   const int ready = real::ppoll()(out.data(), count, &now, mask);
-  if (ready || deadline <= core().now()) return ready;
+  if (ready) return ready;
+  if (deadline <= core().now()) { looked_in_vain(); return 0; }
   out.push_back({event.get(), POLLIN, 0});
   Sleeper sleeper;
   sleeper.deadline = deadline;
@@ -47,6 +48,12 @@ int poll_until(const pollfd * files, nfds_t count, int64_t deadline, const sigse
   if (found < 0) errno = fault;
   if (found > 0 && out.back().revents && --found == 0 && sleeper.interrupted) { errno = EINTR; found = -1; }
   out.pop_back();
+  return found;
+}
+
+// Pass on what the real call has found. `waits`: it would have waited for as long as there is nothing.
+int without_waiting(int found, bool waits) {
+  if (virtual_time() && found == 0 && !waits) looked_in_vain();
   return found;
 }
 
@@ -90,7 +97,7 @@ using namespace lockstep;
 extern "C" {
 
 LOCKSTEP_API int poll(pollfd * files, nfds_t count, int timeout) {
-  if (!virtual_time() || timeout <= 0) return real::poll()(files, count, timeout);
+  if (!virtual_time() || timeout <= 0) return without_waiting(real::poll()(files, count, timeout), timeout);
   std::vector<pollfd> out;
   const int found = poll_until(files, count, after(timeout), nullptr, out);
   for (nfds_t i = 0; found >= 0 && i < count; ++i) files[i].revents = out[i].revents;
@@ -107,7 +114,8 @@ LOCKSTEP_API int ppoll(pollfd * files, nfds_t count, const timespec * timeout, c
 
 LOCKSTEP_API int select(int count, fd_set * reads, fd_set * writes, fd_set * specials, timeval * timeout) {
   const int64_t time = timeout ? timeout->tv_sec * 1'000'000'000LL + timeout->tv_usec * 1'000LL : 0;
-  if (!virtual_time() || !timeout || time <= 0) return real::select()(count, reads, writes, specials, timeout);
+  if (!virtual_time() || !timeout || time <= 0)
+    return without_waiting(real::select()(count, reads, writes, specials, timeout), !timeout);
   return select_until(count, reads, writes, specials, core().now() + time, nullptr);
 }
 
@@ -118,7 +126,8 @@ LOCKSTEP_API int pselect(
 }
 
 LOCKSTEP_API int epoll_pwait(int file, epoll_event * events, int most, int timeout, const sigset_t * mask) {
-  if (!virtual_time() || timeout <= 0) return real::epoll_pwait()(file, events, most, timeout, mask);
+  if (!virtual_time() || timeout <= 0)
+    return without_waiting(real::epoll_pwait()(file, events, most, timeout, mask), timeout);
   const pollfd files[1] = {{file, POLLIN, 0}};
   std::vector<pollfd> out;
   if (poll_until(files, 1, after(timeout), mask, out) < 0) return -1;

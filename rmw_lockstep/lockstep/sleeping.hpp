@@ -35,6 +35,9 @@ private:
 // Sleep until the steady clock shows `deadline`. Returns 0, or EINTR if a signal arrived first.
 int sleep_until(int64_t deadline, bool holds_interpreter = false);
 
+// The thread has looked at files without waiting, and nothing was there: see clock.cpp.
+void looked_in_vain();
+
 // Discount the last reading of the clock: it was not the program's own, and is random.
 void discount_reading();
 

@@ -169,6 +169,32 @@ void Threads::close_all() {
   threads_.clear();
 }
 
+void Contenders::add(pid_t thread) {
+  ++count_;
+  for (auto & place : places_) {
+    pid_t free = 0;
+    if (place.compare_exchange_strong(free, thread)) return;
+  }
+}
+
+void Contenders::remove(pid_t thread) {
+  for (auto & place : places_) {
+    pid_t own = thread;
+    if (place.compare_exchange_strong(own, 0)) break;
+  }
+  --count_;
+}
+
+void Contenders::append_to(std::vector<pid_t> & threads) const {
+  for (const auto & place : places_)
+    if (const pid_t thread = place) threads.push_back(thread);
+}
+
+void Contenders::forget() {
+  count_ = 0;
+  for (auto & place : places_) place = 0;
+}
+
 void Threads::forget() {
   close_all();
   if (folder_ >= 0) close(folder_);

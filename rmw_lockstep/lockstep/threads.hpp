@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -36,6 +37,22 @@ private:
   unsigned links_ = 0;
   bool complete_ = false;  // whether every thread is in `threads_`
   std::map<pid_t, Thread> threads_;
+};
+
+// Threads of Python that wait for its global lock, and run as soon as its holder releases it. They come and go with each
+// switch between threads, so they take no lock for it.
+class Contenders {
+public:
+  void add(pid_t thread);
+  void remove(pid_t thread);
+  int count() const { return count_; }
+  // Those that are known by number: all but the rest of very many.
+  void append_to(std::vector<pid_t> & threads) const;
+  void forget();
+
+private:
+  std::atomic<int> count_{0};
+  std::atomic<pid_t> places_[64] = {};
 };
 
 }  // namespace lockstep

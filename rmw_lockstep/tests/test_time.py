@@ -95,6 +95,44 @@ def test_a_program_that_asks_again_and_again_is_idle_and_its_time_goes_on(watch:
     assert 100 <= at <= 110
 
 
+def test_a_look_into_a_pipe_without_waiting_takes_no_time(watch: Watch) -> None:
+    watch.start("""
+        import multiprocessing
+        ours, theirs = multiprocessing.Pipe()
+        say([ours.poll() for _ in range(1000)].count(True))
+    """)
+    watch.go_on(1)
+    assert watch.said() == [(0, "0")]
+
+
+def test_a_time_out_of_a_program_passes_at_its_time(watch: Watch) -> None:
+    watch.start("""
+        import subprocess
+        try: subprocess.run(['sleep', '5'], timeout=0.02, stdout=subprocess.PIPE)
+        except subprocess.TimeoutExpired: say('expired')
+    """)
+    watch.go_on(1)
+    assert watch.said() == [(20, "expired")]
+
+
+def test_a_thread_that_waits_for_python_does_not_keep_the_one_that_waits_for_a_time(watch: Watch) -> None:
+    watch.start("""
+        nothing, waited = os.open('/dev/null', os.O_WRONLY), threading.Event()
+        def write():
+            while not waited.is_set(): os.write(nothing, b'x')  # and asks for Python's lock after each
+        threading.Thread(target=write, daemon=True).start()
+        began = time.monotonic()
+        while time.monotonic() < began + 0.02: pass
+        waited.set()
+        say('waited')
+        rclpy.spin(node)
+    """)
+    watch.go_on(0.2)
+    ((at, said),) = watch.said()
+    assert said == "waited"
+    assert 20 <= at <= 21
+
+
 def test_what_a_program_published_before_it_ends_without_warning_has_come(watch: Watch) -> None:
     watch.start("""
         for i in range(50): say(i)
