@@ -41,6 +41,7 @@ class Router:
         self.graph = Graph()
         self.links: list[Link] = []
         self.published = 0
+        self._certain = 0
         self._use, self._calendar, self._epoch = use, calendar, epoch
         self._numbers = count(1)
         self._ends: dict[int, End] = {}
@@ -209,7 +210,7 @@ class Router:
         ordered = link.is_main(data.thread) and not route.shared
         for subscription in route.subscriptions:
             if data.only in (0, subscription.end_point.id):
-                stage = link.stage(handled)
+                stage = self._stage(link, handled)
                 subscription.take(Heard(publisher, route.node, now, stage, handled, ordered, data.cdr))
         for other in route.links:
             self._pass_on(link, other, frames.to_data(publisher.id, data.only, data.source_time, data.cdr))
@@ -289,7 +290,15 @@ class Router:
 
     def _moment(self, link: Link, call: frames.Call) -> Moment:
         handled, now = link.moment(call.handled, call.now)
-        return Moment(now, link.stage(handled), handled, link.is_main(call.thread))
+        return Moment(now, self._stage(link, handled), handled, link.is_main(call.thread))
+
+    def _stage(self, link: Link, handled: int) -> int:
+        """Return the number of the last publication before a moment of a process.
+
+        One process may act on a message that another one has told it of, whether or not it has handled the message
+        itself. So whatever any of several sends counts as sent after what was published while all were idle.
+        """
+        return max(self._certain, link.stage(handled))
 
     def _alive(self, link: Link, payload: bytes) -> None:
         publisher = self._own(link, frames.identity(payload), PUBLISHER)
@@ -350,6 +359,8 @@ class Router:
     def publish(self, publisher: Publisher, cdr: bytes) -> int:
         """Queue a message for every process that it is for, or may be for by the time it arrives."""
         self.published += 1
+        if self._use.connections > 1:
+            self._certain = self.published
         source_time = self._calendar()
         publisher.history.append((source_time, cdr))
         frame = frames.to_data(publisher.end_point.id, 0, source_time, cdr)

@@ -124,6 +124,32 @@ TWO_COPIES = "import os\nCHILD = os.fork() == 0\n" + program(
     body="self.answer(message.data if CHILD else -message.data)\nself.answer(7.0 if CHILD else 6.0)"
 )
 
+#: A child answers as soon as its parent writes into a pipe, whether or not it has received the message itself by then.
+TWO_PROCESSES_AND_A_PIPE = "import os\nREAD, WRITE = os.pipe()\nCHILD = os.fork() == 0\n" + program(
+    init="def loop():\n    while True:\n        self.answer(float(os.read(READ, 1)[0]))\n"
+    "if CHILD:\n    threading.Thread(target=loop, daemon=True).start()",
+    body="if not CHILD:\n    os.write(WRITE, bytes([int(message.data)]))",
+)
+
+#: Each result comes through a pipe that Python looks at again and again without waiting.
+POOL_OF_PROCESSES = "import concurrent.futures, multiprocessing\n" + program(
+    init="fork = multiprocessing.get_context('fork')\n"
+    "self.pool = concurrent.futures.ProcessPoolExecutor(2, mp_context=fork)",
+    body="self.answer(sum(self.pool.map(abs, [message.data - 1.0, 1.0])))",
+)
+
+#: Starts a program each time the one before has ended: 10 ms later, when the loop looks as well.
+ASYNCIO_AND_PROGRAMS = program(
+    body="pass",
+    spin="import asyncio\n"
+    "async def programs():\n    while rclpy.ok():\n"
+    "        await (await asyncio.create_subprocess_exec('sleep', '0.01')).wait()\n"
+    "        node.answer(float(len(node.got)))\n"
+    "async def turn():\n    task = asyncio.ensure_future(programs())\n    while rclpy.ok():\n"
+    "        rclpy.spin_once(node, timeout_sec=0)\n        await asyncio.sleep(0.005)\n"
+    "asyncio.run(turn())",
+)
+
 #: One callback in a group of its own sleeps before it answers, while the other continues.
 SLOW_GROUP = program(
     init="group = ReentrantCallbackGroup()\n"
@@ -147,6 +173,9 @@ HARD = {
     "two nodes": TWO_NODES,
     "two processes": TWO_PROCESSES,
     "two copies of it": TWO_COPIES,
+    "two processes and a pipe": TWO_PROCESSES_AND_A_PIPE,
+    "a pool of processes": POOL_OF_PROCESSES,
+    "asyncio and programs": ASYNCIO_AND_PROGRAMS,
     "a subprocess": program(body="subprocess.run(['sleep', '0.005'])\nself.answer(message.data)"),
     "its own loop": program(
         spin="while rclpy.ok():\n    rclpy.spin_once(node, timeout_sec=0.002)\n    time.sleep(0.003)"
