@@ -181,7 +181,7 @@ Core::Idle Core::idle() {
   }
   const int contending = contenders.count();
   if (contending && !holds_interpreter) return Idle::look_again;
-  contenders.append_to(known);
+  if (holds_interpreter) contenders.append_to(known);
   flags_ = 0;
   const unsigned count = threads_.count();
   others_ = count > known.size() ? count - static_cast<unsigned>(known.size()) : 0;
