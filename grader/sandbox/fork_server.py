@@ -74,9 +74,15 @@ class Student:
         return self._monitor.output()
 
     def interrupt(self) -> None:
-        """Send SIGINT to the node's process, as Ctrl-C would; do nothing if it has ended."""
+        """Send SIGINT to the node's process, as Ctrl-C would, and return when it is sent; do nothing if it has ended.
+
+        Raises:
+            SandboxError: if the supervisor does not answer.
+        """
         with contextlib.suppress(OSError):
             self._control.send(b"interrupt")
+        if not self._monitor.interrupted.wait(_DEATH_S):
+            raise SandboxError(f"the student's process {self.pid} was not interrupted within {_DEATH_S:g} s")
 
     def cpu_seconds(self) -> float:
         """Return how much CPU time all its processes have used, including those that have ended (s)."""

@@ -112,6 +112,8 @@ class Monitor:
             init: the process that adopts its orphans.
             own_processes: children of `init` that are not the program's.
         """
+        self.interrupted = threading.Event()
+        """Set when the first process has been sent SIGINT, or all are dead."""
         self.ended = threading.Event()
         """Set when the first process has ended."""
         self.dead = threading.Event()
@@ -197,6 +199,8 @@ class Monitor:
                 if report["event"] == "exited":
                     self._reaped_cpu_s = report["cpu_s"]
                     self._end(report["status"])
+                elif report["event"] == "interrupted":
+                    self.interrupted.set()
                 elif report["event"] == "dead":
                     self._finish()
                 return
@@ -218,6 +222,7 @@ class Monitor:
     def _finish(self) -> None:
         if self.exit is None:
             self._end(signal.SIGKILL)
+        self.interrupted.set()
         self.dead.set()
 
     def _limit_of(self, code: int | None, number: int | None) -> str | None:

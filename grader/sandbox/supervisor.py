@@ -142,6 +142,7 @@ def _watch(control: int, child: int, sandbox: namespaces.Namespaces | processes.
             if command == b"interrupt":
                 if alive:
                     os.kill(child, signal.SIGINT)
+                _report(control, {"event": "interrupted"})
                 continue
             sandbox.kill()
             if alive:

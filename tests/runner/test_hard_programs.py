@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import signal
+import tempfile
+import time
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from runner_programs import ANSWER, HARD, THREADS, RunProgram, numbers, program
 
 from grader.recording import Recording
 from grader.recording.recording import to_json
+from grader.sandbox import ForkServer, Limits, Program, choose
 from grader.scenario.scenario import SECOND, START
+from rmw_lockstep.hub import Hub
 
 MS = 1_000_000
 
@@ -152,3 +158,18 @@ def test_on_ctrl_c_it_has_two_seconds(run_program: RunProgram) -> None:
         "rclpy.init()", "rclpy.init(signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)"
     ).replace("import rclpy\n", "import rclpy, rclpy.signals\n")  # fmt: skip
     assert not run_program(deaf, scenario).ending.ended_in_time
+
+
+def test_a_program_has_been_sent_ctrl_c_when_the_call_returns(fork_server: ForkServer) -> None:
+    block = "import signal\nsignal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])\nprint('blocked', flush=True)\n"
+    with tempfile.TemporaryDirectory(prefix="hub-") as folder, Hub(Path(folder)) as hub:
+        program = Program("node.py", {"node.py": f"{block}signal.pause()".encode()}, hub=hub.path)
+        with fork_server.start(program, choose(None), Limits()) as student:
+            deadline = time.monotonic() + 60
+            while "blocked" not in student.output().text:
+                assert time.monotonic() < deadline
+                hub.pause()
+            student.interrupt()
+            status = Path(f"/proc/{student.pid}/status").read_text()
+    pending = next(line.split()[1] for line in status.splitlines() if line.startswith("ShdPnd:"))
+    assert int(pending, 16) & 1 << (signal.SIGINT - 1)
