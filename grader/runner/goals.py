@@ -15,7 +15,7 @@ from grader.runner.ends import Ends
 from grader.runner.message import filled, message_class, to_fields
 from grader.runner.recorder import ACCEPT_ANY
 from grader.scenario.scenario import CancelAll, CancelGoal, Scenario, SendGoal
-from rmw_lockstep.hub import Client, Heard, Subscription
+from rmw_lockstep.hub import Client, Subscription
 from rmw_lockstep.hub.ends import Moment
 
 CancelStep: TypeAlias = CancelGoal | CancelAll
@@ -137,19 +137,16 @@ class ActionClient:
                 states = found.setdefault(bytes(one.goal_info.goal_id.uuid), [])
                 state = state_name(one.status)
                 if not states or states[-1].state != state:
-                    states.append(GoalState(self._at(heard), state))
+                    states.append(GoalState(self._ends.at(heard), state))
         return {goal: tuple(states) for goal, states in found.items()}
 
     def _feedbacks(self) -> dict[bytes, tuple[Feedback, ...]]:
         found: dict[bytes, list[Feedback]] = {}
         for heard in self._feedback.heard:
             message = deserialized(heard.cdr, self._kind.Impl.FeedbackMessage)
-            feedback = Feedback(self._at(heard), to_fields(message.feedback))
+            feedback = Feedback(self._ends.at(heard), to_fields(message.feedback))
             found.setdefault(bytes(message.goal_id.uuid), []).append(feedback)
         return {goal: tuple(messages) for goal, messages in found.items()}
-
-    def _at(self, heard: Heard) -> int:
-        return self._ends.at(heard)
 
 
 def state_name(number: int) -> str:

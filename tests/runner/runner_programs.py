@@ -119,16 +119,23 @@ TWO_PROCESSES = "import os, sys, signal\nCHILD = os.fork() == 0\n" + program(
     body="if not CHILD:\n    self.inner.publish(Float64(data=message.data))",
 )
 
+#: Makes two processes of the program that follows.
+FORK = "import os\nCHILD = os.fork() == 0\n"
+
 #: The same node in two processes: each answers.
-TWO_COPIES = "import os\nCHILD = os.fork() == 0\n" + program(
+TWO_COPIES = FORK + program(
     body="self.answer(message.data if CHILD else -message.data)\nself.answer(7.0 if CHILD else 6.0)"
 )
 
 #: A child answers as soon as its parent writes into a pipe, whether or not it has received the message itself by then.
-TWO_PROCESSES_AND_A_PIPE = "import os\nREAD, WRITE = os.pipe()\nCHILD = os.fork() == 0\n" + program(
-    init="def loop():\n    while True:\n        self.answer(float(os.read(READ, 1)[0]))\n"
-    "if CHILD:\n    threading.Thread(target=loop, daemon=True).start()",
-    body="if not CHILD:\n    os.write(WRITE, bytes([int(message.data)]))",
+TWO_PROCESSES_AND_A_PIPE = (
+    "import os\nREAD, WRITE = os.pipe()\n"
+    + FORK
+    + program(
+        init="def loop():\n    while True:\n        self.answer(float(os.read(READ, 1)[0]))\n"
+        "if CHILD:\n    threading.Thread(target=loop, daemon=True).start()",
+        body="if not CHILD:\n    os.write(WRITE, bytes([int(message.data)]))",
+    )
 )
 
 #: Each result comes through a pipe that Python looks at again and again without waiting.

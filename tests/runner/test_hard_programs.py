@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from runner_programs import ANSWER, HARD, THREADS, RunProgram, numbers, program
+from runner_programs import ANSWER, FORK, HARD, THREADS, RunProgram, numbers, program
 
 from grader.recording import Recording
 from grader.recording.recording import to_json
@@ -97,10 +97,9 @@ def test_several_answers_from_a_pool_of_threads_have_no_order_whichever_thread_h
 
 
 def test_two_processes_with_one_nodes_name_have_no_order_whichever_is_faster(run_program: RunProgram) -> None:
-    copies = "import os\nCHILD = os.fork() == 0\n"
     body = "if {}:\n    sum(range(3_000_000))\nself.answer(message.data if CHILD else -message.data)"
     slow_child, slow_parent = (
-        run_program(copies + program(body=body.format(slower))) for slower in ("CHILD", "not CHILD")
+        run_program(FORK + program(body=body.format(slower))) for slower in ("CHILD", "not CHILD")
     )
     assert sorted(answers(slow_child)[:2]) == [-2, 2]
     assert answers(slow_child) == answers(slow_parent)
