@@ -175,7 +175,9 @@ def _round(number: int, programs: list[Program], options: argparse.Namespace) ->
 def _load(busy: bool, nice: int) -> Iterator[None]:
     """For as long as this lasts, something else keeps the machine busy."""
     count = LOOPS_PER_CORE * len(os.sched_getaffinity(0)) if busy else 0
-    loop = [sys.executable, "-c", f"import os; os.nice({nice})\nwhile True: pass"]
+    # A benchmark that is killed can't end its loops: each looks for itself whether its parent is still there.
+    code = f"import os; os.nice({nice})\nwhile os.getppid() == {os.getpid()}: sum(range(100_000))"
+    loop = [sys.executable, "-c", code]
     # Linux shares its cores by session: eight loops of one session would get no more than one program.
     loops = [subprocess.Popen(loop, start_new_session=True) for _ in range(count)]
     try:

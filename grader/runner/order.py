@@ -15,25 +15,25 @@ Place = tuple[int, str, int, int]
 Source = tuple[int, str]
 
 
-def in_canonical_order(heard: Sequence[tuple[int, Heard]], threaded: Collection[Source]) -> list[tuple[int, Heard]]:
+def in_canonical_order(heard: Sequence[tuple[int, Heard]], unordered: Collection[Source]) -> list[tuple[int, Heard]]:
     """Sort messages by their moment; at the same moment by topic and node, and within these as they were sent.
 
-    What several threads (`threaded`: see `from_other_threads`) may have published on one topic at the same moment has
-    no order, so it is sorted by its bytes.
+    What several threads or processes (`unordered`: see `unordered_sources`) may have published on one topic at the same
+    moment has no order, so it is sorted by its bytes.
     """
     alone = len({one.publisher.process for _, one in heard}) <= 1
 
     def key(entry: tuple[int, Heard]) -> tuple[Any, ...]:
         number, one = entry
         own = one.handled if alone else 0  # the frames of two processes cannot be compared
-        return one.stage, one.now, own, number, one.node, one.cdr if (number, one.node) in threaded else b""
+        return one.stage, one.now, own, number, one.node, one.cdr if (number, one.node) in unordered else b""
 
     return sorted(heard, key=key)
 
 
-def without_order(heard: Sequence[tuple[int, Heard]], threaded: Collection[Source]) -> set[Place]:
-    """Return where and when several threads (`threaded`) may have published more than one message."""
-    counts = Counter(place_of(number, one) for number, one in heard if (number, one.node) in threaded)
+def without_order(heard: Sequence[tuple[int, Heard]], unordered: Collection[Source]) -> set[Place]:
+    """Return where and when several threads or processes (`unordered`) may have published more than one message."""
+    counts = Counter(place_of(number, one) for number, one in heard if (number, one.node) in unordered)
     return {place for place, count in counts.items() if count > 1}
 
 
@@ -42,7 +42,7 @@ def place_of(number: int, one: Heard) -> Place:
     return number, one.node, one.stage, one.now
 
 
-def from_other_threads(heard: Sequence[tuple[int, Heard]]) -> set[Source]:
+def unordered_sources(heard: Sequence[tuple[int, Heard]]) -> set[Source]:
     """Return the subscriptions and nodes for which any thread but the main one published, or several processes.
 
     It could be one thread or several: how many of a pool's threads get something to do is chance, so they count as
@@ -54,13 +54,21 @@ def from_other_threads(heard: Sequence[tuple[int, Heard]]) -> set[Source]:
 def requests_in_order(asked: Sequence[Asked], content: Callable[[bytes], bytes] = bytes) -> list[Asked]:
     """Sort requests by their moment; at the same moment by node, and those of the main thread as they were sent.
 
-    Others are sorted by their `content`: their bytes, or what of these is not chance, as the id of a goal is.
+    Others, and those of several processes in the name of one node, are sorted by their `content`: their bytes, or what
+    of these is not chance, as the id of a goal is.
     """
     alone = len({one.client.process for one in asked}) <= 1
+    shared = _of_several_processes(asked)
 
     def key(one: Asked) -> tuple[Any, ...]:
         moment = one.moment
         own = moment.handled if alone else 0
-        return moment.stage, moment.now, own, one.node, *(() if moment.main else (one.client.name, content(one.cdr)))
+        as_sent = moment.main and one.node not in shared
+        return moment.stage, moment.now, own, one.node, *(() if as_sent else (one.client.name, content(one.cdr)))
 
     return sorted(asked, key=key)
+
+
+def _of_several_processes(asked: Sequence[Asked]) -> set[str]:
+    counts = Counter(node for node, _ in {(one.node, one.client.process) for one in asked})
+    return {node for node, count in counts.items() if count > 1}

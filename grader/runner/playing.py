@@ -8,7 +8,7 @@ from functools import partial
 from grader.runner.cdr import deserialized
 from grader.runner.ends import Ends, Schedule, nanoseconds
 from grader.runner.message import message_class
-from grader.runner.order import from_other_threads, in_canonical_order
+from grader.runner.order import in_canonical_order, unordered_sources
 from grader.runner.publishers import ReferencePublishers
 from grader.runner.recorder import ACCEPT_ANY
 from grader.runner.serving import AuthorFault
@@ -41,7 +41,7 @@ class RunningWorld:
 
     def _step(self, now: int) -> None:
         """Handle what arrived since the last step, step the world, and publish its state."""
-        heard, self._heard = in_canonical_order(self._heard, from_other_threads(self._heard)), []
+        heard, self._heard = in_canonical_order(self._heard, unordered_sources(self._heard)), []
         for number, one in heard:
             topic, type_name = self._topics[number]
             message = deserialized(one.cdr, message_class(type_name))

@@ -11,7 +11,7 @@ from grader.recording.recording import Received
 from grader.runner.cdr import fields_of
 from grader.runner.ends import Clocks
 from grader.runner.message import message_class
-from grader.runner.order import from_other_threads, in_canonical_order, place_of, without_order
+from grader.runner.order import in_canonical_order, place_of, unordered_sources, without_order
 from grader.runner.student import Stopped, Task
 from rmw_lockstep.hub import Heard, HubNode, Qos, Subscription
 from rmw_lockstep.hub.qos import BEST_EFFORT
@@ -112,9 +112,9 @@ class Recorder:
         `stages` has the number of each message sent, among everything the hub has published; see `Heard.stage`.
         """
         found = []
-        threaded = from_other_threads(self._heard)
-        unordered = without_order(self._heard, threaded)
-        for number, heard in in_canonical_order(self._heard, threaded):
+        sources = unordered_sources(self._heard)
+        unordered = without_order(self._heard, sources)
+        for number, heard in in_canonical_order(self._heard, sources):
             to = self._listening[number]
             at = max(self._earliest, clocks.simulated(heard.now, heard.stage))
             after = bisect_right(stages, heard.stage)

@@ -111,16 +111,16 @@ TWO_NODES = program(
     "executor = MultiThreadedExecutor(2)\nexecutor.add_node(node)\nexecutor.add_node(other)\nexecutor.spin()",
 )
 
+#: Makes two processes of the program that follows.
+FORK = "import os\nCHILD = os.fork() == 0\n"
+
 #: Two processes: the second answers.
-TWO_PROCESSES = "import os, sys, signal\nCHILD = os.fork() == 0\n" + program(
+TWO_PROCESSES = FORK + program(
     init="self.inner = self.create_publisher(Float64, '/inner', 10)\n"
     "if CHILD:\n"
     "    self.create_subscription(Float64, '/inner', lambda message: self.answer(message.data), 10)",
     body="if not CHILD:\n    self.inner.publish(Float64(data=message.data))",
 )
-
-#: Makes two processes of the program that follows.
-FORK = "import os\nCHILD = os.fork() == 0\n"
 
 #: The same node in two processes: each answers.
 TWO_COPIES = FORK + program(

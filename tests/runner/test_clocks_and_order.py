@@ -14,10 +14,10 @@ from grader.runner.budget import Allowance, Budget, HostStalled
 from grader.runner.ends import BETWEEN_MESSAGES, Clocks
 from grader.runner.order import (
     Place,
-    from_other_threads,
     in_canonical_order,
     place_of,
     requests_in_order,
+    unordered_sources,
     without_order,
 )
 from grader.scenario.scenario import SECOND, START
@@ -59,11 +59,11 @@ def heard(cdr: bytes, main: bool, now: int = 5, process: int = 1, node: str = "/
 
 
 def order(entries: Sequence[tuple[int, Heard]]) -> list[bytes]:
-    return [one.cdr for _, one in in_canonical_order(entries, from_other_threads(entries))]
+    return [one.cdr for _, one in in_canonical_order(entries, unordered_sources(entries))]
 
 
 def unordered(*entries: tuple[int, Heard]) -> set[Place]:
-    return without_order(entries, from_other_threads(entries))
+    return without_order(entries, unordered_sources(entries))
 
 
 def test_what_the_main_thread_publishes_stays_in_its_order() -> None:
@@ -76,10 +76,10 @@ def test_what_other_threads_publish_at_one_moment_is_in_the_order_of_its_bytes()
 
 
 def test_whatever_another_thread_than_the_main_one_publishes_has_no_order() -> None:
-    assert from_other_threads([heard(b"b", MAIN), heard(b"a", MAIN)]) == set()
+    assert unordered_sources([heard(b"b", MAIN), heard(b"a", MAIN)]) == set()
     # Of a pool, one thread may have got all there was to do. In another run it would have been two.
-    assert from_other_threads([heard(b"b", OTHER), heard(b"a", OTHER)]) == {(0, "/node")}
-    assert from_other_threads([heard(b"b", MAIN, node="/a"), heard(b"a", OTHER, node="/b")]) == {(0, "/b")}
+    assert unordered_sources([heard(b"b", OTHER), heard(b"a", OTHER)]) == {(0, "/node")}
+    assert unordered_sources([heard(b"b", MAIN, node="/a"), heard(b"a", OTHER, node="/b")]) == {(0, "/b")}
 
 
 def test_only_messages_of_one_moment_can_be_without_an_order() -> None:
@@ -102,6 +102,11 @@ def test_requests_of_the_main_thread_are_answered_as_they_were_sent_and_others_b
     first = [asked(b"b", OTHER), asked(b"a", OTHER), asked(b"c", OTHER, now=4)]
     assert requests(*first) == requests(*first[::-1]) == [b"c", b"a", b"b"]
     assert requests(asked(b"1b", OTHER), asked(b"2a", OTHER), start=1) == [b"2a", b"1b"], "the id of a goal is chance"
+
+
+def test_requests_of_two_processes_in_the_name_of_one_node_are_answered_by_their_bytes() -> None:
+    first = [asked(b"b", MAIN, process=1), asked(b"a", MAIN, process=2)]
+    assert requests(*first) == requests(*first[::-1]) == [b"a", b"b"]
 
 
 def test_of_several_processes_the_node_decides() -> None:
