@@ -33,7 +33,7 @@ from spinbook.graph.model import End, NodeGraph, SeenNode, Topic
 from spinbook.ros2.cli import CommandError
 from spinbook.ros2.graph import LOOK, Graph
 from spinbook.ros2.interfaces import message_class
-from spinbook.ros2.opening import domain_id, participants, prepare
+from spinbook.ros2.opening import domain_id, hears_other_hosts, participants, prepare
 
 #: A rate is measured over at least this long (s).
 ENOUGH_S = 0.8
@@ -116,6 +116,7 @@ class GraphWatcher(Graph):
         prepare()
         super().__init__(node_name=f"_spinbook_graph_{os.getpid()}", spin_time=None, use_sim_time=False)
         self._known: tuple[Any, ...] = ()
+        self._silent = 0
         self._counting: dict[str, tuple[Subscription, Counted, float]] = {}
         #: Topic -> how many publishers it had when it was counted, and its rate.
         self._rates: dict[str, tuple[int, float]] = {}
@@ -124,7 +125,7 @@ class GraphWatcher(Graph):
         return self
 
     def wait_until_idle(self) -> None:
-        """Return when every participant of this host has been heard of and nothing changes; at once if nothing has."""
+        """Return when the participants are those of this host and nothing changes; at once if nothing has."""
         deadline = time.monotonic() + _DEADLINE_S
         seen, changed = self._look(), time.monotonic()
         while not (seen == self._known or time.monotonic() - changed >= _QUIET_S) or not self._complete():
@@ -134,7 +135,16 @@ class GraphWatcher(Graph):
             look = self._look()
             if look != seen:
                 seen, changed = look, time.monotonic()
-        self._known = seen
+        self._known, self._silent = seen, self._gone()
+
+    def _complete(self) -> bool:
+        # What leaves says so, which may arrive late; what was killed does not, and is waited for only once.
+        return super()._complete() and self._gone() <= self._silent
+
+    def _gone(self) -> int:
+        """How many participants have been heard of that are not on this host any more."""
+        here = None if hears_other_hosts() else participants(domain_id())
+        return 0 if here is None else max(0, len(self._heard()) - here)
 
     def _look(self) -> tuple[Any, ...]:
         # A node that has started and has not been heard of yet is a change as well.

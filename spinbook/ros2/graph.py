@@ -188,10 +188,7 @@ class Graph:
 
     def _complete(self) -> bool:
         """Whether no participant is missing and none is without a node."""
-        heard = {
-            bytes(end.endpoint_gid[:_GID_PREFIX])
-            for end in self.node.get_publishers_info_by_topic(_PARTICIPANTS, no_mangle=True)
-        }
+        heard = self._heard()
         here = participants(domain_id())
         if here is not None and len(heard) < here:
             return False
@@ -205,6 +202,11 @@ class Graph:
         ]
         with_node = {bytes(end.endpoint_gid[:_GID_PREFIX]) for end in ends if end.node_name != _NAMELESS}
         return heard <= with_node and all(end.node_name != _NAMELESS for end in ends)
+
+    def _heard(self) -> set[bytes]:
+        """The participants that have been heard of, this one among them, until they say that they leave."""
+        writers = self.node.get_publishers_info_by_topic(_PARTICIPANTS, no_mangle=True)
+        return {bytes(end.endpoint_gid[:_GID_PREFIX]) for end in writers}
 
     # Working
 
