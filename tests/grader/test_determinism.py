@@ -31,6 +31,12 @@ def grading(exercise: Exercise, workers: WorkerPool) -> Grading:
     return grading_of(exercise, Options(), workers)
 
 
+@pytest.fixture(scope="module")
+def short(exercise: Exercise, workers: WorkerPool) -> Grading:
+    """A grading of joint_velocity by its public checks alone, which takes two scenarios."""
+    return grading_of(exercise.public(), Options(), workers)
+
+
 @contextmanager
 def busy(loops: int) -> Iterator[None]:
     """Run that many processes that compute without an end."""
@@ -52,11 +58,12 @@ def recorded(grade: Grade) -> str:
     )
 
 
-def test_beside_busy_loops_the_grade_is_the_same(grading: Grading) -> None:
-    submission = read(str(SOLUTIONS / "mistakes/joints_by_index.py"), grading.runner.exercise)
-    alone = grading.grade(submission)
+@pytest.mark.parametrize("name", SUBMISSIONS)
+def test_beside_busy_loops_the_grade_is_the_same(short: Grading, name: str) -> None:
+    submission = read(str(SOLUTIONS / name), short.runner.exercise)
+    alone = short.grade(submission)
     with busy(4):
-        beside = grading.grade(submission)
+        beside = short.grade(submission)
     assert alone == beside
     assert recorded(alone) == recorded(beside), "to the last bit of every message"
 
@@ -75,28 +82,40 @@ def test_graded_two_hundred_times_half_of_them_beside_busy_loops_it_is_the_same(
                 assert recorded(grade) == recorded(first), f"recordings of grade {number} beside {loops} busy loops"
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"super().__init__('joint_velocity')": "super().__init__('joint_velocity', start_parameter_services=False)"},
-        {
-            "super().__init__('joint_velocity')": "super().__init__('joint_velocity', "
-            "start_parameter_services=False, "
-            "parameter_overrides=[rclpy.Parameter('start_type_description_service', value=False)])"
-        },
-        {"rclpy.init()": "rclpy.init(args=[])"},
-        {
-            "rclpy.spin(node)": "while rclpy.ok(): rclpy.spin_once(node, timeout_sec=0.002); time.sleep(0.003)",
-            "import rclpy\n": "import time\nimport rclpy\n",
-        },
-    ],
-    ids=["no parameter services", "no services at all", "without the command line", "asleep between its looks"],
-)
-def test_however_a_node_is_made_and_spun_its_grade_is_right(grading: Grading, change: dict[str, str]) -> None:
+#: What is replaced in the solution, and by what, for another way to make the node or to spin it.
+WAYS = {
+    "no parameter services": {
+        "super().__init__('joint_velocity')": "super().__init__('joint_velocity', start_parameter_services=False)"
+    },
+    "no services at all": {
+        "super().__init__('joint_velocity')": "super().__init__('joint_velocity', start_parameter_services=False, "
+        "parameter_overrides=[rclpy.Parameter('start_type_description_service', value=False)])"
+    },
+    "without the command line": {"rclpy.init()": "rclpy.init(args=[])"},
+    "asleep between its looks": {
+        "rclpy.spin(node)": "while rclpy.ok(): rclpy.spin_once(node, timeout_sec=0.002); time.sleep(0.003)",
+        "import rclpy\n": "import time\nimport rclpy\n",
+    },
+}
+
+
+def is_right(grading: Grading, way: str) -> None:
+    """Grade the solution, made and spun in this way, and check that it gets full marks."""
     source = (SOLUTIONS / "solution.py").read_text(encoding="utf-8")
-    for old, new in change.items():
+    for old, new in WAYS[way].items():
         assert old in source
         source = source.replace(old, new)
     grade = grading.grade(of_source("test.py", source.encode(), grading.runner.exercise))
     assert grade.full_marks, [v for v in grade.verdicts if v.status != "passed"]
     assert grade.recordings["chapter"].uses_sim_time, "it has been told to"
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_however_a_node_is_made_and_spun_its_grade_is_right(short: Grading, way: str) -> None:
+    is_right(short, way)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("way", WAYS)
+def test_however_a_node_is_made_and_spun_it_is_right_in_every_scenario(grading: Grading, way: str) -> None:
+    is_right(grading, way)

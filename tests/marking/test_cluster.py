@@ -8,13 +8,15 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 
 import psutil
 import pytest
 from small_class import POINTS, SmallClass, wait_until, without_timings
 
-pytest.importorskip("distributed")
+# Importing it takes half a second, in each of pytest-xdist's processes.
+pytestmark = pytest.mark.skipif(find_spec("distributed") is None, reason="Dask is not installed")
 
 
 @contextmanager

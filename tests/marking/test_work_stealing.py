@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 
-from small_class import ROOT
+from small_class import EXERCISE, TEMPLATE
 
 from grader.classroom.local import LocalBackend
 from grader.exercise import load
@@ -26,16 +26,17 @@ class Counting(WorkerPool):
 
 
 def test_whoever_has_no_submission_left_helps_with_the_last_one() -> None:
-    exercise = load(ROOT / "exercises" / "joint_velocity")
-    submission = read(str(ROOT / "solutions" / "joint_velocity" / "mistakes" / "degrees.py"), exercise)
+    exercise = load(TEMPLATE / "exercises" / EXERCISE)
+    submission = read(str(TEMPLATE / "solutions" / EXERCISE / "mistakes" / "only_forwards.py"), exercise)
     grades = []
-    for jobs in (1, 4):
-        with Counting() as workers:
-            grading = grading_of(exercise, Options(), workers)
+    with Counting() as workers:
+        grading = grading_of(exercise, Options(), workers)
+        assert len(grading.runner.scenarios) >= 4
+        for jobs in (1, 4):
             workers.threads.clear()
             (graded,) = LocalBackend(grading, jobs).mark({"ada": submission})
             assert len(workers.threads) == jobs
-        grades.append(graded.grade)
+            grades.append(graded.grade)
     alone, helped = grades
     assert helped.outcome == alone.outcome == "graded"
     assert helped.verdicts == alone.verdicts
