@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, partial
@@ -39,7 +38,9 @@ def domain_for(isolation: Isolation) -> int:
     """Return the domain of this process; it is reserved until the process ends. Raises OSError when none is left."""
     if isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
         return ALONE
-    folder = Path(tempfile.gettempdir()) / f"spinbook-domains-{os.getuid()}"
+    folder = Path(
+        "/tmp", f"spinbook-domains-{os.getuid()}"
+    )  # this machine's: a worker has a temporary folder of its own
     folder.mkdir(mode=0o700, exist_ok=True)
     # Never closed: the lock ends with the process.
     claimed = claim_number(folder, SHARED)

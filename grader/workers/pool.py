@@ -5,9 +5,11 @@ from __future__ import annotations
 import contextlib
 import multiprocessing.connection
 import os
+import shutil
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
 from collections.abc import Callable, Iterable
 from functools import partial
@@ -157,6 +159,10 @@ class WorkerPool:
         """
         chosen = {choose_middleware(one).middleware for one in middlewares or (None,)}
         self._middlewares = sorted(one.value for one in chosen)
+        # A job that is cancelled is killed: what it has made, as the folder of its hub, goes with the pool. Another
+        # user's student goes through it to the hub.
+        self._temporary = Path(tempfile.mkdtemp(prefix="spinbook-"))
+        self._temporary.chmod(0o711)
         self._lock = threading.Lock()
         self._closed = False
         self._shared = SharedObjects()
@@ -166,11 +172,14 @@ class WorkerPool:
     def _start(self) -> None:
         self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._worker = subprocess.Popen(
-            [sys.executable, "-m", "grader.workers.worker", str(theirs.fileno()), *self._middlewares],
+            [
+                *(sys.executable, "-m", "grader.workers.worker"),
+                *(str(theirs.fileno()), str(self._temporary), *self._middlewares),
+            ],
             pass_fds=[theirs.fileno()],
             stdin=subprocess.DEVNULL,
             start_new_session=True,
-            env={**os.environ, **WORKER_ENVIRONMENT},
+            env={**os.environ, **WORKER_ENVIRONMENT, "TMPDIR": str(self._temporary)},
         )
         theirs.close()
         for content in self._sent:
@@ -247,10 +256,11 @@ class WorkerPool:
                 socket.send_fds(self._control, [command], [descriptor])
 
     def close(self) -> None:
-        """End the worker, and with it every job and every student's program."""
+        """End the worker, and with it every job and every student's program; remove what they have left."""
         self._closed = True
         self._control.close()
         self._worker.wait()
+        shutil.rmtree(self._temporary, ignore_errors=True)
 
     def __enter__(self) -> WorkerPool:
         return self

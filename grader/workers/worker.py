@@ -9,6 +9,7 @@ import importlib
 import multiprocessing.connection
 import os
 import queue
+import shutil
 import signal
 import socket
 import sys
@@ -70,13 +71,14 @@ def _share() -> None:
     gc.freeze()
 
 
-# python -m grader.workers.worker DESCRIPTOR MIDDLEWARE…
+# python -m grader.workers.worker DESCRIPTOR FOLDER MIDDLEWARE…
 
 
 def main() -> None:
-    """Serve jobs until the other end of the control socket is closed."""
-    control = socket.socket(fileno=int(sys.argv[1]))
-    with ForkServer([Middleware(name) for name in sys.argv[2:]]) as fork_server:
+    """Serve jobs until the other end of the control socket is closed; remove the folder with all they have left."""
+    descriptor, folder, *middlewares = sys.argv[1:]
+    control = socket.socket(fileno=int(descriptor))
+    with ForkServer([Middleware(name) for name in middlewares]) as fork_server:
         preload()
         working: set[int] = set()
         judges = Judges(working)
@@ -110,6 +112,7 @@ def main() -> None:
                 os.kill(pid, signal.SIGKILL)
             with contextlib.suppress(ChildProcessError):
                 os.waitpid(pid, 0)
+    shutil.rmtree(folder, ignore_errors=True)
 
 
 def _reap(working: set[int]) -> None:

@@ -7,6 +7,8 @@ import pickle
 import signal
 import subprocess
 import sys
+import tempfile
+from pathlib import Path
 
 import psutil
 import pytest
@@ -85,6 +87,20 @@ def test_a_pool_that_was_closed_does_no_more_jobs() -> None:
         pass
     with pytest.raises(HostFault, match="the worker process is gone"):
         workers.do(ListJob(load(EXERCISE)))
+
+
+def test_a_pool_leaves_nothing_among_temporary_files_even_if_its_process_was_killed() -> None:
+    code = "import sys\nfrom grader.workers import WorkerPool\n"
+    code += "with WorkerPool():\n    print('ready', flush=True)\n    sys.stdin.read()"
+    with tempfile.TemporaryDirectory(prefix="pool-") as folder:
+        environment = {**os.environ, "TMPDIR": folder}
+        command = [sys.executable, "-c", code]
+        with subprocess.Popen(command, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+            assert process.stdout
+            assert process.stdout.readline() == b"ready\n"
+            assert list(Path(folder).iterdir())
+            process.kill()
+        wait_until(lambda: not list(Path(folder).iterdir()))
 
 
 def test_a_command_that_leaves_the_cpus_to_its_workers_has_one_thread_with_numpy() -> None:

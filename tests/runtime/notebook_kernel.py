@@ -41,7 +41,8 @@ class Kernel:
     def __init__(self, folder: Path, **environment: str) -> None:
         self._manager = KernelManager(kernel_spec_manager=ThisPython())
         self._manager.transport = "ipc"
-        self._manager.ip = os.fspath(Path(tempfile.mkdtemp(prefix="sb-")) / "k")
+        self._sockets = tempfile.TemporaryDirectory(prefix="sb-", ignore_cleanup_errors=True)
+        self._manager.ip = os.fspath(Path(self._sockets.name) / "k")
         env = {key: value for key, value in {**os.environ, **environment}.items() if value}
         self._manager.start_kernel(cwd=os.fspath(folder), env=env)
         self._client = self._manager.client()
@@ -95,3 +96,4 @@ class Kernel:
         """Shut down as closing the notebook does."""
         self._client.stop_channels()
         self._manager.shutdown_kernel(now=not self._manager.is_alive())
+        self._sockets.cleanup()
