@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import getpass
+import re
 import shutil
+import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -183,11 +185,12 @@ def test_what_checks_write_is_gone_when_they_end_and_pytests_folders_of_others_s
     others = [tmp_path / f"pytest-of-{getpass.getuser()}" / f"pytest-{number}" for number in range(5)]
     for other in others:
         other.mkdir(parents=True)
-    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     with WorkerPool() as workers:
         verdicts = [judged(workers, job_of(exercise)) for _ in range(2)]
+        wait_until(lambda: not list(tmp_path.glob("spinbook-*/*")))
     texts = [verdict.finding.text for verdict in verdicts if verdict.finding]
     assert len(set(texts)) == 2, "both wrote into the same folder"
-    assert all(text.startswith(f"{tmp_path}/spinbook-checks-") for text in texts)
+    assert all(re.match(rf"{re.escape(str(tmp_path))}/spinbook-\w+/spinbook-checks-", text) for text in texts)
+    assert list(tmp_path.glob("spinbook-*")) == []
     assert sorted(others[0].parent.iterdir()) == others
-    assert list(tmp_path.glob("spinbook-checks-*")) == []
