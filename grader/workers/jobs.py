@@ -38,9 +38,8 @@ def domain_for(isolation: Isolation) -> int:
     """Return the domain of this process; it is reserved until the process ends. Raises OSError when none is left."""
     if isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
         return ALONE
-    folder = Path(
-        "/tmp", f"spinbook-domains-{os.getuid()}"
-    )  # this machine's: a worker has a temporary folder of its own
+    # This machine's: a worker has a temporary folder of its own.
+    folder = Path("/tmp", f"spinbook-domains-{os.getuid()}")
     folder.mkdir(mode=0o700, exist_ok=True)
     # Never closed: the lock ends with the process.
     claimed = claim_number(folder, SHARED)

@@ -159,8 +159,8 @@ class WorkerPool:
         """
         chosen = {choose_middleware(one).middleware for one in middlewares or (None,)}
         self._middlewares = sorted(one.value for one in chosen)
-        # A job that is cancelled is killed: what it has made, as the folder of its hub, goes with the pool. Another
-        # user's student goes through it to the hub.
+        # A job that is cancelled ends at once: what it has made, as the folder of its hub, goes with the pool. A
+        # student that is another user goes through it to the hub.
         self._temporary = Path(tempfile.mkdtemp(prefix="spinbook-"))
         self._temporary.chmod(0o711)
         self._lock = threading.Lock()

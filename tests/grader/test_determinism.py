@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from busy_loops import busy
 
 from grader.exercise import Exercise
 from grader.grading import Grade, Options, grading_of
@@ -35,20 +32,6 @@ def grading(exercise: Exercise, workers: WorkerPool) -> Grading:
 def short(exercise: Exercise, workers: WorkerPool) -> Grading:
     """A grading of joint_velocity by its public checks alone, which takes two scenarios."""
     return grading_of(exercise.public(), Options(), workers)
-
-
-@contextmanager
-def busy(loops: int) -> Iterator[None]:
-    """Run that many processes that compute without an end."""
-    # Each in a session of its own, for Linux shares its cores by session.
-    command = [sys.executable, "-c", "while True: pass"]
-    processes = [subprocess.Popen(command, start_new_session=True) for _ in range(loops)]
-    try:
-        yield
-    finally:
-        for process in processes:
-            process.kill()
-            process.wait()
 
 
 def recorded(grade: Grade) -> str:

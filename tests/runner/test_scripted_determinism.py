@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from busy_loops import busy
 from scripted_programs import (
     ACTION_CLIENT,
     ACTION_SERVER,
@@ -62,17 +60,6 @@ CASES = {
 }
 
 
-@pytest.fixture
-def busy_loops() -> Iterator[None]:
-    # Each in a session of its own, for Linux shares its cores by session.
-    command = [sys.executable, "-c", "while True: pass"]
-    loops = [subprocess.Popen(command, start_new_session=True) for _ in range(LOOPS)]
-    yield
-    for loop in loops:
-        loop.kill()
-        loop.wait()
-
-
 def recorded(fork_server: ForkServer, name: str) -> Recording:
     use_near(Path(__file__).parent)
     body, scenario = CASES[name]
@@ -88,10 +75,8 @@ def recorded(fork_server: ForkServer, name: str) -> Recording:
 
 @pytest.mark.soak
 @pytest.mark.parametrize("name", CASES)
-def test_a_program_with_threads_gets_the_same_recording_each_time(
-    fork_server: ForkServer, name: str, request: pytest.FixtureRequest
-) -> None:
+def test_a_program_with_threads_gets_the_same_recording_each_time(fork_server: ForkServer, name: str) -> None:
     found = [recorded(fork_server, name) for _ in range(RUNS // 2)]
-    request.getfixturevalue("busy_loops")
-    found += [recorded(fork_server, name) for _ in range(RUNS // 2)]
+    with busy(LOOPS):
+        found += [recorded(fork_server, name) for _ in range(RUNS // 2)]
     assert all(one == found[0] for one in found)

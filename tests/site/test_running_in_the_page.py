@@ -118,6 +118,7 @@ def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str) -> N
         expect(page.locator(".check-failed")).to_contain_text("Every velocity is in degrees.")
         assert shown.violations() == []
         assert not shown.scrolls_sideways()
+        check(solutions / "right" / "several_threads.py", "11 of 11 public checks, 41 of 41 points")
         check(solutions / "solution.py", "11 of 11 public checks, 41 of 41 points")
         expect(page.locator(".check-result")).to_contain_text("This is a preview, not your grade")
 
