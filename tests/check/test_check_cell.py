@@ -15,6 +15,7 @@ from pathlib import Path
 import psutil
 import pytest
 from notebook_kernel import Kernel, Shown
+from process_tree import beneath, command_of
 
 from check.conftest import PUBLIC, node_cell, solution
 from grader.exercise import load
@@ -103,14 +104,7 @@ def test_a_loop_without_end_is_reported_and_the_kernel_goes_on(kernel: Kernel) -
 
 def checks_of(kernel: Kernel) -> list[psutil.Process]:
     """Return the check processes that run in this kernel."""
-    found = []
-    for process in psutil.Process(kernel.process_id).children(recursive=True):
-        try:
-            if "spinbook.submit.program" in process.cmdline():
-                found.append(process)
-        except psutil.Error:
-            continue
-    return found
+    return [one for one in beneath(psutil.Process(kernel.process_id)) if "spinbook.submit.program" in command_of(one)]
 
 
 def test_a_check_ends_with_its_bound_and_leaves_nothing_behind(kernel: Kernel) -> None:
@@ -127,7 +121,7 @@ def test_stop_ends_a_check_in_the_midst_and_leaves_nothing_behind(kernel: Kernel
     def press() -> None:
         deadline = time.monotonic() + 60
         while time.monotonic() < deadline:
-            found = [child for check in checks_of(kernel) for child in [check, *children_of(check)]]
+            found = [child for check in checks_of(kernel) for child in [check, *beneath(check)]]
             if any("grader.sandbox.zygote" in " ".join(command_of(child)) for child in found):
                 started.extend(found)
                 break
@@ -144,20 +138,6 @@ def test_stop_ends_a_check_in_the_midst_and_leaves_nothing_behind(kernel: Kernel
     assert psutil.wait_procs(started, timeout=60)[1] == []
     assert checks_of(kernel) == []
     assert kernel.run("print(6 * 7)").text == "42\n"
-
-
-def children_of(process: psutil.Process) -> list[psutil.Process]:
-    try:
-        return process.children(recursive=True)
-    except psutil.Error:
-        return []
-
-
-def command_of(process: psutil.Process) -> list[str]:
-    try:
-        return process.cmdline()
-    except psutil.Error:
-        return []
 
 
 @pytest.mark.parametrize(

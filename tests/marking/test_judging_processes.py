@@ -11,6 +11,7 @@ from pathlib import Path
 
 import psutil
 import pytest
+from process_tree import runs, workers_of
 from small_class import ROOT, wait_until
 
 from grader.checking.verdict import Verdict
@@ -129,23 +130,19 @@ def test_a_scenario_that_did_not_exist_before_is_found(exercise: Exercise) -> No
         assert judged(workers, both).status == "passed"
 
 
-def processes_of(pool: psutil.Process) -> list[psutil.Process]:
-    return [one for one in pool.children() if "grader.workers.worker" in " ".join(one.cmdline())]
-
-
 def test_a_process_that_has_died_is_replaced_and_all_end_with_the_pool(exercise: Exercise) -> None:
-    others = set(psutil.Process().children())
+    others = workers_of(psutil.Process())
     with WorkerPool() as workers:
         workers.share([exercise])
         judged(workers, job_of(exercise))
-        [worker] = set(psutil.Process().children()) - others
-        [collected] = processes_of(worker)
+        [worker] = [one for one in workers_of(psutil.Process()) if one not in others]
+        [collected] = workers_of(worker)
         collected.kill()
-        wait_until(lambda: collected.status() == psutil.STATUS_ZOMBIE)
+        wait_until(lambda: not runs(collected))
         assert judged(workers, job_of(exercise)).status == "passed"
-        left = [one for one in processes_of(worker) if one != collected]
+        left = [one for one in workers_of(worker) if one != collected]
         assert left
-    assert not any(one.is_running() for one in left)
+    assert not any(runs(one) for one in left)
     assert imports(exercise) == 2
 
 

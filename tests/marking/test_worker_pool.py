@@ -12,6 +12,7 @@ from pathlib import Path
 
 import psutil
 import pytest
+from process_tree import runs, workers_of
 from small_class import ROOT, wait_until
 
 from grader.exercise import load
@@ -22,33 +23,28 @@ from grader.workers.shared import SharedObjects, receive
 EXERCISE = ROOT / "exercises" / "joint_velocity"
 
 
-def worker_processes() -> list[psutil.Process]:
-    found = psutil.Process().children()
-    return [process for process in found if "grader.workers.worker" in " ".join(process.cmdline())]
-
-
 def test_a_pool_whose_worker_was_killed_gets_another(monkeypatch: pytest.MonkeyPatch) -> None:
     job = ListJob(load(EXERCISE))
-    others = {process.pid for process in worker_processes()}
+    others = {process.pid for process in workers_of(psutil.Process())}
     with WorkerPool() as workers:
         before = workers.do(job)
-        [worker] = [process for process in worker_processes() if process.pid not in others]
+        [worker] = [process for process in workers_of(psutil.Process()) if process.pid not in others]
         os.kill(worker.pid, signal.SIGKILL)
-        wait_until(lambda: worker.status() == psutil.STATUS_ZOMBIE)
+        wait_until(lambda: not runs(worker))
         assert workers.do(job) == before
 
 
 def test_a_worker_has_what_jobs_share_also_after_it_was_started_again() -> None:
     exercise = load(EXERCISE)
     job = ListJob(exercise)
-    others = {process.pid for process in worker_processes()}
+    others = {process.pid for process in workers_of(psutil.Process())}
     with WorkerPool() as workers:
         before = workers.do(job)
         workers.share([exercise])
         assert workers.do(job) == before
-        [worker] = [process for process in worker_processes() if process.pid not in others]
+        [worker] = [process for process in workers_of(psutil.Process()) if process.pid not in others]
         os.kill(worker.pid, signal.SIGKILL)
-        wait_until(lambda: worker.status() == psutil.STATUS_ZOMBIE)
+        wait_until(lambda: not runs(worker))
         assert workers.do(job) == before
 
 
@@ -61,25 +57,21 @@ def test_a_job_refers_to_what_its_process_has_and_carries_the_rest() -> None:
     assert pickle.loads(carried) == pickle.loads(referred) == job
 
 
-def children_of(pool: psutil.Process) -> list[psutil.Process]:
-    return [child for child in pool.children() if "grader.workers.worker" in " ".join(child.cmdline())]
-
-
 def test_a_worker_does_its_jobs_in_one_process_and_in_another_once_that_died() -> None:
     job = ListJob(load(EXERCISE))
-    others = {process.pid for process in worker_processes()}
+    others = {process.pid for process in workers_of(psutil.Process())}
     with WorkerPool() as workers:
         with workers.reserve() as worker:
             before = worker.do(job)
-            [pool] = [process for process in worker_processes() if process.pid not in others]
-            [first] = children_of(pool)
+            [pool] = [process for process in workers_of(psutil.Process()) if process.pid not in others]
+            [first] = workers_of(pool)
             assert worker.do(job) == before
-            assert children_of(pool) == [first]
+            assert workers_of(pool) == [first]
             first.kill()
-            wait_until(lambda: first.status() == psutil.STATUS_ZOMBIE)
+            wait_until(lambda: not runs(first))
             assert worker.do(job) == before
-            [second] = [process for process in children_of(pool) if process != first]
-        wait_until(lambda: not second.is_running() or second.status() == psutil.STATUS_ZOMBIE)
+            [second] = [process for process in workers_of(pool) if process != first]
+        wait_until(lambda: not runs(second))
 
 
 def test_a_pool_that_was_closed_does_no_more_jobs() -> None:

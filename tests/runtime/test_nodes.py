@@ -7,9 +7,11 @@ import subprocess
 import sys
 from collections.abc import Callable
 
+import psutil
 import pytest
 from notebook_kernel import Kernel
 from process_mark import ProcessMark
+from process_tree import beneath, command_of
 
 TALKER = """import sys
 import rclpy
@@ -54,8 +56,7 @@ def test_running_a_cell_again_restarts_its_node(kernel: Kernel) -> None:
 
 
 def kernel_processes(kernel: Kernel) -> list[str]:
-    code = "import psutil\nfor p in psutil.Process().children(recursive=True): print(' '.join(p.cmdline()))"
-    return kernel.run(code).text.splitlines()
+    return [" ".join(command_of(process)) for process in beneath(psutil.Process(kernel.process_id))]
 
 
 def test_stop_ends_a_node_as_ctrl_c_does(kernel: Kernel) -> None:
