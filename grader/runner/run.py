@@ -64,7 +64,7 @@ def run(
     ours.
     """
     began = time.monotonic()
-    # The path of a socket has to be short, so the caller's folder is not used.
+    # The path of a socket has to be short, so the caller's folder is not used: see WorkerPool.
     folder = Path(tempfile.mkdtemp(prefix="spinbook-hub-"))
     try:
         with Hub(folder, limits) as hub:

@@ -142,6 +142,16 @@ def leave_cpus_to_workers() -> None:
     os.environ.setdefault(_THREADS_OF_NUMPY, "1")
 
 
+#: The path of a socket has at most 107 bytes (unix(7)); a pool's folder and that of a hub in it need the others.
+_LONGEST_PLACE = 60
+
+
+def _place_for_sockets() -> str:
+    """The folder for temporary files, or /tmp if its path is too long for a socket, as on some clusters."""
+    place = tempfile.gettempdir()
+    return place if len(os.fsencode(place)) <= _LONGEST_PLACE else "/tmp"
+
+
 PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, SHARE, JUDGE = b"p", b"t", b"j", b"s", b"c"
 
 
@@ -161,7 +171,7 @@ class WorkerPool:
         self._middlewares = sorted(one.value for one in chosen)
         # A job that is cancelled ends at once: what it has made, as the folder of its hub, goes with the pool. A
         # student that is another user goes through it to the hub.
-        self._temporary = Path(tempfile.mkdtemp(prefix="spinbook-"))
+        self._temporary = Path(tempfile.mkdtemp(prefix="spinbook-", dir=_place_for_sockets()))
         self._temporary.chmod(0o711)
         self._lock = threading.Lock()
         self._closed = False

@@ -107,11 +107,13 @@ def checked(exercise: Path, code: str, seconds: float) -> dict[str, str]:
 
     Raises CellFailed when there is none: after `seconds`, when interrupted, or by a fault that is not the student's.
     """
-    with tempfile.TemporaryDirectory(prefix="spinbook-") as temporary:
+    # A check that is stopped leaves its own temporary files there, too; a student that is another user goes through it.
+    with tempfile.TemporaryDirectory(prefix="spinbook-", ignore_cleanup_errors=True) as temporary:
         folder = Path(temporary)
+        folder.chmod(0o711)
         (folder / "code").write_text(code, encoding="utf-8", errors="replace")
         argv = [sys.executable, "-m", "spinbook.submit.program", os.fspath(exercise), "code", "result"]
-        process = KeptProcess(argv, os.environ, folder)
+        process = KeptProcess(argv, {**os.environ, "TMPDIR": temporary}, folder)
         try:
             status = process.wait(seconds)
             if status.running:

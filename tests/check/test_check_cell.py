@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import re
 import signal
+import tempfile
 import threading
 import time
 from pathlib import Path
@@ -16,9 +17,12 @@ import psutil
 import pytest
 from notebook_kernel import Kernel, Shown
 from process_tree import beneath, command_of
+from small_class import wait_until
 
 from check.conftest import PUBLIC, node_cell, solution
 from grader.exercise import load
+from spinbook.kernel import check_cell
+from spinbook.kernel.process import CellFailed, KeptProcess, Status
 
 CHECK = "%check joint_velocity"
 
@@ -138,6 +142,24 @@ def test_stop_ends_a_check_in_the_midst_and_leaves_nothing_behind(kernel: Kernel
     assert psutil.wait_procs(started, timeout=60)[1] == []
     assert checks_of(kernel) == []
     assert kernel.run("print(6 * 7)").text == "42\n"
+
+
+def test_a_check_that_has_no_time_to_end_leaves_no_temporary_file(
+    handed_out: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def until_it_runs(process: KeptProcess, timeout_s: float) -> Status:
+        wait_until(lambda: any("spinbook-hub-" in folder for folder, _, _ in os.walk(tempfile.gettempdir())))
+        return process.status
+
+    monkeypatch.setattr(KeptProcess, "wait", until_it_runs)
+    monkeypatch.setattr(check_cell, "_GRACE", (0.0, 0.0))
+    endless = solution().replace("answer = JointState()", "while True: pass")
+    with tempfile.TemporaryDirectory() as temporary:  # its path is shorter than pytest's, as sockets need it
+        monkeypatch.setattr(tempfile, "tempdir", temporary)
+        monkeypatch.setenv("TMPDIR", temporary)
+        with pytest.raises(CellFailed, match="did not finish within 1 s"):
+            check_cell.checked(handed_out / "exercises" / "joint_velocity", endless, 1)
+        assert list(Path(temporary).iterdir()) == []
 
 
 @pytest.mark.parametrize(

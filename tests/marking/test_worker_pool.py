@@ -16,6 +16,8 @@ from process_tree import runs, workers_of
 from small_class import ROOT, wait_until
 
 from grader.exercise import load
+from grader.grading.grading import grade_submission
+from grader.submission.reading import of_source
 from grader.workers import HostFault, WorkerPool
 from grader.workers.jobs import ListJob
 from grader.workers.shared import SharedObjects, receive
@@ -93,6 +95,21 @@ def test_a_pool_leaves_nothing_among_temporary_files_even_if_its_process_was_kil
             assert list(Path(folder).iterdir())
             process.kill()
         wait_until(lambda: not list(Path(folder).iterdir()))
+
+
+def test_a_submission_is_graded_where_the_path_for_temporary_files_is_too_long_for_a_socket(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    long = tmp_path / ("long" * 25)
+    long.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", None)
+    monkeypatch.setenv("TMPDIR", os.fspath(long))
+    exercise = load(EXERCISE).public()
+    solution = (ROOT / "solutions" / "joint_velocity" / "solution.py").read_bytes()
+
+    grade = grade_submission(exercise, of_source("solution", solution, exercise))
+
+    assert grade.score == grade.points > 0
 
 
 def test_a_command_that_leaves_the_cpus_to_its_workers_has_one_thread_with_numpy() -> None:
