@@ -6,6 +6,7 @@ import getpass
 import re
 import shutil
 import tempfile
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -174,20 +175,28 @@ def test_fixtures(twice, times, tmp_path, monkeypatch, capfd, caplog) -> None:
     assert [verdict.status for verdict in verdicts] == ["passed"] * 2
 
 
+@pytest.fixture
+def temporary(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """The folder for temporary files, which no other test uses; its path is short enough for sockets."""
+    with tempfile.TemporaryDirectory() as folder:
+        monkeypatch.setattr(tempfile, "tempdir", folder)
+        yield Path(folder)
+        monkeypatch.undo()
+
+
 def test_what_checks_write_is_gone_when_they_end_and_pytests_folders_of_others_stay(
-    exercise: Exercise, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    exercise: Exercise, temporary: Path
 ) -> None:
     write(exercise.folder, WRITES_A_FILE)
     # pytest keeps the last three in its own folder, and removes the others there.
-    others = [tmp_path / f"pytest-of-{getpass.getuser()}" / f"pytest-{number}" for number in range(5)]
+    others = [temporary / f"pytest-of-{getpass.getuser()}" / f"pytest-{number}" for number in range(5)]
     for other in others:
         other.mkdir(parents=True)
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     with WorkerPool() as workers:
         verdicts = [judged(workers, job_of(exercise)) for _ in range(2)]
-        wait_until(lambda: not list(tmp_path.glob("spinbook-*/*")))
+        wait_until(lambda: not list(temporary.glob("spinbook-*/*")))
     texts = [verdict.finding.text for verdict in verdicts if verdict.finding]
     assert len(set(texts)) == 2, "both wrote into the same folder"
-    assert all(re.match(rf"{re.escape(str(tmp_path))}/spinbook-\w+/spinbook-checks-", text) for text in texts)
-    assert list(tmp_path.glob("spinbook-*")) == []
+    assert all(re.match(rf"{re.escape(str(temporary))}/spinbook-\w+/spinbook-checks-", text) for text in texts)
+    assert list(temporary.glob("spinbook-*")) == []
     assert sorted(others[0].parent.iterdir()) == others
