@@ -19,6 +19,7 @@ from typing import Any
 import psutil
 import pytest
 import rclpy
+from fault_of_rclpy import raise_if_in
 from geometry_msgs.msg import Twist
 from rcl_interfaces.srv import GetParameters
 from rclpy.context import Context
@@ -107,7 +108,7 @@ class Program:
         raise AssertionError("the node's main thread never came to rest")
 
     def end(self, number: signal.Signals, wake: Callable[[], object] = lambda: None) -> int:
-        """Send a signal, and return the exit code; the log is then complete.
+        """Send a signal, and return the exit code; the log is then complete. Raises FaultOfRclpy if it tells of that.
 
         rclpy's signal thread wakes the node before it shuts the context down. A node that is faster than this thread
         sees nothing new after SIGTERM, and waits for its next timer or message. `wake` sends it one.
@@ -120,6 +121,7 @@ class Program:
         self._reader.join(DEADLINE_S)
         while line := self._unread.get_nowait():
             self.log.append(line)
+        raise_if_in("".join(self.log))
         return code
 
     def _still_runs(self) -> bool:
@@ -228,31 +230,17 @@ def test_a_node_ends_in_good_order_when_asked_to(files: Path, name: str, number:
         "joint_monitor.py": "joint_state_monitor",
         "turtle_circle.py": "turtle_circle",
     }[name]
-    for _ in range(TRIES):
-        code, log = end_of(files / name, ros_name, number)
-        if FAULT_OF_RCLPY not in log:
-            break
-    assert "Traceback" not in log, log
-    assert code == 0, log
-
-
-#: rclpy wakes a node before it shuts the context down (signal_handler.cpp of 7.1.3). A node that has looked at its
-#: context and then waits again just in between ends with this, whatever its code. Seen once in some hundred runs.
-FAULT_OF_RCLPY = "failed to initialize wait set: the given context is not valid"
-TRIES = 5
-
-
-def end_of(file: Path, ros_name: str, number: signal.Signals) -> tuple[int, str]:
-    """Run a node, end it by a signal while it waits, and return its exit code and its log."""
     # While the clock stands still no timer is due, so the node has nothing to do but wait.
-    with started(file, "-p", "use_sim_time:=true") as (program, partner):
+    with started(files / name, "-p", "use_sim_time:=true") as (program, partner):
         client = partner.node.create_client(GetParameters, f"/{ros_name}/get_parameters")
         partner.spin_until(client.service_is_ready, f"/{ros_name} to offer its parameters")
         answer = client.call_async(GetParameters.Request(names=["use_sim_time"]))
         partner.spin_until(answer.done, f"/{ros_name} to spin")
         program.wait_until_parked()
         code = program.end(number, wake=lambda: client.call_async(GetParameters.Request()))
-        return code, "".join(program.log)
+        log = "".join(program.log)
+        assert "Traceback" not in log, log
+        assert code == 0, log
 
 
 def test_the_publisher_commands_the_six_joints_of_the_table(files: Path) -> None:
