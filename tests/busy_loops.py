@@ -1,4 +1,4 @@
-"""Keeps the machine busy beside a test."""
+"""Keeps the machine busy beside a test, or a benchmark."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def busy(loops: int) -> Iterator[None]:
+def busy(loops: int, nice: int = 0) -> Iterator[None]:
     """Run that many processes that compute without an end, or until this process is killed."""
-    command = [sys.executable, "-c", f"import os\nwhile os.getppid() == {os.getpid()}: sum(range(100_000))"]
-    # Each in a session of its own, for Linux shares its cores by session.
+    code = f"import os; os.nice({nice})\nwhile os.getppid() == {os.getpid()}: sum(range(100_000))"
+    command = [sys.executable, "-c", code]
+    # Linux shares its cores by session: eight loops of one session would get no more than one program.
     processes = [subprocess.Popen(command, start_new_session=True) for _ in range(loops)]
     try:
         yield

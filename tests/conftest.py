@@ -87,6 +87,18 @@ def within(entry: str, folders: set[str]) -> bool:
 
 
 @pytest.fixture
+def temporary_files(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """An empty folder that this process, and what it starts, uses for temporary files while the test runs.
+
+    Its path is shorter than that of `tmp_path`, as sockets need it.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        monkeypatch.setattr(tempfile, "tempdir", folder)
+        monkeypatch.setenv("TMPDIR", folder)
+        yield Path(folder)
+
+
+@pytest.fixture
 def course(tmp_path: Path) -> CourseFolder:
     """An empty course."""
     return CourseFolder(tmp_path / "course")

@@ -33,3 +33,9 @@ def beneath(process: psutil.Process) -> list[psutil.Process]:
 def workers_of(process: psutil.Process) -> list[psutil.Process]:
     """Return the grader's worker processes that run, of those that a process has started itself."""
     return [child for child in process.children() if "grader.workers.worker" in " ".join(command_of(child))]
+
+
+def new_worker(others: list[psutil.Process]) -> psutil.Process:
+    """Return the one worker process that this process has started besides the others."""
+    [found] = [worker for worker in workers_of(psutil.Process()) if worker not in others]
+    return found

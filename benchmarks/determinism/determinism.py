@@ -15,13 +15,10 @@ order, or a call, goal or parameter; a grade differs if any verdict does.
 from __future__ import annotations
 
 import argparse
-import contextlib
 import json
 import os
-import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -38,6 +35,9 @@ from spinbook.interfaces.compiling import compile_course
 
 HERE = Path(__file__).parent
 COURSE = HERE.parents[1]
+
+sys.path.append(str(COURSE / "tests"))
+from busy_loops import busy  # noqa: E402
 
 #: Of this one every file is graded.
 HARDEST = "joint_velocity"
@@ -162,30 +162,13 @@ def _files(exercise: Exercise, only: list[str] | None) -> list[Path]:
 def _round(number: int, programs: list[Program], options: argparse.Namespace) -> None:
     """Grade each program once, every other time next to busy loops."""
     began = time.monotonic()
-    busy = number % 2 == 1
-    with _load(busy, options.nice), ThreadPoolExecutor(options.parallel) as pool:
+    loops = LOOPS_PER_CORE * len(os.sched_getaffinity(0)) if number % 2 == 1 else 0
+    with busy(loops, options.nice), ThreadPoolExecutor(options.parallel) as pool:
         for done in [pool.submit(program.grade, options.keep) for program in programs]:
             done.result()
-    how = "next to busy loops" if busy else "alone"
+    how = "next to busy loops" if loops else "alone"
     summary = f"round {number + 1}, {how}: {time.monotonic() - began:.0f} s, {_total(programs).plain}"
     print(summary, file=sys.stderr, flush=True)
-
-
-@contextlib.contextmanager
-def _load(busy: bool, nice: int) -> Iterator[None]:
-    """For as long as this lasts, something else keeps the machine busy."""
-    count = LOOPS_PER_CORE * len(os.sched_getaffinity(0)) if busy else 0
-    # A benchmark that is killed can't end its loops: each looks for itself whether its parent is still there.
-    code = f"import os; os.nice({nice})\nwhile os.getppid() == {os.getpid()}: sum(range(100_000))"
-    loop = [sys.executable, "-c", code]
-    # Linux shares its cores by session: eight loops of one session would get no more than one program.
-    loops = [subprocess.Popen(loop, start_new_session=True) for _ in range(count)]
-    try:
-        yield
-    finally:
-        for process in loops:
-            process.kill()
-            process.wait()
 
 
 def _total(programs: list[Program]) -> Counts:

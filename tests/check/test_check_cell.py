@@ -8,7 +8,6 @@ from __future__ import annotations
 import os
 import re
 import signal
-import tempfile
 import threading
 import time
 from pathlib import Path
@@ -145,21 +144,18 @@ def test_stop_ends_a_check_in_the_midst_and_leaves_nothing_behind(kernel: Kernel
 
 
 def test_a_check_that_has_no_time_to_end_leaves_no_temporary_file(
-    handed_out: Path, monkeypatch: pytest.MonkeyPatch
+    handed_out: Path, temporary_files: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def until_it_runs(process: KeptProcess, timeout_s: float) -> Status:
-        wait_until(lambda: any("spinbook-hub-" in folder for folder, _, _ in os.walk(tempfile.gettempdir())))
+        wait_until(lambda: any("spinbook-hub-" in folder for folder, _, _ in os.walk(temporary_files)))
         return process.status
 
     monkeypatch.setattr(KeptProcess, "wait", until_it_runs)
     monkeypatch.setattr(check_cell, "_GRACE", (0.0, 0.0))
     endless = solution().replace("answer = JointState()", "while True: pass")
-    with tempfile.TemporaryDirectory() as temporary:  # its path is shorter than pytest's, as sockets need it
-        monkeypatch.setattr(tempfile, "tempdir", temporary)
-        monkeypatch.setenv("TMPDIR", temporary)
-        with pytest.raises(CellFailed, match="did not finish within 1 s"):
-            check_cell.checked(handed_out / "exercises" / "joint_velocity", endless, 1)
-        assert list(Path(temporary).iterdir()) == []
+    with pytest.raises(CellFailed, match="did not finish within 1 s"):
+        check_cell.checked(handed_out / "exercises" / "joint_velocity", endless, 1)
+    assert list(temporary_files.iterdir()) == []
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,6 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 import pytest
@@ -35,13 +34,12 @@ def test_a_mistake_is_reported_with_when_and_where_drawn_and_recorded(tmp_path: 
     assert (tmp_path / "bags" / "reordered" / "metadata.yaml").exists()
 
 
-def test_where_the_first_scenario_decides_the_others_leave_nothing_among_temporary_files() -> None:
+def test_where_the_first_scenario_decides_the_others_leave_nothing_among_temporary_files(temporary_files: Path) -> None:
     never = ROOT / "tests" / "hostile" / "submissions" / "never_creates_a_node.py"
-    with tempfile.TemporaryDirectory(prefix="grade-") as folder:
-        command = [sys.executable, "-m", "grader", "joint_velocity", str(never)]
-        done = subprocess.run(command, cwd=ROOT, env={**os.environ, "TMPDIR": folder}, capture_output=True, check=False)
-        assert (done.returncode, done.stderr) == (1, b"")
-        assert list(Path(folder).iterdir()) == []
+    command = [sys.executable, "-m", "grader", "joint_velocity", str(never)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, check=False)
+    assert (done.returncode, done.stderr) == (1, b"")
+    assert list(temporary_files.iterdir()) == []
 
 
 @pytest.mark.parametrize("arguments", [["no_exercise", "x.py"], ["joint_velocity", "nowhere.py"], ["joint_velocity"]])

@@ -5,14 +5,12 @@ from __future__ import annotations
 import getpass
 import re
 import shutil
-import tempfile
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import psutil
 import pytest
-from process_tree import runs, workers_of
+from process_tree import new_worker, runs, workers_of
 from small_class import ROOT, wait_until
 
 from grader.checking.verdict import Verdict
@@ -136,7 +134,7 @@ def test_a_process_that_has_died_is_replaced_and_all_end_with_the_pool(exercise:
     with WorkerPool() as workers:
         workers.share([exercise])
         judged(workers, job_of(exercise))
-        [worker] = [one for one in workers_of(psutil.Process()) if one not in others]
+        worker = new_worker(others)
         [collected] = workers_of(worker)
         collected.kill()
         wait_until(lambda: not runs(collected))
@@ -175,28 +173,19 @@ def test_fixtures(twice, times, tmp_path, monkeypatch, capfd, caplog) -> None:
     assert [verdict.status for verdict in verdicts] == ["passed"] * 2
 
 
-@pytest.fixture
-def temporary(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """The folder for temporary files, which no other test uses; its path is short enough for sockets."""
-    with tempfile.TemporaryDirectory() as folder:
-        monkeypatch.setattr(tempfile, "tempdir", folder)
-        yield Path(folder)
-        monkeypatch.undo()
-
-
 def test_what_checks_write_is_gone_when_they_end_and_pytests_folders_of_others_stay(
-    exercise: Exercise, temporary: Path
+    exercise: Exercise, temporary_files: Path
 ) -> None:
     write(exercise.folder, WRITES_A_FILE)
     # pytest keeps the last three in its own folder, and removes the others there.
-    others = [temporary / f"pytest-of-{getpass.getuser()}" / f"pytest-{number}" for number in range(5)]
+    others = [temporary_files / f"pytest-of-{getpass.getuser()}" / f"pytest-{number}" for number in range(5)]
     for other in others:
         other.mkdir(parents=True)
     with WorkerPool() as workers:
         verdicts = [judged(workers, job_of(exercise)) for _ in range(2)]
-        wait_until(lambda: not list(temporary.glob("spinbook-*/*")))
+        wait_until(lambda: not list(temporary_files.glob("spinbook-*/*")))
     texts = [verdict.finding.text for verdict in verdicts if verdict.finding]
     assert len(set(texts)) == 2, "both wrote into the same folder"
-    assert all(re.match(rf"{re.escape(str(temporary))}/spinbook-\w+/spinbook-checks-", text) for text in texts)
-    assert list(temporary.glob("spinbook-*")) == []
+    assert all(re.match(rf"{re.escape(str(temporary_files))}/spinbook-\w+/spinbook-checks-", text) for text in texts)
+    assert list(temporary_files.glob("spinbook-*")) == []
     assert sorted(others[0].parent.iterdir()) == others

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import psutil
 import pytest
-from process_tree import runs, workers_of
+from process_tree import new_worker, runs, workers_of
 from small_class import ROOT, wait_until
 
 from grader.exercise import load
@@ -27,10 +27,10 @@ EXERCISE = ROOT / "exercises" / "joint_velocity"
 
 def test_a_pool_whose_worker_was_killed_gets_another(monkeypatch: pytest.MonkeyPatch) -> None:
     job = ListJob(load(EXERCISE))
-    others = {process.pid for process in workers_of(psutil.Process())}
+    others = workers_of(psutil.Process())
     with WorkerPool() as workers:
         before = workers.do(job)
-        [worker] = [process for process in workers_of(psutil.Process()) if process.pid not in others]
+        worker = new_worker(others)
         os.kill(worker.pid, signal.SIGKILL)
         wait_until(lambda: not runs(worker))
         assert workers.do(job) == before
@@ -39,12 +39,12 @@ def test_a_pool_whose_worker_was_killed_gets_another(monkeypatch: pytest.MonkeyP
 def test_a_worker_has_what_jobs_share_also_after_it_was_started_again() -> None:
     exercise = load(EXERCISE)
     job = ListJob(exercise)
-    others = {process.pid for process in workers_of(psutil.Process())}
+    others = workers_of(psutil.Process())
     with WorkerPool() as workers:
         before = workers.do(job)
         workers.share([exercise])
         assert workers.do(job) == before
-        [worker] = [process for process in workers_of(psutil.Process()) if process.pid not in others]
+        worker = new_worker(others)
         os.kill(worker.pid, signal.SIGKILL)
         wait_until(lambda: not runs(worker))
         assert workers.do(job) == before
@@ -61,11 +61,11 @@ def test_a_job_refers_to_what_its_process_has_and_carries_the_rest() -> None:
 
 def test_a_worker_does_its_jobs_in_one_process_and_in_another_once_that_died() -> None:
     job = ListJob(load(EXERCISE))
-    others = {process.pid for process in workers_of(psutil.Process())}
+    others = workers_of(psutil.Process())
     with WorkerPool() as workers:
         with workers.reserve() as worker:
             before = worker.do(job)
-            [pool] = [process for process in workers_of(psutil.Process()) if process.pid not in others]
+            pool = new_worker(others)
             [first] = workers_of(pool)
             assert worker.do(job) == before
             assert workers_of(pool) == [first]
@@ -83,18 +83,18 @@ def test_a_pool_that_was_closed_does_no_more_jobs() -> None:
         workers.do(ListJob(load(EXERCISE)))
 
 
-def test_a_pool_leaves_nothing_among_temporary_files_even_if_its_process_was_killed() -> None:
+def test_a_pool_leaves_nothing_among_temporary_files_even_if_its_process_was_killed(
+    temporary_files: Path,
+) -> None:
     code = "import sys\nfrom grader.workers import WorkerPool\n"
     code += "with WorkerPool():\n    print('ready', flush=True)\n    sys.stdin.read()"
-    with tempfile.TemporaryDirectory(prefix="pool-") as folder:
-        environment = {**os.environ, "TMPDIR": folder}
-        command = [sys.executable, "-c", code]
-        with subprocess.Popen(command, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
-            assert process.stdout
-            assert process.stdout.readline() == b"ready\n"
-            assert list(Path(folder).iterdir())
-            process.kill()
-        wait_until(lambda: not list(Path(folder).iterdir()))
+    command = [sys.executable, "-c", code]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        assert process.stdout
+        assert process.stdout.readline() == b"ready\n"
+        assert list(temporary_files.iterdir())
+        process.kill()
+    wait_until(lambda: not list(temporary_files.iterdir()))
 
 
 def test_a_submission_is_graded_where_the_path_for_temporary_files_is_too_long_for_a_socket(
