@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import multiprocessing
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -38,9 +39,10 @@ class Runner:
         """Start it."""
         self.level = level
         self.rootless = rootless
+        self._home = tempfile.mkdtemp(prefix="nobody-") if rootless else None
         context = multiprocessing.get_context("spawn")
         self._connection, theirs = context.Pipe()
-        self._process = context.Process(target=_serve, args=(theirs, level, rootless), daemon=False)
+        self._process = context.Process(target=_serve, args=(theirs, level, self._home), daemon=False)
         self._process.start()
         theirs.close()
 
@@ -84,6 +86,9 @@ class Runner:
         self._connection.close()
         self._process.join(20)
         self._process.kill()
+        self._process.join()
+        if self._home:
+            shutil.rmtree(self._home, ignore_errors=True)  # a program that outlived its runner may still write
 
 
 def run_to_end(
@@ -95,9 +100,9 @@ def run_to_end(
     return Run(end, student.output().text)
 
 
-def _serve(connection: Connection, level: Isolation, rootless: bool) -> None:
-    if rootless:
-        become_nobody()
+def _serve(connection: Connection, level: Isolation, home: str | None) -> None:
+    if home:
+        become_nobody(home)
     with ForkServer([Middleware.FASTDDS]) as fork_server:
         enter(level)
         while True:
@@ -111,8 +116,10 @@ def _serve(connection: Connection, level: Isolation, rootless: bool) -> None:
                 connection.send((f"{type(fault).__name__}: {fault}", None))
 
 
-def become_nobody() -> None:
-    """Give up root for good. The Python in use stays readable, even if it is in root's own home."""
+def become_nobody(home: str) -> None:
+    """Give up root for good, with a home that the caller removes: nobody may not. The Python in use stays readable,
+    even if it is in root's own home.
+    """
     syscalls.unshare(syscalls.CLONE_NEWNS)
     syscalls.mount("", "/", flags=syscalls.MS_REC | syscalls.MS_PRIVATE)
     needed = {Path(path).resolve() for path in (sys.prefix, sys.base_prefix)}
@@ -125,7 +132,6 @@ def become_nobody() -> None:
             path.mkdir(parents=True)
             syscalls.mount(f"/proc/self/fd/{number}", str(path), flags=syscalls.MS_BIND | syscalls.MS_REC)
             os.close(number)
-    home = tempfile.mkdtemp(prefix="nobody-")
     os.chown(home, NOBODY, NOBODY)
     os.setgroups([])
     os.setresgid(NOBODY, NOBODY, NOBODY)
@@ -154,10 +160,11 @@ def _reasons_without_root() -> dict[Isolation, str | None]:
     code = (
         f"import json, sys; sys.path[:0] = [{str(Path(__file__).parent)!r}, {str(Path(__file__).parents[2])!r}]\n"
         "from sandbox_runner import become_nobody\n"
-        "become_nobody()\n"
+        "become_nobody(sys.argv[1])\n"
         "from grader.sandbox import available\n"
         "print(json.dumps({level.value: reason for level, reason in available().items()}))"
     )
-    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    with tempfile.TemporaryDirectory(prefix="nobody-") as home:
+        said = subprocess.run([sys.executable, "-c", code, home], capture_output=True, text=True, check=False)
     assert said.returncode == 0, said.stderr
     return {Isolation(level): reason for level, reason in json.loads(said.stdout).items()}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -145,7 +146,7 @@ sys.path[:0] = {[str(Path(__file__).parent), str(Path(__file__).parents[2])]!r}
 from grader.sandbox import SandboxUnavailable, available, choose, seccomp, syscalls
 from sandbox_runner import become_nobody
 if os.geteuid() == 0:
-    become_nobody()
+    become_nobody(sys.argv[1])
 # What containers do by default: unshare(2) is refused, and nothing else that matters here.
 for name in set(seccomp._FORBIDDEN) - {{'unshare'}}:
     del seccomp._FORBIDDEN[name]
@@ -155,7 +156,8 @@ seccomp.install(seccomp.program())
 print(choose())
 print(*available().values(), sep='\\n')
 """
-    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    with tempfile.TemporaryDirectory(prefix="nobody-") as home:
+        said = subprocess.run([sys.executable, "-c", code, home], capture_output=True, text=True, check=False)
 
     chosen, bubblewrap, namespaces, landlock, none = said.stdout.splitlines() or [said.stderr] * 5
     assert chosen == "landlock", said.stderr
