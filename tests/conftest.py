@@ -22,6 +22,10 @@ from workers import ByPiece
 from xdist.remote import Producer
 
 from interface_compiler import activation
+from spinbook.course.course import find_course
+from spinbook.interfaces.compiling import compile_course
+
+ROOT = Path(__file__).parents[1]
 
 # What is collected and imported stays to the end: looking for garbage in it would be a fifth of the time for it, in
 # each of pytest-xdist's processes.
@@ -84,6 +88,15 @@ def only_here() -> Iterator[None]:
 def within(entry: str, folders: set[str]) -> bool:
     """Whether a path is one of these folders, or below one."""
     return any(entry == folder or entry.startswith(folder + os.sep) for folder in folders)
+
+
+@pytest.fixture(scope="session")
+def course_interfaces() -> None:
+    """The course's own interfaces are compiled: before, no exercise that uses them can be read.
+
+    Reading one activates them.
+    """
+    compile_course(find_course(ROOT))
 
 
 @pytest.fixture

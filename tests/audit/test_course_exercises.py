@@ -15,8 +15,6 @@ from grader.audit.result import Audit
 from grader.exercise import load
 from grader.grading import Options
 from grader.workers import WorkerPool
-from spinbook.course.course import find_course
-from spinbook.interfaces.compiling import compile_course
 
 ROOT = Path(__file__).parents[2]
 
@@ -29,9 +27,8 @@ ALWAYS = {"joint_velocity", "speed_limit"}
 
 
 @pytest.fixture(scope="module")
-def workers() -> Iterator[WorkerPool]:
+def workers(course_interfaces: None) -> Iterator[WorkerPool]:
     """A worker that was started when the course's own interfaces could be imported."""
-    compile_course(find_course(ROOT))
     load(ROOT / "exercises" / "calibration")
     with WorkerPool() as workers:
         yield workers

@@ -19,8 +19,6 @@ from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
 from grader.submission.reading import of_source
 from grader.workers import WorkerPool
-from spinbook.course.course import find_course
-from spinbook.interfaces.compiling import compile_course
 
 ROOT = Path(__file__).parents[2]
 
@@ -31,9 +29,8 @@ NAMES = sorted(
 
 
 @pytest.fixture(scope="module")
-def workers_with_interfaces() -> Iterator[WorkerPool]:
+def workers_with_interfaces(course_interfaces: None) -> Iterator[WorkerPool]:
     """A worker that was started when the course's own interfaces could be imported."""
-    compile_course(find_course(ROOT))
     load(ROOT / "exercises" / "calibration")
     with WorkerPool() as workers:
         yield workers

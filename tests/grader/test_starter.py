@@ -46,6 +46,7 @@ def test_markers_that_do_not_pair_up_are_reported_with_their_line(source: str, l
 FOLDERS = sorted(path.parent for path in EXERCISES.glob("*/exercise.toml"))
 
 
+@pytest.mark.usefixtures("course_interfaces")
 @pytest.mark.parametrize("folder", FOLDERS, ids=lambda folder: str(folder.name))
 def test_the_starter_of_every_exercise_is_python_with_todos_and_no_solution(folder: Path) -> None:
     exercise = load(folder)
