@@ -21,6 +21,8 @@ from process_mark import ProcessMark
 from workers import ByPiece
 from xdist.remote import Producer
 
+from grader.exercise import load
+from grader.workers import WorkerPool
 from interface_compiler import activation
 from spinbook.course.course import find_course
 from spinbook.interfaces.compiling import compile_course
@@ -97,6 +99,14 @@ def course_interfaces() -> None:
     Reading one activates them.
     """
     compile_course(find_course(ROOT))
+
+
+@pytest.fixture(scope="module")
+def workers_with_interfaces(course_interfaces: None) -> Iterator[WorkerPool]:
+    """A worker that was started when the course's own interfaces could be imported."""
+    load(ROOT / "exercises" / "calibration")
+    with WorkerPool() as workers:
+        yield workers
 
 
 @pytest.fixture

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -26,14 +25,6 @@ EXERCISES = [file.parent for course in COURSES for file in sorted(course.glob("e
 ALWAYS = {"joint_velocity", "speed_limit"}
 
 
-@pytest.fixture(scope="module")
-def workers(course_interfaces: None) -> Iterator[WorkerPool]:
-    """A worker that was started when the course's own interfaces could be imported."""
-    load(ROOT / "exercises" / "calibration")
-    with WorkerPool() as workers:
-        yield workers
-
-
 def to_fix(result: Audit) -> str:
     """Return what there is to fix, as text."""
     return "\n".join(f"{problem.found}\n    {problem.place}\n    {problem.fix}" for problem in result.problems)
@@ -41,33 +32,37 @@ def to_fix(result: Audit) -> str:
 
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("folder", [f for f in EXERCISES if f.name in ALWAYS], ids=lambda folder: folder.name)
-def test_every_mistake_is_caught_by_the_checks_that_it_names(folder: Path, workers: WorkerPool, cache: Path) -> None:
-    result = audit(load(folder), Options(), workers, Silence(), quick=True, most=0)
+def test_every_mistake_is_caught_by_the_checks_that_it_names(
+    folder: Path, workers_with_interfaces: WorkerPool, cache: Path
+) -> None:
+    result = audit(load(folder), Options(), workers_with_interfaces, Silence(), quick=True, most=0)
     assert not result.problems, to_fix(result)
 
 
 @pytest.mark.soak
 @pytest.mark.timeout(3600)
 @pytest.mark.parametrize("folder", EXERCISES, ids=lambda folder: folder.name)
-def test_each_mistake_loses_exactly_the_checks_that_it_names(folder: Path, workers: WorkerPool, cache: Path) -> None:
+def test_each_mistake_loses_exactly_the_checks_that_it_names(
+    folder: Path, workers_with_interfaces: WorkerPool, cache: Path
+) -> None:
     """All of them, both ways; right solutions get full marks, and the starter nothing: `spinbook audit --solutions`."""
-    result = audit(load(folder), Options(), workers, Silence(), most=0, seeds=1)
+    result = audit(load(folder), Options(), workers_with_interfaces, Silence(), most=0, seeds=1)
     assert not result.problems, to_fix(result)
 
 
 @pytest.mark.soak
 @pytest.mark.timeout(3600)
 @pytest.mark.parametrize("folder", EXERCISES, ids=lambda folder: folder.name)
-def test_the_whole_audit_finds_nothing_to_fix(folder: Path, workers: WorkerPool, cache: Path) -> None:
-    result = audit(load(folder), Options(), workers, Silence())
+def test_the_whole_audit_finds_nothing_to_fix(folder: Path, workers_with_interfaces: WorkerPool, cache: Path) -> None:
+    result = audit(load(folder), Options(), workers_with_interfaces, Silence())
     assert not result.problems, to_fix(result)
     assert result.score >= 0.95
 
 
 @pytest.mark.soak
 @pytest.mark.timeout(3600)
-def test_joint_velocity_has_enough_mutants(workers: WorkerPool, cache: Path) -> None:
-    result = audit(load(ROOT / "exercises" / "joint_velocity"), Options(), workers, Silence())
+def test_joint_velocity_has_enough_mutants(workers_with_interfaces: WorkerPool, cache: Path) -> None:
+    result = audit(load(ROOT / "exercises" / "joint_velocity"), Options(), workers_with_interfaces, Silence())
     assert result.different >= 150
 
 
@@ -90,7 +85,7 @@ def test_some_joints(chapter: Run) -> None:
 @pytest.mark.soak
 @pytest.mark.timeout(3600)
 def test_a_weak_copy_of_joint_velocity_is_reported_check_by_check(
-    tmp_path: Path, workers: WorkerPool, cache: Path
+    tmp_path: Path, workers_with_interfaces: WorkerPool, cache: Path
 ) -> None:
     for folder in ("exercises", "solutions"):
         shutil.copytree(ROOT / folder / "joint_velocity", tmp_path / folder / "joint_velocity")
@@ -99,7 +94,7 @@ def test_a_weak_copy_of_joint_velocity_is_reported_check_by_check(
         remove_check(folder / file, check)
     with (folder / "checks.py").open("a", encoding="utf-8") as checks:
         checks.write(CAN_NOT_FAIL)
-    reported = to_fix(audit(load(folder), Options(), workers, Silence()))
+    reported = to_fix(audit(load(folder), Options(), workers_with_interfaces, Silence()))
     for check, (_, mistake) in REMOVED.items():
         assert f"the mistake mistakes/{mistake}" in reported
         assert f"is to be caught by {check}: there is no such check" in reported

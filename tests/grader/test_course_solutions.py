@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -26,14 +25,6 @@ ROOT = Path(__file__).parents[2]
 NAMES = sorted(
     file.parent.name for file in ROOT.glob("exercises/*/exercise.toml") if file.parent.name != "joint_velocity"
 )
-
-
-@pytest.fixture(scope="module")
-def workers_with_interfaces(course_interfaces: None) -> Iterator[WorkerPool]:
-    """A worker that was started when the course's own interfaces could be imported."""
-    load(ROOT / "exercises" / "calibration")
-    with WorkerPool() as workers:
-        yield workers
 
 
 @pytest.fixture(scope="module", params=NAMES)

@@ -8,7 +8,6 @@ from __future__ import annotations
 import json
 import multiprocessing
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -39,10 +38,12 @@ class Runner:
         """Start it."""
         self.level = level
         self.rootless = rootless
-        self._home = tempfile.mkdtemp(prefix="nobody-") if rootless else None
+        # A program that outlives its runner may still write there while it is removed.
+        self._home = tempfile.TemporaryDirectory(prefix="nobody-", ignore_cleanup_errors=True) if rootless else None
+        home = self._home and self._home.name
         context = multiprocessing.get_context("spawn")
         self._connection, theirs = context.Pipe()
-        self._process = context.Process(target=_serve, args=(theirs, level, self._home), daemon=False)
+        self._process = context.Process(target=_serve, args=(theirs, level, home), daemon=False)
         self._process.start()
         theirs.close()
 
@@ -85,10 +86,9 @@ class Runner:
         """End the runner."""
         self._connection.close()
         self._process.join(20)
-        self._process.kill()
-        self._process.join()
+        self.kill()
         if self._home:
-            shutil.rmtree(self._home, ignore_errors=True)  # a program that outlived its runner may still write
+            self._home.cleanup()
 
 
 def run_to_end(
