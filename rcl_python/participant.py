@@ -99,7 +99,8 @@ class Endpoint:
             self._punctual()
             if self.history is not None:
                 self.history.append(message)
-            self.participant.deliver(message, self.matched)
+            if not self.participant.deliver(message, self.matched):
+                self.participant.on_kept(self.info)
 
     def get(self, message: Arrival) -> None:
         """Put what has arrived into the inbox."""
@@ -196,6 +197,8 @@ class Participant:
         self.on_signal: Callable[[str], None] = lambda name: None
         self.overhearing: list[Callable[[Frame, bytes], None]] = []
         """Called with each response that arrives, for any client."""
+        self.on_kept: Callable[[EndpointInfo], None] = lambda sender: None
+        """Called with the sender of each message or request that no other process gets."""
         self._numbers = itertools.count(1)
         self._joined = False
 
@@ -259,8 +262,8 @@ class Participant:
             self.link.send({"op": "endpoint_gone", "gid": mine.info.gid})
             self._changed()
 
-    def deliver(self, message: Arrival, readers: dict[str, EndpointInfo]) -> None:
-        """Send a message to these subscriptions, here and in other processes."""
+    def deliver(self, message: Arrival, readers: dict[str, EndpointInfo]) -> bool:
+        """Send a message to these subscriptions. Return whether any of them is of another process."""
         far = []
         for gid in readers:
             mine = self.local.get(gid)
@@ -272,12 +275,14 @@ class Participant:
             head = {"op": "message", "from": message.source, "to": far, "sent": message.sent, "n": message.sequence}
             self.link.send(head, message.data)
         self._changed()
+        return bool(far)
 
     def request(self, client: Endpoint, data: bytes) -> int:
         """Send a request to every matched server; return its number."""
         with self.link.lock:
             client.sequence += 1
-            self._exchange("request", list(client.matched), client.info.gid, client.sequence, data)
+            if not self._exchange("request", list(client.matched), client.info.gid, client.sequence, data):
+                self.on_kept(client.info)
         return client.sequence
 
     def respond(self, service: Endpoint, client: str, number: int, data: bytes) -> None:
@@ -285,7 +290,7 @@ class Participant:
         with self.link.lock:
             self._exchange("response", [client], service.info.gid, number, data)
 
-    def _exchange(self, op: str, to: list[str], source: str, number: int, data: bytes) -> None:
+    def _exchange(self, op: str, to: list[str], source: str, number: int, data: bytes) -> bool:
         now = self.link.system()
         message = Arrival(data, now, now, number, source)
         for gid in to:
@@ -295,6 +300,7 @@ class Participant:
         if far:
             self.link.send({"op": op, "from": source, "to": far, "sent": now, "n": number}, data)
         self._changed()
+        return bool(far)
 
     def pump(self, enough: Callable[[], bool] = lambda: False) -> None:
         """Process what others have sent, until nothing is left or `enough` returns true."""

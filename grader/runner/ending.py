@@ -127,6 +127,14 @@ _MESSAGES = {
     "message": "Your node published a message of {found:,} bytes. At most {limit:,} are allowed.",
     "bytes": "Your node published more than {limit:,} bytes in one scenario.",
     "messages": "Your node sent more than {limit:,} messages in one scenario.",
+    "at once": (
+        "Your node sent more than {limit:,} messages or requests at one moment, on {text}. Is there a loop that never "
+        "waits, or does each answer lead to the next one?"
+    ),
+    "own messages": (
+        "Your node sent more than {limit:,} messages at one moment, on {text}, to which it also subscribes. Does it "
+        "answer its own messages? Check the names of its topics."
+    ),
     "nodes": "Your program created more than {limit:,} nodes.",
     "end points": "Your program created more than {limit:,} publishers, subscriptions, clients and services.",
     "connections": "Your program started more than {limit:,} processes.",

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from rmw_lockstep.hub.limits import Violation
 from rmw_lockstep.hub.qos import Qos
 
-VERSION = 2
+VERSION = 3
 
 PUBLISHER, SUBSCRIPTION, SERVER, CLIENT = range(4)
 
@@ -33,6 +33,7 @@ _END_POINT = struct.Struct("<QBQ")
 _QOS = struct.Struct("<BIBBBqqq")
 _DATA = struct.Struct("<QQqQqI")
 _CALL = struct.Struct("<QqqQqI")
+_KEPT = struct.Struct("<QIQqI")
 _IDLE = struct.Struct("<QqqIIIBQH")
 _OUT_DATA = struct.Struct("<QQq")
 _OUT_REQUEST = struct.Struct("<QQqq")
@@ -115,6 +116,16 @@ class Call(NamedTuple):
     cdr: bytes
 
 
+class Kept(NamedTuple):
+    """So many messages or requests of one end point, at one moment, that nobody outside the process gets."""
+
+    sender: int
+    number: int
+    handled: int
+    now: int
+    thread: int
+
+
 class Idle(NamedTuple):
     """A process is idle. `next` is when it will wake by itself (ns), or -1 for never.
 
@@ -189,6 +200,11 @@ def data(payload: bytes) -> Data:
 def call(payload: bytes) -> Call:
     """Decode a REQUEST or a RESPONSE."""
     return Call._make((*_first(_CALL, payload), payload[_CALL.size :]))
+
+
+def kept(payload: bytes) -> Kept:
+    """Decode a KEPT."""
+    return Kept._make(_exactly(_KEPT, payload))
 
 
 def idle(payload: bytes) -> Idle:

@@ -5,9 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-#: Why the hub stopped a program. `protocol`: it broke a rule of PROTOCOL.md.
+#: Why the hub stopped a program. `protocol`: it broke a rule of PROTOCOL.md. `at once`: it sent too much at one moment,
+#: and `own messages`: on a topic that it listens to itself.
 Reason = Literal[
-    "protocol", "message", "bytes", "messages", "frames", "nodes", "end points", "connections", "unread", "wake-ups"
+    "protocol",
+    "message",
+    "bytes",
+    "messages",
+    "at once",
+    "own messages",
+    "frames",
+    "nodes",
+    "end points",
+    "connections",
+    "unread",
+    "wake-ups",
 ]
 
 
@@ -24,6 +36,8 @@ class Limits:
     """All of them together."""
     messages: int = 20_000
     """The number of these."""
+    at_once: int = 1_500
+    """Messages and requests at one moment of its clock, including those that nobody outside the program gets."""
     frames: int = 1_000_000
     """Frames of any kind."""
     nodes: int = 200

@@ -13,6 +13,7 @@ from rmw_lockstep.hub.graph import HUB, Graph
 from rmw_lockstep.hub.hashes import type_hash
 from rmw_lockstep.hub.limits import Use, Violation
 from rmw_lockstep.hub.link import Link
+from rmw_lockstep.hub.moment import AtOnce
 from rmw_lockstep.hub.qos import TRANSIENT_LOCAL, Qos
 
 #: Requests of other processes that one process may leave unanswered.
@@ -43,6 +44,7 @@ class Router:
         self.published = 0
         self._certain = 0
         self._use, self._calendar, self._epoch = use, calendar, epoch
+        self._at_once = AtOnce(self.graph, use.limits)
         self._numbers = count(1)
         self._ends: dict[int, End] = {}
         self._routes: dict[int, Route] = {}
@@ -52,6 +54,7 @@ class Router:
         self._handlers: dict[int, Callable[[Link, bytes], None]] = {
             ord("I"): self._idle,
             ord("D"): self._data,
+            ord("K"): self._kept,
             ord("r"): self._replayed,
             ord("J"): self._join,
             ord("N"): self._node,
@@ -206,6 +209,8 @@ class Router:
         self._use.data(len(data.cdr))
         publisher = self._own(link, data.publisher, PUBLISHER)
         handled, now = link.moment(data.handled, data.now)
+        if not data.only:
+            self._at_once.count(publisher, now)
         route = self._routes.get(publisher.id) or self._route(publisher)
         ordered = link.is_main(data.thread) and not route.shared
         for subscription in route.subscriptions:
@@ -215,6 +220,13 @@ class Router:
         for other in route.links:
             self._pass_on(link, other, frames.to_data(publisher.id, data.only, data.source_time, data.cdr))
 
+    def _kept(self, link: Link, payload: bytes) -> None:
+        """A process has sent much at one moment that nobody else gets."""
+        kept = frames.kept(payload)
+        sender = self._own(link, kept.sender, PUBLISHER, CLIENT)
+        _, now = link.moment(kept.handled, kept.now)
+        self._at_once.count(sender, now, kept.number)
+
     def _replayed(self, link: Link, payload: bytes) -> None:
         """A process has sent all that its publisher had kept for a subscription that came later."""
         number, subscription = frames.replayed(payload)
@@ -223,9 +235,9 @@ class Router:
         if other is not None and subscription in other.end_points:
             self._pass_on(link, other, frames.to_replayed(publisher.id, subscription))
 
-    def _own(self, link: Link, number: int, kind: int) -> EndPoint:
+    def _own(self, link: Link, number: int, *kinds: int) -> EndPoint:
         end_point = self.graph.end_points.get(number) if number in link.end_points else None
-        if end_point is None or end_point.kind != kind:
+        if end_point is None or end_point.kind not in kinds:
             raise Violation("protocol", "a process speaks for an end point that is not its own")
         return end_point
 
@@ -251,6 +263,7 @@ class Router:
         self._use.data(len(call.cdr))
         client = self._own(link, call.client, CLIENT)
         moment = self._moment(link, call)
+        self._at_once.count(client, moment.now)
         servers = self.graph.servers(client)
         asked = Asked(client, self.graph.nodes[client.node].full_name, call.number, moment, call.cdr)
         if not servers:
@@ -359,6 +372,7 @@ class Router:
     def publish(self, publisher: Publisher, cdr: bytes) -> int:
         """Queue a message for every process that it is for, or may be for by the time it arrives."""
         self.published += 1
+        self._at_once.begin()
         if self._use.connections > 1:
             self._certain = self.published
         source_time = self._calendar()

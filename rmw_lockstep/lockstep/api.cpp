@@ -19,6 +19,7 @@ LOCKSTEP_API void lockstep_participate(const lockstep_participant * participant)
 LOCKSTEP_API void lockstep_send(const uint8_t * frame, size_t size) { core().tell(frame, size); }
 LOCKSTEP_API lockstep_moment lockstep_here() { return core().here(); }
 LOCKSTEP_API void lockstep_sent_output() { core().sent_output(); }
+LOCKSTEP_API void lockstep_sent() { discount_readings(); }
 LOCKSTEP_API void lockstep_settle_signals() { signals().settle(); }
 LOCKSTEP_API uint64_t lockstep_sleeps() { return sleeps; }
 LOCKSTEP_API void lockstep_looked(int in_vain) { polling.look(in_vain); }

@@ -18,7 +18,7 @@
 namespace lockstep {
 namespace {
 
-constexpr uint32_t VERSION = 2;
+constexpr uint32_t VERSION = 3;
 
 // While the process is not idle and no thread reports when it is, the listener checks this often: at first, at most (ns).
 constexpr int64_t FIRST_LOOK = 500'000, LONGEST_LOOK = 2'000'000;

@@ -58,6 +58,9 @@ typedef struct lockstep_moment { uint64_t handled; int64_t now; uint32_t thread;
 LOCKSTEP_API lockstep_moment lockstep_here(void);
 LOCKSTEP_API void lockstep_sent_output(void);
 
+/// Report that the calling thread has sent a message or request, to whomever: it does not just wait for a time to come.
+LOCKSTEP_API void lockstep_sent(void);
+
 /// Let the calling thread wait until it is woken or until `deadline` on the steady clock. The lock is released
 /// meanwhile. Returns 1 if it was woken. `waiter` must exist until then.
 typedef struct lockstep_waiter { void * sleeper; int woken; } lockstep_waiter;

@@ -41,6 +41,9 @@ void looked_in_vain();
 // Discount the last reading of the clock: it was not the program's own, and is random.
 void discount_reading();
 
+// The thread has sent something: see clock.cpp.
+void discount_readings();
+
 // Wait on a word of memory, at most for a real time; returns what the futex call set errno to, 0 if it woke.
 int futex_wait(std::atomic<uint32_t> & word, uint32_t while_it_is, bool shared = false, const timespec * most = nullptr);
 

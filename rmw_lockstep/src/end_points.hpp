@@ -69,6 +69,8 @@ struct EndPoint {
   bool ignores_local = false;
   Callbacks callbacks = nullptr, answer_callbacks = nullptr;
   int64_t last_number = 0;       // of the last one that it sent
+  uint32_t kept_here = 0;        // how many it sent at one moment, unknown to the hub: see `Graph::sent`
+  int64_t kept_at = 0;           // that moment (steady time, ns)
   std::deque<Message> queue;     // what has arrived and was not taken
   std::deque<Message> history;   // what a transient-local publisher keeps for late joiners
   Listener listener;             // of data

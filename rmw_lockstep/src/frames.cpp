@@ -139,6 +139,13 @@ void send_replayed(uint64_t publisher, uint64_t subscription) {
   send('r', [&](Writer & writer) { writer.put<uint64_t>(publisher).put<uint64_t>(subscription); });
 }
 
+void send_kept(uint64_t sender, uint32_t count) {
+  send('K', [&](Writer & writer) {
+    writer.put<uint64_t>(sender).put<uint32_t>(count);
+    put_moment(writer);
+  });
+}
+
 namespace {
 
 void send_call(char kind, const Message & message) {

@@ -16,6 +16,7 @@ void send_gone(char kind, uint64_t id);
 void send_alive(uint64_t publisher);
 void send_data(uint64_t publisher, uint64_t only, const Message & message);
 void send_replayed(uint64_t publisher, uint64_t subscription);
+void send_kept(uint64_t sender, uint32_t count);
 void send_request(const Message & message);
 void send_response(const Message & message);
 

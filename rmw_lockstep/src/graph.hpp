@@ -96,6 +96,7 @@ private:
   void incompatible(EndPoint & end_point, rmw_qos_policy_kind_t policy);
   void replay(EndPoint & publisher, const EndPoint & subscription);
   bool heard_elsewhere(const EndPoint & publisher) const;
+  void sent(EndPoint & sender, bool elsewhere);
   void subscription_got(EndPoint & subscription, uint64_t publisher);
   void lose_publisher(EndPoint & subscription, Matched & publisher);
 

@@ -25,6 +25,12 @@ bool accepts(const EndPoint & subscription, const EndPoint & publisher, uint64_t
          compatible(publisher.qos, subscription.qos);
 }
 
+// So many messages at one moment that nobody else gets are reported to the hub, which would not know of them.
+constexpr uint32_t REPORTED = 100;
+
+// Whoever calls a logger in a loop sends many of these, and they lead to nothing.
+constexpr char LOG[] = "/rosout";
+
 // Whether a message is part of the replay that is on its way: taken now, it would come twice, and before older ones.
 bool comes_later(const EndPoint & subscription, const EndPoint & publisher, uint64_t only) {
   const auto found = subscription.publishers.find(publisher.id);
@@ -44,8 +50,22 @@ void Graph::publish(EndPoint & publisher, Bytes bytes) {
     publisher.next_deadline = lockstep_now() + nanoseconds(publisher.qos.deadline);
   if (publisher.qos.liveliness == RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC) assert_liveliness(publisher);
   deliver(publisher, message);
-  if (publisher.announced && heard_elsewhere(publisher)) frames::send_data(publisher.id, 0, message);
+  const bool elsewhere = publisher.announced && heard_elsewhere(publisher);
+  if (elsewhere) frames::send_data(publisher.id, 0, message);
+  sent(publisher, elsewhere);
   notify();
+}
+
+// Without this a node that answers its own messages would be busy for ever, and the hub would not know with what.
+void Graph::sent(EndPoint & sender, bool elsewhere) {
+  if (sender.name == LOG) return;
+  lockstep_sent();
+  if (elsewhere || !sender.announced) return;
+  if (sender.kept_at != lockstep_now()) sender.kept_here = 0;
+  sender.kept_at = lockstep_now();
+  if (++sender.kept_here < REPORTED) return;
+  frames::send_kept(sender.id, sender.kept_here);
+  sender.kept_here = 0;
 }
 
 void Graph::deliver(const EndPoint & publisher, const Message & message, uint64_t only) {
@@ -67,7 +87,9 @@ void Graph::request(EndPoint & client, Bytes bytes) {
     if (other->local) enqueue(*other, message);
     else elsewhere = true;
   }
-  if (elsewhere && client.announced) frames::send_request(message);
+  elsewhere = elsewhere && client.announced;
+  if (elsewhere) frames::send_request(message);
+  sent(client, elsewhere);
   notify();
 }
 

@@ -26,7 +26,7 @@ def text(value: str | bytes) -> bytes:
     return struct.pack("<I", len(encoded)) + encoded
 
 
-def hello(pid: int = 1, parent: int = 0, version: int = 2) -> bytes:
+def hello(pid: int = 1, parent: int = 0, version: int = 3) -> bytes:
     return frame(b"H", struct.pack("<IIIB", version, pid, parent, 1))
 
 

@@ -49,6 +49,31 @@ rclpy.spin(JointVelocity())
 """
 
 
+#: Both keep themselves busy at one moment, in ways that the hub does not see by itself.
+ANSWERS_ITSELF = ROOT / "benchmarks/determinism/programs/answers_itself.py"
+CALLS_ITSELF = """
+import rclpy
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
+
+
+class JointVelocity(Node):
+    def __init__(self):
+        super().__init__("joint_velocity")
+        self.create_subscription(JointState, "/joint_commands", self.call, 10)
+        self.create_service(Trigger, "/again", lambda request, response: response)
+        self.client = self.create_client(Trigger, "/again")
+
+    def call(self, _):
+        self.client.call_async(Trigger.Request()).add_done_callback(self.call)
+
+
+rclpy.init()
+rclpy.spin(JointVelocity())
+"""
+
+
 def found(exercise: str, *names: str) -> dict[str, str]:
     """Return the comparison's result for each program."""
     command = [sys.executable, os.fspath(IN_BOTH), exercise, *names]
@@ -66,10 +91,12 @@ def differing(exercise: str, said: dict[str, str]) -> dict[str, str]:
 
 
 def test_a_check_in_the_page_comes_to_the_same(tmp_path: Path) -> None:
-    forgetful = tmp_path / "forgetful.py"
-    forgetful.write_text(FORGETFUL, encoding="utf-8")
-    said = found("joint_velocity", *ALWAYS, str(forgetful))
-    assert len(said) == len(ALWAYS) + 1
+    others = [ANSWERS_ITSELF]
+    for name, source in (("forgetful", FORGETFUL), ("calls_itself", CALLS_ITSELF)):
+        others.append(tmp_path / f"{name}.py")
+        others[-1].write_text(source, encoding="utf-8")
+    said = found("joint_velocity", *ALWAYS, *map(str, others))
+    assert len(said) == len(ALWAYS) + len(others)
     assert differing("joint_velocity", said) == {}
 
 

@@ -16,10 +16,14 @@ from grader.submission import read
 from grader.submission.reading import of_source
 from grader.workers import WorkerPool
 
-SOLUTIONS = Path(__file__).parents[2] / "solutions" / "joint_velocity"
+ROOT = Path(__file__).parents[2]
+SOLUTIONS = ROOT / "solutions" / "joint_velocity"
 
 #: Neither misuses the computer's clock, whose time may differ from one run to the next.
 SUBMISSIONS = ("mistakes/joints_by_index.py", "right/several_threads.py")
+
+#: Never done with its first message, until the hub ends it.
+ANSWERS_ITSELF = ROOT / "benchmarks/determinism/programs/answers_itself.py"
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +45,7 @@ def recorded(grade: Grade) -> str:
     )
 
 
-@pytest.mark.parametrize("name", SUBMISSIONS)
+@pytest.mark.parametrize("name", [*SUBMISSIONS, str(ANSWERS_ITSELF)], ids=[*SUBMISSIONS, "answers_itself.py"])
 def test_beside_busy_loops_the_grade_is_the_same(short: Grading, name: str) -> None:
     submission = read(str(SOLUTIONS / name), short.runner.exercise)
     alone = short.grade(submission)

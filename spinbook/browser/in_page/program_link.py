@@ -16,18 +16,19 @@ from typing import SupportsFloat
 from rcl_python import participant
 from rcl_python import qos as quality
 from rcl_python.context import interrupt
-from rcl_python.graph import CLIENT, PUBLISHER, SERVICE, SUBSCRIPTION
+from rcl_python.graph import CLIENT, PUBLISHER, SERVICE, SUBSCRIPTION, EndpointInfo
 from rcl_python.link import Frame
 from rmw_lockstep.hub import EPOCH, frames
 from rmw_lockstep.hub.hashes import NO_HASH
 from rmw_lockstep.hub.qos import AUTOMATIC, INFINITE, Qos
 from spinbook.browser.in_page import program_imports, threads
 from spinbook.browser.in_page.hub import PROGRAM, Over, PageHub, Turns
+from spinbook.browser.in_page.kept import REPORTED, Kept
 from spinbook.browser.in_page.scheduler import Scheduler
 
 _KINDS = (PUBLISHER, SUBSCRIPTION, SERVICE, CLIENT)
 _HEADER = 5
-_DATA, _CALL = struct.Struct("<QQqQqI"), struct.Struct("<QqqQqI")
+_DATA, _CALL, _KEPT = struct.Struct("<QQqQqI"), struct.Struct("<QqqQqI"), struct.Struct("<QIQqI")
 _IN_DATA, _IN_REQUEST, _IN_RESPONSE = struct.Struct("<QQq"), struct.Struct("<QQqq"), struct.Struct("<Qqq")
 _TIME = struct.Struct("<qB")
 _BARRIER, _TIME_KIND = ord("|"), ord("T")
@@ -60,6 +61,7 @@ class ProgramLink:
         self._activity = self._number = 0
         self._looks: dict[int, Looks] = {}
         self._ends: dict[str, str] = {}
+        self._kept = Kept()
         self.scheduler = Scheduler(self)
 
     # --- out
@@ -80,6 +82,11 @@ class ProgramLink:
                 self._turns.fault = fault
                 self._turns.let_hub_go_on()
                 self.heed()
+
+    def keep(self, sender: EndpointInfo) -> None:
+        """Count what nobody else gets, and tell the hub when it is much at one moment."""
+        if self._kept.count(sender, self._now):
+            self.send({"op": "kept", "from": sender.gid, "n": REPORTED})
 
     def _handle(self, kind: str, payload: bytes) -> None:
         """Let the hub handle a frame, which may be a request to one of the grader's own servers."""
@@ -232,6 +239,8 @@ def _encoded(frame: Frame, data: bytes, moment: tuple[int, int, int]) -> Iterato
     elif op == "message":
         only = _id(frame["to"][0]) if len(frame["to"]) == 1 else 0
         yield "D", _DATA.pack(_id(frame["from"]), only, frame["sent"], *moment) + data
+    elif op == "kept":
+        yield "K", _KEPT.pack(_id(frame["from"]), frame["n"], *moment)
     elif op == "request":
         yield "Q", _CALL.pack(_id(frame["from"]), frame["n"], frame["sent"], *moment) + data
     elif op == "response":
@@ -328,5 +337,5 @@ _DECODERS: dict[str, Callable[[bytes, int], tuple[Frame, bytes]]] = {
 def join(hub: PageHub, turns: Turns) -> ProgramLink:
     """Connect this interpreter's rcl_python to the hub."""
     link = ProgramLink(hub, turns)
-    participant.use(link, str(PROGRAM))
+    participant.use(link, str(PROGRAM)).on_kept = link.keep
     return link
