@@ -51,7 +51,7 @@ def grade_of(grading: Grading, source: str) -> Grade:
         (NODE.format(body="if self.count == 5: import os; os._exit(0)"), "crashed", ["message 5", "by itself"]),
         (NODE.format(body="while self.count == 5: pass"), "timed-out", ["endless loop"]),
         (NODE.format(body="time.sleep(3600)"), "timed-out", ["sleep"]),
-        (NODE.format(body="for i in range(100_000): self.publisher.publish(message)"), "over-limit", ["5,000"]),
+        (NODE.format(body="for i in range(100_000): self.publisher.publish(message)"), "over-limit", ["1,500", "loop"]),
     ],
     ids=lambda value: value if isinstance(value, str) and len(value) < 15 else None,
 )
