@@ -33,10 +33,10 @@ class Link(Protocol):
         Called with `lock` held.
         """
 
-    def breathe(self, looks: bool) -> int:
-        """Let frames and signals in, where a program never waits; how long the thread is taken to wait (ns).
+    def breathe(self, looks: bool, news: bool) -> int:
+        """Let frames and signals in, where a program never waits; how long the thread is taken to wait for news (ns).
 
-        `looks` says that the thread only looks, and that there is nothing.
+        `news` says that something from outside is ready, `looks` that there is none and that the thread only looks.
         """
 
     def steady(self) -> int:
@@ -63,7 +63,7 @@ class LocalLink:
         """Wait for another thread, or until the time is up."""
         self.lock.wait(None if nanoseconds is None else nanoseconds / 1e9)
 
-    def breathe(self, looks: bool) -> int:
+    def breathe(self, looks: bool, news: bool) -> int:
         """Threads and signals come in by themselves."""
         return 0
 

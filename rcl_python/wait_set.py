@@ -66,12 +66,14 @@ class WaitSet(Destroyable):
         with here.link.lock:
             until = None if timeout < 0 else here.link.steady() + timeout
             here.pump(self._event_is_ready)
-            self._wait_as_one_who_looks(here.link.breathe(self._left(until) == 0 and not self._has_news()))
+            left, news = self._left(until), self._has_news()
+            rest = here.link.breathe(left == 0 and not news, news)
+            self._wait_for_news(min(rest, left) if left else rest)
             while not self._collect() and (until is None or here.link.steady() < until):
                 here.link.wait(self._left(until))
                 here.pump(self._event_is_ready)
 
-    def _wait_as_one_who_looks(self, nanoseconds: int) -> None:
+    def _wait_for_news(self, nanoseconds: int) -> None:
         """Wait for news, for so long at most."""
         here = participant.current()
         until = here.link.steady() + nanoseconds

@@ -233,7 +233,7 @@ bool Waiter::ready(bool guards_count) const {
 
 void Graph::notify() {
   for (Waiter * waiter : waiters)
-    if (waiter->thread.sleeper && waiter->ready()) lockstep_wake(&waiter->thread);
+    if (waiter->thread.sleeper && waiter->ready(!waiter->rests)) lockstep_wake(&waiter->thread);
 }
 
 }  // namespace rmw_lockstep

@@ -43,6 +43,7 @@ struct Waiter {
   rmw_clients_t * clients = nullptr;
   rmw_events_t * events = nullptr;
   lockstep_waiter thread{};
+  bool rests = false;    // guard conditions do not wake it
   bool ready(bool guards_count = true) const;
 };
 

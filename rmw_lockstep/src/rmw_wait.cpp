@@ -29,6 +29,24 @@ struct Polls {
 };
 thread_local Polls polls;
 
+// A thread whose executor has always something to do, at one moment, does not get past it: a timer without a period, a
+// task or a guard condition that starts itself again, in one thread or in turns with others. After so many turns it is
+// taken to poll. Whatever is sent, taken or received is a reason for some more turns.
+constexpr uint64_t FREE_TURNS = 1'000, TURNS_PER_ACTIVITY = 10;
+
+struct Turns {
+  uint64_t count = 0, activity = 0;
+  int64_t at = 0;        // the moment (steady time, ns)
+  bool too_many() {
+    if (at != lockstep_now()) *this = {0, activity, lockstep_now()};
+    const uint64_t now = graph().activity, earned = (now - activity) * TURNS_PER_ACTIVITY;
+    count = count > earned ? count - earned + 1 : 1;
+    activity = now;
+    return count > FREE_TURNS;
+  }
+};
+thread_local Turns turns;
+
 int64_t deadline_of(const rmw_time_t * timeout) {
   if (!timeout) return LOCKSTEP_NEVER;
   const auto duration = static_cast<int64_t>(rmw_time_total_nsec(*timeout));
@@ -58,6 +76,15 @@ void wait_until(Waiter & waiter, int64_t deadline) {
   }
 }
 
+// As long as a poll, or until the thread would have woken by itself, or until something comes that it has to take.
+void rest(Waiter & waiter, int64_t deadline) {
+  const int64_t now = lockstep_now();
+  waiter.rests = true;
+  lockstep_wait(&waiter.thread, deadline > now ? std::min(deadline, now + POLL) : now + POLL);
+  waiter.rests = false;
+  turns.at = lockstep_now();  // only other waits than these get the thread past the moment
+}
+
 void keep_ready(size_t count, void ** items) {
   for (size_t i = 0; i < count; ++i)
     if (auto end_point = static_cast<EndPoint *>(items[i]); end_point && end_point->queue.empty()) items[i] = nullptr;
@@ -82,7 +109,8 @@ bool wait_for(Waiter & waiter, const rmw_time_t * timeout) {
   waiters.push_back(&waiter);
   const int64_t deadline = deadline_of(timeout);
   if (lockstep_virtual() && waiter.guards && wakes_only_itself(*waiter.guards) && !waiter.ready(false)) take_all(*waiter.guards);
-  if (deadline > lockstep_now()) wait_until(waiter, deadline);
+  if (lockstep_virtual() && !waiter.ready(false) && turns.too_many()) rest(waiter, deadline);
+  else if (deadline > lockstep_now()) wait_until(waiter, deadline);
   else wait_as_poll(waiter);
   waiters.erase(std::find(waiters.begin(), waiters.end(), &waiter));
   const bool ready = waiter.ready();

@@ -74,6 +74,38 @@ rclpy.spin(JointVelocity())
 """
 
 
+#: Has always something to do, in three ways.
+NEVER_DONE = """
+import rclpy
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+
+
+class JointVelocity(Node):
+    def __init__(self):
+        super().__init__("joint_velocity")
+        self.publisher = self.create_publisher(JointState, "/joint_velocities", 10)
+        self.create_subscription(JointState, "/joint_commands", self.publisher.publish, 10)
+        self.create_timer(0.0, lambda: None)
+        self.guard = self.create_guard_condition(lambda: self.guard.trigger())
+        self.guard.trigger()
+
+
+def turn():
+    executor.create_task(turn)
+
+
+rclpy.init()
+node = JointVelocity()
+executor = SingleThreadedExecutor()
+executor.add_node(node)
+turn()
+executor.spin()
+"""
+IN_THREADS = NEVER_DONE.replace("= SingleThreadedExecutor()", "= MultiThreadedExecutor(4)")
+
+
 def found(exercise: str, *names: str) -> dict[str, str]:
     """Return the comparison's result for each program."""
     command = [sys.executable, os.fspath(IN_BOTH), exercise, *names]
@@ -90,13 +122,23 @@ def differing(exercise: str, said: dict[str, str]) -> dict[str, str]:
     return {name: words for name, words in said.items() if words != "same" and name not in refused}
 
 
+def written(folder: Path, **sources: str) -> list[str]:
+    """Write programs into files, and return their paths."""
+    for name, source in sources.items():
+        (folder / f"{name}.py").write_text(source, encoding="utf-8")
+    return [str(folder / f"{name}.py") for name in sources]
+
+
 def test_a_check_in_the_page_comes_to_the_same(tmp_path: Path) -> None:
-    others = [ANSWERS_ITSELF]
-    for name, source in (("forgetful", FORGETFUL), ("calls_itself", CALLS_ITSELF)):
-        others.append(tmp_path / f"{name}.py")
-        others[-1].write_text(source, encoding="utf-8")
-    said = found("joint_velocity", *ALWAYS, *map(str, others))
-    assert len(said) == len(ALWAYS) + len(others)
+    said = found("joint_velocity", *ALWAYS, *written(tmp_path, forgetful=FORGETFUL))
+    assert len(said) == len(ALWAYS) + 1
+    assert differing("joint_velocity", said) == {}
+
+
+def test_a_check_of_a_program_that_is_never_done_comes_to_the_same(tmp_path: Path) -> None:
+    busy = written(tmp_path, calls_itself=CALLS_ITSELF, never_done=NEVER_DONE, in_threads=IN_THREADS)
+    said = found("joint_velocity", str(ANSWERS_ITSELF), *busy)
+    assert len(said) == 4
     assert differing("joint_velocity", said) == {}
 
 

@@ -68,7 +68,7 @@ class SocketLink:
         if not self._arrived:
             self.lock.wait(None if nanoseconds is None else nanoseconds / 1e9)
 
-    def breathe(self, looks: bool) -> int:
+    def breathe(self, looks: bool, news: bool) -> int:
         """Frames and signals come in by themselves."""
         return 0
 

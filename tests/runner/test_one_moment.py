@@ -71,6 +71,33 @@ def test_a_program_that_keeps_itself_busy_is_ended_at_that_moment(run_program: R
     assert recordings[1].ending == ending
 
 
+#: Has always something to do, and sends nothing: the time of an executor that is never done goes on all the same.
+STEADY = "from rclpy.clock import Clock, ClockType\nclock = Clock(clock_type=ClockType.STEADY_TIME)\n"
+GUARD = "self.guard = self.create_guard_condition(lambda: self.guard.trigger())\nself.guard.trigger()"
+TASK = "def turn():\n    executor.create_task(turn)\n{0}\nexecutor.add_node(node)\nturn()\nexecutor.spin()"
+ONE = "from rclpy.executors import SingleThreadedExecutor\nexecutor = SingleThreadedExecutor()"
+NEVER_DONE = {
+    "a timer without a period": program(init="self.create_timer(0.0, lambda: None)"),
+    "a steady timer without a period": program(init=f"{STEADY}self.create_timer(0.0, lambda: None, clock=clock)"),
+    "a guard condition": program(init=GUARD),
+    "a task": program(spin=TASK.format(ONE)),
+}
+NEVER_DONE |= {
+    f"{name} and several threads": source.replace("rclpy.spin(node)", THREADS.replace("\n", "\n" + " " * 8)).replace(
+        "executor = SingleThreadedExecutor()", "executor = MultiThreadedExecutor(4)"
+    )
+    for name, source in NEVER_DONE.items()
+}
+
+
+@pytest.mark.parametrize("name", NEVER_DONE)
+def test_a_program_that_is_never_done_but_sends_nothing_answers_on_time(run_program: RunProgram, name: str) -> None:
+    recording = run_program(NEVER_DONE[name])
+    assert recording.ending.outcome == "completed", recording.ending
+    assert [received.fields["data"] for received in recording.received] == [2, 4, 6, 8, 10]
+    assert [received.at for received in recording.received] == [sent.at for sent in recording.sent]
+
+
 @pytest.mark.parametrize(
     "body",
     ["for i in range(1_400): self.inner.publish(message)", "for i in range(3_000): self.get_logger().debug('no end')"],

@@ -50,7 +50,7 @@ class PageLink:
         self._breathed = time.monotonic()
         threads.pause(-1 if nanoseconds is None else nanoseconds / 1e6, True)
 
-    def breathe(self, looks: bool) -> int:
+    def breathe(self, looks: bool, news: bool) -> int:
         """Let frames in, if none could come for a while."""
         if time.monotonic() - self._breathed > _BREATH_S:
             self.wait(0)

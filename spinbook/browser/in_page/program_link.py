@@ -10,7 +10,6 @@ import struct
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import SupportsFloat
 
 from rcl_python import participant
@@ -22,6 +21,7 @@ from rmw_lockstep.hub import EPOCH, frames
 from rmw_lockstep.hub.hashes import NO_HASH
 from rmw_lockstep.hub.qos import AUTOMATIC, INFINITE, Qos
 from spinbook.browser.in_page import program_imports, threads
+from spinbook.browser.in_page.busy_threads import BusyThreads
 from spinbook.browser.in_page.hub import PROGRAM, Over, PageHub, Turns
 from spinbook.browser.in_page.kept import REPORTED, Kept
 from spinbook.browser.in_page.scheduler import Scheduler
@@ -32,23 +32,6 @@ _DATA, _CALL, _KEPT = struct.Struct("<QQqQqI"), struct.Struct("<QqqQqI"), struct
 _IN_DATA, _IN_REQUEST, _IN_RESPONSE = struct.Struct("<QQq"), struct.Struct("<QQqq"), struct.Struct("<Qqq")
 _TIME = struct.Struct("<qB")
 _BARRIER, _TIME_KIND = ord("|"), ord("T")
-#: A thread that looks again and again without waiting is taken to wait so long (ns) from its third look on. These are
-#: the figures of rmw_lockstep (rmw_wait.cpp).
-_LOOKS, _LOOK = 2, 10_000_000
-
-
-@dataclass
-class Looks:
-    """How often a thread has looked in a row without anything happening in between."""
-
-    activity: int = 0
-    waits: int = 0
-    unchanged: int = 0
-
-    def count(self, activity: int, waits: int) -> None:
-        """One more, at these numbers of what has happened so far, and of how often the thread has waited."""
-        self.unchanged = self.unchanged + 1 if (activity, waits) == (self.activity, self.waits) else 0
-        self.activity, self.waits = activity, waits
 
 
 class ProgramLink:
@@ -59,7 +42,7 @@ class ProgramLink:
         self._hub, self._turns, self._connection = hub, turns, hub.connection
         self._now = hub.now
         self._activity = self._number = 0
-        self._looks: dict[int, Looks] = {}
+        self._busy = BusyThreads()
         self._ends: dict[str, str] = {}
         self._kept = Kept()
         self.scheduler = Scheduler(self)
@@ -85,6 +68,7 @@ class ProgramLink:
 
     def keep(self, sender: EndpointInfo) -> None:
         """Count what nobody else gets, and tell the hub when it is much at one moment."""
+        self._activity += 1
         if self._kept.count(sender, self._now):
             self.send({"op": "kept", "from": sender.gid, "n": REPORTED})
 
@@ -129,6 +113,7 @@ class ProgramLink:
         held = self.lock._release_save()  # type: ignore[attr-defined]
         try:
             self.scheduler.wait(nanoseconds, in_ros=True)
+            self._busy.waited(self.scheduler.number(), self._now)
         finally:
             self.lock._acquire_restore(held)  # type: ignore[attr-defined]
 
@@ -188,17 +173,13 @@ class ProgramLink:
             self._connection.handled += 1
         return until is not None and until <= self._now
 
-    def breathe(self, looks: bool) -> int:
-        """How long a thread waits that only looks (ns): from its third look in a row without news."""
-        if not looks:
-            return 0
+    def breathe(self, looks: bool, news: bool) -> int:
+        """How long a thread is to wait for news first (ns) that would never get past this moment."""
         thread = self.scheduler.number()
-        mine = self._looks.setdefault(thread, Looks())
-        mine.count(self._activity, self.scheduler.waits[thread])
-        if mine.unchanged < _LOOKS:
+        if news:
+            self._busy.found(thread)
             return 0
-        mine.waits += 1  # this one is not the program's own
-        return _LOOK
+        return self._busy.rest(thread, looks, self._activity, self.scheduler.waits[thread], self._now)
 
     def steady(self) -> int:
         """Return the hub's time (ns)."""
