@@ -36,7 +36,7 @@ class Link(Protocol):
     def breathe(self, looks: bool, news: bool) -> int:
         """Let frames and signals in, where a program never waits; how long the thread is taken to wait for news (ns).
 
-        `news` says that something from outside is ready, `looks` that there is none and that the thread only looks.
+        `looks` says that the thread only looks, `news` that something from outside is ready.
         """
 
     def steady(self) -> int:

@@ -67,7 +67,7 @@ class WaitSet(Destroyable):
             until = None if timeout < 0 else here.link.steady() + timeout
             here.pump(self._event_is_ready)
             left, news = self._left(until), self._has_news()
-            rest = here.link.breathe(left == 0 and not news, news)
+            rest = here.link.breathe(left == 0, news)
             self._wait_for_news(min(rest, left) if left else rest)
             while not self._collect() and (until is None or here.link.steady() < until):
                 here.link.wait(self._left(until))

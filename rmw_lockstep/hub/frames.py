@@ -23,7 +23,7 @@ HASH_BYTES = 33
 #: No name in ROS 2 may be longer than this (rmw_validate_full_topic_name, rmw_validate_node_name).
 LONGEST_NAME = 255
 
-_HEADER = struct.Struct("<IB")
+HEADER = struct.Struct("<IB")
 _HELLO = struct.Struct("<IIIB")
 _WELCOME = struct.Struct("<IIqq")
 _ID = struct.Struct("<Q")
@@ -31,14 +31,14 @@ _PAIR = struct.Struct("<QQ")
 _LENGTH = struct.Struct("<I")
 _END_POINT = struct.Struct("<QBQ")
 _QOS = struct.Struct("<BIBBBqqq")
-_DATA = struct.Struct("<QQqQqI")
-_CALL = struct.Struct("<QqqQqI")
-_KEPT = struct.Struct("<QIQqI")
+DATA = struct.Struct("<QQqQqI")
+CALL = struct.Struct("<QqqQqI")
+KEPT = struct.Struct("<QIQqI")
 _IDLE = struct.Struct("<QqqIIIBQH")
-_OUT_DATA = struct.Struct("<QQq")
-_OUT_REQUEST = struct.Struct("<QQqq")
-_OUT_RESPONSE = struct.Struct("<Qqq")
-_TIME = struct.Struct("<qB")
+OUT_DATA = struct.Struct("<QQq")
+OUT_REQUEST = struct.Struct("<QQqq")
+OUT_RESPONSE = struct.Struct("<Qqq")
+TIME = struct.Struct("<qB")
 
 _NODE_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _NAMESPACE = re.compile(r"/|(/[A-Za-z_][A-Za-z0-9_]*)+")
@@ -194,17 +194,17 @@ def replayed(payload: bytes) -> tuple[int, int]:
 
 def data(payload: bytes) -> Data:
     """Decode a DATA."""
-    return Data._make((*_first(_DATA, payload), payload[_DATA.size :]))
+    return Data._make((*_first(DATA, payload), payload[DATA.size :]))
 
 
 def call(payload: bytes) -> Call:
     """Decode a REQUEST or a RESPONSE."""
-    return Call._make((*_first(_CALL, payload), payload[_CALL.size :]))
+    return Call._make((*_first(CALL, payload), payload[CALL.size :]))
 
 
 def kept(payload: bytes) -> Kept:
     """Decode a KEPT."""
-    return Kept._make(_exactly(_KEPT, payload))
+    return Kept._make(_exactly(KEPT, payload))
 
 
 def idle(payload: bytes) -> Idle:
@@ -256,7 +256,7 @@ def _check(pattern: re.Pattern[str], text: str, what: str) -> None:
 
 def frame(kind: bytes, payload: bytes = b"") -> bytes:
     """Return a whole frame."""
-    return _HEADER.pack(len(payload) + 1, kind[0]) + payload
+    return HEADER.pack(len(payload) + 1, kind[0]) + payload
 
 
 BARRIER = frame(b"|")
@@ -296,22 +296,22 @@ def to_replayed(publisher: int, subscription: int) -> bytes:
 
 def to_data(publisher: int, only: int, source_time: int, cdr: bytes) -> bytes:
     """Encode a DATA."""
-    return _HEADER.pack(_OUT_DATA.size + len(cdr) + 1, 68) + _OUT_DATA.pack(publisher, only, source_time) + cdr
+    return HEADER.pack(OUT_DATA.size + len(cdr) + 1, 68) + OUT_DATA.pack(publisher, only, source_time) + cdr
 
 
 def to_request(server: int, client: int, number: int, source_time: int, cdr: bytes) -> bytes:
     """Encode a REQUEST."""
-    return frame(b"Q", _OUT_REQUEST.pack(server, client, number, source_time) + cdr)
+    return frame(b"Q", OUT_REQUEST.pack(server, client, number, source_time) + cdr)
 
 
 def to_response(client: int, number: int, source_time: int, cdr: bytes) -> bytes:
     """Encode a RESPONSE."""
-    return frame(b"R", _OUT_RESPONSE.pack(client, number, source_time) + cdr)
+    return frame(b"R", OUT_RESPONSE.pack(client, number, source_time) + cdr)
 
 
 def to_time(until: int, stop: bool = False) -> bytes:
     """Encode a TIME."""
-    return frame(b"T", _TIME.pack(until, stop))
+    return frame(b"T", TIME.pack(until, stop))
 
 
 def _text(text: str) -> bytes:

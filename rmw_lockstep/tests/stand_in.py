@@ -10,7 +10,9 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from rmw_lockstep.hub import Hub
+import pytest
+
+from rmw_lockstep.hub import Hub, Violation
 
 QOS = struct.Struct("<BIBBBqqq")
 INFINITE = 2**63 - 1
@@ -106,6 +108,13 @@ def welcomed(raw: Raw, hub: Hub) -> Raw:
         hub.pause()
     assert raw.read()[0] == b"W"
     return raw
+
+
+def violation(hub: Hub) -> Violation:
+    """Return why the hub stopped."""
+    with pytest.raises(Violation) as caught:
+        hub.wait_until_idle()
+    return caught.value
 
 
 def busy(hub: Hub) -> None:

@@ -10,9 +10,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from stand_in import Process, Raw, Waits, busy, data, end_point, frame, hello, idle, node, response, welcomed
+from stand_in import Process, Raw, Waits, busy, data, end_point, frame, hello, idle, node, response, violation, welcomed
 
-from rmw_lockstep.hub import BEGIN, PUBLISHER, SUBSCRIPTION, Hub, Limits, Qos, Violation
+from rmw_lockstep.hub import BEGIN, PUBLISHER, SUBSCRIPTION, Hub, Limits, Qos
 
 NODE, PUB, SUB = 1 << 32 | 1, 1 << 32 | 2, 1 << 32 | 3
 STRING = "std_msgs/msg/String"
@@ -27,9 +27,8 @@ def limits() -> Limits:
 
 def reason(hub: Hub) -> tuple[str, str]:
     """Return why the hub stopped."""
-    with pytest.raises(Violation) as caught:
-        hub.wait_until_idle()
-    return caught.value.reason, caught.value.text
+    found = violation(hub)
+    return found.reason, found.text
 
 
 def begin(raw: Raw, hub: Hub) -> Raw:

@@ -5,6 +5,9 @@ from __future__ import annotations
 import pytest
 from runner_programs import ANSWER, FORK, THREADS, RunProgram, numbers, program
 
+#: THREADS in place of rclpy.spin(node) in a program that is there already.
+SPIN = THREADS.replace("\n", "\n" + " " * 8)
+
 ECHO = "self.create_subscription(Float64, '/out', lambda message: self.answer(message.data), 10)"
 
 #: Two nodes of one process: each answers on the topic that the other one listens to.
@@ -53,7 +56,7 @@ BUSY = {
     "two processes": (PING_PONG_OF_PROCESSES, OWN.format("/back and /there")),
     "calls itself": (CALLS_ITSELF, ENDLESS.format("/again")),
     "calls itself from several threads": (
-        CALLS_ITSELF.replace("rclpy.spin(node)", THREADS.replace("\n", "\n" + " " * 8)),
+        CALLS_ITSELF.replace("rclpy.spin(node)", SPIN),
         ENDLESS.format("/again"),
     ),
     "publishes without end": (program(body="while True: self.answer(1.0)"), ENDLESS.format("/out")),
@@ -83,7 +86,7 @@ NEVER_DONE = {
     "a task": program(spin=TASK.format(ONE)),
 }
 NEVER_DONE |= {
-    f"{name} and several threads": source.replace("rclpy.spin(node)", THREADS.replace("\n", "\n" + " " * 8)).replace(
+    f"{name} and several threads": source.replace("rclpy.spin(node)", SPIN).replace(
         "executor = SingleThreadedExecutor()", "executor = MultiThreadedExecutor(4)"
     )
     for name, source in NEVER_DONE.items()

@@ -6,7 +6,6 @@ hub's turn.
 
 from __future__ import annotations
 
-import struct
 import sys
 import threading
 from collections.abc import Callable, Iterator
@@ -26,11 +25,8 @@ from spinbook.browser.in_page.hub import PROGRAM, Over, PageHub, Turns
 from spinbook.browser.in_page.kept import REPORTED, Kept
 from spinbook.browser.in_page.scheduler import Scheduler
 
+_HEADER = frames.HEADER.size
 _KINDS = (PUBLISHER, SUBSCRIPTION, SERVICE, CLIENT)
-_HEADER = 5
-_DATA, _CALL, _KEPT = struct.Struct("<QQqQqI"), struct.Struct("<QqqQqI"), struct.Struct("<QIQqI")
-_IN_DATA, _IN_REQUEST, _IN_RESPONSE = struct.Struct("<QQq"), struct.Struct("<QQqq"), struct.Struct("<Qqq")
-_TIME = struct.Struct("<qB")
 _BARRIER, _TIME_KIND = ord("|"), ord("T")
 
 
@@ -162,7 +158,7 @@ class ProgramLink:
         queued = self._connection.queued
         while queued:
             if queued[0][4] == _TIME_KIND:
-                granted, _ = _TIME.unpack(queued[0][_HEADER:])
+                granted, _ = frames.TIME.unpack(queued[0][_HEADER:])
                 if until is not None and until <= granted:
                     self._now = max(self._now, until)
                     return True
@@ -219,13 +215,13 @@ def _encoded(frame: Frame, data: bytes, moment: tuple[int, int, int]) -> Iterato
         yield "e", frames.to_gone(b"e", _id(frame["gid"]))[_HEADER:]
     elif op == "message":
         only = _id(frame["to"][0]) if len(frame["to"]) == 1 else 0
-        yield "D", _DATA.pack(_id(frame["from"]), only, frame["sent"], *moment) + data
+        yield "D", frames.DATA.pack(_id(frame["from"]), only, frame["sent"], *moment) + data
     elif op == "kept":
-        yield "K", _KEPT.pack(_id(frame["from"]), frame["n"], *moment)
+        yield "K", frames.KEPT.pack(_id(frame["from"]), frame["n"], *moment)
     elif op == "request":
-        yield "Q", _CALL.pack(_id(frame["from"]), frame["n"], frame["sent"], *moment) + data
+        yield "Q", frames.CALL.pack(_id(frame["from"]), frame["n"], frame["sent"], *moment) + data
     elif op == "response":
-        yield "R", _CALL.pack(_id(frame["to"][0]), frame["n"], frame["sent"], *moment) + data
+        yield "R", frames.CALL.pack(_id(frame["to"][0]), frame["n"], frame["sent"], *moment) + data
 
 
 def _id(key: str) -> int:
@@ -282,10 +278,10 @@ def _gone(op: str, name: str) -> Callable[[bytes, int], tuple[Frame, bytes]]:
 
 
 def _message(payload: bytes, number: int) -> tuple[Frame, bytes]:
-    publisher, only, sent = _IN_DATA.unpack_from(payload)
+    publisher, only, sent = frames.OUT_DATA.unpack_from(payload)
     source = _key(publisher)
     to = [_key(only)] if only else _readers(source)
-    return {"op": "message", "from": source, "to": to, "sent": sent, "n": number}, payload[_IN_DATA.size :]
+    return {"op": "message", "from": source, "to": to, "sent": sent, "n": number}, payload[frames.OUT_DATA.size :]
 
 
 def _readers(source: str) -> list[str]:
@@ -293,15 +289,15 @@ def _readers(source: str) -> list[str]:
 
 
 def _request(payload: bytes, number: int) -> tuple[Frame, bytes]:
-    server, client, asked, sent = _IN_REQUEST.unpack_from(payload)
+    server, client, asked, sent = frames.OUT_REQUEST.unpack_from(payload)
     frame = {"op": "request", "from": _key(client), "to": [_key(server)], "sent": sent, "n": asked}
-    return frame, payload[_IN_REQUEST.size :]
+    return frame, payload[frames.OUT_REQUEST.size :]
 
 
 def _response(payload: bytes, number: int) -> tuple[Frame, bytes]:
-    client, asked, sent = _IN_RESPONSE.unpack_from(payload)
+    client, asked, sent = frames.OUT_RESPONSE.unpack_from(payload)
     frame = {"op": "response", "from": "", "to": [_key(client)], "sent": sent, "n": asked}
-    return frame, payload[_IN_RESPONSE.size :]
+    return frame, payload[frames.OUT_RESPONSE.size :]
 
 
 _DECODERS: dict[str, Callable[[bytes, int], tuple[Frame, bytes]]] = {
