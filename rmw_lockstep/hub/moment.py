@@ -8,19 +8,23 @@ from rmw_lockstep.hub.frames import PUBLISHER, EndPoint
 from rmw_lockstep.hub.graph import Graph
 from rmw_lockstep.hub.limits import Limits, Reason, Violation
 
-#: An end point that sent less than this part of everything is not what the program is busy with.
+#: A topic or service with less than this part of what is allowed is not what the program is busy with.
 SHARE = 20
+
+#: If that is so of all, this many are named: those with most.
+NAMED = 3
 
 
 class AtOnce:
-    """Counts the messages and requests of all processes at the current moment, by the end points that sent them."""
+    """Counts the messages and requests of all processes at the current moment, by their topics and services."""
 
     def __init__(self, graph: Graph, limits: Limits) -> None:
         """`graph` tells who listens to what is sent."""
         self._graph, self._limit = graph, limits.at_once
         self._now = 0
         self._total = 0
-        self._sent: Counter[int] = Counter()
+        self._sent: Counter[str] = Counter()
+        self._senders: dict[str, EndPoint] = {}
 
     def begin(self) -> None:
         """Count from 0: the hub has published something, which the program may answer."""
@@ -33,21 +37,22 @@ class AtOnce:
             self._now = now
             self.begin()
         self._total += number
-        self._sent[sender.id] += number
+        self._sent[sender.name] += number
+        self._senders[sender.name] = sender
         if self._total > self._limit:
             raise self._violation()
 
     def _violation(self) -> Violation:
         """Say what is too much. It names all that the program is busy with: which comes last may be chance."""
-        busy = self._busy()
+        busy = sorted(self._busy())
         reason: Reason = "own messages" if any(map(self._is_heard_inside, busy)) else "at once"
-        names = " and ".join(sorted({one.name for one in busy}))
-        return Violation(reason, names, found=self._total, limit=self._limit)
+        return Violation(reason, " and ".join(busy), found=self._total, limit=self._limit)
 
-    def _busy(self) -> list[EndPoint]:
-        found = self._graph.end_points
-        return [found[number] for number, sent in self._sent.items() if sent * SHARE >= self._limit and number in found]
+    def _busy(self) -> list[str]:
+        enough = [name for name, sent in self._sent.items() if sent * SHARE >= self._limit]
+        return enough or sorted(self._sent, key=lambda name: (-self._sent[name], name))[:NAMED]
 
-    def _is_heard_inside(self, sender: EndPoint) -> bool:
-        """Return whether the program itself listens to this publisher."""
+    def _is_heard_inside(self, name: str) -> bool:
+        """Return whether the program itself listens to a publisher of this topic."""
+        sender = self._senders[name]
         return sender.kind == PUBLISHER and any(reader.process for reader in self._graph.readers(sender))

@@ -7,9 +7,9 @@ from collections.abc import Callable
 
 import pytest
 from programs import Watch
-from stand_in import Process, data, end_point, frame, node
+from stand_in import Process, data, end_point, frame, node, violation
 
-from rmw_lockstep.hub import BEGIN, CLIENT, PUBLISHER, SUBSCRIPTION, Hub, Limits, Qos, Violation
+from rmw_lockstep.hub import BEGIN, CLIENT, PUBLISHER, SUBSCRIPTION, Hub, Limits, Qos
 
 NODE, PUB, SUB, ASKS, OTHER = (1 << 32 | number for number in range(1, 6))
 MS = 1_000_000
@@ -47,9 +47,8 @@ def sender(process: Make, ends: list[int], *frames: bytes) -> Process:
 
 def why(hub: Hub) -> tuple[str, str, int]:
     """Return why the hub stopped."""
-    with pytest.raises(Violation) as caught:
-        hub.wait_until_idle()
-    return caught.value.reason, caught.value.text, caught.value.found
+    found = violation(hub)
+    return found.reason, found.text, found.found
 
 
 @pytest.mark.parametrize(
@@ -75,6 +74,19 @@ def test_too_much_at_one_moment_ends_the_program(
 ) -> None:
     sender(process, ends, *frames)
     assert why(hub) == expected
+
+
+def test_of_many_topics_with_a_little_each_the_first_three_are_named(hub: Hub, process: Make) -> None:
+    numbers = range(1 << 32 | 10, 1 << 32 | 40)
+    ends = [end_point(number, PUBLISHER, NODE, f"/topic_{number & 0xFF}") for number in numbers]
+    sender(process, [], *ends, *[data(number, now=BEGIN) for number in numbers for _ in range(7)])
+    assert why(hub) == ("at once", "/topic_10 and /topic_11 and /topic_12", MOST + 1)
+
+
+def test_a_new_publisher_for_each_message_is_named_by_its_topic(hub: Hub, process: Make) -> None:
+    numbers = range(1 << 32 | 10, 1 << 32 | 10 + MOST + 1)
+    sender(process, [SUB], *[end_point(n, PUBLISHER, NODE) + data(n, now=BEGIN) for n in numbers])
+    assert why(hub) == ("own messages", "/topic", MOST + 1)
 
 
 def test_another_process_that_listens_is_the_program_too(hub: Hub, process: Make) -> None:
