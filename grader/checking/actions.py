@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from grader.checking.comparator import TOLERANCE, shown
-from grader.checking.recorded import Recorded
+from grader.checking.recorded_run import RecordedRun
 from grader.recording.events import By, Cancel, Goal
 from grader.scenario.times import SECOND
 
@@ -37,201 +37,215 @@ _UNASKED = "canceled() is only for a goal that somebody asked to cancel; call ab
 _RAISED = re.compile(r"Error raised in execute callback: (.*?)(?:, at \S+:\d+)?$", re.MULTILINE)
 
 
-class ActionChecks(Recorded):
-    """Goals, by their numbers from 1 in the order in which they were sent."""
+def goals(run: RecordedRun, action: str = "", by: By = "grader") -> tuple[Goal, ...]:
+    """The scenario's goals for the student's server, in order; `by="node"` for those of the student's client."""
+    name = action or run.only("action" if by == "grader" else "action_client")
+    return tuple(goal for goal in run.recording.goals if goal.action == name and goal.by == by)
 
-    def goals(self, action: str = "", by: By = "grader") -> tuple[Goal, ...]:
-        """The scenario's goals for the student's server, in order; `by="node"` for those of the student's client."""
-        name = action or self.only("action" if by == "grader" else "action_client")
-        return tuple(goal for goal in self.recording.goals if goal.action == name and goal.by == by)
 
-    def goal(self, number: int) -> Goal:
-        """The scenario's goal with this number. Raises ValueError if it sends no such goal."""
-        for goal in self.recording.goals:
-            if goal.number == number and goal.by == "grader":
-                return goal
-        raise ValueError(f"there is no goal {number}: the scenario {self.scenario} sends fewer.")
+def scenario_goal(run: RecordedRun, number: int) -> Goal:
+    """The scenario's goal with this number. Raises ValueError if it sends no such goal."""
+    for goal in run.recording.goals:
+        if goal.number == number and goal.by == "grader":
+            return goal
+    raise ValueError(f"there is no goal {number}: the scenario {run.scenario} sends fewer.")
 
-    def must_accept(self, goal: int = 1) -> None:
-        """The node must accept this goal."""
-        self._must_answer(self.goal(goal), accepted=True)
 
-    def must_reject(self, goal: int = 1) -> None:
-        """The node must reject this goal."""
-        self._must_answer(self.goal(goal), accepted=False)
+def must_accept(run: RecordedRun, goal: int = 1) -> None:
+    """The node must accept this goal."""
+    _must_answer(run, scenario_goal(run, goal), accepted=True)
 
-    def must_go_through(self, *states: str, goal: int = 1) -> None:
-        """The goal must go through exactly these states, such as "accepted", "executing", "succeeded"; by default,
-        through those of the solution's goal.
-        """
-        one = self.goal(goal)
-        wanted = states or tuple(state.state for state in self._solutions(goal).states)
-        got = tuple(state.state for state in one.states)
-        self._must_answer(one, accepted=True) if wanted else None
-        if got != wanted:
-            at = next((s.at for s, w in zip(one.states, wanted, strict=False) if s.state != w), one.at)
-            text = f"expected the states {' → '.join(wanted)}, got {' → '.join(got) or 'none'}."
-            self.wrong_at(at, text, _part(one), " → ".join(wanted), " → ".join(got), self._why(one, wanted[-1]))
 
-    def must_end(self, status: str, goal: int = 1, within: float | None = None) -> None:
-        """The goal must end as "succeeded", "canceled" or "aborted", within this many seconds after it was sent."""
-        one = self.goal(goal)
-        self._must_answer(one, accepted=True)
-        if (got := _ended_as(one)) != status:
-            text = f"it was expected to end as {status}, got {got}."
-            self.wrong_at(_ended_at(one) or one.at, text, _part(one), status, got, self._why(one, status))
-        late = ((_ended_at(one) or one.at) - one.at) / SECOND
-        if within is not None and late > within + 1e-9:
-            text = f"it was expected to end within {within:g} s, got {late:.2f} s."
-            self.wrong_at(_ended_at(one), text, _part(one), f"{within:g} s", f"{late:.2f} s")
+def must_reject(run: RecordedRun, goal: int = 1) -> None:
+    """The node must reject this goal."""
+    _must_answer(run, scenario_goal(run, goal), accepted=False)
 
-    def must_cancel(self, goal: int = 1, within: float = 1.0) -> None:
-        """The node must accept the scenario's first request to cancel this goal, and end it as "canceled".
 
-        Both must happen within this many seconds of simulated time, and it must send no feedback after that.
-        """
-        one = self.goal(goal)
-        self._must_answer(one, accepted=True)
-        if not one.cancels:
-            raise ValueError(f"the scenario {self.scenario} never asks to cancel goal {goal}.")
-        cancel = one.cancels[0]
-        if (got := _ended_as(one)) != "canceled":
-            text = f"after the request to cancel it was expected to end as canceled, got {got}."
-            self.wrong_at(cancel.at, text, _part(one), "canceled", got, self._why(one, "canceled"))
-        ended = _ended_at(one) or cancel.at
-        late = (ended - cancel.at) / SECOND
-        if late > within + 1e-9:
-            text = f"it was expected to end within {within:g} s of the request to cancel, got {late:.2f} s."
-            self.wrong_at(cancel.at, text, _part(one), f"{within:g} s", f"{late:.2f} s")
-        if after := [feedback for feedback in one.feedback if feedback.at > ended]:
-            text = "no feedback was expected after the goal was canceled, but your node continues to send it."
-            self.wrong_at(after[0].at, text, _part(one), "no feedback", f"{len(after)} messages")
+def must_go_through(run: RecordedRun, *states: str, goal: int = 1) -> None:
+    """The goal must go through exactly these states, such as "accepted", "executing", "succeeded"; by default,
+    through those of the solution's goal.
+    """
+    one = scenario_goal(run, goal)
+    wanted = states or tuple(state.state for state in _solutions(run, goal).states)
+    got = tuple(state.state for state in one.states)
+    _must_answer(run, one, accepted=True) if wanted else None
+    if got != wanted:
+        at = next((s.at for s, w in zip(one.states, wanted, strict=False) if s.state != w), one.at)
+        text = f"expected the states {' → '.join(wanted)}, got {' → '.join(got) or 'none'}."
+        run.wrong_at(at, text, _part(one), " → ".join(wanted), " → ".join(got), _why(run, one, wanted[-1]))
 
-    def must_match_results(self, field: str = "", action: str = "", tolerance: float = TOLERANCE) -> None:
-        """Each goal's result must have the same `field` as with the solution; without one, every field counts."""
 
-        def result(goal: Goal) -> dict[str, Any] | None:
-            return goal.result
+def must_end(run: RecordedRun, status: str, goal: int = 1, within: float | None = None) -> None:
+    """The goal must end as "succeeded", "canceled" or "aborted", within this many seconds after it was sent."""
+    one = scenario_goal(run, goal)
+    _must_answer(run, one, accepted=True)
+    if (got := _ended_as(one)) != status:
+        text = f"it was expected to end as {status}, got {got}."
+        run.wrong_at(_ended_at(one) or one.at, text, _part(one), status, got, _why(run, one, status))
+    late = ((_ended_at(one) or one.at) - one.at) / SECOND
+    if within is not None and late > within + 1e-9:
+        text = f"it was expected to end within {within:g} s, got {late:.2f} s."
+        run.wrong_at(_ended_at(one), text, _part(one), f"{within:g} s", f"{late:.2f} s")
 
-        for one, reference in self._match(action, "grader", field, tolerance, result, "result"):
-            if reference.finished is not None and one.finished is None:
-                self._must_answer(one, accepted=True)
-                self.wrong_at(one.at, "a result was expected, got none.", _part(one), "a result", "none", _NEVER)
 
-    def must_match_feedback(
-        self, field: str = "", goal: int = 1, tolerance: float = TOLERANCE, time: float | None = None
-    ) -> None:
-        """The goal's feedback must match the solution's, message by message; with `time`, within this many seconds of
-        it."""
-        one, reference = self.goal(goal), self._solutions(goal)
-        self._must_answer(one, accepted=True)
-        pairs = list(zip(reference.feedback, one.feedback, strict=False))
-        messages = [(expected.fields, got.fields) for expected, got in pairs]
-        for number, (expected, got) in enumerate(pairs, start=1):
-            part = f"{_part(one)}, feedback {number}"
-            self.compare_at(got.at, part, field, got.fields, expected.fields, tolerance, one.action, messages)
-            self.time_at(got.at, expected.at, part, time, since=one.at)
-        wanted_, came_ = len(reference.feedback), len(one.feedback)
-        if wanted_ != came_:
-            text = f"expected {wanted_} feedback messages, got {came_}."
-            never = "" if came_ else "Your node never publishes feedback."
-            self.wrong_at(one.at, text, _part(one), f"{wanted_} messages", came_, never)
+def must_cancel(run: RecordedRun, goal: int = 1, within: float = 1.0) -> None:
+    """The node must accept the scenario's first request to cancel this goal, and end it as "canceled".
 
-    def must_match_goals(
-        self, field: str = "", action: str = "", tolerance: float = TOLERANCE, time: float | None = None
-    ) -> None:
-        """The node, a client, must send as many goals as the solution, with the same `field`.
+    Both must happen within this many seconds of simulated time, and it must send no feedback after that.
+    """
+    one = scenario_goal(run, goal)
+    _must_answer(run, one, accepted=True)
+    if not one.cancels:
+        raise ValueError(f"the scenario {run.scenario} never asks to cancel goal {goal}.")
+    cancel = one.cancels[0]
+    if (got := _ended_as(one)) != "canceled":
+        text = f"after the request to cancel it was expected to end as canceled, got {got}."
+        run.wrong_at(cancel.at, text, _part(one), "canceled", got, _why(run, one, "canceled"))
+    ended = _ended_at(one) or cancel.at
+    late = (ended - cancel.at) / SECOND
+    if late > within + 1e-9:
+        text = f"it was expected to end within {within:g} s of the request to cancel, got {late:.2f} s."
+        run.wrong_at(cancel.at, text, _part(one), f"{within:g} s", f"{late:.2f} s")
+    if after := [feedback for feedback in one.feedback if feedback.at > ended]:
+        text = "no feedback was expected after the goal was canceled, but your node continues to send it."
+        run.wrong_at(after[0].at, text, _part(one), "no feedback", f"{len(after)} messages")
 
-        With `time`, each within this many seconds of the solution's.
-        """
-        name = action or self.only("action_client")
-        got, wanted = len(self.goals(name, by="node")), len(self._reference_goals(name, "node"))
-        if got != wanted:
-            clients = sorted({end.topic for end in self.recording.end_points if end.kind == "action client"})
-            never = "" if got or name in clients else f"Your node has no action client for {name}."
-            text = f"expected {wanted} goals for {name}, got {got}."
-            self.wrong_at(None, text, "", f"{wanted} goals", got, never or self.waits())
 
-        def sent(goal: Goal) -> dict[str, Any] | None:
-            return goal.goal
+def must_match_results(run: RecordedRun, field: str = "", action: str = "", tolerance: float = TOLERANCE) -> None:
+    """Each goal's result must have the same `field` as with the solution; without one, every field counts."""
 
-        for one, reference in self._match(name, "node", field, tolerance, sent, "goal"):
-            self.time_at(one.at, reference.at, _part(one), time)
+    def result(goal: Goal) -> dict[str, Any] | None:
+        return goal.result
 
-    def must_ask_only_for_accepted(self, action: str = "") -> None:
-        """The node, a client, must not ask for the result of a goal that was rejected."""
-        for one in self.goals(action, by="node"):
-            if one.accepted is False and one.asked_result is not None:
-                text = "it was rejected, but your node asked for its result. Check goal_handle.accepted."
-                self.wrong_at(one.asked_result, text, _part(one), "no request for the result", "one")
+    for one, reference in _match(run, action, "grader", field, tolerance, result, "result"):
+        if reference.finished is not None and one.finished is None:
+            _must_answer(run, one, accepted=True)
+            run.wrong_at(one.at, "a result was expected, got none.", _part(one), "a result", "none", _NEVER)
 
-    def _match(
-        self,
-        action: str,
-        by: By,
-        field: str,
-        tolerance: float,
-        part_of: Callable[[Goal], dict[str, Any] | None],
-        what: str,
-    ) -> list[tuple[Goal, Goal]]:
-        name = action or self.only("action" if by == "grader" else "action_client")
-        both = list(zip(self.goals(name, by), self._reference_goals(name, by), strict=False))
-        pairs = [(e, g) for one, reference in both if (g := part_of(one)) and (e := part_of(reference))]
-        for one, reference in both:
-            expected, got = part_of(reference), part_of(one)
-            if expected is not None and got is not None:
-                at = one.at if what == "goal" else one.finished
-                raised = self._raised() if what == "result" and one.status == "aborted" and not _is_filled(got) else ""
-                part = f"{_part(one)}, its {what}"
-                self.compare_at(at, part, field, got, expected, tolerance, name, pairs, raised)
-        return both
 
-    def _must_answer(self, goal: Goal, accepted: bool) -> None:
-        wanted = "accepted" if accepted else "rejected"
-        if goal.accepted is None:
-            servers = sorted({end.topic for end in self.recording.end_points if end.kind == "action server"})
-            if goal.action not in servers:
-                names = ", ".join(servers) or "none"
-                text = f"your node has no action {goal.action}. Its actions are: {names}."
-                self.wrong_at(goal.at, text, "", goal.action, names)
-            text = "your node never said whether it accepts the goal. Does a callback block it?"
-            self.wrong_at(goal.at, text, _part(goal), wanted, "no answer")
-        if goal.accepted != accepted:
-            got = "accepted" if goal.accepted else "rejected"
-            self.wrong_at(goal.at, f"it must be {wanted}, but your node {got} it.", _part(goal), wanted, got)
+def must_match_feedback(
+    run: RecordedRun, field: str = "", goal: int = 1, tolerance: float = TOLERANCE, time: float | None = None
+) -> None:
+    """The goal's feedback must match the solution's, message by message; with `time`, within this many seconds of
+    it."""
+    one, reference = scenario_goal(run, goal), _solutions(run, goal)
+    _must_answer(run, one, accepted=True)
+    pairs = list(zip(reference.feedback, one.feedback, strict=False))
+    messages = [(expected.fields, got.fields) for expected, got in pairs]
+    for number, (expected, got) in enumerate(pairs, start=1):
+        part = f"{_part(one)}, feedback {number}"
+        run.compare_at(got.at, part, field, got.fields, expected.fields, tolerance, one.action, messages)
+        run.time_at(got.at, expected.at, part, time, since=one.at)
+    wanted_, came_ = len(reference.feedback), len(one.feedback)
+    if wanted_ != came_:
+        text = f"expected {wanted_} feedback messages, got {came_}."
+        never = "" if came_ else "Your node never publishes feedback."
+        run.wrong_at(one.at, text, _part(one), f"{wanted_} messages", came_, never)
 
-    def _why(self, goal: Goal, wanted: str) -> str:
-        """The common mistake behind a wrong end of a goal; empty if none is known."""
-        got, cancel = _ended_as(goal), goal.cancels[0] if goal.cancels else None
-        if wanted == "canceled" and cancel:
-            return _why_not_canceled(goal, cancel, got)
-        if wanted == "succeeded" and got == "aborted":
-            return _FORGOT if goal.result and _is_filled(goal.result) else self._raised() or _ABORTED
-        if _ended_at(goal) is not None:
-            return ""
-        return f"{_NEVER} {_STUCK}" if self._does_nothing_after(goal) else _NEVER
 
-    def _raised(self) -> str:
-        """What execute raised first in this scenario, by rclpy's log; empty if it did not."""
-        found = _RAISED.search(self.recording.log)
-        if not found:
-            return ""
-        text = f"Your execute callback raised an exception: {found[1].strip()}."
-        return f"{text} {_UNASKED}" if "event CANCELED" in found[1] else text
+def must_match_goals(
+    run: RecordedRun, field: str = "", action: str = "", tolerance: float = TOLERANCE, time: float | None = None
+) -> None:
+    """The node, a client, must send as many goals as the solution, with the same `field`.
 
-    def _does_nothing_after(self, goal: Goal) -> bool:
-        """Whether the goal is executed, with no sign of life from the node after that."""
-        begun = next((state.at for state in goal.states if state.state == "executing"), None)
-        if begun is None or goal.feedback:
-            return False
-        answers = [one.at for one in self.recording.goals if one.accepted is not None and one.at > begun]
-        return not answers and not any(one.at > begun for one in self.recording.received)
+    With `time`, each within this many seconds of the solution's.
+    """
+    name = action or run.only("action_client")
+    got, wanted = len(goals(run, name, by="node")), len(_reference_goals(run, name, "node"))
+    if got != wanted:
+        clients = sorted({end.topic for end in run.recording.end_points if end.kind == "action client"})
+        never = "" if got or name in clients else f"Your node has no action client for {name}."
+        text = f"expected {wanted} goals for {name}, got {got}."
+        run.wrong_at(None, text, "", f"{wanted} goals", got, never or run.waits())
 
-    def _solutions(self, number: int) -> Goal:
-        return next(goal for goal in self._reference.goals if goal.number == number and goal.by == "grader")
+    def sent(goal: Goal) -> dict[str, Any] | None:
+        return goal.goal
 
-    def _reference_goals(self, action: str, by: By) -> tuple[Goal, ...]:
-        return tuple(goal for goal in self._reference.goals if goal.action == action and goal.by == by)
+    for one, reference in _match(run, name, "node", field, tolerance, sent, "goal"):
+        run.time_at(one.at, reference.at, _part(one), time)
+
+
+def must_ask_only_for_accepted(run: RecordedRun, action: str = "") -> None:
+    """The node, a client, must not ask for the result of a goal that was rejected."""
+    for one in goals(run, action, by="node"):
+        if one.accepted is False and one.asked_result is not None:
+            text = "it was rejected, but your node asked for its result. Check goal_handle.accepted."
+            run.wrong_at(one.asked_result, text, _part(one), "no request for the result", "one")
+
+
+def _match(
+    run: RecordedRun,
+    action: str,
+    by: By,
+    field: str,
+    tolerance: float,
+    part_of: Callable[[Goal], dict[str, Any] | None],
+    what: str,
+) -> list[tuple[Goal, Goal]]:
+    name = action or run.only("action" if by == "grader" else "action_client")
+    both = list(zip(goals(run, name, by), _reference_goals(run, name, by), strict=False))
+    pairs = [(e, g) for one, reference in both if (g := part_of(one)) and (e := part_of(reference))]
+    for one, reference in both:
+        expected, got = part_of(reference), part_of(one)
+        if expected is not None and got is not None:
+            at = one.at if what == "goal" else one.finished
+            raised = _raised(run) if what == "result" and one.status == "aborted" and not _is_filled(got) else ""
+            part = f"{_part(one)}, its {what}"
+            run.compare_at(at, part, field, got, expected, tolerance, name, pairs, raised)
+    return both
+
+
+def _must_answer(run: RecordedRun, goal: Goal, accepted: bool) -> None:
+    wanted = "accepted" if accepted else "rejected"
+    if goal.accepted is None:
+        servers = sorted({end.topic for end in run.recording.end_points if end.kind == "action server"})
+        if goal.action not in servers:
+            names = ", ".join(servers) or "none"
+            text = f"your node has no action {goal.action}. Its actions are: {names}."
+            run.wrong_at(goal.at, text, "", goal.action, names)
+        text = "your node never said whether it accepts the goal. Does a callback block it?"
+        run.wrong_at(goal.at, text, _part(goal), wanted, "no answer")
+    if goal.accepted != accepted:
+        got = "accepted" if goal.accepted else "rejected"
+        run.wrong_at(goal.at, f"it must be {wanted}, but your node {got} it.", _part(goal), wanted, got)
+
+
+def _why(run: RecordedRun, goal: Goal, wanted: str) -> str:
+    """The common mistake behind a wrong end of a goal; empty if none is known."""
+    got, cancel = _ended_as(goal), goal.cancels[0] if goal.cancels else None
+    if wanted == "canceled" and cancel:
+        return _why_not_canceled(goal, cancel, got)
+    if wanted == "succeeded" and got == "aborted":
+        return _FORGOT if goal.result and _is_filled(goal.result) else _raised(run) or _ABORTED
+    if _ended_at(goal) is not None:
+        return ""
+    return f"{_NEVER} {_STUCK}" if _does_nothing_after(run, goal) else _NEVER
+
+
+def _raised(run: RecordedRun) -> str:
+    """What execute raised first in this scenario, by rclpy's log; empty if it did not."""
+    found = _RAISED.search(run.recording.log)
+    if not found:
+        return ""
+    text = f"Your execute callback raised an exception: {found[1].strip()}."
+    return f"{text} {_UNASKED}" if "event CANCELED" in found[1] else text
+
+
+def _does_nothing_after(run: RecordedRun, goal: Goal) -> bool:
+    """Whether the goal is executed, with no sign of life from the node after that."""
+    begun = next((state.at for state in goal.states if state.state == "executing"), None)
+    if begun is None or goal.feedback:
+        return False
+    answers = [one.at for one in run.recording.goals if one.accepted is not None and one.at > begun]
+    return not answers and not any(one.at > begun for one in run.recording.received)
+
+
+def _solutions(run: RecordedRun, number: int) -> Goal:
+    return next(goal for goal in run.reference.goals if goal.number == number and goal.by == "grader")
+
+
+def _reference_goals(run: RecordedRun, action: str, by: By) -> tuple[Goal, ...]:
+    return tuple(goal for goal in run.reference.goals if goal.action == action and goal.by == by)
 
 
 def _why_not_canceled(goal: Goal, cancel: Cancel, got: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal, NoReturn
 
-from grader.checking.recorded import Recorded
+from grader.checking.recorded_run import RecordedRun
 from grader.checking.verdict import Finding, Wrong
 from grader.recording.recording import EndPoint
 
@@ -20,12 +20,15 @@ _WORDS = {
     "action client": ("have an action client of", "It has action clients of"),
 }
 
+#: The topic on which the grader publishes simulated time. Every program that uses simulated time subscribes to it.
+CLOCK = "/clock"
+
 #: The subscription of a node that uses the grader's time.
-OF_EVERY_NODE = ("/clock", "/rosout", "/parameter_events")
+OF_EVERY_NODE = (CLOCK, "/rosout", "/parameter_events")
 
 #: And the ends of these that it has: whoever publishes on /clock has made that publisher.
 _OWN = {
-    ("subscription", "/clock"),
+    ("subscription", CLOCK),
     ("publisher", "/rosout"),
     ("publisher", "/parameter_events"),
     ("subscription", "/parameter_events"),
@@ -41,95 +44,119 @@ _KINDS: dict[str, Kind] = {
 }
 
 
-class GraphChecks(Recorded):
-    """Nodes and end points."""
+def end_points(run: RecordedRun, kind: Kind, name: str = "") -> list[EndPoint]:
+    """The student's end points of a kind, such as "publisher" or "action server"; with `name`, of that topic."""
+    return [end for end in run.recording.end_points if end.kind == kind and name in ("", end.topic)]
 
-    def end_points(self, kind: Kind, name: str = "") -> list[EndPoint]:
-        """The student's end points of a kind, such as "publisher" or "action server"; with `name`, of that topic."""
-        return [end for end in self.recording.end_points if end.kind == kind and name in ("", end.topic)]
 
-    def must_be_as_declared(self) -> None:
-        """The program must have the nodes and the interface of exercise.toml, with its QoS, and nothing else."""
-        self.must_have_interface(only=True)
-        self.must_have_nodes()
-        self.must_have_qos()
+def publishers(run: RecordedRun, topic: str) -> list[EndPoint]:
+    """The student's publishers on `topic`."""
+    return end_points(run, "publisher", topic)
 
-    def must_have_interface(self, only: bool = False) -> None:
-        """The node must have every topic, service and action of exercise.toml, each with its type.
 
-        With `only`, it must have no others, and one end point of each; of several programs, each node at most one.
-        """
-        declared = [(_KINDS[topic.direction], topic.name, topic.type) for topic in self.exercise.topics]
-        declared += [(_KINDS[one.role], one.name, one.type) for one in self.exercise.endpoints]
-        for kind, name, type_ in declared:
-            mine = self.end_points(kind, name)
-            if not mine:
-                self._lacks(kind, name)
-            for end in mine:
-                if end.type != type_:
-                    text = f"your {kind} on {name} has another type. Expected {type_}, got {end.type}."
-                    _wrong(text, type_, end.type)
-        if only:
-            self._has_no_others([(kind, name) for kind, name, _ in declared])
+def subscriptions(run: RecordedRun, topic: str) -> list[EndPoint]:
+    """The student's subscriptions of `topic`."""
+    return end_points(run, "subscription", topic)
 
-    def must_have_qos(self, topic: str = "") -> None:
-        """The node's end points on `topic`, or on all topics, must have the reliability and durability of
-        exercise.toml."""
-        for declared in self.exercise.topics:
-            if topic not in ("", declared.name):
-                continue
-            wanted = f"{declared.reliability} and {declared.durability}"
-            for end in self.end_points(_KINDS[declared.direction], declared.name):
-                got = f"{end.reliability} and {end.durability}"
-                if got != wanted:
-                    text = f"your {end.kind} on {end.topic} is {got}. Expected {wanted}."
-                    _wrong(text, wanted, got, _of_qos(end, declared.durability))
 
-    def must_have_nodes(self) -> None:
-        """The program must create the node of exercise.toml (of each of its programs) and no other."""
-        names = [program.node for program in self.exercise.programs] or [self.exercise.node_name]
-        wanted = tuple(sorted(f"/{name.lstrip('/')}" for name in names))
-        got, text = ", ".join(self.nodes) or "none", ""
-        if lacking := [name for name in wanted if name not in self.nodes]:
-            text = f"there is no node {lacking[0]}. Expected {', '.join(wanted)}, got {got}."
-        elif len(self.nodes) > len(wanted):
-            text = f"your program creates other nodes, too. Expected {', '.join(wanted)}, got {got}."
-        if text:
-            _wrong(text, ", ".join(wanted), got)
+def topics(run: RecordedRun, kind: Kind) -> list[str]:
+    """Names of all topics that the student's nodes publish (kind "publisher") or subscribe to ("subscription").
 
-    def must_end_on_ctrl_c(self) -> None:
-        """On Ctrl-C the program must end within 2 s, with no traceback. The scenario needs `interrupt=True`."""
-        if not self.ending.interrupted:
-            raise ValueError(f"the scenario {self.scenario} sends no Ctrl-C. Add interrupt=True to it.")
-        if not self.ending.ended_in_time:
-            text = "your program was still running 2 s after Ctrl-C. Expected an end within 2 s."
-            _wrong(text, "an end within 2 s", "none")
-        if self.ending.traceback:
-            text = f"after Ctrl-C your program printed a traceback: {self.ending.traceback}"
-            _wrong(text, "no traceback", self.ending.traceback)
+    A subscription to `/clock` is left out unless the exercise is about it: the grader makes rclpy have it.
+    """
+    ours = {CLOCK} - {topic.name for topic in run.exercise.topics} if kind == "subscription" else set()
+    return sorted({end.topic for end in end_points(run, kind)} - ours)
 
-    def must_survive(self, program: str = "") -> None:
-        """No program of the submission may end by itself; with `program` (its file), only this one is checked."""
-        for exit_ in self.recording.exits:
-            if exit_.by == "itself" and program in ("", exit_.program):
-                how = f"with code {exit_.code}" if exit_.signal is None else f"by signal {exit_.signal}"
-                text = f"{exit_.program} ended by itself, {how}, but must continue."
-                self.wrong_at(exit_.at, text, "", "to go on", f"an end {how}")
 
-    def _has_no_others(self, declared: list[tuple[Kind, str]]) -> None:
-        for end in self.recording.end_points:
-            if (end.kind, end.topic) not in declared and (end.kind, end.topic) not in _OWN:
-                _wrong(f"your node has a {end.kind} on {end.topic}, which is not in the task.", "none", end.topic)
-        for kind, name in declared:
-            ends = self.end_points(kind, name)
-            nodes = [end.node for end in ends] if self.exercise.programs else ["" for _ in ends]
-            if (count := max(map(nodes.count, nodes), default=0)) > 1:
-                _wrong(f"your node has {count} {kind}s on {name}. Expected 1.", "1", str(count))
+def must_be_as_declared(run: RecordedRun) -> None:
+    """The program must have the nodes and the interface of exercise.toml, with its QoS, and nothing else."""
+    must_have_interface(run, only=True)
+    must_have_nodes(run)
+    must_have_qos(run)
 
-    def _lacks(self, kind: Kind, name: str) -> NoReturn:
-        does, others = _WORDS[kind]
-        names = ", ".join(sorted({end.topic for end in self.end_points(kind)} - {*OF_EVERY_NODE})) or "none"
-        _wrong(f"your node does not {does} {name}. {others}: {names}.", name, names)
+
+def must_have_interface(run: RecordedRun, only: bool = False) -> None:
+    """The node must have every topic, service and action of exercise.toml, each with its type.
+
+    With `only`, it must have no others, and one end point of each; of several programs, each node at most one.
+    """
+    declared = [(_KINDS[topic.direction], topic.name, topic.type) for topic in run.exercise.topics]
+    declared += [(_KINDS[one.role], one.name, one.type) for one in run.exercise.endpoints]
+    for kind, name, type_ in declared:
+        mine = end_points(run, kind, name)
+        if not mine:
+            _lacks(run, kind, name)
+        for end in mine:
+            if end.type != type_:
+                text = f"your {kind} on {name} has another type. Expected {type_}, got {end.type}."
+                _wrong(text, type_, end.type)
+    if only:
+        _has_no_others(run, [(kind, name) for kind, name, _ in declared])
+
+
+def must_have_qos(run: RecordedRun, topic: str = "") -> None:
+    """The node's end points on `topic`, or on all topics, must have the reliability and durability of
+    exercise.toml."""
+    for declared in run.exercise.topics:
+        if topic not in ("", declared.name):
+            continue
+        wanted = f"{declared.reliability} and {declared.durability}"
+        for end in end_points(run, _KINDS[declared.direction], declared.name):
+            got = f"{end.reliability} and {end.durability}"
+            if got != wanted:
+                text = f"your {end.kind} on {end.topic} is {got}. Expected {wanted}."
+                _wrong(text, wanted, got, _of_qos(end, declared.durability))
+
+
+def must_have_nodes(run: RecordedRun) -> None:
+    """The program must create the node of exercise.toml (of each of its programs) and no other."""
+    names = [program.node for program in run.exercise.programs] or [run.exercise.node_name]
+    wanted = tuple(sorted(f"/{name.lstrip('/')}" for name in names))
+    got, text = ", ".join(run.nodes) or "none", ""
+    if lacking := [name for name in wanted if name not in run.nodes]:
+        text = f"there is no node {lacking[0]}. Expected {', '.join(wanted)}, got {got}."
+    elif len(run.nodes) > len(wanted):
+        text = f"your program creates other nodes, too. Expected {', '.join(wanted)}, got {got}."
+    if text:
+        _wrong(text, ", ".join(wanted), got)
+
+
+def must_end_on_ctrl_c(run: RecordedRun) -> None:
+    """On Ctrl-C the program must end within 2 s, with no traceback. The scenario needs `interrupt=True`."""
+    if not run.ending.interrupted:
+        raise ValueError(f"the scenario {run.scenario} sends no Ctrl-C. Add interrupt=True to it.")
+    if not run.ending.ended_in_time:
+        text = "your program was still running 2 s after Ctrl-C. Expected an end within 2 s."
+        _wrong(text, "an end within 2 s", "none")
+    if run.ending.traceback:
+        text = f"after Ctrl-C your program printed a traceback: {run.ending.traceback}"
+        _wrong(text, "no traceback", run.ending.traceback)
+
+
+def must_survive(run: RecordedRun, program: str = "") -> None:
+    """No program of the submission may end by itself; with `program` (its file), only this one is checked."""
+    for exit_ in run.recording.exits:
+        if exit_.by == "itself" and program in ("", exit_.program):
+            how = f"with code {exit_.code}" if exit_.signal is None else f"by signal {exit_.signal}"
+            text = f"{exit_.program} ended by itself, {how}, but must continue."
+            run.wrong_at(exit_.at, text, "", "to go on", f"an end {how}")
+
+
+def _has_no_others(run: RecordedRun, declared: list[tuple[Kind, str]]) -> None:
+    for end in run.recording.end_points:
+        if (end.kind, end.topic) not in declared and (end.kind, end.topic) not in _OWN:
+            _wrong(f"your node has a {end.kind} on {end.topic}, which is not in the task.", "none", end.topic)
+    for kind, name in declared:
+        ends = end_points(run, kind, name)
+        nodes = [end.node for end in ends] if run.exercise.programs else ["" for _ in ends]
+        if (count := max(map(nodes.count, nodes), default=0)) > 1:
+            _wrong(f"your node has {count} {kind}s on {name}. Expected 1.", "1", str(count))
+
+
+def _lacks(run: RecordedRun, kind: Kind, name: str) -> NoReturn:
+    does, others = _WORDS[kind]
+    names = ", ".join(sorted({end.topic for end in end_points(run, kind)} - {*OF_EVERY_NODE})) or "none"
+    _wrong(f"your node does not {does} {name}. {others}: {names}.", name, names)
 
 
 def _wrong(text: str, expected: str, got: str, at_all: str = "") -> NoReturn:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from typing import Any
 
 from grader.checking.comparator import TOLERANCE, equal, shown
-from grader.checking.matching import COMPUTER_CLOCK
-from grader.checking.recorded import Recorded, field_of, seconds
+from grader.checking.message import field_of
+from grader.checking.patterns import COMPUTER_CLOCK, shift
+from grader.checking.recorded_run import RecordedRun, seconds
 from grader.recording.recording import Received
 from grader.scenario.times import SECOND, START
 
@@ -15,152 +17,141 @@ from grader.scenario.times import SECOND, START
 COMPUTER_STAMP = 1_000_000
 
 
-class SeriesChecks(Recorded):
-    """What a node publishes, as a series of messages on one topic. Without a `topic` it is the only output."""
+def must_publish(run: RecordedRun, topic: str = "", count: int | None = None) -> None:
+    """The node must publish on `topic`: `count` messages, or at least one."""
+    name = topic or run.output.name
+    got = len(run.messages_on(name))
+    wanted = f"{count} messages" if count is not None else "at least one message"
+    if not got and count != 0:
+        _never(run, name, wanted)
+    if count is not None and got != count:
+        run.wrong_at(None, f"expected {wanted} on {name}, got {got}.", "", wanted, got)
 
-    def must_publish(self, topic: str = "", count: int | None = None) -> None:
-        """The node must publish on `topic`: `count` messages, or at least one."""
-        name = topic or self.output.name
-        got = len(self.messages_on(name))
-        wanted = f"{count} messages" if count is not None else "at least one message"
-        if not got and count != 0:
-            self._never(name, wanted)
-        if count is not None and got != count:
-            self.wrong_at(None, f"expected {wanted} on {name}, got {got}.", "", wanted, got)
 
-    def must_match_series(
-        self,
-        field: str = "",
-        topic: str = "",
-        tolerance: float = TOLERANCE,
-        time: float | None = None,
-        subscriber: str = "",
-    ) -> None:
-        """The node's first message must have the same `field` as the solution's first, and so on to the last.
+def must_match_series(
+    run: RecordedRun,
+    field: str = "",
+    topic: str = "",
+    tolerance: float = TOLERANCE,
+    time: float | None = None,
+    subscriber: str = "",
+) -> None:
+    """The node's first message must have the same `field` as the solution's first, and so on to the last.
 
-        Without a `field`, whole messages are compared. With `time`, each must come within that many seconds of the
-        solution's. With `subscriber`, only what that subscriber of the scenario got is compared. What several threads
-        published at one moment has no order, so any order is right.
-        """
-        name = topic or self.output.name
-        expected = self._heard(name, subscriber, reference=True)
-        got = _in_the_order_of(expected, self._heard(name, subscriber, reference=False), field, tolerance)
-        if expected and not got:
-            self._never(name, f"{len(expected)} messages", subscriber)
-        pairs = list(zip(expected, got, strict=False))
-        too_early = _at_the_start(expected, got)
-        for number, (wanted, came) in enumerate(pairs, start=1):
-            part = f"message {number} on {name}"
-            messages = [(e.fields, g.fields) for e, g in pairs]
-            if not self._is_shifted(expected, got, field, tolerance):
-                self.compare_at(came.at, part, field, came.fields, wanted.fields, tolerance, name, messages, too_early)
-            if time is not None and abs(came.at - wanted.at) > time * SECOND + 1:
-                self._wrong_time(part, wanted, came, pairs)
-        if len(got) != len(expected):
-            text = f"expected {len(expected)} messages on {name}, got {len(got)}."
-            in_all = self._shift(expected, got, field) or too_early or f"{_stops(expected, got)} {self.waits()}"
-            self.wrong_at(None, text, "", f"{len(expected)} messages", len(got), in_all)
-        if shift := self._shift(expected, got, field, tolerance):
-            self.wrong_at(got[0].at, "the messages are not in step.", name, "each in its turn", "one late", shift)
+    Without a `field`, whole messages are compared. With `time`, each must come within that many seconds of the
+    solution's. With `subscriber`, only what that subscriber of the scenario got is compared. What several threads
+    published at one moment has no order, so any order is right.
+    """
+    name = topic or run.output.name
+    expected = run.messages_on(name, reference=True, subscriber=subscriber)
+    got = _in_the_order_of(expected, run.messages_on(name, subscriber=subscriber), field, tolerance)
+    if expected and not got:
+        _never(run, name, f"{len(expected)} messages", subscriber)
+    pairs = list(zip(expected, got, strict=False))
+    too_early = _at_the_start(expected, got)
+    shifted = shift(_values(expected, field), _values(got, field), tolerance)
+    for number, (wanted, came) in enumerate(pairs, start=1):
+        part = f"message {number} on {name}"
+        messages = [(e.fields, g.fields) for e, g in pairs]
+        if not shifted:
+            run.compare_at(came.at, part, field, came.fields, wanted.fields, tolerance, name, messages, too_early)
+        if time is not None and abs(came.at - wanted.at) > time * SECOND + 1:
+            _wrong_time(run, part, wanted, came, pairs)
+    if len(got) != len(expected):
+        text = f"expected {len(expected)} messages on {name}, got {len(got)}."
+        in_all = shifted or too_early or f"{_stops(expected, got)} {run.waits()}"
+        run.wrong_at(None, text, "", f"{len(expected)} messages", len(got), in_all)
+    if shifted:
+        run.wrong_at(got[0].at, "the messages are not in step.", name, "each in its turn", "one late", shifted)
 
-    def must_keep_rate(self, hz: float, topic: str = "", tolerance: float = 0.02) -> None:
-        """The node must publish `hz` times per second of simulated time on average, within `tolerance` (0.02: 2 %).
 
-        It must continue for as long as the solution does. A short gap before the second message does not count: a timer
-        that is created before the clock starts fires as soon as it does, and then at multiples of its period since 0
-        (rcl_timer_call in rcl's timer.c), as with any robot's or simulator's clock.
-        """
-        name = topic or self.output.name
-        got, expected = self.messages_on(name), self.messages_on(name, reference=True)
-        if len(got) < 2:
-            self._never(name, f"{hz:g} messages per second") if not got else None
-            text = f"only one message was published on {name}."
-            self.wrong_at(got[0].at, text, "", f"{hz:g} Hz", "one message", self.waits())
-        regular = got[1:] if _begins_with_the_clock(got) else got
-        rate = (len(regular) - 1) * SECOND / max(regular[-1].at - regular[0].at, 1)
-        if abs(rate / hz - 1) > tolerance:
-            text = f"expected {hz:g} messages per second on {name}, got {rate:.4g}."
-            self.wrong_at(None, text, "", f"{hz:g} Hz", f"{rate:.4g} Hz", _of_rate(rate / hz, hz, rate))
-        if expected and expected[-1].at - got[-1].at > 2 * SECOND / hz:
-            last = seconds(got[-1].at)
-            text = f"your node published nothing on {name} after that, but must continue."
-            end = f"the last message at {last:.2f} s"
-            self.wrong_at(got[-1].at, text, "", f"{hz:g} Hz to the end", end, self.waits())
+def must_keep_rate(run: RecordedRun, hz: float, topic: str = "", tolerance: float = 0.02) -> None:
+    """The node must publish `hz` times per second of simulated time on average, within `tolerance` (0.02: 2 %).
 
-    def must_have_no_gap(self, longest: float, topic: str = "", start: float = 0.0, end: float | None = None) -> None:
-        """No two messages may be more than `longest` s of simulated time apart, between `start` and `end` (s).
+    It must continue for as long as the solution does. A short gap before the second message does not count: a timer
+    that is created before the clock starts fires as soon as it does, and then at multiples of its period since 0
+    (rcl_timer_call in rcl's timer.c), as with any robot's or simulator's clock.
+    """
+    name = topic or run.output.name
+    got, expected = run.messages_on(name), run.messages_on(name, reference=True)
+    if len(got) < 2:
+        _never(run, name, f"{hz:g} messages per second") if not got else None
+        text = f"only one message was published on {name}."
+        run.wrong_at(got[0].at, text, "", f"{hz:g} Hz", "one message", run.waits())
+    regular = got[1:] if _begins_with_the_clock(got) else got
+    rate = (len(regular) - 1) * SECOND / max(regular[-1].at - regular[0].at, 1)
+    if abs(rate / hz - 1) > tolerance:
+        text = f"expected {hz:g} messages per second on {name}, got {rate:.4g}."
+        run.wrong_at(None, text, "", f"{hz:g} Hz", f"{rate:.4g} Hz", _of_rate(rate / hz, hz, rate))
+    if expected and expected[-1].at - got[-1].at > 2 * SECOND / hz:
+        last = seconds(got[-1].at)
+        text = f"your node published nothing on {name} after that, but must continue."
+        end = f"the last message at {last:.2f} s"
+        run.wrong_at(got[-1].at, text, "", f"{hz:g} Hz to the end", end, run.waits())
 
-        Also from `start` to the first message, and from the last to `end` where it is given.
-        """
-        name = topic or self.output.name
-        times = [seconds(one.at) for one in self.messages_on(name)]
-        inside = [at for at in times if at >= start and (end is None or at <= end)]
-        moments = [start, *inside, *([end] if end is not None else [])]
-        for before, after in itertools.pairwise(moments):
-            if after - before > longest + 1e-9:
-                text = f"nothing was published on {name} for {after - before:.2f} s, from {before:.2f} s on."
-                text += " Does a callback wait or sleep meanwhile?"
-                at = round(before * SECOND) + START
-                self.wrong_at(at, text, "", f"a gap of at most {longest:g} s", f"{after - before:.2f} s")
-        if not inside:
-            self._never(name, f"a message every {longest:g} s")
 
-    def must_stamp(self, topic: str = "", field: str = "header.stamp", within: float = 0.001) -> None:
-        """Each message's stamp must be the node's time when it is published, within this many seconds."""
-        name = topic or self.output.name
-        messages = self.messages_on(name)
-        stamps = [_nanoseconds(field_of(one.fields, field)) for one in messages]
-        for number, (one, stamp) in enumerate(zip(messages, stamps, strict=True), start=1):
-            if abs(stamp - one.at) > within * SECOND:
-                wanted, came = shown(_stamp(one.at)), shown(_stamp(stamp))
-                text = f"expected {field} {wanted}, the time when it was published, got {came}."
-                self.wrong_at(one.at, text, f"message {number} on {name}", wanted, came, _of_stamps(stamps))
+def must_have_no_gap(
+    run: RecordedRun, longest: float, topic: str = "", start: float = 0.0, end: float | None = None
+) -> None:
+    """No two messages may be more than `longest` s of simulated time apart, between `start` and `end` (s).
 
-    def _heard(self, topic: str, subscriber: str, reference: bool) -> tuple[Received, ...]:
-        recording = self._reference if reference else self.recording
-        return tuple(one for one in recording.received if one.topic == topic and one.subscriber == subscriber)
+    Also from `start` to the first message, and from the last to `end` where it is given.
+    """
+    name = topic or run.output.name
+    times = [seconds(one.at) for one in run.messages_on(name)]
+    inside = [at for at in times if at >= start and (end is None or at <= end)]
+    moments = [start, *inside, *([end] if end is not None else [])]
+    for before, after in itertools.pairwise(moments):
+        if after - before > longest + 1e-9:
+            text = f"nothing was published on {name} for {after - before:.2f} s, from {before:.2f} s on."
+            text += " Does a callback wait or sleep meanwhile?"
+            at = round(before * SECOND) + START
+            run.wrong_at(at, text, "", f"a gap of at most {longest:g} s", f"{after - before:.2f} s")
+    if not inside:
+        _never(run, name, f"a message every {longest:g} s")
 
-    def _never(self, topic: str, expected: str, subscriber: str = "") -> None:
-        ends = [end for end in self.recording.end_points if end.kind == "publisher"]
-        mine = [end for end in ends if end.topic == topic]
-        if not mine:
-            names = ", ".join(sorted({end.topic for end in ends})) or "none"
-            text = f"your node does not publish on {topic}. It publishes on: {names}."
-        elif subscriber and self.messages_on(topic):
-            text = f"the subscriber “{subscriber}” got nothing on {topic}."
-            if any(end.durability == "volatile" for end in mine):
-                text += " Your publisher is volatile: a late subscriber gets nothing that was published before."
-        else:
-            text = f"your node has a publisher on {topic}, but never published anything."
-        self.wrong_at(None, text, "", expected, "none", self.waits() if mine else "")
 
-    def _is_shifted(self, expected: Sequence[Received], got: Sequence[Received], field: str, tolerance: float) -> bool:
-        return bool(self._shift(expected, got, field, tolerance))
+def must_stamp(run: RecordedRun, topic: str = "", field: str = "header.stamp", within: float = 0.001) -> None:
+    """Each message's stamp must be the node's time when it is published, within this many seconds."""
+    name = topic or run.output.name
+    messages = run.messages_on(name)
+    stamps = [_nanoseconds(field_of(one.fields, field)) for one in messages]
+    for number, (one, stamp) in enumerate(zip(messages, stamps, strict=True), start=1):
+        if abs(stamp - one.at) > within * SECOND:
+            wanted, came = shown(_stamp(one.at)), shown(_stamp(stamp))
+            text = f"expected {field} {wanted}, the time when it was published, got {came}."
+            run.wrong_at(one.at, text, f"message {number} on {name}", wanted, came, _of_stamps(stamps))
 
-    def _shift(
-        self, expected: Sequence[Received], got: Sequence[Received], field: str, tolerance: float = TOLERANCE
-    ) -> str:
-        """Whether each message is the one that was expected before, or the one after."""
-        wanted = [field_of(one.fields, field) for one in expected]
-        came = [field_of(one.fields, field) for one in got]
-        if len(wanted) < 4 or len(came) < 4 or equal(came[: len(wanted)], wanted[: len(came)], tolerance):
-            return ""
-        for mine, its, text in ((came[1:], wanted, "one message late"), (came, wanted[1:], "one message early")):
-            count = min(len(mine), len(its))
-            if count >= 3 and equal(mine[:count], its[:count], tolerance) and len({repr(one) for one in mine}) > 1:
-                return f"Every message is {text}."
-        return ""
 
-    def _wrong_time(
-        self, part: str, wanted: Received, came: Received, pairs: Sequence[tuple[Received, Received]]
-    ) -> None:
-        late = [(got.at - expected.at) / SECOND for expected, got in pairs]
-        at, general = seconds(wanted.at), ""
-        if len(late) >= 3 and max(late) - min(late) < 0.02 * abs(late[0]):
-            general = f"Every message comes {abs(late[0]):.2f} s too {'late' if late[0] > 0 else 'early'}."
-        general = general or _at_the_start([wanted], [came])
-        text = f"it was expected at {at:.2f} s, got it at {seconds(came.at):.2f} s."
-        self.wrong_at(came.at, text, part, f"{at:.2f} s", f"{seconds(came.at):.2f} s", general)
+def _values(messages: Sequence[Received], field: str) -> list[Any]:
+    return [field_of(one.fields, field) for one in messages]
+
+
+def _never(run: RecordedRun, topic: str, expected: str, subscriber: str = "") -> None:
+    ends = [end for end in run.recording.end_points if end.kind == "publisher"]
+    mine = [end for end in ends if end.topic == topic]
+    if not mine:
+        names = ", ".join(sorted({end.topic for end in ends})) or "none"
+        text = f"your node does not publish on {topic}. It publishes on: {names}."
+    elif subscriber and run.messages_on(topic):
+        text = f"the subscriber “{subscriber}” got nothing on {topic}."
+        if any(end.durability == "volatile" for end in mine):
+            text += " Your publisher is volatile: a late subscriber gets nothing that was published before."
+    else:
+        text = f"your node has a publisher on {topic}, but never published anything."
+    run.wrong_at(None, text, "", expected, "none", run.waits() if mine else "")
+
+
+def _wrong_time(
+    run: RecordedRun, part: str, wanted: Received, came: Received, pairs: Sequence[tuple[Received, Received]]
+) -> None:
+    late = [(got.at - expected.at) / SECOND for expected, got in pairs]
+    at, general = seconds(wanted.at), ""
+    if len(late) >= 3 and max(late) - min(late) < 0.02 * abs(late[0]):
+        general = f"Every message comes {abs(late[0]):.2f} s too {'late' if late[0] > 0 else 'early'}."
+    general = general or _at_the_start([wanted], [came])
+    text = f"it was expected at {at:.2f} s, got it at {seconds(came.at):.2f} s."
+    run.wrong_at(came.at, text, part, f"{at:.2f} s", f"{seconds(came.at):.2f} s", general)
 
 
 #: The clock of a node that starts is 0, and jumps to the simulated time with the first message on /clock.

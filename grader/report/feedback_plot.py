@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 
 from grader.checking.comparator import equal
-from grader.checking.run import Message, Run
+from grader.checking.message import Message
+from grader.checking.run import Run
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade
 from grader.report.pages import template

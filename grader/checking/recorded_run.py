@@ -1,13 +1,17 @@
-"""What every check gets of one scenario: the two recordings, and the functions that report what is wrong."""
+"""One scenario as it was recorded, with the student's node and with the solution, and how a check reports what is
+wrong."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NoReturn
 
 from grader.checking.comparator import difference, shown
-from grader.checking.matching import COMPUTER_CLOCK, common
+from grader.checking.message import Exchange, Message, exchanges, field_of
+from grader.checking.patterns import COMPUTER_CLOCK, common
 from grader.checking.verdict import Finding, Wrong
 from grader.exercise.exercise import Endpoint, Exercise, Role, Topic
 from grader.recording.recording import Ending, Received, Recording
@@ -19,21 +23,25 @@ _WAITS = (
     "the answer. Don't wait: give the future a callback with add_done_callback()."
 )
 
-#: For so long (s) after its last request a node must have done nothing, and the solution something, to be called stuck.
+#: A node counts as stuck if it does nothing for this long (s) after its last request while the solution does something.
 _STUCK = 0.2
 
 _SLEEPS = "Does your node wait by the computer's clock, such as with time.sleep? It goes at another speed here."
 
 
-class Recorded:
-    """One scenario: the student's recording and the solution's. `Run` adds the helpers for each kind of check."""
+@dataclass(frozen=True, eq=False)
+class RecordedRun:
+    """One scenario: the student's recording and the solution's. `title` tells students which scenario it is."""
 
-    def __init__(self, exercise: Exercise, recording: Recording, reference: Recording, title: str = "") -> None:
-        self.exercise = exercise
-        self.scenario = recording.scenario
-        self.title = title
-        self.recording = recording
-        self._reference = reference
+    exercise: Exercise
+    recording: Recording
+    reference: Recording
+    title: str = ""
+
+    @property
+    def scenario(self) -> str:
+        """The scenario's name."""
+        return self.recording.scenario
 
     @property
     def nodes(self) -> tuple[str, ...]:
@@ -44,6 +52,30 @@ class Recorded:
     def ending(self) -> Ending:
         """How the run ended."""
         return self.recording.ending
+
+    @cached_property
+    def sent(self) -> list[Message]:
+        """Every message sent to the node."""
+        return [Message(sent) for sent in self.recording.sent]
+
+    @cached_property
+    def received(self) -> list[Message]:
+        """Every message that the node published on the exercise's topics."""
+        return [Message(received) for received in self.recording.received if not received.subscriber]
+
+    @cached_property
+    def exchanges(self) -> list[Exchange]:
+        """Each message sent, with the node's answers and the solution's."""
+        return exchanges(self.recording, self.reference)
+
+    def wrong(self, exchange: Exchange, text: str, part: str = "", expected: object = "", got: object = "") -> NoReturn:
+        """End the check: `text` says what is wrong with the answers to this exchange's message. `part` is the wrong
+        part of the message, such as the joint; reports show `expected` and `got` separately.
+        """
+        where = f"Message {exchange.number} of {len(self.sent)} ({exchange.sent.at:.2f} s after the start"
+        where += f"; {self.title})" if self.title else ")"
+        message = f"{where}{f', {part}' if part else ''}: {text}"
+        raise Wrong(Finding(message, self.scenario, exchange.number, exchange.sent.at, part, str(expected), str(got)))
 
     def wrong_at(
         self, at: int | None, text: str, part: str = "", expected: object = "", got: object = "", at_all: str = ""
@@ -107,7 +139,7 @@ class Recorded:
         if asked is None:
             return ""
         last = max([asked[0], *(one.at for one in self.recording.received)])
-        later = [one.at for one in self._reference.received] + [at for at, _, _ in _requests(self._reference)]
+        later = [one.at for one in self.reference.received] + [at for at, _, _ in _requests(self.reference)]
         if last > asked[0] or max(later, default=0) - last < _STUCK * SECOND:
             return ""
         at, name, what = asked
@@ -122,10 +154,13 @@ class Recorded:
         ]
         return next((one.units[field] for one in declared if name in ("", one.name) and field in one.units), "")
 
-    def messages_on(self, topic: str = "", reference: bool = False) -> tuple[Received, ...]:
-        """What the student's node, or the solution, published on `topic`; without one, on the only output."""
-        recording, name = self._reference if reference else self.recording, topic or self.output.name
-        return tuple(one for one in recording.received if one.topic == name and not one.subscriber)
+    def messages_on(self, topic: str = "", reference: bool = False, subscriber: str = "") -> tuple[Received, ...]:
+        """What the student's node, or the solution, published on `topic`; without one, on the only output.
+
+        With `subscriber`, only what that subscriber of the scenario got.
+        """
+        recording, name = self.reference if reference else self.recording, topic or self.output.name
+        return tuple(one for one in recording.received if one.topic == name and one.subscriber == subscriber)
 
     @property
     def output(self) -> Topic:
@@ -152,18 +187,6 @@ def _requests(recording: Recording) -> list[tuple[int, str, str]]:
 def seconds(at: int) -> float:
     """A moment of simulated time (ns) as seconds after the start."""
     return (at - START) / SECOND
-
-
-def field_of(fields: dict[str, Any], name: str) -> Any:
-    """A field by its full name, such as `header.frame_id`, `twist.linear.x` or `points[0].x`; all fields if it is
-    empty."""
-    value: Any = fields
-    for step in name.replace("[", ".[").split(".") if name else ():
-        try:
-            value = value[int(step[1:-1])] if step.startswith("[") else value[step]
-        except KeyError:
-            raise ValueError(f"there is no field {name!r}: the fields are {', '.join(fields)}.") from None
-    return value
 
 
 def _number(fields: dict[str, Any], path: str) -> float | None:

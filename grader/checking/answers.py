@@ -1,0 +1,240 @@
+"""Helpers for nodes that answer messages: which they answer, when, and with which values."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from grader.checking.comparator import TOLERANCE, difference, equal, shown
+from grader.checking.graph import subscriptions
+from grader.checking.late_answers import AT_ONCE, delay, how_late, in_general, is_late, is_one_late
+from grader.checking.message import Exchange, Message
+from grader.checking.patterns import common, fixed_step
+from grader.checking.recorded_run import RecordedRun
+
+#: A value that takes more characters than this is not shown as a whole, but only where it differs.
+LONGEST = 80
+
+
+def must_match(
+    run: RecordedRun, field: str, per: str = "", tolerance: float = TOLERANCE, missing_ok: bool = False
+) -> None:
+    """If the solution answers a message, the node must answer it, with the same `field`.
+
+    `per` names the list of names that `field` goes with, so that the order does not count: `must_match("velocity",
+    per="name")`. Numbers may differ by `tolerance`, absolute or relative, whichever is larger. With `missing_ok`,
+    missing answers are ignored, because another check judges them.
+    """
+    unit = _unit(run, field)
+    for exchange in run.exchanges:
+        if exchange.expected and (exchange.answers or not missing_ok):
+            got = _answer(run, exchange)
+            if per:
+                _compare_each(run, exchange, got, field, per, unit, tolerance)
+            else:
+                _compare(run, exchange, got, field, unit, tolerance)
+
+
+def _unit(run: RecordedRun, field: str) -> str:
+    return next((topic.units[field] for topic in run.exercise.outputs if field in topic.units), "")
+
+
+def must_answer(run: RecordedRun) -> None:
+    """The node must answer every message that the solution answers, once."""
+    for exchange in run.exchanges:
+        if exchange.expected:
+            _answer(run, exchange)
+            if len(exchange.answers) > 1:
+                count = len(exchange.answers)
+                run.wrong(exchange, f"one answer was expected, got {count}.", expected="1", got=str(count))
+
+
+def must_answer_at_once(run: RecordedRun, within: float = AT_ONCE) -> None:
+    """Each answer must come before the next message, and within this many seconds of simulated time. Missing answers
+    are ignored, because another check judges them.
+    """
+    for exchange in run.exchanges:
+        for answer in exchange.answers if exchange.expected else ():
+            if is_late(exchange, answer, within):
+                late = delay(run, exchange, answer)
+                text = f"an answer was expected at once; it arrived {late}.{in_general(run)}"
+                run.wrong(exchange, text, "", "an answer at once", late)
+
+
+def must_vary(run: RecordedRun, field: str, per: str = "") -> None:
+    """If the solution's `field` changes from message to message, the node's must change too.
+
+    A node that publishes zeros or a constant fails, one with wrong values does not. `per` is as in `must_match`.
+    """
+    expected, got = _series(run, field, per, reference=True), _series(run, field, per, reference=False)
+    varying = {name: values for name, values in expected.items() if len(set(values)) > 1}
+    if not varying:
+        return
+    given = [value for values in got.values() for value in values]
+    if not given:
+        run.wrong(run.exchanges[-1], f"no {field} was published at all.", "", f"a {field} that changes", "none")
+    if any(len(set(values)) > 1 for values in got.values()):
+        return
+    alike = len(set(given)) == 1
+    constant, name = (
+        shown(given[0], _unit(run, field)),
+        next((name for name in got if name in varying and not alike), ""),
+    )
+    text = f"every {field} is {constant}" if alike else f"{field} is {constant} in every message"
+    expected_, got_ = f"a {field} that changes", f"{constant} throughout"
+    run.wrong(run.exchanges[-1], f"{text}, whatever was sent.", name, expected_, got_)
+
+
+def _series(run: RecordedRun, field: str, per: str, reference: bool) -> dict[str, list[Any]]:
+    """Every value of `field`, by name, in the order of the messages."""
+    found: dict[str, list[Any]] = {}
+    for exchange in run.exchanges:
+        for message in exchange.expected if reference else exchange.answers:
+            values = message.by(per, field) if per else {"": message.value(field)}
+            for name, value in values.items():
+                found.setdefault(str(name), []).append(value)
+    return found
+
+
+def must_be_silent(run: RecordedRun) -> None:
+    """The node must not answer messages that the solution does not answer. The very first message does not count."""
+    _must_be_silent(run, run.exchanges[1:])
+
+
+def must_be_silent_at_first(run: RecordedRun) -> None:
+    """The node must not answer the very first message, if the solution does not."""
+    _must_be_silent(run, run.exchanges[:1])
+
+
+def _must_be_silent(run: RecordedRun, exchanges: list[Exchange]) -> None:
+    text = "no answer was expected, but your node published a message."
+    for exchange in exchanges:
+        if exchange.answers and not exchange.expected:
+            run.wrong(exchange, text, "", "nothing", "a message")
+
+
+def _answer(run: RecordedRun, exchange: Exchange) -> Message:
+    if not exchange.answers:
+        late, general = how_late(run, exchange), in_general(run)
+        text = f"an answer was expected at once; it arrived {late}." if late else "an answer was expected, got none."
+        text += general or _never(run)
+        if not exchange.sent.heard and subscriptions(run, exchange.sent.topic):
+            text += _unmatched(run, exchange.sent.topic) or (
+                f" Your node did not subscribe to {exchange.sent.topic} yet: create the subscription in __init__."
+            )
+        run.wrong(exchange, text, "", "a message", late or "nothing")
+    return exchange.answers[0]
+
+
+def _unmatched(run: RecordedRun, topic: str) -> str:
+    """Say so if no message arrived because a subscription asks for more than the topic's publisher offers."""
+    declared = next((one for one in run.exercise.inputs if one.name == topic), None)
+    if declared is None or any(sent.heard for sent in run.sent if sent.topic == topic):
+        return ""
+    for end in subscriptions(run, topic):
+        for more, name in (("transient_local", "durability"), ("reliable", "reliability")):
+            asked, offered = getattr(end, name), getattr(declared, name)
+            if asked == more != offered:
+                text = f" Your subscription on {topic} is {asked}, but the publisher is {offered}"
+                return f"{text}: the two do not match, and no message arrives."
+    return ""
+
+
+def _never(run: RecordedRun) -> str:
+    answered = sum(bool(exchange.answers) for exchange in run.exchanges)
+    return "" if answered or len(run.sent) == 1 else " Your node never answers in this scenario."
+
+
+def _compare(run: RecordedRun, exchange: Exchange, answer: Message, field: str, unit: str, tolerance: float) -> None:
+    got, expected = answer.value(field), exchange.expected[0].value(field)
+    found = difference(got, expected, tolerance)
+    if not found:
+        return
+    place = field
+    if found.path and len(shown(expected)) > LONGEST:
+        place += found.path if found.path.startswith("[") else f".{found.path}"
+        got, expected = found.got, found.expected
+    wanted, came = shown(expected, unit), shown(got, unit)
+    text = f"expected {place} {wanted}, got {came}.{pattern(run, field, unit=unit)}"
+    run.wrong(exchange, text, "", wanted, came)
+
+
+def _compare_each(
+    run: RecordedRun, exchange: Exchange, answer: Message, field: str, per: str, unit: str, tolerance: float
+) -> None:
+    names, values = answer.value(per), answer.value(field)
+    if len(names) != len(values):
+        text = (
+            f"{per} and {field} must have the same length; {per} has {len(names)} elements, {field} has {len(values)}."
+        )
+        run.wrong(exchange, text, "", f"{len(names)}", f"{len(values)}")
+    expected, got = exchange.expected[0].by(per, field), answer.by(per, field)
+    for name, value in expected.items():
+        if name not in got:
+            run.wrong(exchange, f"a {field} was expected, but your message does not name it.", name, shown(value), "")
+        if not equal(got[name], value, tolerance):
+            text = f"expected {field} {shown(value, unit)}, got {shown(got[name], unit)}."
+            run.wrong(exchange, text + pattern(run, field, per, unit), name, shown(value, unit), shown(got[name], unit))
+    for name, value in got.items():
+        if name not in expected:
+            text = f"no {field} was expected, got {shown(value, unit)}."
+            run.wrong(exchange, text, str(name), "nothing", shown(value, unit))
+
+
+def pattern(run: RecordedRun, field: str, per: str = "", unit: str = "") -> str:
+    """A sentence about what all values of `field` have in common, beginning with a space; empty if nothing.
+
+    `per` names the list of names that `field` goes with; without it, `field` is one number.
+    """
+    if is_one_late(run):
+        return " Every answer is one message late: it is the right answer to the message before."
+    if copied := _copied(run, field, per):
+        return f" Every {field} is the {copied} of the message that arrived, unchanged."
+    pairs: list[tuple[float, float]] = []
+    elapsed: list[float] = []
+    for before, exchange in zip([None, *run.exchanges], run.exchanges, strict=False):
+        if exchange.expected and exchange.answers:
+            expected, got = _values(exchange.expected[0], field, per), _values(exchange.answers[0], field, per)
+            pairs += [(expected[name], got[name]) for name in expected if name in got]
+            elapsed += [_elapsed(before, exchange) for name in expected if name in got]
+    if text := fixed_step(pairs, elapsed, field, unit):
+        return text
+    return common(pairs, field, unit, clock=run.recording.synchronization == "lockstep")
+
+
+def _elapsed(before: Exchange | None, exchange: Exchange) -> float:
+    """Seconds between the stamps of two messages; of messages without a stamp, between their arrivals."""
+    if before is None:
+        return 0.0
+    if "header" in exchange.sent._fields:
+        return exchange.sent.stamp - before.sent.stamp
+    return exchange.sent.at - before.sent.at
+
+
+def _copied(run: RecordedRun, field: str, per: str) -> str:
+    """The field of the messages that arrived which every answer repeats; empty if none."""
+    answered = [exchange for exchange in run.exchanges if exchange.expected and exchange.answers]
+    fields = answered[0].sent._fields if answered else {}
+    return next((name for name in fields if name != per and _is_copied(answered, field, per, name)), "")
+
+
+def _is_copied(answered: list[Exchange], field: str, per: str, name: str) -> bool:
+    pairs = []
+    for exchange in answered:
+        if per and per not in exchange.sent._fields:
+            return False
+        sent, got = _values(exchange.sent, name, per), _values(exchange.answers[0], field, per)
+        pairs += [(sent[key], got[key]) for key in got if key in sent]
+    several = len({got for _, got in pairs}) > 1
+    return several and all(math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-12) for a, b in pairs)
+
+
+def _values(message: Message, field: str, per: str) -> dict[str, float]:
+    """The numbers in a field, by name."""
+    value = message.value(field)
+    if isinstance(value, list):
+        names = message.value(per) if per else [str(i) for i in range(len(value))]
+        values = dict(zip(names, value, strict=False))
+    else:
+        values = {"": value}
+    return {name: one for name, one in values.items() if isinstance(one, (int, float))}

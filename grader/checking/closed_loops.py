@@ -1,0 +1,135 @@
+"""Helpers for closed loops: whether what is controlled reaches a place in time, without overshoot, and stays."""
+
+from __future__ import annotations
+
+import math
+
+from grader.checking.message import field_of
+from grader.checking.recorded_run import RecordedRun, seconds
+from grader.recording.recording import Received, Sent
+from grader.scenario.times import SECOND, START
+
+Place = dict[str, float]
+
+#: (seconds after the start, values of the fields) of each message, in order.
+Way = list[tuple[float, tuple[float, ...]]]
+
+
+def trajectory(run: RecordedRun, topic: str, *fields: str) -> Way:
+    """(seconds after the start, values of `fields`) of each message on `topic`, whoever published it."""
+    messages: list[Sent | Received] = [*run.recording.sent]
+    messages += [one for one in run.recording.received if not one.subscriber]
+    on_it = sorted((one for one in messages if one.topic == topic), key=lambda one: one.at)
+    if not on_it:
+        raise ValueError(f"there is no message on {topic} in the scenario {run.scenario}.")
+    return [(seconds(one.at), tuple(float(field_of(one.fields, name)) for name in fields)) for one in on_it]
+
+
+def must_reach(
+    run: RecordedRun,
+    topic: str,
+    place: Place,
+    tolerance: float,
+    within: float,
+    overshoot: float | None = None,
+    stay: bool = True,
+    start: float = 0.0,
+) -> None:
+    """The position published on `topic` must be within `tolerance` of `place` by `within` s after `start`.
+
+    `place` has a value for each field that counts: `{"x": 9.0, "y": 2.0}`. With `overshoot` it must not go further
+    beyond it than that, as seen from where it was at `start`. Unless `stay` is False it must not leave it again.
+    """
+    way = [(at, point) for at, point in trajectory(run, topic, *place) if at >= start - 1e-9]
+    goal, unit = tuple(place.values()), run.unit_of(next(iter(place)), topic)
+    reached = next((at for at, point in way if math.dist(point, goal) <= tolerance), None)
+    words = _words(place)
+    if reached is None or reached - start > within + 1e-9:
+        _never_there(run, way, goal, words, tolerance, within, unit, reached, start)
+    assert reached is not None
+    if overshoot is not None:
+        _beyond(run, way, goal, words, overshoot, unit)
+    left = next((at for at, p in way if at > max(reached, start + within) and math.dist(p, goal) > tolerance), None)
+    if stay and left is not None:
+        text = f"it reached {words} at {reached:.2f} s, but did not stay there."
+        run.wrong_at(_ns(left), text, "", f"to stay within {_measure(tolerance, unit)}", f"left at {left:.2f} s")
+
+
+def must_stay_between(
+    run: RecordedRun, topic: str, field: str, lowest: float, highest: float, start: float = 0.0
+) -> None:
+    """Each value of `field` on `topic`, from `start` on (s), must be between these two, whoever published it."""
+    unit = run.unit_of(field, topic)
+    for at, (value,) in trajectory(run, topic, field):
+        if at >= start - 1e-9 and not lowest - 1e-9 <= value <= highest + 1e-9:
+            wanted, came = f"{lowest:g} to {_measure(highest, unit)}", _measure(value, unit)
+            run.wrong_at(_ns(at), f"expected {field} from {wanted}, got {came}.", topic, wanted, came)
+
+
+def _never_there(
+    run: RecordedRun,
+    way: Way,
+    goal: tuple[float, ...],
+    words: str,
+    tolerance: float,
+    within: float,
+    unit: str,
+    reached: float | None,
+    start: float,
+) -> None:
+    wanted = f"within {_measure(tolerance, unit)} of {words} after {within:g} s"
+    if reached is not None:
+        text = f"it was expected {wanted}, but got there only after {reached - start:.2f} s."
+        run.wrong_at(_ns(reached), text, "", wanted, f"after {reached - start:.2f} s")
+    at, closest = min(way, key=lambda one: math.dist(one[1], goal))
+    distance = math.dist(closest, goal)
+    text = f"it was expected {wanted}; the closest it got was {_measure(distance, unit)}."
+    run.wrong_at(_ns(at), text, "", wanted, _measure(distance, unit), _of_way(way, goal))
+
+
+def _beyond(
+    run: RecordedRun,
+    way: Way,
+    goal: tuple[float, ...],
+    words: str,
+    overshoot: float,
+    unit: str,
+) -> None:
+    begin = way[0][1]
+    length = math.dist(begin, goal)
+    if not length:
+        return
+    ahead = [(g - b) / length for b, g in zip(begin, goal, strict=True)]
+    for at, point in way:
+        beyond = sum(a * (p - g) for a, p, g in zip(ahead, point, goal, strict=True))
+        if beyond > overshoot + 1e-9:
+            furthest = max(sum(a * (p - g) for a, p, g in zip(ahead, q, goal, strict=True)) for _, q in way)
+            wanted, came = f"at most {_measure(overshoot, unit)}", _measure(furthest, unit)
+            run.wrong_at(_ns(at), f"it goes {came} beyond {words}; {wanted} is allowed.", "", wanted, came)
+
+
+def _of_way(way: Way, goal: tuple[float, ...]) -> str:
+    """What is systematically wrong with a path that does not lead to the goal."""
+    begin, end = way[0][1], way[-1][1]
+    length = math.dist(begin, goal)
+    if all(math.dist(point, begin) < 1e-6 for _, point in way):
+        return "It never moved."
+    if math.dist(end, goal) > length and min(math.dist(point, goal) for _, point in way) > 0.99 * length:
+        return "It moves away from there: is a sign wrong?"
+    last = [point for at, point in way if at >= way[-1][0] - 1.0]
+    if len(last) > 1 and all(math.dist(point, end) < 1e-6 for point in last):
+        return f"It stopped {math.dist(end, goal):.3g} away."
+    return ""
+
+
+def _words(place: Place) -> str:
+    return ", ".join(f"{name} = {value:g}" for name, value in place.items())
+
+
+def _measure(value: float, unit: str) -> str:
+    return f"{value:.3g}{f' {unit}' if unit else ''}"
+
+
+def _ns(at: float) -> int:
+
+    return START + round(at * SECOND)

@@ -1,0 +1,110 @@
+"""Answers that come late: how late each is, and what all late ones have in common."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from grader.checking.comparator import equal
+from grader.checking.message import Exchange, Message
+from grader.checking.patterns import FEWEST
+from grader.checking.recorded_run import RecordedRun
+from grader.recording.recording import Received
+from grader.scenario.times import SECOND
+
+#: Fields that say when a message was sent, and nothing about its content.
+_STAMPS = ("header", "stamp")
+
+#: An answer within this time (s) counts as immediate: an asyncio loop may look for messages every millisecond.
+AT_ONCE = 0.01
+
+_NEXT_MESSAGE = " Your node answers each message only when the next one arrives: every answer is one message late."
+_TIMER = (
+    " Your node answers only after the clock has moved on, as a timer does. Publish in the callback that gets the "
+    "message."
+)
+
+
+def how_late(run: RecordedRun, exchange: Exchange) -> str:
+    """When the answer that was expected to this exchange's message came, such as "0.45 s later"; empty if it did not.
+
+    An answer counts as this one if it says the same, and if it is not the right answer to the message it came after.
+    """
+    wanted = exchange.expected[0]._fields
+    for received in run.recording.received:
+        if received.after > exchange.number and same(received.fields, wanted) and not _is_in_time(run, received):
+            return _delay(run, exchange, received.at, received.after)
+    return ""
+
+
+def is_late(exchange: Exchange, answer: Message, within: float) -> bool:
+    """Whether an answer came after the next message, or more than `within` s after its own."""
+    return answer.after > exchange.number or answer.at - exchange.sent.at > within + 1e-9
+
+
+def delay(run: RecordedRun, exchange: Exchange, answer: Message) -> str:
+    """How late an answer is, such as "one message late" or "0.45 s later"."""
+    return _delay(run, exchange, answer.at_ns, answer.after)
+
+
+def in_general(run: RecordedRun) -> str:
+    """What all late answers have in common, as sentences that begin with a space; empty if nothing."""
+    pairs = [(exchange, answer) for exchange in run.exchanges for answer in exchange.answers if exchange.expected]
+    late = [(exchange, answer) for exchange, answer in pairs if is_late(exchange, answer, AT_ONCE)]
+    if len(late) < FEWEST or len(late) < len(pairs):
+        return ""
+    if all(answer.after == exchange.number + 1 and _with_next(run, exchange, answer) for exchange, answer in late):
+        return _NEXT_MESSAGE
+    if all(answer.after == exchange.number and _with_next(run, exchange, answer) for exchange, answer in late[:-1]):
+        return _TIMER
+    seconds = [answer.at - exchange.sent.at for exchange, answer in late]
+    if max(seconds) - min(seconds) <= 0.02 * max(seconds):
+        return f" Every answer comes {_shown(max(seconds))} after its message."
+    return (
+        f" Your node's answers come {_shown(min(seconds))} to {_shown(max(seconds))} after their messages, as from a "
+        "timer, or from a thread that polls."
+    )
+
+
+def _with_next(run: RecordedRun, exchange: Exchange, answer: Message) -> bool:
+    """Whether an answer came at the simulated time of the next message."""
+    sent = run.recording.sent
+    return exchange.number < len(sent) and answer.at_ns == sent[exchange.number].at
+
+
+def same(got: Any, expected: Any) -> bool:
+    """Whether two messages say the same, or two parts of them; stamps do not count."""
+    return equal(_timeless(got), _timeless(expected))
+
+
+def _timeless(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _timeless(part) for name, part in value.items() if name not in _STAMPS}
+    return [_timeless(part) for part in value] if isinstance(value, list) else value
+
+
+def _is_in_time(run: RecordedRun, received: Received) -> bool:
+    """Whether a message is the right answer to the message that it came after."""
+    expected = run.exchanges[received.after - 1].expected
+    return bool(expected) and same(received.fields, expected[0]._fields)
+
+
+def _delay(run: RecordedRun, exchange: Exchange, at: int, after: int) -> str:
+    late = after - exchange.number
+    if late and at == run.recording.sent[after - 1].at:
+        return "one message late" if late == 1 else f"{late} messages late"
+    return f"{_shown((at - run.recording.sent[exchange.number - 1].at) / SECOND)} later"
+
+
+def _shown(seconds: float) -> str:
+    return f"{seconds:.2f} s" if seconds >= 0.01 else f"{seconds * 1000:.1f} ms"
+
+
+def is_one_late(run: RecordedRun) -> bool:
+    """Whether every answer is the right one to the message before."""
+    pairs = [
+        (before.expected[0]._fields, exchange.expected[0]._fields, exchange.answers[0]._fields)
+        for before, exchange in zip(run.exchanges, run.exchanges[1:], strict=False)
+        if before.expected and exchange.expected and exchange.answers
+    ]
+    telling = [(former, got) for former, expected, got in pairs if not same(former, expected)]
+    return len(telling) >= FEWEST and all(same(got, former) for former, got in telling)

@@ -1,0 +1,113 @@
+"""Messages as a check sees them, and which of them answer which."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from grader.recording.recording import Received, Recording, Sent
+from grader.scenario.times import SECOND, START
+
+
+class Part:
+    """Some fields of a message, by name: `message.header.frame_id`."""
+
+    def __init__(self, fields: dict[str, Any]) -> None:
+        self._fields = fields
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            value = self._fields[name]
+        except KeyError:
+            raise AttributeError(f"a message of this type has no field {name!r}") from None
+        return Part(value) if isinstance(value, dict) else value
+
+    def __repr__(self) -> str:
+        return f"Message({self._fields})"
+
+
+class Message(Part):
+    """A message that was sent or received: its fields by name, its `stamp` (s), its topic, and when it arrived (s). For
+    a message sent, `heard` says whether the student's node subscribed to its topic at that moment. For a message
+    received, `after` is the number of messages that had been sent by then. `at_ns` is its moment of simulated time in
+    nanoseconds.
+    """
+
+    def __init__(self, kept: Sent | Received) -> None:
+        super().__init__(kept.fields)
+        self.heard = not isinstance(kept, Sent) or kept.heard
+        self.at = (kept.at - START) / SECOND
+        self.at_ns = kept.at
+        self.after = kept.after if isinstance(kept, Received) else 0
+        self.topic = kept.topic
+
+    @property
+    def stamp(self) -> float:
+        """The header's stamp in seconds."""
+        return self.stamp_ns / SECOND
+
+    @property
+    def stamp_ns(self) -> int:
+        """The header's stamp in nanoseconds."""
+        stamp = self._fields["header"]["stamp"]
+        return int(stamp["sec"]) * SECOND + int(stamp["nanosec"])
+
+    def value(self, field: str) -> Any:
+        """A field by its full name, such as `header.frame_id`."""
+        return field_of(self._fields, field)
+
+    def by(self, key: str, field: str) -> dict[str, Any]:
+        """Two lists as a dictionary: `by("name", "velocity")` gives each joint's velocity."""
+        return dict(zip(self.value(key), self.value(field), strict=False))
+
+
+@dataclass(frozen=True)
+class Exchange:
+    """One message sent, everything that the node answered to it, and what the solution answered.
+
+    `number` counts the messages sent, from 1.
+    """
+
+    number: int
+    sent: Message
+    answers: tuple[Message, ...]
+    expected: tuple[Message, ...]
+
+
+def exchanges(recording: Recording, reference: Recording) -> list[Exchange]:
+    """Each message sent, with the node's answers and the solution's."""
+    answers, expected = _answers(recording), _answers(reference)
+    return [
+        Exchange(i + 1, Message(sent), tuple(answers.get(i, ())), tuple(expected.get(i, ())))
+        for i, sent in enumerate(recording.sent)
+    ]
+
+
+def _answers(recording: Recording) -> dict[int, list[Message]]:
+    """Index of a message sent -> what was received for it.
+
+    A message is matched by its stamp if exactly one message sent has that stamp, otherwise by when it arrived.
+    """
+    index: dict[int, list[int]] = {}
+    for i, sent in enumerate(recording.sent):
+        index.setdefault(Message(sent).stamp_ns if "header" in sent.fields else -1, []).append(i)
+    answers: dict[int, list[Message]] = {}
+    for received in recording.received:
+        if received.subscriber:
+            continue
+        message = Message(received)
+        by_stamp = index.get(message.stamp_ns, []) if "header" in received.fields else []
+        answers.setdefault(by_stamp[0] if len(by_stamp) == 1 else max(received.after - 1, 0), []).append(message)
+    return answers
+
+
+def field_of(fields: dict[str, Any], name: str) -> Any:
+    """A field by its full name, such as `header.frame_id`, `twist.linear.x` or `points[0].x`; all fields if it is
+    empty."""
+    value: Any = fields
+    for step in name.replace("[", ".[").split(".") if name else ():
+        try:
+            value = value[int(step[1:-1])] if step.startswith("[") else value[step]
+        except KeyError:
+            raise ValueError(f"there is no field {name!r}: the fields are {', '.join(fields)}.") from None
+    return value

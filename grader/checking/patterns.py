@@ -1,0 +1,92 @@
+"""What all values of a field have in common: a sign, a unit, a factor, an offset, a time step."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from grader.checking.comparator import equal
+
+#: What a speed is multiplied with when its time is measured with the computer's clock: see `grader.runner.ends`.
+COMPUTER_CLOCK = 0.8
+
+#: A value this close to 0 says nothing about a ratio.
+SMALLEST = 1e-3
+
+#: This many values must have something in common before a finding says something about all of them.
+FEWEST = 3
+
+#: Units that are often confused: the expected unit, the unit that was sent, and the factor between them.
+UNITS = (
+    ("rad", "degrees", 180 / math.pi),
+    ("deg", "radians", math.pi / 180),
+    ("m", "millimetres", 1e3),
+    ("m", "centimetres", 1e2),
+    ("m", "kilometres", 1e-3),
+    ("s", "milliseconds", 1e3),
+    ("s", "microseconds", 1e6),
+    ("s", "nanoseconds", 1e9),
+)
+
+
+def fixed_step(pairs: list[tuple[float, float]], elapsed: list[float], field: str, unit: str) -> str:
+    """Whether every rate was computed with one time step, whatever time had gone by."""
+    if not unit.endswith("/s"):
+        return ""
+    steps = [
+        dt * expected / got
+        for (expected, got), dt in zip(pairs, elapsed, strict=True)
+        if dt > 0 and abs(expected) > SMALLEST and math.isfinite(expected) and math.isfinite(got) and got
+    ]
+    if len(steps) < FEWEST or not all(math.isclose(step, steps[0], rel_tol=1e-3) for step in steps) or steps[0] <= 0:
+        return ""
+    if math.isclose(steps[0], 1.0, rel_tol=1e-3):
+        return f" Every {field} is the change between two messages, not divided by the time between them."
+    if max(elapsed) - min(elapsed) < 1e-3:
+        return ""  # any factor looks like another time step
+    return f" Every {field} would be right if {steps[0]:.4g} s had passed between the two messages."
+
+
+def common(pairs: Sequence[tuple[float, float]], field: str, unit: str = "", clock: bool = False) -> str:
+    """What all pairs of an expected value and a value that was got have in common, as `pattern` says it.
+
+    `unit` is the unit that is asked for. With `clock`, a factor of 0.8 or 1.25 is attributed to the computer's clock.
+    """
+    telling = [(e, g) for e, g in pairs if abs(e) > SMALLEST and math.isfinite(e) and math.isfinite(g)]
+    if len(telling) < FEWEST:
+        return ""
+    if len({got for _, got in telling}) == 1:
+        return f" Every {field} is {telling[0][1]:.6g}."
+    ratio = telling[0][1] / telling[0][0]
+    if all(math.isclose(g, ratio * e, rel_tol=1e-3, abs_tol=1e-9) for e, g in telling):
+        return _ratio(ratio, field, unit, clock)
+    offset = telling[0][1] - telling[0][0]
+    if all(math.isclose(g - e, offset, rel_tol=1e-3, abs_tol=1e-9) for e, g in telling):
+        return f" Every {field} is {abs(offset):.4g} too {'large' if offset > 0 else 'small'}."
+    return ""
+
+
+def _ratio(ratio: float, field: str, unit: str, clock: bool) -> str:
+    if math.isclose(ratio, 1, rel_tol=1e-3):
+        return ""
+    if math.isclose(ratio, -1, rel_tol=1e-3):
+        return " Every value has the wrong sign."
+    for asked, given, factor in UNITS:
+        if math.isclose(ratio, factor, rel_tol=1e-3) and (unit.split("/")[0] == asked or (not unit and asked == "rad")):
+            return f" Every {field} is in {given}."
+    text = f" Every {field} is {ratio:.4g} times what it should be"
+    if clock and any(math.isclose(ratio, factor, rel_tol=1e-3) for factor in (COMPUTER_CLOCK, 1 / COMPUTER_CLOCK)):
+        return f"{text}: your node measures time with the computer's clock, which runs at another speed here."
+    return f"{text}."
+
+
+def shift(expected: Sequence[Any], got: Sequence[Any], tolerance: float) -> str:
+    """Whether each value is the one that was expected before, or the one after; empty if neither."""
+    if len(expected) < 4 or len(got) < 4 or equal(got[: len(expected)], expected[: len(got)], tolerance):
+        return ""
+    for mine, its, text in ((got[1:], expected, "one message late"), (got, expected[1:], "one message early")):
+        count = min(len(mine), len(its))
+        if count >= FEWEST and equal(mine[:count], its[:count], tolerance) and len({repr(one) for one in mine}) > 1:
+            return f"Every message is {text}."
+    return ""
