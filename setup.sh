@@ -124,6 +124,14 @@ pip() {
         "$VENV/bin/python" -m pip --disable-pip-version-check --quiet "$@" >>"$LOG" 2>&1
 }
 
+# A package that has moved into packages/ leaves a folder of compiled files behind, which Python would take for the package.
+remove_former_packages() {
+    for package in packages/*/; do
+        former=$(basename "$package")
+        if [ -d "$former" ] && [ -z "$(find "$former" -name '*.py' -print -quit)" ]; then rm -rf "$former"; fi
+    done
+}
+
 install_pins() {
     # First the pinned setuptools: with it empy is built, the only one of them for which PyPI has no wheel.
     awk '/^[^ #]/ { on = /^setuptools==/ } on' constraints.txt >"$VENV/build-tool.txt"
@@ -163,7 +171,8 @@ try_ros() {
 # The grader's own middleware is C++. It is compiled here, and again when its sources have changed. Without it the grader
 # uses Fast DDS, so a failure ends nothing.
 compile_middleware() {
-    sources=$(cat rmw_lockstep/*.py rmw_lockstep/lockstep/* rmw_lockstep/src/* 2>/dev/null | cksum)
+    middleware=packages/rmw_lockstep/rmw_lockstep
+    sources=$(cat $middleware/*.py $middleware/lockstep/* $middleware/src/* 2>/dev/null | cksum)
     if [ "$(cat "$VENV/.middleware" 2>/dev/null)" = "$sources" ]; then return; fi
     if [ "$1" = anew ]; then need_compiler; else say "Compiling the grader's middleware ..."; fi
     if said=$("$VENV/bin/python" -m rmw_lockstep.build 2>&1); then
@@ -202,6 +211,7 @@ mark() { printf '%s\npins %s\ninterfaces %s\n' "$wanted" "$pins" "$1"; }
 
 refuse_bad_folder
 wait_for_turn
+remove_former_packages
 choose_python
 read_wishes
 if [ "$(cat "$MARK" 2>/dev/null)" = "$(mark "$interfaces")" ] && [ -x "$VENV/bin/python" ]; then

@@ -22,8 +22,9 @@ LONGEST = (
 
 
 def piece_of(nodeid: str) -> str:
-    """Return the piece of work that a test belongs to: a folder of `TOGETHER`, or its file."""
-    folder, file = Path(nodeid.partition("::")[0]).parts[-2:]
+    """Return the piece of work that a test belongs to: a folder or package of `TOGETHER`, or its file."""
+    *folders, file = Path(nodeid.partition("::")[0]).parts
+    folder = folders[1] if folders[0] == "packages" else folders[-1]
     return folder if folder in TOGETHER else f"{folder}/{file}"
 
 

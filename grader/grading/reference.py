@@ -19,7 +19,7 @@ from grader.recording.recording import Recording, from_json, to_json
 from grader.sandbox.program import Middleware
 from grader.submission.reading import of_source
 from interface_compiler import activation
-from rmw_lockstep.library import sources
+from rmw_lockstep.library import SOURCES, sources
 
 GRADER = Path(__file__).parents[1]
 
@@ -48,8 +48,7 @@ def digest_of(files: list[Path]) -> str:
 
 def _lockstep() -> str:
     """Return a digest of the middleware, its C++ end and its hub in Python."""
-    folder = GRADER.with_name("rmw_lockstep")
-    return digest_of([*sources(), *sorted(folder.rglob("*.py"))])[:12]
+    return digest_of([*sources(), *sorted(SOURCES.rglob("*.py"))])[:12]
 
 
 def _fast_dds() -> str:

@@ -11,6 +11,7 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import Literal
 
+import rmw_lockstep
 from grader.sandbox.middleware import library_folder
 from grader.sandbox.program import HUB, SUBMISSION, Paths, Program
 from interface_compiler import activation
@@ -206,7 +207,7 @@ def interpreter() -> tuple[Path, ...]:
 def own_packages() -> tuple[Path, ...]:
     """Return this package and Spinbook's others: if installed, they are among the libraries that a sandbox shows."""
     grader = Path(__file__).resolve().parents[1]
-    return (grader, *(grader.with_name(name) for name in ("spinbook", "rmw_lockstep")))
+    return (grader, grader.with_name("spinbook"), Path(rmw_lockstep.__file__).resolve().parent)
 
 
 def _masks(hidden: Iterable[Path], shown: Iterable[Path]) -> Iterator[Path]:

@@ -16,6 +16,7 @@ from pathlib import Path
 
 import interface_compiler
 import rcl_python
+import rmw_lockstep
 import spinbook
 from interface_compiler import prefixes
 
@@ -100,8 +101,9 @@ def check_archive(exercises: Mapping[str, bytes]) -> bytes:
     root = Path(spinbook.__file__).parent.parent / "grader"
     for part in _GRADER:
         files |= _part(root / part, f"grader/{part}")
-    files |= _part(root.parent / "rmw_lockstep" / "__init__.py", "rmw_lockstep/__init__.py")
-    files |= _part(root.parent / "rmw_lockstep" / "hub", "rmw_lockstep/hub")
+    middleware = Path(rmw_lockstep.__file__).parent
+    files |= _part(middleware / "__init__.py", "rmw_lockstep/__init__.py")
+    files |= _part(middleware / "hub", "rmw_lockstep/hub")
     return zipped({**_used_outside_checks(root), **files, **exercises})
 
 

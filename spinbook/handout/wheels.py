@@ -32,7 +32,7 @@ FOR_AUTHORS = ("spinbook/new/template/", "spinbook/new/kinds/")
 _BUILD = "import sys; from setuptools.build_meta import build_wheel; print(build_wheel(sys.argv[1]))"
 #: Everything that the commands import, as pyproject.toml lists it.
 _PACKAGES = ("spinbook", "grader", "interface_compiler", "rcl_python", "rmw_lockstep")
-_SOURCES = ("pyproject.toml", "README.md", "LICENSE", *_PACKAGES)
+_SOURCES = ("pyproject.toml", "README.md", "LICENSE", "packages", *_PACKAGES)
 
 
 def spinbook_wheel() -> tuple[str, bytes]:

@@ -153,7 +153,7 @@ def test_the_wheel_holds_every_package_of_ours_that_its_modules_import() -> None
         for node in ast.walk(tree)
         for module in ([node.module or ""] if isinstance(node, ast.ImportFrom) else imported_by(node))
     }
-    ours = {file.parent.name for file in ROOT.glob("*/__init__.py")}
+    ours = {file.parent.name for file in (*ROOT.glob("*/__init__.py"), *ROOT.glob("packages/*/*/__init__.py"))}
     assert imported & ours >= {"spinbook", "grader", "rmw_lockstep"}
     assert {package for package in imported & ours if f"{package}/__init__.py" not in files} == set()
 

@@ -13,6 +13,10 @@ import pytest
 from click.testing import CliRunner, Result
 from prepared_python import run_prepared
 
+import grader
+import interface_compiler
+import rcl_python
+import rmw_lockstep
 import spinbook
 from spinbook.course.course import read_course
 from spinbook.new.command import new
@@ -176,8 +180,9 @@ def test_an_audit_of_the_untouched_course_has_nothing_to_fix(pristine: Path, tmp
 
 def test_a_spinbook_that_came_with_a_handout_says_that_it_has_no_templates(tmp_path: Path) -> None:
     without = shutil.ignore_patterns("template", "kinds", "__pycache__")
-    for package in ("spinbook", "grader", "interface_compiler", "rmw_lockstep", "rcl_python"):
-        shutil.copytree(Path(spinbook.__file__).parents[1] / package, tmp_path / package, ignore=without)
+    for package in (spinbook, grader, interface_compiler, rmw_lockstep, rcl_python):
+        folder = Path(package.__path__[0])
+        shutil.copytree(folder, tmp_path / folder.name, ignore=without)
 
     done = run("spinbook", "new", "robots", cwd=tmp_path)
 

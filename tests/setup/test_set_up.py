@@ -208,7 +208,7 @@ def test_the_middleware_is_compiled_once_and_again_when_its_sources_have_changed
     assert checkout.calls.count("compile") == 1
     checkout.forget_calls()
 
-    source = checkout.folder / "rmw_lockstep" / "lockstep" / "core.cpp"
+    source = checkout.folder / "packages/rmw_lockstep/rmw_lockstep/lockstep/core.cpp"
     source.parent.mkdir(parents=True)
     source.write_text("int changed;\n")
     assert checkout.set_up() == (0, "Compiling the grader's middleware ...\n")

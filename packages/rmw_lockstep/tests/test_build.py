@@ -14,12 +14,13 @@ from pathlib import Path
 
 import pytest
 
+import rmw_lockstep
 from rmw_lockstep import library as finding
 from rmw_lockstep.build import build
 from rmw_lockstep.library import PREBUILT, Library, Unavailable, library
 from rmw_lockstep.ros import installed_ros
 
-ROOT = Path(__file__).parents[2]
+PACKAGE = Path(rmw_lockstep.__file__).parent
 
 needs_compiler = pytest.mark.skipif(shutil.which("g++") is None, reason="g++ is not installed")
 
@@ -40,7 +41,7 @@ class Copy:
         self.package, self.cache = folder / "rmw_lockstep", folder / "cache"
         (self.package / "lockstep").mkdir(parents=True)
         (self.package / "src").mkdir()
-        for file in (ROOT / "rmw_lockstep").glob("*.*"):
+        for file in PACKAGE.glob("*.*"):
             shutil.copy(file, self.package)
         (self.package / "lockstep" / "a.cpp").write_text(LOCKSTEP)
         (self.package / "lockstep" / "exports.map").write_text("{ global: lockstep_*; local: *; };\n")
