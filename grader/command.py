@@ -13,7 +13,7 @@ from grader.exercise.loading import NoExercise, find, load
 from grader.sandbox.isolation import Isolation
 from grader.sandbox.middleware import choose_middleware, to_be_compiled
 from grader.sandbox.program import Middleware, SandboxUnavailable
-from grader.submission.reading import NoSubmission, Submission, read
+from grader.submission.reading import NoSubmission, Submission, of_source, read
 from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
 
 if TYPE_CHECKING:
@@ -25,7 +25,10 @@ FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("exercise")
-@click.argument("submission")
+@click.argument("submission", required=False, default="")
+@click.option(
+    "--mistake", metavar="NAME", default="", help="Grade a usual mistake from the exercise's solutions folder."
+)
 @click.option("--json", "json_", is_flag=True, help="Print the grade as JSON, for programs.")
 @click.option("--plot", type=click.Path(path_type=Path), help="Draw your node's output over the solution's (.svg).")
 @click.option(
@@ -71,6 +74,7 @@ FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
 def grade(
     exercise: str,
     submission: str,
+    mistake: str,
     json_: bool,
     plot: Path | None,
     bag: Path | None,
@@ -100,6 +104,7 @@ def grade(
       spinbook grade joint_velocity my_package/joint_velocity an installed package's executable
       spinbook grade joint_velocity mine.py --plot mine.svg   see where it first goes wrong
       spinbook grade joint_velocity mine.py --verbose         see what the node logged
+      spinbook grade joint_velocity --mistake fixed_dt        one of the author's usual mistakes
 
     EXERCISE is a name in the course's folder exercises/, or the path of an exercise's folder. A check that can't be
     judged because another failed is marked as blocked.
@@ -117,6 +122,8 @@ def grade(
       spinbook grade joint_velocity submissions/ --out results/ --regrade anna
       spinbook grade joint_velocity submissions/ --out results/ --rejudge
     """
+    if bool(submission) == bool(mistake):
+        raise click.UsageError("Give a SUBMISSION, or --mistake NAME for one of the exercise's usual mistakes.")
     leave_cpus_to_workers()
     wanted: dict[str, Any] = {
         "isolation": Isolation(isolation) if isolation else None,
@@ -130,15 +137,15 @@ def grade(
         if warning := choose_middleware(wanted["middleware"]).warning:
             click.echo(warning, err=True)
         found = load(_folder(exercise))
-        if out:
+        if out and not mistake:
             sys.exit(
                 _class(
                     found, Path(submission), out, wanted, (jobs, regrade, overrides, scheduler, rejudge, yes, publish)
                 )
             )
-        if Path(submission).is_dir() or submission.endswith(".csv"):
+        if not mistake and (Path(submission).is_dir() or submission.endswith(".csv")):
             raise click.UsageError(f"{submission}: to grade a class, give a folder for the results with --out.")
-        handed_in = read(submission, found)
+        handed_in = _mistake(mistake, found) if mistake else read(submission, found)
         with WorkerPool(wanted["middleware"]) as workers:
             result = _graded(found, handed_in, wanted, workers)
             _show(result, found, json_, verbose)
@@ -152,6 +159,16 @@ def grade(
         _stop(f"The machine or the grader is at fault, not the submission: {error}")
     _write(result, found, plot, bag)
     sys.exit(OUR_FAULT if result.outcome == "host-error" else NOT_FULL_MARKS if not result.full_marks else FULL_MARKS)
+
+
+def _mistake(name: str, exercise: Exercise) -> Submission:
+    """Return one of the exercise's usual mistakes as a submission."""
+    from grader.exercise.mistakes import NoMistake, mistake_of
+
+    try:
+        return of_source(f"{name}.py", mistake_of(exercise, name).source.encode(), exercise)
+    except NoMistake as error:
+        raise click.UsageError(str(error)) from None
 
 
 def _options(wanted: dict[str, Any]) -> Options:

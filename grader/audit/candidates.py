@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
@@ -13,6 +12,7 @@ from grader.audit.result import AuditProblem, Judged, Trial
 from grader.audit.store import Store
 from grader.audit.trial import Trials
 from grader.exercise.exercise import Exercise
+from grader.exercise.mistakes import Mistake, mistakes_of
 from grader.exercise.starter import starter
 from grader.grading.reference import solution_file
 from grader.recording.recording import Recording
@@ -30,8 +30,7 @@ rclpy.spin(rclpy.create_node({name!r}))
 
 @dataclass(frozen=True)
 class Candidate:
-    """One program: its kind, its file, and for a mistake the checks that must catch it, and the line that names
-    them."""
+    """One program: its kind, its file, and for a mistake the checks that must catch it, and the line that says so."""
 
     kind: Literal["solution", "right", "mistake", "nothing"]
     name: str
@@ -50,9 +49,14 @@ def right_ones(exercise: Exercise) -> list[Candidate]:
 
 
 def mistakes(exercise: Exercise) -> list[Candidate]:
-    """Every common mistake."""
-    folder = solution_file(exercise).parent / "mistakes"
-    return [_candidate("mistake", file, exercise) for file in sorted(folder.glob("*.py"))]
+    """Every usual mistake."""
+    return [_of_mistake(mistake, exercise) for mistake in mistakes_of(exercise)]
+
+
+def _of_mistake(mistake: Mistake, exercise: Exercise) -> Candidate:
+    submission = of_source(f"{mistake.name}.py", mistake.source.encode(), exercise)
+    name, title, file = f"mistakes/{mistake.name}", mistake.summary, mistake.file
+    return Candidate("mistake", name, file, title, submission, mistake.caught_by, mistake.line)
 
 
 def baselines(exercise: Exercise) -> list[Candidate]:
@@ -69,18 +73,14 @@ def baselines(exercise: Exercise) -> list[Candidate]:
     ]
 
 
-def _candidate(kind: Literal["solution", "right", "mistake"], file: Path, exercise: Exercise) -> Candidate:
+def _candidate(kind: Literal["solution", "right"], file: Path, exercise: Exercise) -> Candidate:
     code = file.read_bytes()
     name = file.name if kind == "solution" else f"{file.parent.name}/{file.name}"
-    text = code.decode("utf-8", errors="replace")
-    header = _header(text)
-    title = header.strip().partition("\n")[0] or file.stem
-    caught_by = tuple(re.findall(r"^- (\w+)\s*$", header.partition("Caught by:")[2], re.MULTILINE))
-    line = next((i for i, row in enumerate(text.splitlines(), start=1) if row.strip() == "Caught by:"), 1)
-    return Candidate(kind, name, file, title, of_source(str(file), code, exercise), caught_by, line)
+    title = _docstring(code.decode("utf-8", errors="replace")).partition("\n")[0] or file.stem
+    return Candidate(kind, name, file, title, of_source(str(file), code, exercise))
 
 
-def _header(text: str) -> str:
+def _docstring(text: str) -> str:
     try:
         return ast.get_docstring(ast.parse(text)) or ""
     except SyntaxError:
@@ -220,7 +220,7 @@ def _mistake(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> l
         return AuditProblem(candidate.file, candidate.line, found, fix, about=about)
 
     if not candidate.caught_by:
-        fix = "Write “Caught by:” in its docstring, and below it a line “- test_…” for each check."
+        fix = "Write “Caught by:” and the names of the checks in its section, or in its docstring."
         return [problem(candidate.name, f"{subject} names no check that must catch it", fix)]
     found = []
     for name in candidate.caught_by:

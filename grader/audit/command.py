@@ -13,6 +13,7 @@ from grader.audit.report import on, show, show_shadow, write_json
 from grader.audit.result import Audit, AuditProblem
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import NoExercise, find, load
+from grader.exercise.mistakes import NoMistake, mistake_of
 from grader.grading.grade import Options
 from grader.sandbox.middleware import choose_middleware
 from grader.sandbox.program import Middleware, SandboxUnavailable
@@ -35,6 +36,9 @@ PROVED, TO_FIX, OUR_FAULT, STOPPED = 0, 1, 3, 130
 )
 @click.option("--json", "json_", type=click.Path(path_type=Path), help="Write the report as JSON, for programs.")
 @click.option("--html", type=click.Path(path_type=Path), help="Write the report as an HTML page.")
+@click.option(
+    "--show", "shown", metavar="NAME", help="Print the whole program of one usual mistake, and audit nothing."
+)
 @click.option("--shadow", is_flag=True, help="Grade every file in solutions/ over both middlewares, and compare.")
 @click.option(
     "--middleware",
@@ -50,6 +54,7 @@ def audit(
     seeds: int | None,
     json_: Path | None,
     html: Path | None,
+    shown: str | None,
     shadow: bool,
     middleware: str | None,
     parallel: int | None,
@@ -67,6 +72,7 @@ def audit(
       spinbook audit --quick                      a sample, in seconds
       spinbook audit --solutions                  is each file of solutions/ graded as it has to be?
       spinbook audit joint_velocity --html a.html how much each check catches, and what it costs
+      spinbook audit joint_velocity --show fixed_dt   one of its usual mistakes, as a whole program
       spinbook audit --shadow                     do lockstep and Fast DDS lead to the same verdicts?
 
     EXERCISE is a name in the course's folder exercises/, or the path of an exercise's folder. The first audit of an
@@ -75,6 +81,9 @@ def audit(
 
     Exit codes: 0 nothing to fix, 1 there is something to fix, 2 wrong usage, 3 a fault of the machine or the grader.
     """
+    if shown is not None:
+        _show_mistake(exercises, shown)
+        return
     leave_cpus_to_workers()
     for option, file in (("--json", json_), ("--html", html)):
         if file and (file.is_dir() or not file.absolute().parent.is_dir()):
@@ -123,6 +132,15 @@ def audit(
         click.echo("Stopped. The results so far are kept. Run the same command to continue.", err=True)
         sys.exit(STOPPED)
     sys.exit(TO_FIX if faulty or differing or any(result.problems for result in audits) else PROVED)
+
+
+def _show_mistake(exercises: tuple[str, ...], name: str) -> None:
+    if len(exercises) != 1:
+        raise click.UsageError("--show needs one EXERCISE.")
+    try:
+        click.echo(mistake_of(load(_folder(exercises[0])), name).source, nl=False)
+    except (NoMistake, ExerciseError) as error:
+        raise click.UsageError(str(error)) from None
 
 
 def _shadowed(exercise: Exercise, options: Options, workers: WorkerPool, console: Console) -> int:

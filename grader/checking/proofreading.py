@@ -18,6 +18,7 @@ from grader.checking.judging import Listed, listed
 from grader.child_process import run_program
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
+from grader.exercise.mistakes import each_mistake
 from grader.exercise.starter import MarkerError, starter
 from grader.problem import Problem
 from grader.scenario.declared import declared
@@ -86,10 +87,12 @@ def rules_that_the_task_lacks(task: str, check_files: Iterable[Path]) -> Iterato
             yield from rule_that_the_task_lacks(task, rule, file, line)
 
 
-def rule_that_the_task_lacks(task: str, rule: str, file: Path, line: int) -> Iterator[ExerciseError]:
+def rule_that_the_task_lacks(
+    task: str, rule: str, file: Path, line: int, subject: str = "a check"
+) -> Iterator[ExerciseError]:
     """The error for a check in this line of `file` whose `rule` is not a sentence of `task`; none if it is."""
     if _without_marks(rule) not in _without_marks(task):
-        found = f"a check is based on a sentence that is not in task.md: “{rule}”"
+        found = f"{subject} is based on a sentence that is not in task.md: “{rule}”"
         yield ExerciseError(file, found, "Write the sentence in task.md, or quote a sentence that is there.", line)
 
 
@@ -150,18 +153,19 @@ def _of_solution(exercise: Exercise) -> Iterator[ExerciseError]:
 
 def _of_mistakes(exercise: Exercise, checks: tuple[Listed, ...]) -> Iterator[ExerciseError]:
     known = {check.name for check in checks}
-    folder = exercise.solution_folder
-    for file in sorted((folder / "mistakes").glob("*.py")) if folder else ():
-        text = file.read_text(encoding="utf-8", errors="replace")
-        named = re.findall(r"^- (\w+)\s*$", text.partition("Caught by:")[2].partition('"""')[0], re.MULTILINE)
-        for name in named:
+    for mistake in each_mistake(exercise):
+        if isinstance(mistake, ExerciseError):
+            yield mistake
+            continue
+        if mistake.breaks:
+            yield from rule_that_the_task_lacks(exercise.task, mistake.breaks, mistake.file, mistake.line, mistake.name)
+        for name in mistake.caught_by:
             if name not in known:
                 found = f"it is to be caught by {name}, and there is no such check"
-                line = line_with(file, rf"- {name}\s*$")
-                yield ExerciseError(file, found, "Name a check of this exercise, or remove the line.", line)
-        if not named:
-            found, fix = "it names no check that must catch it", "Write “Caught by:” and “- test_…” in its docstring."
-            yield ExerciseError(file, found, fix, 1)
+                yield ExerciseError(mistake.file, found, "Name a check of this exercise, or remove it.", mistake.line)
+        if not mistake.caught_by:
+            found, fix = f"{mistake.name} names no check that must catch it", "Write “Caught by:” and the checks."
+            yield ExerciseError(mistake.file, found, fix, mistake.line)
 
 
 if __name__ == "__main__":

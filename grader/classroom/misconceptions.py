@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import contextlib
 import dataclasses
 import hashlib
@@ -11,9 +10,9 @@ import re
 from collections.abc import Mapping, Sequence, Set
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from pathlib import Path
 
 from grader.checking.verdict import Finding
+from grader.exercise.mistakes import Mistake, mistakes_of
 from grader.files import write_if_changed
 from grader.grading.grade import Entry, Grade
 from grader.grading.grading import Grading
@@ -212,30 +211,26 @@ def _fit(failure: Failure | None, known: Failure) -> float:
 #: Gradings at once. Each already runs several scenarios at once.
 AT_ONCE = 2
 
-#: A check that a mistake's docstring names, under "Caught by:".
-NAMED = re.compile(r"^- (test_\w+)\s*$", re.MULTILINE)
-
 
 def signatures(grading: Grading, failing: Sequence[Set[str]] | None = None) -> tuple[Signature, ...]:
-    """Return the signatures of the exercise's `solutions/NAME/mistakes/*.py`, sorted by name.
+    """Return the signatures of the exercise's usual mistakes, sorted by name.
 
     `failing` has the checks that each student fails: a mistake is left out, without being graded, if the checks that
-    its file names explain none of these. Without `failing`, all are graded.
+    it names explain none of these. Without `failing`, all are graded.
 
     A mistake is graded again when anything that its grade depends on has changed. Mistakes that fail the same checks
     with the same words are one signature; one that fails no check, or does not complete, is left out.
     """
-    folder = grading.runner.exercise.solution_folder
-    files = sorted((folder / "mistakes").glob("*.py")) if folder else []
+    mistakes = mistakes_of(grading.runner.exercise)
     if failing is not None:
-        files = [file for file in files if _may_explain(file, failing)]
+        mistakes = tuple(mistake for mistake in mistakes if _may_explain(mistake, failing))
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        failures = list(pool.map(lambda file: _failures(file, grading), files))
+        failures = list(pool.map(lambda mistake: _failures(mistake, grading), mistakes))
     found: list[Signature] = []
-    for file, failed in zip(files, failures, strict=True):
+    for mistake, failed in zip(mistakes, failures, strict=True):
         if failed:
             same = next((one for one in found if one.failures == failed), None)
-            alone = Signature((file.stem,), (_sentence(file),), failed)
+            alone = Signature((mistake.name,), (mistake.summary,), failed)
             if same:
                 found[found.index(same)] = dataclasses.replace(
                     same, names=same.names + alone.names, sentences=same.sentences + alone.sentences
@@ -245,23 +240,23 @@ def signatures(grading: Grading, failing: Sequence[Set[str]] | None = None) -> t
     return tuple(found)
 
 
-def _may_explain(file: Path, failing: Sequence[Set[str]]) -> bool:
-    """Return whether a student fails half of the checks that the file names; otherwise no signature fits."""
-    named = set(NAMED.findall(_header(file)))
+def _may_explain(mistake: Mistake, failing: Sequence[Set[str]]) -> bool:
+    """Return whether a student fails half of the checks that the mistake names; otherwise no signature fits."""
+    named = set(mistake.caught_by)
     return not named or any(2 * len(named & failed) >= len(named) for failed in failing)
 
 
-def _failures(file: Path, grading: Grading) -> dict[str, Failure]:
-    code = file.read_bytes()
+def _failures(mistake: Mistake, grading: Grading) -> dict[str, Failure]:
+    code = mistake.source.encode()
     exercise = grading.runner.exercise
     digest = hashlib.sha256(reference_key(grading.runner).encode() + code).hexdigest()
-    kept = cache_folder().parent / "mistakes" / f"{exercise.name}-{file.stem}-{digest[:24]}.json"
+    kept = cache_folder().parent / "mistakes" / f"{exercise.name}-{mistake.name}-{digest[:24]}.json"
     try:
         entries = json.loads(kept.read_text(encoding="utf-8"))
         return {name: Failure(**failure) for name, failure in entries.items()}
     except (OSError, ValueError, TypeError, AttributeError):
         pass
-    grade = grading.grade(of_source(file.name, code, exercise))
+    grade = grading.grade(of_source(f"{mistake.name}.py", code, exercise))
     failures = failures_of(grade)
     if grade.outcome != "host-error":
         with contextlib.suppress(OSError):  # if nothing can be stored, it is graded again each time
@@ -271,14 +266,3 @@ def _failures(file: Path, grading: Grading) -> dict[str, Failure]:
                 durable=True,
             )
     return failures
-
-
-def _sentence(file: Path) -> str:
-    """Return the first line of the file's docstring, or its name in words if there is none."""
-    return next(iter(_header(file).splitlines()), file.stem.replace("_", " "))
-
-
-def _header(file: Path) -> str:
-    with contextlib.suppress(SyntaxError, ValueError):
-        return ast.get_docstring(ast.parse(file.read_text(encoding="utf-8", errors="replace"))) or ""
-    return ""

@@ -30,9 +30,9 @@ def test_a_sound_exercise_has_nothing_to_fix(small: SmallExercise, audited: Audi
 
 def test_a_weak_copy_is_reported_check_by_check(small: SmallExercise, audited: Auditing) -> None:
     removed = {
-        (CHECKS, "test_once"): "mistakes/twice.py",
-        (CHECKS, "test_ends_on_ctrl_c"): "mistakes/no_end.py",
-        (HIDDEN, "test_nothing_below_zero"): "mistakes/any_number.py",
+        (CHECKS, "test_once"): "mistakes/twice",
+        (CHECKS, "test_ends_on_ctrl_c"): "mistakes/no_end",
+        (HIDDEN, "test_nothing_below_zero"): "mistakes/any_number",
     }
     for file, check in removed:
         remove_check(small.course / file, check)
@@ -107,7 +107,7 @@ def test_a_check_that_breaks_on_what_a_node_publishes(small: SmallExercise, audi
     small.change(HIDDEN, "    negative.must_be_silent()\n", "    [2, 0, 6][len(negative.received) - 1]\n")
     problems = [problem for problem in audited(small).problems if "breaks on what" in problem.found]
     assert [problem.about for problem in problems] == ["test_nothing_below_zero"]
-    assert "mistakes/any_number.py" in problems[0].found
+    assert "mistakes/any_number" in problems[0].found
     assert re.search(r"hidden_checks\.py:\d+: IndexError", problems[0].found)
 
 

@@ -1,0 +1,123 @@
+"""The usual mistakes in an exercise: edits of the solution in `mistakes.md`, or whole programs in `mistakes/*.py`.
+
+Each says in its first line what is wrong, quotes the sentence of the task that it breaks, and names the checks that
+catch it. An edit says so in its section of `mistakes.md`, a whole program in its docstring:
+
+    dt is always 0.1 s.
+
+    Breaks: “The stamps give dt.”
+
+    Caught by: test_uneven_times, test_late_messages
+"""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from grader.exercise.edits import Edit, read_edits
+from grader.exercise.exercise import Exercise, ExerciseError
+
+#: The file of edits, and the folder of whole programs, next to solution.py.
+EDITS, WHOLE = "mistakes.md", "mistakes"
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """One usual mistake, as a whole program.
+
+    `summary` says in a sentence what is wrong. `breaks` is the sentence of the task that it breaks, empty if it names
+    none; `caught_by` are the checks that it names. `line`, counted from 1, is where `file` says so.
+    """
+
+    name: str
+    summary: str
+    source: str
+    file: Path
+    line: int
+    breaks: str = ""
+    caught_by: tuple[str, ...] = ()
+
+
+class NoMistake(LookupError):
+    """Raised when an exercise has no mistake with the name that somebody asked for; the text lists its mistakes."""
+
+
+def mistakes_of(exercise: Exercise) -> tuple[Mistake, ...]:
+    """Return every usual mistake in an exercise, sorted by name; none in a student's copy of the course.
+
+    Raises:
+        ExerciseError: if an edit does not fit the solution, or two mistakes have the same name.
+    """
+    mistakes = {}
+    for each in each_mistake(exercise):
+        if isinstance(each, ExerciseError):
+            raise each
+        mistakes[each.name] = each
+    return tuple(mistakes[name] for name in sorted(mistakes))
+
+
+def each_mistake(exercise: Exercise) -> Iterator[Mistake | ExerciseError]:
+    """Yield every usual mistake, and in place of one that can't be read what is wrong with it."""
+    folder = exercise.solution_folder
+    if folder is None:
+        return
+    whole = {file.stem: file for file in sorted((folder / WHOLE).glob("*.py"))}
+    for edit in _edits(folder / EDITS):
+        if isinstance(edit, Edit) and edit.name in whole:
+            fix = f"Remove one of them, or rename it: {whole[edit.name]}."
+            yield ExerciseError(edit.file, f"there is also a whole program called {edit.name}", fix, edit.line)
+        else:
+            yield _of_edit(edit, folder / "solution.py") if isinstance(edit, Edit) else edit
+    yield from map(_of_file, whole.values())
+
+
+def mistake_of(exercise: Exercise, name: str) -> Mistake:
+    """Return the mistake with this name.
+
+    Raises:
+        NoMistake: if there is none.
+        ExerciseError: if an edit does not fit the solution.
+    """
+    mistakes = {mistake.name: mistake for mistake in mistakes_of(exercise)}
+    if name not in mistakes:
+        raise NoMistake(f"{exercise.name} has no mistake called {name}. It has: {', '.join(mistakes) or 'none'}.")
+    return mistakes[name]
+
+
+def _edits(file: Path) -> Iterator[Edit | ExerciseError]:
+    try:
+        yield from read_edits(file) if file.is_file() else ()
+    except ExerciseError as error:
+        yield error
+
+
+def _of_edit(edit: Edit, solution: Path) -> Mistake | ExerciseError:
+    try:
+        return _mistake(edit.name, edit.applied_to(solution), edit.text, edit.file, edit.line)
+    except ExerciseError as error:
+        return error
+
+
+def _of_file(file: Path) -> Mistake:
+    source = file.read_text(encoding="utf-8", errors="replace")
+    line = next((i for i, row in enumerate(source.splitlines(), start=1) if row.startswith("Caught by:")), 1)
+    return _mistake(file.stem, source, _docstring(source), file, line)
+
+
+def _mistake(name: str, source: str, text: str, file: Path, line: int) -> Mistake:
+    summary = " ".join(text.partition("\n\n")[0].split()) or name.replace("_", " ")
+    breaks = re.search(r"^Breaks: *(.+?)(?:\n\n|\Z)", text, re.MULTILINE | re.DOTALL)
+    caught_by = re.findall(r"\btest_\w+", text.partition("Caught by:")[2])
+    sentence = " ".join(breaks[1].split()).strip("“”\"'") if breaks else ""
+    return Mistake(name, summary, source, file, line, sentence, tuple(caught_by))
+
+
+def _docstring(source: str) -> str:
+    with contextlib.suppress(SyntaxError, ValueError):
+        return ast.get_docstring(ast.parse(source)) or ""
+    return ""
