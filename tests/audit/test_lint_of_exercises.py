@@ -45,9 +45,9 @@ def test_every_fault_is_reported_with_file_and_line(small: SmallExercise) -> Non
     for fault in (
         "exercises/doubler/checks.py:20: error: there are two checks called test_twice_the_number; the other is in lin",
         "solutions/doubler/solution.py:12: error: BEGIN SOLUTION without an END SOLUTION after it",
-        "adds_two.py:4: error: it is to be caught by test_no_such_check, and there is no such check",
+        "adds_two.py:3: error: it is to be caught by test_no_such_check, and there is no such check",
         "exercises/doubler/exercise.toml:3: error: the checks give 7 points together (checks.py 5, hidden_checks.py 2)",
-        "twice.py:4: error: it is to be caught by test_once",
+        "twice.py:3: error: it is to be caught by test_once",
     ):
         assert fault in output, output
 
