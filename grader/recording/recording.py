@@ -151,8 +151,10 @@ def _of_goal(goal: Goal) -> list[Event]:
     return found
 
 
-#: Recordings from before there were these have none of them.
-_LATER = {
+_TUPLES_OF = {
+    "sent": Sent,
+    "received": Received,
+    "end_points": EndPoint,
     "calls": events.Call,
     "parameters": events.ParameterChange,
     "readings": events.ParameterReading,
@@ -203,30 +205,14 @@ def from_plain(entries: dict[str, Any]) -> dict[str, Recording]:
     return {name: _recording(recording) for name, recording in entries.items()}
 
 
-#: Names and values of former versions, whose recordings are kept in results of classes.
-_FORMER = {"hold": "synchronization", "story": "message"}
-
-
-def renamed(entries: dict[str, Any]) -> dict[str, Any]:
-    """`entries` with the names that fields have today, where a former version wrote them."""
-    return {
-        _FORMER.get(name, name): "idle" if name == "hold" and value == "quiet" else value
-        for name, value in entries.items()
-    }
-
-
-def _recording(given: dict[str, Any]) -> Recording:
-    entries = renamed(given)
+def _recording(entries: dict[str, Any]) -> Recording:
     return Recording(
         **{
             **entries,
-            "sent": tuple(Sent(**sent) for sent in entries["sent"]),
-            "received": tuple(Received(**received) for received in entries["received"]),
             "nodes": tuple(entries["nodes"]),
-            "end_points": tuple(EndPoint(**end_point) for end_point in entries["end_points"]),
-            "ending": Ending(**renamed(entries["ending"])),
-            **{name: tuple(kind(**one) for one in entries.get(name, ())) for name, kind in _LATER.items()},
-            "goals": tuple(_goal(goal) for goal in entries.get("goals", ())),
+            "ending": Ending(**entries["ending"]),
+            **{name: tuple(kind(**one) for one in entries[name]) for name, kind in _TUPLES_OF.items()},
+            "goals": tuple(_goal(goal) for goal in entries["goals"]),
         }
     )
 

@@ -15,7 +15,6 @@ from typing import Any
 
 from grader.checking.verdict import Finding, Verdict
 from grader.grading.grade import Adjustment, Entry, Grade, Student
-from grader.recording.recording import renamed
 from grader.report.feedback import ShownCheck, shown_checks, tail
 from grader.report.printable import printable
 
@@ -86,7 +85,7 @@ def from_json(text: str) -> tuple[Entry, str]:
 
 
 def _grade(entries: dict[str, Any]) -> Grade:
-    return Grade(**{**renamed(entries), "verdicts": tuple(_verdict(verdict) for verdict in entries["verdicts"])})
+    return Grade(**{**entries, "verdicts": tuple(_verdict(verdict) for verdict in entries["verdicts"])})
 
 
 def _verdict(entries: dict[str, Any]) -> Verdict:

@@ -10,25 +10,21 @@ from typing import Any
 
 from spinbook.chapter.chapter import Cell, Chapter
 from spinbook.chapter.classify import CellKind
-from spinbook.course.course import Course
-from spinbook.graph.layout import drawings
-from spinbook.graph.model import NodeGraph
-from spinbook.graph.picture import node_graph_svg, node_graph_svgs
 from spinbook.site.drawing import smaller, still_of
 from spinbook.site.page import Repository, exercise_page
 
 
 @dataclass(frozen=True)
-class Ran:
+class ExecutedNotebook:
     """An executed notebook: its code cells by id."""
 
     cells: Mapping[str, Mapping[str, Any]]
 
     @staticmethod
-    def read(file: Path) -> Ran:
+    def read(file: Path) -> ExecutedNotebook:
         """Read the notebook at `file`. Raises OSError or ValueError where it can't be read."""
         notebook = json.loads(file.read_text(encoding="utf-8"))
-        return Ran({cell["id"]: cell for cell in notebook["cells"] if cell["cell_type"] == "code"})
+        return ExecutedNotebook({cell["id"]: cell for cell in notebook["cells"] if cell["cell_type"] == "code"})
 
     def outputs(self, cell_id: str) -> list[dict[str, Any]]:
         """What a cell showed; nothing, where it has not run."""
@@ -46,7 +42,7 @@ class ExerciseCard:
 
 def chapter_notebook(
     chapter: Chapter,
-    ran: Ran,
+    ran: ExecutedNotebook,
     prose: Mapping[str, str],
     exercises: Mapping[str, ExerciseCard],
     repository: Repository,
@@ -92,7 +88,7 @@ def _card(exercise: ExerciseCard) -> str:
     )
 
 
-def _code(cell: Cell, ran: Ran, source_link: str, download: str) -> dict[str, Any]:
+def _code(cell: Cell, ran: ExecutedNotebook, source_link: str, download: str) -> dict[str, Any]:
     shown = ran.outputs(cell.id)
     outputs = [_published(output) for output in shown]
     stills = [still_of(output) for output in shown if is_picture(output)]
@@ -172,7 +168,7 @@ def alternative(output: Mapping[str, Any], cell: Cell) -> str:
     return f"What {cell.source.strip().splitlines()[0]} draws"
 
 
-def stills(chapter: Chapter, ran: Ran) -> dict[str, bytes]:
+def stills(chapter: Chapter, ran: ExecutedNotebook) -> dict[str, bytes]:
     """The files that stand for the chapter's moving pictures where nothing may move: path in the site -> PNG."""
     found = [still_of(output) for cell in chapter.cells for output in ran.outputs(cell.id)]
     return {still.path: still.data for still in found if still}
@@ -181,62 +177,3 @@ def stills(chapter: Chapter, ran: Ran) -> dict[str, bytes]:
 def as_text(notebook: Mapping[str, Any]) -> str:
     """The notebook as a file holds it."""
     return json.dumps(notebook, ensure_ascii=False, indent=1, sort_keys=True) + "\n"
-
-
-__all__ = [
-    "node_graph_excerpt",
-    "node_graph_html",
-    "node_graph_of",
-    "node_graph_section",
-    "node_graph_svg",
-    "read_node_graph",
-]
-
-#: How many parts of a graph are enough to show what one looks like.
-_PARTS = 2
-
-
-def node_graph_of(course: Course, chapter: Chapter) -> NodeGraph | None:
-    """The graph that was seen while the chapter ran; None where no node was."""
-    graph = read_node_graph(course.build_folder / "executed" / f"{chapter.name}.graph.json")
-    return graph if graph and graph.nodes else None
-
-
-def read_node_graph(file: Path) -> NodeGraph | None:
-    """The graph in build/executed/NAME.graph.json; None where there is none that can be read."""
-    try:
-        return NodeGraph.from_json(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-
-
-def node_graph_html(graph: NodeGraph) -> str:
-    """One line of HTML with a small picture for each part of the graph; they stand side by side where there is room.
-
-    Needs no style. A page may set `--node-graph-node` and `--node-graph-topic`, the colours of the boxes.
-    """
-    return _together(node_graph_svgs(graph))
-
-
-def node_graph_excerpt(graph: NodeGraph) -> str:
-    """As `node_graph_html`, with the parts only that have the most nodes."""
-    parts = zip(drawings(graph), node_graph_svgs(graph), strict=True)
-    largest = sorted(parts, key=lambda part: len(part[0].nodes), reverse=True)
-    return _together([svg for _, svg in largest[:_PARTS]])
-
-
-def node_graph_section(graph: NodeGraph) -> str:
-    """The section of a chapter's page, in Markdown."""
-    return f"""\
-## The nodes, as they were seen
-
-This picture was not drawn by hand: it is the ROS graph, watched while the outputs of this page were made. Round shapes
-are nodes. Boxes are topics, with their types, and with their rates where these were measured. Along a dashed arrow
-nothing flows, because no other end fits.
-
-{node_graph_html(graph)}
-"""
-
-
-def _together(parts: list[str]) -> str:
-    return f'<div class="node-graph">{" ".join(parts)}</div>'

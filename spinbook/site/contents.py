@@ -25,22 +25,14 @@ from spinbook.course.course import Course
 from spinbook.handout.wheels import interface_wheels, package_of
 from spinbook.problem import Problem, Severity, SpinbookError
 from spinbook.site import page as names
-from spinbook.site.chapter_page import (
-    ExerciseCard,
-    Ran,
-    as_text,
-    chapter_notebook,
-    node_graph_excerpt,
-    node_graph_of,
-    node_graph_section,
-    stills,
-)
+from spinbook.site.chapter_page import ExecutedNotebook, ExerciseCard, as_text, chapter_notebook, stills
 from spinbook.site.drawing import CanNotDrawError, Picture, draw, drawing_files, drawing_html
 from spinbook.site.exercise_page import exercise_markdown, public_checks
 from spinbook.site.home_page import about_markdown, home_chapters, home_drawing, home_log, home_pictures
 from spinbook.site.notebooks import branch_files, launch_notebook, openers, requirement
 from spinbook.site.page import Page, Repository, address_files, repository_of
 from spinbook.site.prose import Links, Term, rich, terms_of
+from spinbook.site.seen_graph import node_graph_excerpt, node_graph_of, node_graph_section
 
 DOWNLOADS = "downloads"
 
@@ -242,10 +234,10 @@ def _downloads(chapter: Chapter, contents: Contents) -> dict[str, str]:
     return places
 
 
-def _ran(course: Course, chapter: Chapter) -> Ran:
+def _ran(course: Course, chapter: Chapter) -> ExecutedNotebook:
     file = course.build_folder / "executed" / f"{chapter.name}.ipynb"
     try:
-        return Ran.read(file)
+        return ExecutedNotebook.read(file)
     except (OSError, ValueError, KeyError):
         found = "it has not been run yet, so there are no outputs to show."
         raise SpinbookError(Problem(chapter.file, None, found, "Run it: spinbook build --execute")) from None

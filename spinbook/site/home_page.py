@@ -21,7 +21,7 @@ from spinbook.build.digest import digest
 from spinbook.chapter.chapter import Cell, Chapter
 from spinbook.chapter.classify import CellKind
 from spinbook.course.course import Course
-from spinbook.site.chapter_page import Ran, alternative, is_picture
+from spinbook.site.chapter_page import ExecutedNotebook, alternative, is_picture
 from spinbook.site.drawing import PICTURE_FOLDER, Picture, drawing_html, smaller, still_of
 from spinbook.site.log_lexer import LogLexer
 from spinbook.site.page import Repository, chapter_page, exercise_page
@@ -60,7 +60,7 @@ def home_drawing(drawings: Mapping[str, Picture | None]) -> str:
     return next((drawing_html(code, picture, "") for code, picture in drawings.items() if picture), "")
 
 
-def home_pictures(runs: list[tuple[Chapter, Ran]]) -> list[Shown]:
+def home_pictures(runs: list[tuple[Chapter, ExecutedNotebook]]) -> list[Shown]:
     """The richest plot and the last trail of a turtle that the chapters' nodes drew, where there are some."""
     pictures = [(chapter, cell, output) for chapter, ran in runs for cell, output in _pictures(chapter, ran)]
     plots = [found for found in pictures if "samples" in alternative(found[2], found[1])]
@@ -77,7 +77,7 @@ def home_pictures(runs: list[tuple[Chapter, Ran]]) -> list[Shown]:
     return [_shown(*found, caption) for found, caption in chosen]
 
 
-def home_log(runs: list[tuple[Chapter, Ran]]) -> dict[str, str]:
+def home_log(runs: list[tuple[Chapter, ExecutedNotebook]]) -> dict[str, str]:
     """What the last node with something to warn of printed, and where; {} where no node has printed anything."""
     best: tuple[bool, dict[str, str]] = (False, {})
     for chapter, ran in runs:
@@ -96,7 +96,7 @@ def _coloured(log: str) -> str:
     return str(highlight(log, LogLexer(), HtmlFormatter(nowrap=True)))
 
 
-def _pictures(chapter: Chapter, ran: Ran) -> Iterator[tuple[Cell, dict[str, Any]]]:
+def _pictures(chapter: Chapter, ran: ExecutedNotebook) -> Iterator[tuple[Cell, dict[str, Any]]]:
     for cell in chapter.cells:
         for output in ran.outputs(cell.id):
             if is_picture(output):

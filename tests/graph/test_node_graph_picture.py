@@ -16,7 +16,7 @@ from playwright.sync_api import Browser
 from spinbook.graph.layout import broken, drawings, layout
 from spinbook.graph.model import End, NodeGraph, SeenNode, Topic
 from spinbook.graph.picture import node_graph_svg
-from spinbook.site.chapter_page import node_graph_html, read_node_graph
+from spinbook.site.seen_graph import node_graph_html, read_node_graph
 
 JOINTS = "sensor_msgs/msg/JointState"
 

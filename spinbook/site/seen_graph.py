@@ -1,0 +1,60 @@
+"""The node graph that was seen while a chapter ran, as pages show it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from spinbook.chapter.chapter import Chapter
+from spinbook.course.course import Course
+from spinbook.graph.layout import drawings
+from spinbook.graph.model import NodeGraph
+from spinbook.graph.picture import node_graph_svgs
+
+#: How many parts of a graph are enough to show what one looks like.
+_PARTS = 2
+
+
+def node_graph_of(course: Course, chapter: Chapter) -> NodeGraph | None:
+    """The graph that was seen while the chapter ran; None where no node was."""
+    graph = read_node_graph(course.build_folder / "executed" / f"{chapter.name}.graph.json")
+    return graph if graph and graph.nodes else None
+
+
+def read_node_graph(file: Path) -> NodeGraph | None:
+    """The graph in build/executed/NAME.graph.json; None where there is none that can be read."""
+    try:
+        return NodeGraph.from_json(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+
+
+def node_graph_html(graph: NodeGraph) -> str:
+    """One line of HTML with a small picture for each part of the graph; they stand side by side where there is room.
+
+    Needs no style. A page may set `--node-graph-node` and `--node-graph-topic`, the colours of the boxes.
+    """
+    return _together(node_graph_svgs(graph))
+
+
+def node_graph_excerpt(graph: NodeGraph) -> str:
+    """As `node_graph_html`, with the parts only that have the most nodes."""
+    parts = zip(drawings(graph), node_graph_svgs(graph), strict=True)
+    largest = sorted(parts, key=lambda part: len(part[0].nodes), reverse=True)
+    return _together([svg for _, svg in largest[:_PARTS]])
+
+
+def node_graph_section(graph: NodeGraph) -> str:
+    """The section of a chapter's page, in Markdown."""
+    return f"""\
+## The nodes, as they were seen
+
+This picture was not drawn by hand: it is the ROS graph, watched while the outputs of this page were made. Round shapes
+are nodes. Boxes are topics, with their types, and with their rates where these were measured. Along a dashed arrow
+nothing flows, because no other end fits.
+
+{node_graph_html(graph)}
+"""
+
+
+def _together(parts: list[str]) -> str:
+    return f'<div class="node-graph">{" ".join(parts)}</div>'
