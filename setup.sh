@@ -87,7 +87,7 @@ read_wishes() {
     # What the interfaces are compiled from; where ROS 2 is sourced, its own tools compile them.
     interfaces=none
     if [ "$ros" = wheels ]; then
-        interfaces=$(find interface_compiler -name __pycache__ -prune -o -type f -print 2>/dev/null | LC_ALL=C sort |
+        interfaces=$(find packages/interface_compiler/interface_compiler -name __pycache__ -prune -o -type f -print 2>/dev/null | LC_ALL=C sort |
             while read -r file; do echo "$file"; cat "$file"; done | cksum)
     fi
 }

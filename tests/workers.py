@@ -9,15 +9,19 @@ from xdist.workermanage import WorkerController
 
 #: All tests of one file run in one worker. So do those of each of these folders, whose files share something that is
 #: expensive to make: a chapter that has run, a whole site, a class that was graded, a sandbox at each level.
-TOGETHER = ("audit", "check", "feedback", "graph", "handout", "interfaces", "marking", "sandbox", "site")
+TOGETHER = (
+    *("audit", "check", "feedback", "graph", "handout", "interface_compiler", "interfaces"),
+    *("marking", "sandbox", "site"),
+)
 
 #: What takes longest, in this order: pieces, and folders whose files are pieces. It is started first: started last, it
 #: would leave the other workers idle.
 LONGEST = (
-    *("audit", "marking", "site", "handout", "interfaces", "sandbox", "check", "runtime/test_commands.py"),
+    *("audit", "marking", "site", "handout", "interface_compiler", "interfaces", "sandbox", "check"),
+    "runtime/test_commands.py",
     *("build/test_execution.py", "course", "grader/test_solutions.py", "gradescope", "grader/test_course_solutions.py"),
     *("hostile/test_through_the_grader.py", "runtime", "feedback", "grader", "ros2", "runner", "turtlesim", "new"),
-    *("style", "graph", "chapters", "browser", "submit", "doctor", "package", "setup", "build", "rcl"),
+    *("style", "graph", "chapters", "browser", "submit", "doctor", "package", "setup", "build", "rcl_python"),
 )
 
 

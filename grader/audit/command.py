@@ -12,7 +12,7 @@ from rich.console import Console
 from grader.audit.report import on, show, show_shadow, write_json
 from grader.audit.result import Audit, AuditProblem
 from grader.exercise.exercise import Exercise, ExerciseError
-from grader.exercise.loading import NoExercise, find, load
+from grader.exercise.loading import COURSE, NoExercise, find, load
 from grader.exercise.mistakes import NoMistake, mistake_of
 from grader.grading.grade import Options
 from grader.sandbox.middleware import choose_middleware
@@ -105,7 +105,7 @@ def audit(
         if not shadow and (warning := choose_middleware(options.middleware).warning):
             click.echo(warning, err=True)
         # Workers can import a course's own interfaces only if these are found before the workers start.
-        use_near(Path.cwd())
+        use_near(Path.cwd(), COURSE)
         with WorkerPool(*(Middleware if shadow else (options.middleware,))) as workers:
             for folder in [_folder(name) for name in exercises] or _all_here():
                 try:

@@ -17,6 +17,10 @@ else:
     import tomli as tomllib
 
 
+#: The file in a course's folder.
+COURSE = "course.toml"
+
+
 def load(folder: Path | str) -> Exercise:
     """The exercise in `folder`, which is in a course's `exercises/`. From then on, the course's own message types, as
     compiled last, can be imported here and in the sandbox.
@@ -24,7 +28,7 @@ def load(folder: Path | str) -> Exercise:
     Raises `ExerciseError` when a file is missing, can't be read or lacks an entry.
     """
     folder = Path(folder).resolve()
-    use_near(folder)
+    use_near(folder, COURSE)
     file = folder / "exercise.toml"
     entries = _read(file)
     task = folder / "task.md"

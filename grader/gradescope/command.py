@@ -15,7 +15,7 @@ from pathlib import Path
 import click
 
 from grader.exercise.exercise import Exercise, ExerciseError
-from grader.exercise.loading import NoExercise, find, load
+from grader.exercise.loading import COURSE, NoExercise, find, load
 from grader.grading.reference import solution_file
 from grader.sandbox.isolation import Isolation
 from interface_compiler import activation
@@ -28,7 +28,7 @@ SOURCE = Path(__file__).parents[2]
 #: The parts of it that the container needs.
 NEEDED = ("pyproject.toml", "README.md", "LICENSE", "constraints.txt", "constraints-ros.txt")
 
-PACKAGES = ("grader", "spinbook", "packages/rmw_lockstep", "interface_compiler")
+PACKAGES = ("grader", "spinbook", "packages/rmw_lockstep", "packages/interface_compiler")
 
 #: The same content gives the same bytes: every entry has the earliest date that a zip can name.
 DATE = (1980, 1, 1, 0, 0, 0)
@@ -95,7 +95,7 @@ def _files(exercise: Exercise) -> Iterator[tuple[str, Path]]:
         yield f"exercises/{exercise.name}/{file.relative_to(exercise.folder)}", file
     yield f"solutions/{exercise.name}/solution.py", solution_file(exercise)
     # The course's own messages, which the container compiles for its own Python.
-    course = exercise.folder.parent.parent / "course.toml"
+    course = exercise.folder.parent.parent / COURSE
     if course.is_file():
         yield course.name, course
     for prefix in activation.active():

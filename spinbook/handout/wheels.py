@@ -32,7 +32,7 @@ FOR_AUTHORS = ("spinbook/new/template/", "spinbook/new/kinds/")
 _BUILD = "import sys; from setuptools.build_meta import build_wheel; print(build_wheel(sys.argv[1]))"
 #: Everything that the commands import, as pyproject.toml lists it.
 _PACKAGES = ("spinbook", "grader", "interface_compiler", "rcl_python", "rmw_lockstep")
-_SOURCES = ("pyproject.toml", "README.md", "LICENSE", "packages", *_PACKAGES)
+_SOURCES = ("pyproject.toml", "README.md", "LICENSE", "spinbook", "grader", "packages")
 
 
 def spinbook_wheel() -> tuple[str, bytes]:
@@ -138,7 +138,7 @@ def interface_wheels(course: Course, texts: Iterable[bytes], environment: Path =
 
 def package_of(wheel: str) -> str:
     """The ROS package in a wheel of interfaces, by the wheel's file name."""
-    return wheel.partition("-")[0].removeprefix("spinbook_interfaces_")
+    return wheel.partition("-")[0].removeprefix("compiled_interfaces_")
 
 
 def _packages(course: Course, text: bytes, environment: Path) -> Iterator[tuple[str, Path]]:

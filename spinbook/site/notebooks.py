@@ -99,8 +99,8 @@ for name, text in json.loads(lzma.decompress(base64.b85decode("".join(packed.spl
     if not file.exists():
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_bytes(text.encode("utf-8", "surrogateescape"))
-for wheel in sorted(pathlib.Path("wheels").glob("spinbook_interfaces_*.whl")):
-    if importlib.util.find_spec(wheel.name.partition("-")[0].removeprefix("spinbook_interfaces_")) is None:
+for wheel in sorted(pathlib.Path("wheels").glob("compiled_interfaces_*.whl")):
+    if importlib.util.find_spec(wheel.name.partition("-")[0].removeprefix("compiled_interfaces_")) is None:
         subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", str(wheel)], check=False)
 importlib.invalidate_caches()
 if pathlib.Path("exercises").is_dir():

@@ -24,6 +24,7 @@ from grader.exercise import load
 from grader.gradescope.command import bundle
 from grader.grading.grade import Adjustment
 from grader.report.as_json import gradescope_results as results
+from interface_compiler import activation
 
 
 def test_public_checks_are_seen_at_once_and_hidden_ones_when_grades_are_published() -> None:
@@ -101,11 +102,11 @@ def test_the_zip_holds_what_compiles_messages_and_the_courses_own_definitions(
     definition = tmp_path / "prefix" / "definitions" / "arm_msgs" / "msg" / "Joint.msg"
     definition.parent.mkdir(parents=True)
     definition.write_text("string name\n")
-    monkeypatch.setenv("SPINBOOK_INTERFACES", str(tmp_path / "prefix"))
+    monkeypatch.setenv(activation.VARIABLE, str(tmp_path / "prefix"))
     with zipfile.ZipFile(BytesIO(bundle(load(TEMPLATE / "exercises" / EXERCISE)))) as archive:
         names = archive.namelist()
     assert "course/interfaces/arm_msgs/msg/Joint.msg" in names
-    assert "course/interface_compiler/definitions/standard/turtlesim/msg/Pose.msg" in names
+    assert "course/packages/interface_compiler/interface_compiler/definitions/standard/turtlesim/msg/Pose.msg" in names
     assert "course/course.toml" in names
 
 

@@ -131,7 +131,7 @@ def test_the_means_to_install_are_there_and_can_be_read(real: HandedOut) -> None
         "## Step 3: do the exercises, check, hand in",
     ]
     wheel = next((real.folder / "wheels").glob("spinbook-*.whl"))
-    turtlesim = next((real.folder / "wheels").glob("spinbook_interfaces_turtlesim-*.whl"))
+    turtlesim = next((real.folder / "wheels").glob("compiled_interfaces_turtlesim-*.whl"))
     assert f"./wheels/{turtlesim.name} ; platform_machine" in (real.folder / "requirements.txt").read_text()
     assert f"./wheels/{wheel.name}[ros,colcon,lab]" in (real.folder / "requirements.txt").read_text().splitlines()
     conda = yaml.safe_load((real.folder / "environment.yml").read_text())

@@ -92,5 +92,5 @@ def test_what_is_not_installed(terminal: Terminal) -> None:
     if prefixes.prefix_of("nav2_msgs", prefixes.installed()) is None:
         assert terminal.ros2("interface", "package", "nav2_msgs").err.splitlines() == [
             "Unknown package 'nav2_msgs'",
-            "Compile it, once: spinbook interfaces add nav2_msgs",
+            "Compile it, once: python -m interface_compiler add nav2_msgs",
         ]

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
+#: What compiles interfaces, and the definitions that come with it.
+INTERFACES = "packages/interface_compiler/interface_compiler"
 REAL_PYTHON = getattr(sys, "_base_executable", sys.executable)
 
 #: `-m venv` makes a folder with a Python that notes its arguments, and does what the files in $STAGE say.
@@ -111,8 +113,8 @@ def make_checkout(parent: Path) -> Checkout:
     """Make a checkout in a folder below `parent`."""
     folder, stage = parent / "spinbook", parent / "stage"
     (folder / "spinbook" / "doctor").mkdir(parents=True)
-    (folder / "interface_compiler").mkdir()
-    (folder / "interface_compiler" / "Pose.msg").write_text("float32 x\n")
+    (folder / INTERFACES).mkdir(parents=True)
+    (folder / INTERFACES / "Pose.msg").write_text("float32 x\n")
     for name in ("setup.sh", "Makefile", "pyproject.toml", "spinbook/doctor/ros_origin.py"):
         shutil.copy(ROOT / name, folder / name)
     # What it fetches from npm is tested in test_fetching_pyodide.py.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from setup_stage import Checkout
+from setup_stage import INTERFACES, Checkout
 from sourced_ros import empty_rclpy
 
 NO_COMPILER = "Interfaces are compiled with g++, not found here: sudo apt-get install g++"
@@ -23,7 +23,7 @@ def test_interfaces_are_compiled_last(checkout: Checkout) -> None:
 def test_changed_definitions_are_compiled_and_nothing_else_is_done(checkout: Checkout) -> None:
     checkout.set_up()
     checkout.forget_calls()
-    (checkout.folder / "interface_compiler" / "Pose.msg").write_text("float64 x\n")
+    (checkout.folder / INTERFACES / "Pose.msg").write_text("float64 x\n")
 
     assert checkout.set_up()[0] == 0
     assert checkout.calls == ["interfaces "]
@@ -32,8 +32,8 @@ def test_changed_definitions_are_compiled_and_nothing_else_is_done(checkout: Che
 
 def test_what_python_caches_beside_them_does_not_count(checkout: Checkout) -> None:
     checkout.set_up()
-    (checkout.folder / "interface_compiler" / "__pycache__").mkdir()
-    (checkout.folder / "interface_compiler" / "__pycache__" / "checks.pyc").touch()
+    (checkout.folder / INTERFACES / "__pycache__").mkdir()
+    (checkout.folder / INTERFACES / "__pycache__" / "checks.pyc").touch()
 
     assert checkout.set_up() == (0, "")
 

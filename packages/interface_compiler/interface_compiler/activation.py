@@ -11,7 +11,7 @@ from pathlib import Path
 from interface_compiler.prefixes import PYTHON
 
 #: The environment variable, in every process that uses prefixes, that lists them.
-VARIABLE = "SPINBOOK_INTERFACES"
+VARIABLE = "COMPILED_INTERFACES"
 
 
 def active(environment: MutableMapping[str, str] | None = None) -> list[Path]:
@@ -29,7 +29,7 @@ def activate(prefix: Path, instead_of: Iterable[Path] = ()) -> None:
     gone = {str(old / PYTHON) for old in instead_of}
     sys.path[:] = [entry for entry in sys.path if entry not in gone]
     if str(prefix / PYTHON) not in sys.path:
-        # Before what is installed: a course's newer text takes precedence.
+        # Before what is installed: a project's newer text takes precedence.
         sys.path.insert(0, str(prefix / PYTHON))
     importlib.invalidate_caches()
 

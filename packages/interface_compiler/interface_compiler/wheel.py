@@ -40,10 +40,10 @@ def wheel(package: str, prefix: Path) -> tuple[str, bytes]:
     files = dict(_files(package, prefix, f"{name}.data/data"))
     files[f"{name}.dist-info/METADATA"] = (
         f"Metadata-Version: 2.1\nName: {_project(package)}\nVersion: {version}\n"
-        f"Summary: The ROS 2 interfaces of {package}, compiled by Spinbook\n"
+        f"Summary: The ROS 2 interfaces of {package}, compiled by interface_compiler\n"
     ).encode()
     files[f"{name}.dist-info/WHEEL"] = (
-        f"Wheel-Version: 1.0\nGenerator: spinbook\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
+        f"Wheel-Version: 1.0\nGenerator: interface_compiler\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
     )
     listing = f"{name}.dist-info/RECORD"
     files[listing] = record(files, listing)
@@ -67,14 +67,14 @@ def record(files: dict[str, bytes], listing: str) -> bytes:
 
 
 def install(package: str) -> bool:
-    """Compile and install a package that comes with Spinbook. Return False if it is there already.
+    """Compile and install a package that comes with this package. Return False if it is there already.
 
     Raises KeyError for any other package, and CompileError if it can't be compiled or installed.
     """
     definitions = shipped.definitions(package)
     if is_current(package):
         return False
-    with tempfile.TemporaryDirectory(prefix="spinbook-") as temporary:
+    with tempfile.TemporaryDirectory(prefix="interfaces-") as temporary:
         compiled = store.ensure(definitions, Path(temporary))
         name, content = wheel(package, compiled.prefix)
         file = Path(temporary) / name
@@ -103,7 +103,7 @@ def is_current(package: str) -> bool:
 
 
 def _project(package: str) -> str:
-    return f"spinbook-interfaces-{package.replace('_', '-')}"
+    return f"compiled-interfaces-{package.replace('_', '-')}"
 
 
 def _files(package: str, prefix: Path, data: str) -> Iterator[tuple[str, bytes]]:

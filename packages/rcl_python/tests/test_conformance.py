@@ -14,7 +14,6 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rcl_python.pybind import module
 
 PROGRAMS = Path(__file__).with_name("programs")
-ROOT = Path(__file__).resolve().parents[2]
 _OVER_PYTHON = (
     "import sys, runpy; import rcl_python; rcl_python.install(); runpy.run_path(sys.argv[1], run_name='__main__')"
 )
@@ -23,8 +22,7 @@ _OVER_PYTHON = (
 def printed(program: Path, *, over_python: bool) -> list[str]:
     """Return what the program prints."""
     command = [sys.executable, *(["-c", _OVER_PYTHON] if over_python else []), os.fspath(program)]
-    environment = {**os.environ, "PYTHONPATH": os.fspath(ROOT)}
-    done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=280, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=280, check=False)
     assert done.returncode == 0, done.stderr
     return re.sub(r" at 0x[0-9a-f]+", "", done.stdout).splitlines()
 

@@ -1,4 +1,4 @@
-"""The definitions that come with Spinbook: example_interfaces and turtlesim, and optional ones."""
+"""The definitions that come with this package: example_interfaces and turtlesim, and optional ones."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def optional() -> tuple[str, ...]:
 def how_to_add(package: str) -> str | None:
     """Return how to get one of these packages where it is not installed; None for any other package."""
     if package in (*standard(), *optional()):
-        return f"Compile it, once: spinbook interfaces add {package}"
+        return f"Compile it, once: python -m interface_compiler add {package}"
     return None
 
 

@@ -27,7 +27,7 @@ _WHEELS = ("ros-rosidl-adapter", "ros-rosidl-generator-py", "ros-rosidl-typesupp
 _OWN = ("generating.py", "compiling.py", "building.py", "dispatch.cpp.in", "limited_api.h")
 #: Prefixes that a store keeps: notebooks that are open may still use one of an earlier text.
 _KEPT = 8
-_KEY = "spinbook-key"
+_KEY = "compiler-key"
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ def missing() -> str | None:
     if ros := sourced_ros():
         return (
             f"ROS 2 is sourced from {ros}, whose own tools compile interfaces: "
-            "run `colcon build` in the course's workspace, source its install/setup.bash, and start this again there."
+            "run `colcon build` in the workspace, source its install/setup.bash, and start this again there."
         )
     return " ".join(filter(None, (missing_compiler(), missing_headers()))) or None
 

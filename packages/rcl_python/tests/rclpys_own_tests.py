@@ -1,6 +1,6 @@
 """Runs rclpy's own tests over rcl_python or a middleware, and prints how many pass.
 
-    python tests/rcl/rclpys_own_tests.py FOLDER [--over rcl_python|fastdds|lockstep] [--only NAME]
+    python rclpys_own_tests.py FOLDER [--over rcl_python|fastdds|lockstep] [--only NAME]
 
 FOLDER is `rclpy/test` of https://github.com/ros2/rclpy at the release that is installed. Each file runs in its own
 process. `fastdds` and `lockstep` are the compiled module over these middlewares: the first for comparison, the second
@@ -26,11 +26,9 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
-ROOT = Path(__file__).resolve().parents[2]
 EXPECTED = Path(__file__).with_name("expected_failures.toml")
 _RUN = """
 import sys, types
-sys.path.insert(0, {root!r})
 # The package's own __init__ looks for a module that only rclpy's build makes.
 sys.modules["test"] = types.ModuleType("test")
 sys.modules["test"].__path__ = [{tests!r}]
@@ -46,9 +44,7 @@ _LIMIT = 30
 
 def outcomes(file: Path, over: str) -> dict[str, str]:
     """Run one file; return the name of each test -> passed, failed or skipped."""
-    code = _RUN.format(
-        root=str(ROOT), tests=str(file.parent.resolve()), install=_INSTALL if over == "rcl_python" else ""
-    )
+    code = _RUN.format(tests=str(file.parent.resolve()), install=_INSTALL if over == "rcl_python" else "")
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder, "report.xml")
         options = ["-q", "-p", "no:cacheprovider", "-p", "pytest_timeout", f"--timeout={_LIMIT}"]

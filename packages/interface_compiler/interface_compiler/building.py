@@ -26,8 +26,8 @@ _PACKAGE_XML = """\
 <package format="3">
   <name>{package}</name>
   <version>0.0.0</version>
-  <description>Interfaces compiled by Spinbook</description>
-  <maintainer email="course@example.org">The authors of the course</maintainer>
+  <description>Interfaces compiled by interface_compiler</description>
+  <maintainer email="nobody@example.org">The authors of these definitions</maintainer>
   <license>Apache-2.0</license>
   <member_of_group>rosidl_interface_packages</member_of_group>
 </package>

@@ -128,8 +128,8 @@ def hub(folder: Path) -> Iterator[dict[str, str]]:
     """Run a hub; yield the environment in which processes join it."""
     address = os.fspath(folder / "hub")
     running = Hub(address)
-    root = Path(__file__).resolve().parents[2]
-    paths = [Path(__file__).with_name("over_hub"), root / "tests" / "rcl", root]
+    here = Path(__file__).resolve().parent
+    paths = [here / "over_hub", here, *filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))]
     try:
         yield {HUB: address, "PYTHONPATH": os.pathsep.join(map(os.fspath, paths))}
     finally:

@@ -197,5 +197,5 @@ def _run(command: Sequence[str], package: str) -> None:
     first = re.sub(r"^\S*/", "", lines[0])[:300] if lines else f"{command[0]} ended with exit code {done.returncode}"
     raise CompileError(
         f"{command[0]} failed on the package {package}: {first}. Its definitions are valid, so this is a fault of "
-        "the compiler's installation or of Spinbook. `spinbook doctor` looks at the installation."
+        f"the installation of {command[0]} or of interface_compiler."
     )

@@ -1,4 +1,4 @@
-"""What was compiled for a course earlier: found from a folder in it, and used by this process."""
+"""What was compiled for a project earlier: found from a folder in it, and used by this process."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from pathlib import Path
 from interface_compiler import activation
 from interface_compiler.prefixes import PYTHON
 
-#: The file that makes a folder a course.
-_COURSE = "course.toml"
+#: A project's store, relative to the project's folder.
+STORE = Path("build", "interfaces")
 #: The file in the store's folder that names the newest prefix.
 _CURRENT = "current"
 
@@ -37,13 +37,15 @@ def current(folder: Path) -> Path | None:
     return prefix if name and (prefix / PYTHON).is_dir() else None
 
 
-def use_near(start: Path) -> Path | None:
-    """Use what was compiled for the course that contains the folder `start`; return the prefix, if there is one."""
-    for folder in (start.absolute(), *start.absolute().parents):
-        if (folder / _COURSE).is_file():
-            store_folder = folder / "build" / "interfaces"
-            prefix = current(store_folder)
+def use_near(start: Path, marker: str | None = None) -> Path | None:
+    """Use what was compiled for the project that contains the folder `start`; return the prefix, if there is one.
+
+    The project is the nearest folder that has the file `marker`, or, without a marker, that has a store.
+    """
+    for project in (start.absolute(), *start.absolute().parents):
+        if (project / (marker or STORE)).exists():
+            prefix = current(project / STORE)
             if prefix is not None:
-                use(prefix, store_folder)
+                use(prefix, project / STORE)
             return prefix
     return None
