@@ -122,9 +122,10 @@ def _edit(token: Token, lines: Sequence[str]) -> tuple[int, int, list[str]] | No
         alert = _ALERT.match(bracket + rest)
         if alert and not before.strip(" >"):
             return start, start + 1, [f"{before}**{alert[1].capitalize()}**", before.rstrip()]
-    if token.type == "container_any_open" and not lines[start].partition(":")[0].strip():
-        end += end < len(lines) and set(lines[end].strip()) == {":"}
-        return start, end, _quotation(token, list(lines[start:end]))
+    if token.type == "container_any_open":
+        first = lines[start].partition(":")[0]
+        end += end < len(lines) and _is_end(lines[end], first)
+        return start, end, _quotation(token, list(lines[start:end]), first)
     return None
 
 
@@ -141,23 +142,33 @@ def _opening(token: Token, line: str) -> list[str]:
     return [f"{indent}`{attributes['title']}`:", "", plain] if "title" in attributes else [plain]
 
 
-def _quotation(token: Token, lines: list[str]) -> list[str]:
-    """An admonition as a quotation with its title in bold."""
-    ends = set(lines[-1].strip()) == {":"} and len(lines) > 1
+def _quotation(token: Token, lines: list[str], first: str) -> list[str]:
+    """An admonition as a quotation with its title in bold. `first` is before its first line, such as `- ` or `> `."""
+    rest = _below(first)
+    ends = len(lines) > 1 and _is_end(lines[-1], first)
     name, argument = container_name(token.info)
-    inner = lines[1:-1] if ends else lines[1:]
+    inner = [_without(rest, line) for line in (lines[1:-1] if ends else lines[1:])]
     _, skipped = options(inner)
     inner = _plain(inner[skipped:])
     kind, _, title = container(name, argument, colon=True)
     title = title or argument or name.capitalize()
-    indent = lines[0].partition(":")[0]
-    if kind not in {"admonition", "details", None}:
-        return inner
-    return [
-        f"{indent}> **{title}**",
-        f"{indent}>",
-        *(f"{indent}> {line.removeprefix(indent)}".rstrip() for line in inner),
-    ]
+    if kind in {"admonition", "details", None}:
+        inner = [f"> **{title}**", ">", *(f"> {line}".rstrip() for line in inner)]
+    return [f"{before}{line}".rstrip() for before, line in zip([first, *[rest] * len(inner)], inner, strict=False)]
+
+
+def _below(first: str) -> str:
+    """What is before the lines below one that begins with a list's marker or a quotation's: `- > ` gives `  > `."""
+    return re.sub(r"[^>\s]", " ", first)
+
+
+def _without(before: str, line: str) -> str:
+    """A line without what is before it; of an empty line, that is without the spaces at its end."""
+    return line.removeprefix(before) if line.startswith(before) else line.removeprefix(before.rstrip())
+
+
+def _is_end(line: str, first: str) -> bool:
+    return set(_without(_below(first), line).strip()) == {":"}
 
 
 _SETUP = """\

@@ -5,7 +5,8 @@ Each level of the tree is read by itself, with the indentation of what holds it 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import itertools
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from markdown_it.token import Token
@@ -18,6 +19,32 @@ from spinbook.chapter.flavours import parser
 #: Reads a file that a chapter includes: its text, or None if there is no such file.
 Include = Callable[[str], str | None]
 _DEEPEST = 12
+
+#: Tokens that hold blocks in plain Markdown. Such text stays as it is unless one of those blocks is something else.
+_HOLDERS = frozenset({"blockquote_open", "bullet_list_open", "ordered_list_open"})
+_MARKDOWN = _HOLDERS | {"heading_open"}
+
+
+@dataclass(frozen=True)
+class _Directive:
+    """A directive of MyST: all its `lines`, and its `body` behind the options, which take `skipped` lines."""
+
+    name: str
+    argument: str
+    options: dict[str, str]
+    lines: tuple[Line, ...]
+    body: list[Line]
+    skipped: int
+    closed: bool
+
+    @property
+    def code(self) -> str:
+        """The body as a fence's code."""
+        return "".join(f"{line.text}\n" for line in self.body)
+
+    def between(self, opening: str, closing: str) -> tuple[Line, ...]:
+        """The body between two other lines."""
+        return (Line(opening, self.lines[0].number), *self.body, Line(closing, self.lines[-1].number))
 
 
 @dataclass
@@ -32,7 +59,7 @@ class _Reader:
         tokens = parser().parse("\n".join(line.text for line in lines))
         found: list[Block] = []
         at = 0
-        for token in tokens:
+        for index, token in enumerate(tokens):
             if token.level or token.map is None or token.nesting < 0 or token.map[0] < at:
                 continue
             start, end = token.map
@@ -41,7 +68,10 @@ class _Reader:
             if token.type == "container_any_open" and end < len(lines) and set(lines[end].text.strip()) == {":"}:
                 end += 1
             at = min(max(end, start + 1), len(lines))
-            found.extend(self._block(token, tokens, tuple(lines[start:at])))
+            if token.type in _HOLDERS and not any(map(self._is_block, _inside(tokens, index))):
+                found.append(Block(Kind.TEXT, tuple(lines[start:at])))
+            else:
+                found.extend(self._block(token, tuple(lines[start:at])))
         if at < len(lines):
             found.append(Block(Kind.TEXT, tuple(lines[at:])))
         return paired(merged_callouts(found))
@@ -49,9 +79,15 @@ class _Reader:
     def inside(self, lines: Sequence[Line]) -> tuple[Block, ...]:
         return _Reader(self.include, self.depth + 1).blocks(lines)
 
-    def _block(self, token: Token, tokens: list[Token], lines: tuple[Line, ...]) -> list[Block]:
+    def _block(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
         read = getattr(self, f"_{token.type}", None)
         return read(token, lines) if read else [Block(Kind.TEXT, lines)]
+
+    def _is_block(self, token: Token) -> bool:
+        """Whether it is a fence, an exercise or something of a book tool: then what it is in has to be read, too."""
+        if token.type == "html_block":
+            return bool(attributes.exercise(token.content))
+        return token.type not in _MARKDOWN and hasattr(self, f"_{token.type}")
 
     def _heading_open(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
         return [Block(Kind.HEADING, lines)]
@@ -69,7 +105,7 @@ class _Reader:
         body = [Line(text, lines[0].number + 1 + i) for i, text in enumerate(token.content.split("\n")[:-1])]
         if name:
             closed = closed or len(lines) == 1
-            return _labelled(self._directive(name, argument, lines, body, closed), body)
+            return self._directive(name, argument, lines, body, closed)
         fence = self._included(make_fence(token.info, token.content, lines[0].number))
         expanded = fence.code != token.content and "".join(f"{line.text}\n" for line in body) != fence.code
         new = as_fence(fence, lines) if expanded and not fence.skipped else None
@@ -88,56 +124,63 @@ class _Reader:
     def _directive(
         self, name: str, argument: str, lines: tuple[Line, ...], body: list[Line], closed: bool
     ) -> list[Block]:
-        """A directive of MyST."""
+        """A directive of MyST. The first of its blocks has the label that its options give it."""
         options, skipped = attributes.options([line.text for line in body])
         while skipped < len(body) and not body[skipped].text.strip():
             skipped += 1
-        inner = body[skipped:]
-        if name in attributes.CODE:
-            info = f"{argument} " + " ".join(f'{key}="{value}"' for key, value in options.items())
-            fence = make_fence(f"{{code-cell}} {info}", "".join(f"{x.text}\n" for x in inner), lines[0].number)
-            fence = self._included(replace(fence, skipped=skipped))
-            return [Block(Kind.FENCE, lines, fence=fence, closed=closed, new=as_fence(fence, lines))]
-        if name == "literalinclude":
-            return [self._literal(argument, options, lines)]
-        if name == "include":
-            text = self.include(argument)
-            included = [Line(t, lines[0].number) for t in (text or "").split("\n")]
-            return list(self.inside(included)) if text else [Block(Kind.DROPPED, lines)]
-        if name in {"image", "figure"}:
-            new = [Line(attributes.image(argument, options), lines[0].number), Line("", lines[0].number), *inner]
-            caption = next((line.text.strip() for line in inner if line.text.strip()), "")
-            return [Block(Kind.TEXT, lines, title=caption, new=tuple(new))]
-        if name in attributes.UNSEEN:
-            return [Block(Kind.DROPPED, lines)]
-        if name == "mermaid":
-            return [
-                Block(
-                    Kind.FENCE,
-                    lines,
-                    fence=make_fence("mermaid", "".join(f"{x.text}\n" for x in inner), 1),
-                    closed=closed,
-                    new=(Line("```mermaid", lines[0].number), *inner, Line("```", lines[-1].number)),
-                )
-            ]
-        if name == "math":
-            number = lines[0].number
-            return [Block(Kind.TEXT, lines, new=(Line("$$", number), *inner, Line("$$", lines[-1].number)))]
-        kind, style, title = attributes.container(name, argument)
-        if kind is None:
-            return [Block(Kind.FENCE, lines, fence=make_fence(name, "".join(f"{x.text}\n" for x in inner), 1))]
-        if style and not title and argument:
-            inner = [Line(argument, lines[0].number), Line("", lines[0].number), *inner]
-        return [Block(Kind(kind), lines, self.inside(inner), title, style)]
+        directive = _Directive(name, argument, options, lines, body[skipped:], skipped, closed)
+        blocks = _DIRECTIVES.get(name, _Reader._holding)(self, directive)
+        label = options.get("name") or options.get("label") or ""
+        return [replace(blocks[0], label=label), *blocks[1:]] if label and blocks else blocks
 
-    def _literal(self, argument: str, options: dict[str, str], lines: tuple[Line, ...]) -> Block:
-        text = self.include(argument)
+    def _code(self, directive: _Directive) -> list[Block]:
+        info = f"{directive.argument} " + " ".join(f'{key}="{value}"' for key, value in directive.options.items())
+        fence = make_fence(f"{{code-cell}} {info}", directive.code, directive.lines[0].number)
+        fence = self._included(replace(fence, skipped=directive.skipped))
+        new = as_fence(fence, directive.lines)
+        return [Block(Kind.FENCE, directive.lines, fence=fence, closed=directive.closed, new=new)]
+
+    def _literal(self, directive: _Directive) -> list[Block]:
+        file, lines = directive.argument, directive.lines
+        text = self.include(file)
         if text is None:
-            return Block(Kind.FENCE, lines, fence=make_fence("text", "", lines[0].number))
-        language = options.get("language", "python" if argument.endswith(".py") else "text")
-        title = f' title="{argument.rsplit("/", 1)[-1]}"' if argument.endswith(".py") else ""
+            return [Block(Kind.FENCE, lines, fence=make_fence("text", "", lines[0].number))]
+        language = directive.options.get("language", "python" if file.endswith(".py") else "text")
+        title = f' title="{file.rsplit("/", 1)[-1]}"' if file.endswith(".py") else ""
         fence = make_fence(language + title, text.rstrip("\n") + "\n", lines[0].number)
-        return Block(Kind.FENCE, lines, fence=fence, new=as_fence(fence, lines))
+        return [Block(Kind.FENCE, lines, fence=fence, new=as_fence(fence, lines))]
+
+    def _include(self, directive: _Directive) -> list[Block]:
+        text, number = self.include(directive.argument), directive.lines[0].number
+        if not text:
+            return [Block(Kind.DROPPED, directive.lines)]
+        return list(self.inside([Line(line, number) for line in text.split("\n")]))
+
+    def _image(self, directive: _Directive) -> list[Block]:
+        number = directive.lines[0].number
+        new = (Line(attributes.image(directive.argument, directive.options), number), Line("", number), *directive.body)
+        caption = next((line.text.strip() for line in directive.body if line.text.strip()), "")
+        return [Block(Kind.TEXT, directive.lines, title=caption, new=new)]
+
+    def _unseen(self, directive: _Directive) -> list[Block]:
+        return [Block(Kind.DROPPED, directive.lines)]
+
+    def _mermaid(self, directive: _Directive) -> list[Block]:
+        fence, new = make_fence("mermaid", directive.code, 1), directive.between("```mermaid", "```")
+        return [Block(Kind.FENCE, directive.lines, fence=fence, closed=directive.closed, new=new)]
+
+    def _math(self, directive: _Directive) -> list[Block]:
+        return [Block(Kind.TEXT, directive.lines, new=directive.between("$$", "$$"))]
+
+    def _holding(self, directive: _Directive) -> list[Block]:
+        """An admonition, a tab and the like, or a directive that is not known."""
+        kind, style, title = attributes.container(directive.name, directive.argument)
+        if kind is None:
+            return [Block(Kind.FENCE, directive.lines, fence=make_fence(directive.name, directive.code, 1))]
+        inner, number = directive.body, directive.lines[0].number
+        if style and not title and directive.argument:
+            inner = [Line(directive.argument, number), Line("", number), *inner]
+        return [Block(Kind(kind), directive.lines, self.inside(inner), title, style)]
 
     def _snippet(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
         text = self.include(token.info)
@@ -153,10 +196,8 @@ class _Reader:
         ends = set(lines[-1].text.strip()) == {":"} and len(lines) > 1
         inner = list(lines[1:-1] if ends else lines[1:])
         options, skipped = attributes.options([line.text for line in inner])
-        if name in attributes.CODE or name in {"image", "figure", "literalinclude", "include", "math", "mermaid"}:
-            return _labelled(self._directive(name, argument, lines, inner, ends), inner)
-        if name in attributes.UNSEEN:
-            return [Block(Kind.DROPPED, lines)]
+        if name in _DIRECTIVES:
+            return self._directive(name, argument, lines, inner, ends)
         is_myst = token.info.strip().startswith("{") and not token.info.strip().startswith("{.")
         kind, style, title = attributes.container(name, argument, colon=not is_myst)
         title = title or options.get("title", "")
@@ -176,7 +217,9 @@ class _Reader:
 
     def _callout(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
         inner = (Line(token.info, lines[0].number),)
-        return [Block(Kind.ADMONITION, lines, (Block(Kind.TEXT, inner),), style=token.tag)]
+        return [
+            Block(Kind.ADMONITION, lines, (Block(Kind.TEXT, inner),), style="warning" if token.tag == "!" else "tip")
+        ]
 
     def _jsx(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
         return [Block(Kind.TEXT, lines, new=(Line(token.content, lines[0].number),))]
@@ -230,26 +273,25 @@ class _Reader:
         return [Block(Kind.DROPPED, lines, new=_words(token, lines))]
 
     def _blockquote_open(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
-        if not any("```" in line.text or "~~~" in line.text for line in lines):
-            return [Block(Kind.TEXT, lines)]
         return [Block(Kind.QUOTE, lines, self.inside([unquoted(line) for line in lines]))]
 
     def _bullet_list_open(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
-        if not any(
-            mark in line.text for line in lines for mark in ("```", "~~~", "!!!", "???", ":::", "===", "{%", "8<--")
-        ):
-            return [Block(Kind.TEXT, lines)]
         items = self._items(lines)
         return [Block(Kind.LIST, lines, items)] if items else [Block(Kind.TEXT, lines)]
 
     _ordered_list_open = _bullet_list_open
 
     def _items(self, lines: tuple[Line, ...]) -> tuple[Block, ...]:
+        tokens = parser().parse("\n".join(line.text for line in lines))
+        items = [
+            (token, token.map[0])
+            for token in tokens
+            if token.type == "list_item_open" and token.level == 1 and token.map
+        ]
+        ends = [start for _, start in items[1:]] + [len(lines)]
         found = []
-        for token in parser().parse("\n".join(line.text for line in lines)):
-            if token.type != "list_item_open" or token.level != 1 or token.map is None:
-                continue
-            own = lines[token.map[0] : token.map[1]]
+        for (token, start), end in zip(items, ends, strict=False):
+            own = lines[start:end]
             offset = _offset(own[0].text, len(token.info) + len(token.markup))
             first = Line(own[0].text[offset:], own[0].number)
             inner = self.inside([first, *_dedented(own[1:], offset)])
@@ -263,11 +305,23 @@ def read_blocks(text: str, include: Include) -> tuple[Block, ...]:
     return _Reader(include).blocks(lines)
 
 
-def _labelled(blocks: list[Block], body: Sequence[Line]) -> list[Block]:
-    """A directive's blocks, the first with the label that its options give it."""
-    options, _ = attributes.options([line.text for line in body])
-    label = options.get("name") or options.get("label") or ""
-    return [replace(blocks[0], label=label), *blocks[1:]] if label and blocks else blocks
+#: MyST's directives, except those that hold blocks.
+_DIRECTIVES: dict[str, Callable[[_Reader, _Directive], list[Block]]] = {
+    **dict.fromkeys(attributes.CODE, _Reader._code),
+    **dict.fromkeys(attributes.UNSEEN, _Reader._unseen),
+    "literalinclude": _Reader._literal,
+    "include": _Reader._include,
+    "image": _Reader._image,
+    "figure": _Reader._image,
+    "mermaid": _Reader._mermaid,
+    "math": _Reader._math,
+}
+
+
+def _inside(tokens: Sequence[Token], index: int) -> Iterator[Token]:
+    """The tokens between an opening one and its closing one."""
+    level = tokens[index].level
+    return itertools.takewhile(lambda token: token.level > level, itertools.islice(tokens, index + 1, None))
 
 
 def _offset(text: str, marker: int) -> int:

@@ -28,12 +28,16 @@ Rule = Callable[[StateBlock, int, int, bool], bool]
 #: What such a line may end: a paragraph, a quotation, a list.
 _ALT: RuleOptionsType = {"alt": ["paragraph", "reference", "blockquote", "list"]}
 _FENCE = ("```", "~~~")
-_LIQUID = re.compile(r"\{%-?\s*(\w+)\s*(.*?)\s*-?%\}$")
-_KRAMDOWN = re.compile(r"\{:\s*(.*?)\s*\}$")
-_SNIPPET = re.compile(r"-+8<-+\s+[\"'](.+?)[\"']$")
-_LABEL = re.compile(r"\(([\w:./-]+)\)=$")
-_ESM = re.compile(
-    r"""import\s+(?:[\w*{][\w\s{},*]*\s+from\s+)?["'][^"']+["'];?$|export\s+(?:const|default|function|let)\b"""
+#: What a line of its own may say to a book tool: the kind of its token, and how it is written.
+_LINES = (
+    ("liquid", re.compile(r"\{%-?\s*(?P<name>\w+)\s*(?P<info>.*?)\s*-?%\}$")),
+    ("kramdown", re.compile(r"\{:\s*(?P<info>.*?)\s*\}$")),
+    ("snippet", re.compile(r"-+8<-+\s+[\"'](?P<info>.+?)[\"']$")),
+    ("callout", re.compile(r"(?P<name>[!?])> (?P<info>.*)")),
+    ("label", re.compile(r"\((?P<name>[\w:./-]+)\)=$")),
+    ("dropped", re.compile(r"\{/\*")),
+    ("dropped", re.compile(r"""import\s+(?:[\w*{][\w\s{},*]*\s+from\s+)?["'][^"']+["'];?$""")),
+    ("dropped", re.compile(r"export\s+(?:const|default|function|let)\b")),
 )
 #: What may end a tag, or hide its end.
 _IN_TAG = re.compile(r"[\"'`{}>]")
@@ -75,7 +79,7 @@ def _push(
 def _line(state: StateBlock, start: int, end: int, silent: bool) -> bool:
     """A line of its own that says something to a book tool."""
     text = _text(state, start)
-    if not text or text[0] not in "{!?(-ie" or _is_code(state, start):
+    if not text or _is_code(state, start):
         return False
     kind, name, info = _parse(text)
     if not kind:
@@ -94,18 +98,10 @@ def _line(state: StateBlock, start: int, end: int, silent: bool) -> bool:
 
 def _parse(text: str) -> tuple[str, str, str]:
     """(kind, name, rest) of such a line; ("", "", "") for any other."""
-    if match := _LIQUID.match(text):
-        return "liquid", match[1], match[2]
-    if match := _KRAMDOWN.match(text):
-        return "kramdown", "", match[1]
-    if match := _SNIPPET.match(text):
-        return "snippet", "", match[1]
-    if text.startswith(("!> ", "?> ")):
-        return "callout", "warning" if text[0] == "!" else "tip", text[3:]
-    if match := _LABEL.match(text):
-        return "label", match[1], ""
-    if text.startswith("{/*") or _ESM.match(text):
-        return "dropped", "", ""
+    for kind, pattern in _LINES:
+        if match := pattern.match(text):
+            parts = match.groupdict()
+            return kind, parts.get("name", ""), parts.get("info", "")
     return "", "", ""
 
 

@@ -124,7 +124,8 @@ class Layout:
         return _spaced([*title, *self._children(block.children, depth)], block)
 
     def _folded(self, block: Block, depth: int, *, is_open: bool) -> list[Piece]:
-        opening = [f"<details{' open' if is_open else ''}>", f"<summary>{block.title}</summary>", ""]
+        title = block.title or block.style.capitalize()
+        opening = [f"<details{' open' if is_open else ''}>", f"<summary>{title}</summary>", ""]
         inside = self._children(block.children, depth + 1)
         return _spaced(_wrapped(inside, opening, ["", "</details>"], block), block)
 
@@ -156,12 +157,12 @@ def _item(pieces: list[Piece], marker: str, item: Block) -> list[Piece]:
                 out.append(Piece(Line(marker.rstrip(), item.line)))
             out += [Piece(Line("", item.line)), piece, Piece(Line("", item.line))]
             in_item = first = False
-        elif in_item:
+        elif in_item and not (first and piece.is_blank):
             out.append(_prefixed(piece, marker if first else " " * item.offset))
             first = False
-        else:
+        elif not in_item:
             out.append(piece)
-    return out
+    return out if out else [Piece(Line(marker.rstrip(), item.line))]
 
 
 def _lines(lines: Iterable[Line]) -> list[Piece]:
