@@ -11,7 +11,7 @@ from grader.classroom.course_gradebook import course_csv, course_page, course_ro
 from grader.classroom.gradebook import BYTE_ORDER_MARK
 from grader.exercise.exercise import ExerciseError
 from grader.exercise.loading import load
-from grader.files import write_if_changed
+from groundwork.files import write_if_changed
 from spinbook.chapter.classify import CellKind
 from spinbook.chapters import read_all
 from spinbook.course.course import Course, find_course

@@ -11,13 +11,14 @@ from pathlib import Path
 import click
 
 from grader.checking.proofreading import problems_of
+from groundwork.problem import Problem, Severity
 from spinbook.chapter.classify import CellKind
 from spinbook.chapter.read import Reading
 from spinbook.chapters import read_all
 from spinbook.course.course import Course, find_course
 from spinbook.course.obstacles import ranked
 from spinbook.interfaces.compiling import checked, compile_course
-from spinbook.problem import Problem, Severity, SpinbookError
+from spinbook.problem import SpinbookError
 
 #: Up to this many problems need no count; with more, a count follows at the end.
 _FEW = 12
@@ -124,7 +125,7 @@ def _plain(problem: Problem) -> dict[str, object]:
         "file": problem.file.as_posix(),
         "line": problem.line,
         "severity": problem.severity.value,
-        "found": problem.found,
+        "problem": problem.problem,
         "fix": problem.fix,
         "group": problem.group,
     }

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from grader.problem import Problem, Severity
-
-__all__ = ["Problem", "Severity", "SpinbookError"]
+from groundwork.problem import Problem
 
 
 class SpinbookError(Exception):

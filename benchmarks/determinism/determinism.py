@@ -24,12 +24,12 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from grader.exercise import Exercise, load
-from grader.files import write_if_changed
 from grader.grading import Grade, Options
 from grader.grading.grading import Grading, grading_of
 from grader.recording.recording import to_json
 from grader.submission.reading import read
 from grader.workers import WorkerPool
+from groundwork.files import write_if_changed
 from spinbook.course.course import find_course
 from spinbook.interfaces.compiling import compile_course
 

@@ -178,7 +178,7 @@ def _audited(
 
 def _problem(error: ExerciseError) -> AuditProblem:
     problem = error.problem
-    return AuditProblem(problem.file, problem.line, problem.found, problem.fix, about=problem.file.parent.name)
+    return AuditProblem(problem.file, problem.line, problem.problem, problem.fix, about=problem.file.parent.name)
 
 
 def _folder(exercise: str) -> Path:

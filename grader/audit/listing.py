@@ -123,7 +123,7 @@ def _rules(exercise: Exercise, checks: tuple[Check, ...]) -> list[AuditProblem]:
             found.append(problem_of(check, text, 'Add rule="…" to @check, with the sentence of task.md.'))
         elif check.rule:
             for error in rule_that_the_task_lacks(exercise.task, check.rule, check.file, check.line):
-                found.append(problem_of(check, error.problem.found, error.problem.fix))
+                found.append(problem_of(check, error.problem.problem, error.problem.fix))
     return found
 
 

@@ -17,9 +17,9 @@ from rich.table import Table
 from rich.text import Text
 
 from grader.audit.result import Audit, AuditProblem, Fate, MutantResult, Shadow
-from grader.files import write_if_changed
 from grader.report.pages import render
 from grader.report.printable import printable
+from groundwork.files import write_if_changed
 
 
 def show(audit: Audit, console: Console) -> None:
@@ -58,7 +58,7 @@ def _show_programs(audit: Audit, console: Console) -> None:
 
 
 def _show_problem(problem: AuditProblem, console: Console) -> None:
-    console.print(Text.assemble((" ✗ ", "red"), printable(problem.found)), soft_wrap=True)
+    console.print(Text.assemble((" ✗ ", "red"), printable(problem.problem)), soft_wrap=True)
     console.print(Padding(Text(printable(_short(problem.place)), style="dim"), (0, 0, 0, 3)))
     if problem.diff:
         console.print(Padding(Syntax(problem.diff, "diff", background_color="default", word_wrap=True), (0, 0, 0, 3)))
@@ -166,7 +166,7 @@ def _entries(audit: Audit) -> dict[str, Any]:
 
 
 def _problem_entries(problem: AuditProblem) -> dict[str, str]:
-    return {name: getattr(problem, name) for name in ("place", "about", "found", "fix", "diff", "evidence")}
+    return {name: getattr(problem, name) for name in ("place", "about", "problem", "fix", "diff", "evidence")}
 
 
 #: Result of a mutant -> its name on the page, and its colour.

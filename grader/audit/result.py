@@ -7,7 +7,7 @@ from typing import Literal, Protocol
 
 from grader.audit.mutants.making import Mutant
 from grader.checking.verdict import Finding, Status
-from grader.problem import Problem
+from groundwork.problem import Problem
 
 #: The share of the mutants that must be caught, of those that differ from the solution.
 LEAST_SCORE = 0.95

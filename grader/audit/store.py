@@ -21,7 +21,6 @@ from typing import Any
 
 from grader.audit.result import Difference, Trial
 from grader.checking.verdict import Finding
-from grader.files import write_if_changed
 from grader.grading.grading import Grading
 from grader.grading.reference import GRADER, cache_folder, digest_of, solution_file, versions
 from grader.grading.running import ScenarioRunner
@@ -30,6 +29,7 @@ from grader.sandbox.program import Middleware
 from grader.scenario.scenario import Scenario
 from grader.submission.reading import Submission
 from grader.workers.pool import Worker
+from groundwork.files import write_if_changed
 
 #: The parts of the grader that decide what a recording contains.
 SPINNING = ("workers", "exercise", "recording", "runner", "sandbox", "scenario", "submission")

@@ -15,13 +15,13 @@ from pathlib import Path
 
 from grader.checking.agreement import disagreements
 from grader.checking.judging import Listed, listed
-from grader.child_process import run_program
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
 from grader.exercise.mistakes import each_mistake
 from grader.exercise.starter import MarkerError, starter
-from grader.problem import Problem
 from grader.scenario.declared import declared
+from groundwork.child_process import run_program
+from groundwork.problem import Problem
 
 #: The time limit (s) for importing an exercise's files.
 TIME_LIMIT_S = 60
@@ -170,4 +170,4 @@ def _of_mistakes(exercise: Exercise, checks: tuple[Listed, ...]) -> Iterator[Exe
 
 if __name__ == "__main__":
     problems = [error.problem for error in faults(Path(sys.argv[1]))]
-    print(json.dumps([(str(one.file), one.line, one.found, one.fix) for one in problems]))
+    print(json.dumps([(str(one.file), one.line, one.problem, one.fix) for one in problems]))

@@ -29,12 +29,12 @@ from grader.classroom.rejudging import difference, rejudge
 from grader.classroom.request import Backend, ClassRequest, host_error
 from grader.classroom.results import ClassGrading, Plan, Results, not_written
 from grader.exercise.exercise import Exercise
-from grader.files import write_if_changed
 from grader.grading.grade import Entry, Grade, Skipped
 from grader.grading.grading import Grading, grading_of
 from grader.report.printable import printable
 from grader.submission.reading import Submission, read
 from grader.workers.pool import WorkerPool
+from groundwork.files import write_if_changed
 
 #: How many files that were skipped for the same reason are named; the overview page names all.
 MOST_NAMED = 5

@@ -13,11 +13,11 @@ from pathlib import Path
 
 from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
-from grader.files import write_if_changed
 from grader.grading.grade import Entry, Student
 from grader.report.as_json import folder_of, results_json
 from grader.report.feedback import shown_checks
 from grader.report.printable import printable
+from groundwork.files import write_if_changed
 
 Cell = str | float | None
 

@@ -15,12 +15,12 @@ from pathlib import Path
 from grader.classroom.request import Graded, host_error
 from grader.classroom.results import grade_key
 from grader.exercise.exercise import ExerciseError
-from grader.files import claim_number
 from grader.grading.grading import Grading
 from grader.grading.running import WorkStealing
 from grader.report.feedback_plot import picture
 from grader.sandbox.program import Middleware
 from grader.submission.reading import Submission
+from groundwork.files import claim_number
 
 #: How many submissions to grade at once per core: grader and program wait for each other, and over Fast DDS both
 #: wait for the network most of the time.

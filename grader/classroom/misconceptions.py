@@ -13,11 +13,11 @@ from dataclasses import dataclass
 
 from grader.checking.verdict import Finding
 from grader.exercise.mistakes import Mistake, mistakes_of
-from grader.files import write_if_changed
 from grader.grading.grade import Entry, Grade
 from grader.grading.grading import Grading
 from grader.grading.reference import cache_folder, reference_key
 from grader.submission.reading import of_source
+from groundwork.files import write_if_changed
 
 
 @dataclass(frozen=True)

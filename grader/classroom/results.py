@@ -17,7 +17,6 @@ from typing import Any
 from grader.classroom.handed_in import HandedIn, Submissions
 from grader.classroom.request import Backend, Graded
 from grader.exercise.exercise import Exercise
-from grader.files import remove_parts, try_lock, write_if_changed
 from grader.grading.grade import Adjustment, Entry
 from grader.grading.grading import Grading
 from grader.grading.reference import digest_of, versions
@@ -27,6 +26,7 @@ from grader.recording.recording import to_json as recordings_to_json
 from grader.report.as_json import STUDENTS, folder_of, from_json, to_json
 from grader.report.feedback import feedback_page
 from grader.submission.reading import Submission
+from groundwork.files import remove_parts, try_lock, write_if_changed
 
 #: In a student's folder: the recordings, as JSON below a line with the key of what they depend on.
 RECORDINGS = "recordings.json.gz"

@@ -16,7 +16,6 @@ from typing import Any
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
-from grader.files import write_if_changed
 from grader.gradescope.run import keep_beside, submission
 from grader.grading.grade import Grade, Options
 from grader.grading.grading import grading_of
@@ -25,6 +24,7 @@ from grader.report.printable import printable
 from grader.sandbox.isolation import Isolation
 from grader.sandbox.program import SandboxUnavailable
 from grader.workers.pool import HostFault, WorkerPool
+from groundwork.files import write_if_changed
 
 
 def main(folder: Path, repository: Path, isolation: str = "") -> int:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
-from grader.problem import Problem
+from groundwork.problem import Problem
 
 Direction = Literal["subscribe", "publish"]
 Reliability = Literal["reliable", "best_effort"]
@@ -188,14 +188,14 @@ class Exercise:
 class ExerciseError(Exception):
     """Raised before any student is graded, when an exercise can't be used as its author wrote it.
 
-    `found` says what is in the file, `fix` what was expected and what to do. `line` counts from 1, and is None if it is
-    about the whole file.
+    `problem` says what is in the file, `fix` what was expected and what to do. `line` counts from 1, and is None if it
+    is about the whole file.
     """
 
-    def __init__(self, file: Path, found: str, fix: str, line: int | None = None) -> None:
-        self.problem = Problem(file, line, found, fix)
-        super().__init__(f"{self.problem.place}: {found}\n    {fix}")
+    def __init__(self, file: Path, problem: str, fix: str, line: int | None = None) -> None:
+        self.problem = Problem(file, line, problem, fix)
+        super().__init__(f"{self.problem.place}: {problem}\n    {fix}")
 
     def __reduce__(self) -> tuple[type[ExerciseError], tuple[Path, str, str, int | None]]:
         """Keep the problem when the error crosses from one process to another."""
-        return ExerciseError, (self.problem.file, self.problem.found, self.problem.fix, self.problem.line)
+        return ExerciseError, (self.problem.file, self.problem.problem, self.problem.fix, self.problem.line)

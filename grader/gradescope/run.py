@@ -20,7 +20,6 @@ from typing import Any
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
-from grader.files import write_if_changed
 from grader.grading.grade import Entry, Options, Student
 from grader.grading.grading import grading_of
 from grader.report.as_json import gradescope_results, no_score
@@ -28,6 +27,7 @@ from grader.sandbox.isolation import Isolation
 from grader.sandbox.program import SandboxUnavailable
 from grader.submission.reading import Submission, read
 from grader.workers.pool import HostFault, WorkerPool
+from groundwork.files import write_if_changed
 
 
 def keep_beside(exercise: Path) -> None:

@@ -13,11 +13,11 @@ from pathlib import Path
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.starter import MarkerError, starter
-from grader.files import cached, write_if_changed
 from grader.grading.running import ScenarioRunner
 from grader.recording.recording import Recording, from_json, to_json
 from grader.sandbox.program import Middleware
 from grader.submission.reading import of_source
+from groundwork.files import cached, write_if_changed
 from interface_compiler import activation
 from rmw_lockstep.library import SOURCES, sources
 

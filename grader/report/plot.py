@@ -12,10 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from grader.exercise.exercise import Exercise
-from grader.files import write_if_changed
 from grader.grading.grade import Grade
 from grader.report.feedback_plot import Curve, Point, Quantity, curves, drawn_quantity
 from grader.report.printable import printable
+from groundwork.files import write_if_changed
 
 #: The same picture each time: no date in it, and identifiers made from a fixed salt.
 SETTINGS: dict[Any, Any] = {"svg.hashsalt": "spinbook", "svg.fonttype": "none", "font.family": "sans-serif"}

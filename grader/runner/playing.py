@@ -61,7 +61,7 @@ class RunningWorld:
             try:
                 check_fields(message_class(type_name), fields, type_name)
             except Invalid as error:
-                raise AuthorFault(f"{self._world.code.name}.state(), {topic}: {error.found}. {error.fix}") from None
+                raise AuthorFault(f"{self._world.code.name}.state(), {topic}: {error.problem}. {error.fix}") from None
         return state
 
     def _ask(self, act: Callable[[], object]) -> None:

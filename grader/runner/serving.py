@@ -96,7 +96,7 @@ class ServiceServer:
             if reply.fields is not None:
                 check_fields(self._kind.Response, reply.fields, f"{self._declared.type}_Response")
         except Invalid as error:
-            raise AuthorFault(f"{self._place(answer, request)}: {error.found}. {error.fix}") from None
+            raise AuthorFault(f"{self._place(answer, request)}: {error.problem}. {error.fix}") from None
         except Exception as error:
             raise AuthorFault(f"{self._place(answer, request)}: {type(error).__name__}: {error}") from None
         return reply

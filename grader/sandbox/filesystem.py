@@ -11,6 +11,7 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import Literal
 
+import groundwork
 import rmw_lockstep
 from grader.sandbox.middleware import library_folder
 from grader.sandbox.program import HUB, SUBMISSION, Paths, Program
@@ -207,7 +208,8 @@ def interpreter() -> tuple[Path, ...]:
 def own_packages() -> tuple[Path, ...]:
     """Return this package and Spinbook's others: if installed, they are among the libraries that a sandbox shows."""
     grader = Path(__file__).resolve().parents[1]
-    return (grader, grader.with_name("spinbook"), Path(rmw_lockstep.__file__).resolve().parent)
+    files = (groundwork.__file__, rmw_lockstep.__file__)
+    return (grader, grader.with_name("spinbook"), *(Path(file).resolve().parent for file in files))
 
 
 def _masks(hidden: Iterable[Path], shown: Iterable[Path]) -> Iterator[Path]:

@@ -19,9 +19,9 @@ from enum import Enum
 from functools import cache
 from pathlib import Path
 
-from grader.files import cached, write_if_changed
 from grader.sandbox import filesystem
 from grader.sandbox.program import SandboxUnavailable
+from groundwork.files import cached, write_if_changed
 
 _TRIAL_S = 30.0
 

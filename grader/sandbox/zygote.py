@@ -102,7 +102,7 @@ def _note_modules() -> None:
 
 
 def _is_own(module: str) -> bool:
-    return module.partition(".")[0] in ("grader", "rmw_lockstep")
+    return module.partition(".")[0] in ("grader", "groundwork", "rmw_lockstep")
 
 
 def _modules_of_this_fork() -> list[str]:

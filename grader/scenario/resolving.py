@@ -130,7 +130,7 @@ class Resolver:
         try:
             check_fields(kind, fields, type_name)
         except Invalid as error:
-            self._fault(line, f"{name}: {error.found}", error.fix)
+            self._fault(line, f"{name}: {error.problem}", error.fix)
 
     # --- messages and steps
 

@@ -16,9 +16,9 @@ _TEXT = re.compile(r"w?string(<(?P<most>\d+)>)?")
 class Invalid(ValueError):
     """Raised for a value that does not fit; `field` is its full name, such as linear.x."""
 
-    def __init__(self, field: str, found: str, fix: str) -> None:
-        super().__init__(f"{field}: {found}")
-        self.field, self.found, self.fix = field, found, fix
+    def __init__(self, field: str, problem: str, fix: str) -> None:
+        super().__init__(f"{field}: {problem}")
+        self.field, self.problem, self.fix = field, problem, fix
 
 
 def check_fields(kind: Any, fields: Fields, name: str, at: str = "") -> None:

@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from grader.exercise.exercise import Exercise
-from grader.files import claim_number
 from grader.recording.recording import Recording
 from grader.runner.student import Task
 from grader.sandbox.isolation import Isolation
 from grader.sandbox.namespaces import enter
 from grader.sandbox.program import Limits, Middleware, Program
 from grader.scenario.scenario import Scenario
+from groundwork.files import claim_number
 
 if TYPE_CHECKING:
     from grader.checking.run import Run

@@ -14,6 +14,7 @@ import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
+import groundwork
 import interface_compiler
 import rcl_python
 import rmw_lockstep
@@ -110,8 +111,10 @@ def check_archive(exercises: Mapping[str, bytes]) -> bytes:
 def _used_outside_checks(grader: Path) -> dict[str, bytes]:
     """Return the grader's files that every process of a page may need: hidden modules, messages as fields, problems."""
     empty = {f"grader/{name}": b"" for name in ("__init__.py", "runner/__init__.py")}
-    used = ("preloaded.py", "problem.py", "runner/message.py")
-    return empty | {f"grader/{name}": (grader / name).read_bytes() for name in used}
+    used = {f"grader/{name}": (grader / name).read_bytes() for name in ("preloaded.py", "runner/message.py")}
+    shared = Path(groundwork.__file__).parent
+    shown = {f"groundwork/{name}": (shared / name).read_bytes() for name in ("__init__.py", "problem.py")}
+    return empty | used | shown
 
 
 def _needed(name: str) -> bool:

@@ -12,12 +12,13 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bars
 
+from groundwork.problem import Problem
 from spinbook.build.execution import DEADLINE_S, Executed, Job, Progress, execute
 from spinbook.build.notebooks import Built, build_notebooks
 from spinbook.course.course import FILE, Course, find_course
 from spinbook.course.obstacles import ranked
 from spinbook.interfaces.compiling import compile_course
-from spinbook.problem import Problem, SpinbookError
+from spinbook.problem import SpinbookError
 
 #: Nodes wait more than they compute: two notebooks per core keep a machine busy and responsive.
 _AT_ONCE = 2 * (os.cpu_count() or 1)

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import grader
-from grader.files import write_if_changed
+from groundwork.files import write_if_changed
 from interface_compiler import activation
 from spinbook.build.digest import code_digest, digest, folders_digest, versions
 from spinbook.kernel.process import KeptProcess

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from grader.exercise.exercise import ExerciseError
-from grader.files import write_if_changed
+from groundwork.files import write_if_changed
+from groundwork.problem import Problem, Severity
 from spinbook.build.digest import code_digest, digest, files_digest
 from spinbook.build.notebook import notebook_json
 from spinbook.chapter.labels import may_refer
@@ -17,7 +18,6 @@ from spinbook.chapter.read import Surroundings, forget_chapters, read_chapter
 from spinbook.chapters import surroundings
 from spinbook.course.course import Course
 from spinbook.course.obstacles import strict
-from spinbook.problem import Problem, Severity
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,7 @@ def _plain(problem: Problem) -> dict[str, Any]:
     return {
         "file": problem.file.as_posix(),
         "line": problem.line,
-        "found": problem.found,
+        "problem": problem.problem,
         "fix": problem.fix,
         "severity": problem.severity.value,
         "group": problem.group,
@@ -146,5 +146,5 @@ def _plain(problem: Problem) -> dict[str, Any]:
 def _problem(plain: Mapping[str, Any]) -> Problem:
     severity = Severity(plain["severity"])
     return Problem(
-        Path(plain["file"]), plain["line"], plain["found"], plain["fix"], severity, plain["group"], plain["alone"]
+        Path(plain["file"]), plain["line"], plain["problem"], plain["fix"], severity, plain["group"], plain["alone"]
     )

@@ -25,7 +25,7 @@ from jupyter_client.manager import AsyncKernelManager
 from nbclient import NotebookClient
 from nbclient.exceptions import DeadKernelError
 
-from grader.files import write_if_changed
+from groundwork.files import write_if_changed
 from spinbook.graph.model import End, NodeGraph, SeenNode, Topic
 from spinbook.kernel.environment import DOMAIN_NOTE, EXECUTING, for_domain
 

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 
+from groundwork.problem import Problem, Severity
 from spinbook.chapter.attributes import not_included
 from spinbook.chapter.fence import ATTRIBUTES, Fence, interface_path, interface_title, is_someone_elses
 from spinbook.chapter.launch_files import is_package_file, unsupported_in_launch_file
 from spinbook.chapter.python_code import CodeError, PythonCode, has_magics, inspect, programs_in_magics
 from spinbook.chapter.terminal import Command, CommandKind, NotRunnable, looks_like_shell, read_commands
-from spinbook.problem import Problem, Severity
 
 #: Programs that a chapter never runs here, wherever they are named, because they change the machine or download
 #: something.

@@ -21,10 +21,10 @@ from markdown_it.token import Token
 from mdit_py_plugins.anchors.index import slugify, unique_slug
 from mdit_py_plugins.myst_role import myst_role_plugin
 
+from groundwork.problem import Problem, Severity
 from spinbook.chapter.block import Block, Kind
 from spinbook.chapter.files import is_elsewhere, locate
 from spinbook.chapter.links import places_of, rule_of
-from spinbook.problem import Problem, Severity
 
 _ROLES = frozenset({"ref", "doc", "numref", "any", "std:ref", "std:doc", "std:numref"})
 #: What a role says of its target: `words <target>`.

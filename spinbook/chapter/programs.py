@@ -7,12 +7,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from groundwork.problem import Problem, Severity
 from spinbook.chapter.classify import CellKind, Classified, node_name
 from spinbook.chapter.imports import Missing, missing_imports
 from spinbook.chapter.joining import Joined, join
 from spinbook.chapter.node_classes import needs_arguments
 from spinbook.chapter.python_code import PythonCode, inspect
-from spinbook.problem import Problem, Severity
 
 
 @dataclass

@@ -10,6 +10,7 @@ from pathlib import Path
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
+from groundwork.problem import Problem, Severity
 from spinbook.chapter.block import Block, Kind, Line
 from spinbook.chapter.blocks import read_blocks
 from spinbook.chapter.chapter import Chapter, StaticFence, make_cells
@@ -23,7 +24,6 @@ from spinbook.chapter.own_packages import OwnPackages, named_files, own_packages
 from spinbook.chapter.programs import Programs
 from spinbook.chapter.shells import Shells
 from spinbook.chapter.source import Source, read_source
-from spinbook.problem import Problem, Severity
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> Reading:
     sections = {heading.slug: heading for heading in headings(parsed.blocks)}
     references = References(root, file, {**surroundings.labels, **own}, surroundings.titles, sections)
     problems += [*found, *title_problems, *_references(parsed, surroundings, root, references)]
-    problems.sort(key=lambda problem: (problem.line or 0, problem.found))
+    problems.sort(key=lambda problem: (problem.line or 0, problem.problem))
     by_line = {item.fence.line: item for item in classified}
     pieces = _layout(by_line, surroundings).pieces(parsed.blocks)
     cells = tuple(

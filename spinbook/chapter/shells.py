@@ -10,13 +10,13 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from grader.recording.types import OWN_SERVICES
+from groundwork.problem import Problem, Severity
 from interface_compiler import prefixes
 from spinbook.chapter.classify import CellKind, Classified
 from spinbook.chapter.imports import interfaces_of, own_names, remedy, ros_packages
 from spinbook.chapter.launch_files import launched_nodes
 from spinbook.chapter.own_packages import OwnPackages, created_package
 from spinbook.chapter.terminal import Command, CommandKind
-from spinbook.problem import Problem, Severity
 from spinbook.ros2 import executables
 
 #: Commands that fail for a name that does not exist: noun -> verbs.

@@ -11,7 +11,7 @@ from typing import Any
 
 import yaml
 
-from spinbook.problem import Problem, Severity
+from groundwork.problem import Problem, Severity
 
 if sys.version_info >= (3, 11):
     import tomllib

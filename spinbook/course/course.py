@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from spinbook.problem import Problem, SpinbookError
+from groundwork.problem import Problem
+from spinbook.problem import SpinbookError
 
 if sys.version_info >= (3, 11):
     import tomllib

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from spinbook.problem import Problem, Severity
+from groundwork.problem import Problem, Severity
 
 #: The words for each kind of cause: group -> singular and plural. Any other group is a package.
 _WORDS = {

@@ -18,7 +18,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from grader.child_process import run_program
+from groundwork.child_process import run_program
 
 
 class State(str, Enum):

@@ -13,7 +13,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from grader.child_process import run_program
+from groundwork.child_process import run_program
 from interface_compiler import prefixes, shipped, toolchain
 from spinbook.doctor import python_build
 from spinbook.doctor.diagnosis import Finding, missing, ok, warning

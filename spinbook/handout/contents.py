@@ -15,9 +15,10 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
-from grader.files import write_if_changed
 from grader.workers.jobs import ListJob
 from grader.workers.pool import HostFault, WorkerPool
+from groundwork.files import write_if_changed
+from groundwork.problem import Problem
 from interface_compiler.wheel import zipped
 from spinbook import __version__
 from spinbook.build.notebooks import build_notebooks
@@ -26,7 +27,7 @@ from spinbook.handout.leaks import Secret, authors_code, located, secrets_of_all
 from spinbook.handout.student_copy import exercise_files, for_students
 from spinbook.handout.wheels import interface_wheels, requirement, spinbook_wheel
 from spinbook.interfaces.compiling import compile_course
-from spinbook.problem import Problem, SpinbookError
+from spinbook.problem import SpinbookError
 from spinbook.update.handout import base_files
 
 #: What must be the same for students as for the instructor who made the handout, so that checks give the same results.

@@ -14,14 +14,15 @@ from importlib import metadata
 from pathlib import Path
 
 import spinbook
-from grader.files import cached, write_if_changed
+from groundwork.files import cached, write_if_changed
+from groundwork.problem import Problem
 from interface_compiler import shipped, store
 from interface_compiler.checks import dependencies
 from interface_compiler.wheel import record, wheel, wheel_platform, zipped
 from spinbook.build.digest import digest, files_digest
 from spinbook.course.course import Course
 from spinbook.interfaces.compiling import FOLDER, collect, compile_course
-from spinbook.problem import Problem, SpinbookError
+from spinbook.problem import SpinbookError
 
 # A wheel is a zip whose RECORD lists every file with its hash (PEP 427, and "Recording installed projects").
 
@@ -31,7 +32,7 @@ FOR_AUTHORS = ("spinbook/new/template/", "spinbook/new/kinds/")
 
 _BUILD = "import sys; from setuptools.build_meta import build_wheel; print(build_wheel(sys.argv[1]))"
 #: Everything that the commands import, as pyproject.toml lists it.
-_PACKAGES = ("spinbook", "grader", "interface_compiler", "rcl_python", "rmw_lockstep")
+_PACKAGES = ("spinbook", "grader", "groundwork", "interface_compiler", "rcl_python", "rmw_lockstep")
 _SOURCES = ("pyproject.toml", "README.md", "LICENSE", "spinbook", "grader", "packages")
 
 

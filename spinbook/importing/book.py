@@ -11,9 +11,10 @@ from typing import Any
 import yaml
 from markdown_it import MarkdownIt
 
+from groundwork.problem import Problem
 from spinbook.course.course import FILE
 from spinbook.importing.pages import Pages
-from spinbook.problem import Problem, SpinbookError
+from spinbook.problem import SpinbookError
 
 _TOKEN = re.compile(
     r"""\s+|//[^\n]*|/\*.*?\*/|(?P<string>"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|`(?:\\.|[^`\\])*`)|(?P<mark>[{}\[\],:])"""

@@ -13,7 +13,8 @@ import click
 from jinja2 import Environment, PackageLoader, select_autoescape
 from markupsafe import Markup, escape
 
-from grader.files import write_if_changed
+from groundwork.files import write_if_changed
+from groundwork.problem import Problem
 from spinbook.build.notebooks import Built, build_notebooks
 from spinbook.chapter.chapter import Chapter
 from spinbook.chapter.classify import CellKind
@@ -21,7 +22,7 @@ from spinbook.chapters import read_all
 from spinbook.course.course import FILE, Course, read_course
 from spinbook.course.obstacles import by_itself, obstacles, ranked
 from spinbook.importing.book import Book, read_book
-from spinbook.problem import Problem, SpinbookError
+from spinbook.problem import SpinbookError
 
 _RUNS = (CellKind.NODE, CellKind.SNIPPET, CellKind.PART, CellKind.SHELL, CellKind.INTERFACE, CellKind.FILE)
 _PLACES = 12

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from groundwork.problem import Problem
 from interface_compiler import activation, prefixes, store
 from interface_compiler.checks import check
 from interface_compiler.definition import CompileError, Definition, DefinitionError, Fault, by_package, read_folder
@@ -15,7 +16,7 @@ from interface_compiler.store import Compiled
 from spinbook.chapter.fence import interface_package, interface_path, is_someone_elses
 from spinbook.chapter.read import fences_of
 from spinbook.course.course import FILE, Course
-from spinbook.problem import Problem, SpinbookError
+from spinbook.problem import SpinbookError
 
 #: The course's folder with definitions: interfaces/PACKAGE/{msg,srv,action}/.
 FOLDER = "interfaces"
@@ -58,7 +59,7 @@ def checked(course: Course) -> Collected:
 
 def problems(faults: Iterable[Fault]) -> Iterator[Problem]:
     """What the compiler says of definitions, as problems of an author's files."""
-    return (Problem(fault.file, fault.line, fault.found, fault.fix) for fault in faults)
+    return (Problem(fault.file, fault.line, fault.problem, fault.fix) for fault in faults)
 
 
 def _in_chapters(course: Course) -> Iterator[Definition]:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from grader.files import claim_number
+from groundwork.files import claim_number
 from interface_compiler import prefixes
 
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")

@@ -13,9 +13,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from grader.exercise.exercise import Exercise
-from grader.files import write_if_changed
+from groundwork.files import write_if_changed
+from groundwork.problem import Problem
 from spinbook.new.skeleton import skeleton
-from spinbook.problem import Problem, SpinbookError
+from spinbook.problem import SpinbookError
 
 #: A whole course, whose only exercise is the template of a filter.
 COURSE = Path(__file__).parent / "template"

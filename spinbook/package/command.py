@@ -11,6 +11,7 @@ from pathlib import Path
 
 import click
 
+from groundwork.problem import Problem
 from interface_compiler.definition import Definition
 from spinbook.chapter.chapter import Cell
 from spinbook.chapter.fence import interface_path
@@ -21,7 +22,7 @@ from spinbook.course.course import FILE, Course, Package, find_course
 from spinbook.interfaces.compiling import checked
 from spinbook.package.files import Module
 from spinbook.package.write import write_interface_packages, write_package
-from spinbook.problem import Problem, SpinbookError
+from spinbook.problem import SpinbookError
 
 
 @dataclass

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from grader.files import write_if_changed
+from groundwork.files import write_if_changed
 from interface_compiler.definition import KINDS, Definition, by_package, read_folder
 from spinbook.course.course import Package
 from spinbook.package.files import Module, interface_package_files, package_files

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from grader.files import write_if_changed
+from groundwork.files import write_if_changed
+from groundwork.problem import Problem
 from spinbook.browser.files import pyodide_folder
 from spinbook.build.digest import code_digest, digest, files_digest, versions
 from spinbook.course.course import FILE, Course
-from spinbook.problem import Problem
 from spinbook.site import page as names
 from spinbook.site.page import repository_of
 

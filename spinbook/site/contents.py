@@ -15,6 +15,7 @@ import nbformat
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
 from grader.exercise.starter import starter
+from groundwork.problem import Problem, Severity
 from spinbook.browser.files import can_run, public_parts, run_files
 from spinbook.chapter.chapter import Chapter
 from spinbook.chapter.classify import CellKind
@@ -23,7 +24,7 @@ from spinbook.chapter.read import headings_of
 from spinbook.chapters import read_all
 from spinbook.course.course import Course
 from spinbook.handout.wheels import interface_wheels, package_of
-from spinbook.problem import Problem, Severity, SpinbookError
+from spinbook.problem import SpinbookError
 from spinbook.site import page as names
 from spinbook.site.chapter_page import ExecutedNotebook, ExerciseCard, as_text, chapter_notebook, stills
 from spinbook.site.drawing import CanNotDrawError, Picture, draw, drawing_files, drawing_html

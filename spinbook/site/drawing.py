@@ -23,8 +23,8 @@ from typing import Any
 
 from PIL import Image
 
-from grader.child_process import run_program
-from grader.files import write_if_changed
+from groundwork.child_process import run_program
+from groundwork.files import write_if_changed
 from spinbook.build.digest import digest
 
 # Mermaid comes from npm's registry, in one version and with one digest, and runs in a Chromium without a window.

@@ -19,7 +19,7 @@ from sphinx.transforms import SphinxTransform
 from sphinx.util import logging
 from sphinx.writers.html5 import HTML5Translator
 
-from grader.files import write_if_changed
+from groundwork.files import write_if_changed
 from spinbook.site.log_lexer import LogLexer
 from spinbook.site.page import FRAME_SUFFIX, GLOSSARY, HOME
 

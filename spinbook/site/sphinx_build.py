@@ -15,11 +15,12 @@ from sphinx.errors import SphinxError
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
-from grader.files import write_if_changed
+from groundwork.files import write_if_changed
+from groundwork.problem import Problem, Severity
 from spinbook.browser.files import FOLDER, pyodide_files, pyodide_folder
 from spinbook.course.course import Course
 from spinbook.handout.leaks import authors_code, leaks, secrets_of_all
-from spinbook.problem import Problem, Severity, SpinbookError
+from spinbook.problem import SpinbookError
 from spinbook.site.contents import Contents
 from spinbook.site.extension import NAME
 from spinbook.site.page import FRAME_SUFFIX, HOME, SEARCH

@@ -16,7 +16,8 @@ from grader.report.terminal import show
 from grader.sandbox.program import SandboxUnavailable
 from grader.submission.reading import Submission
 from grader.workers.pool import HostFault
-from spinbook.problem import Problem, SpinbookError
+from groundwork.problem import Problem
+from spinbook.problem import SpinbookError
 from spinbook.submit import hand_in as names
 from spinbook.submit.hand_in import (
     Candidate,

@@ -15,15 +15,16 @@ import click
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import NoExercise, find, load
 from grader.exercise.starter import starter
-from grader.files import write_if_changed
 from grader.grading.grade import Grade
 from grader.grading.grading import grade_submission
 from grader.grading.reference import versions
 from grader.sandbox.middleware import choose_middleware
 from grader.submission.reading import NoCell, NoSubmission, Submission, cells_of, read
 from grader.submission.upload import pack
+from groundwork.files import write_if_changed
+from groundwork.problem import Problem
 from spinbook import __version__
-from spinbook.problem import Problem, SpinbookError
+from spinbook.problem import SpinbookError
 from spinbook.update.handout import BASE
 
 
@@ -116,7 +117,7 @@ def self_check(exercise: Exercise, submission: Submission) -> SelfCheck:
     except KeyboardInterrupt:
         return SelfCheck(None, "It was interrupted.")
     except ExerciseError as error:
-        return SelfCheck(None, f"The checks can't run here: {error.problem.found} ({error.problem.file.name}).")
+        return SelfCheck(None, f"The checks can't run here: {error.problem.problem} ({error.problem.file.name}).")
     except Exception as error:
         return SelfCheck(None, f"{type(error).__name__}: {error}")
     if grade.outcome == "host-error":

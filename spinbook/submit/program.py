@@ -12,11 +12,11 @@ from pathlib import Path
 
 from grader.exercise.exercise import ExerciseError
 from grader.exercise.loading import load
-from grader.files import write_if_changed
 from grader.grading.grade import Grade
 from grader.grading.grading import grade_submission
 from grader.submission.reading import of_source
 from grader.workers.pool import HostFault
+from groundwork.files import write_if_changed
 
 
 def main() -> None:

@@ -25,7 +25,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from std_srvs.srv import Trigger
 
-from grader.files import write_if_changed
+from groundwork.files import write_if_changed
 from spinbook.turtlesim.events import DT, PIXELS_PER_UNIT, SIDE, Pen
 from spinbook.turtlesim.messages import Pose
 from spinbook.turtlesim.moving import moving_svg, turtle_shapes

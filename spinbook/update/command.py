@@ -8,7 +8,8 @@ from pathlib import Path
 
 import click
 
-from spinbook.problem import Problem, SpinbookError
+from groundwork.problem import Problem
+from spinbook.problem import SpinbookError
 from spinbook.update.handout import BASE, read_handout, refuse_another_course
 from spinbook.update.merging import MergeReport
 from spinbook.update.plan import Plan, carry_out, plan

@@ -10,7 +10,8 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path, PurePosixPath
 
 from grader.submission.upload import RECORD
-from spinbook.problem import Problem, SpinbookError
+from groundwork.problem import Problem
+from spinbook.problem import SpinbookError
 
 #: Where it is, in the handout and in the student's folder.
 BASE = PurePosixPath(".spinbook/base")

@@ -12,7 +12,7 @@ from datetime import datetime
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from grader.files import write_if_changed
+from groundwork.files import write_if_changed
 from spinbook.update.handout import BASE, Files, is_remembered
 from spinbook.update.merging import Cell, MergeReport, content, merged, merged_without_base
 

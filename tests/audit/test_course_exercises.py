@@ -27,7 +27,7 @@ ALWAYS = {"joint_velocity", "speed_limit"}
 
 def to_fix(result: Audit) -> str:
     """Return what there is to fix, as text."""
-    return "\n".join(f"{problem.found}\n    {problem.place}\n    {problem.fix}" for problem in result.problems)
+    return "\n".join(f"{problem.problem}\n    {problem.place}\n    {problem.fix}" for problem in result.problems)
 
 
 @pytest.mark.timeout(900)

@@ -43,7 +43,7 @@ node.declare_parameter('speed', Parameter.Type.DOUBLE)
 def reported(small: SmallExercise) -> list[str]:
     """What there is to fix, with the file's name and the line."""
     problems = [error.problem for error in disagreements(load(small.folder))]
-    return [f"{problem.file.name}:{problem.line}: {problem.found}" for problem in problems]
+    return [f"{problem.file.name}:{problem.line}: {problem.problem}" for problem in problems]
 
 
 def test_what_a_program_creates_is_read_as_far_as_it_is_literal() -> None:
@@ -128,7 +128,7 @@ def test_parameters_are_compared_by_type_and_default(small: SmallExercise) -> No
 
 def test_lint_tells_it(small: SmallExercise) -> None:
     small.change(SOLUTION, "'/doubled'", "'/double'")
-    assert any("creates a publisher on /double," in problem.found for problem in problems_of(small.folder))
+    assert any("creates a publisher on /double," in problem.problem for problem in problems_of(small.folder))
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)

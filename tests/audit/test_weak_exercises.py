@@ -16,7 +16,7 @@ HIDDEN = "exercises/doubler/hidden_checks.py"
 
 def advice(result: Audit, about: str) -> list[str]:
     """Return what the audit found about a check, a mistake or a mutant."""
-    return [problem.found for problem in result.problems if problem.about == about]
+    return [problem.problem for problem in result.problems if problem.about == about]
 
 
 def test_a_sound_exercise_has_nothing_to_fix(small: SmallExercise, audited: Auditing) -> None:
@@ -105,10 +105,10 @@ def test_what_an_exercise_has_to_tell_and_what_it_may_not(small: SmallExercise, 
 def test_a_check_that_breaks_on_what_a_node_publishes(small: SmallExercise, audited: Auditing) -> None:
     # Only with the mistake any_number are there five answers to five numbers.
     small.change(HIDDEN, "    negative.must_be_silent()\n", "    [2, 0, 6][len(negative.received) - 1]\n")
-    problems = [problem for problem in audited(small).problems if "breaks on what" in problem.found]
+    problems = [problem for problem in audited(small).problems if "breaks on what" in problem.problem]
     assert [problem.about for problem in problems] == ["test_nothing_below_zero"]
-    assert "mistakes/any_number" in problems[0].found
-    assert re.search(r"hidden_checks\.py:\d+: IndexError", problems[0].found)
+    assert "mistakes/any_number" in problems[0].problem
+    assert re.search(r"hidden_checks\.py:\d+: IndexError", problems[0].problem)
 
 
 def test_two_checks_that_always_fail_together(small: SmallExercise, audited: Auditing) -> None:

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from groundwork.problem import Severity
 from spinbook.chapter.chapter import Chapter
 from spinbook.chapter.classify import CellKind
 from spinbook.chapter.read import Surroundings, read_chapter
-from spinbook.problem import Severity
 
 NODE = "import rclpy\nfrom rclpy.node import Node\nrclpy.init()\nnode = Node('talker')\nrclpy.spin(node)\n"
 

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from fences import GUARD, IMPORTS, MAIN, TALKER, cells, read, reading
 
+from groundwork.problem import Severity
 from spinbook.chapter.classify import CellKind
 from spinbook.chapter.python_code import inspect
-from spinbook.problem import Severity
 
 HEADER = "class Talker(Node):\n"
 INIT = "    def __init__(self):\n        super().__init__('talker')\n        self.create_timer(1.0, self.tick)\n"
@@ -57,7 +57,7 @@ def test_a_template_whose_init_does_not_call_nodes_is_shown_with_line_and_remedy
 
     assert cells(result.chapter) == []
     (problem,) = [item for item in result.problems if item.severity is Severity.NOT_RUN]
-    assert (problem.line, "super().__init__" in problem.found) == (8, True)
+    assert (problem.line, "super().__init__" in problem.problem) == (8, True)
 
 
 CLIENT = f"import sys\n{IMPORTS}{TALKER}{MAIN.replace('args=args', 'args=[sys.argv[1], sys.argv[2]]')}{GUARD}"

@@ -180,7 +180,7 @@ def test_unknown_names_stay_as_text_and_are_reported_once(write: Callable[..., C
     course = write(broken=BROKEN)
     (reading,) = read_all(course)
 
-    assert [(problem.line, problem.found) for problem in reading.problems] == [
+    assert [(problem.line, problem.problem) for problem in reading.problems] == [
         (6, "a reference leads to the label `TeamRepo`, which no chapter has."),
         (6, "a reference leads to the label `nowhere`, which no chapter has."),
         (7, "a link leads to `no-such.md`, and there is no such file."),
@@ -196,4 +196,6 @@ def test_unknown_names_stay_as_text_and_are_reported_once(write: Callable[..., C
 def test_a_course_without_labels_keeps_its_links(write: Callable[..., Course]) -> None:
     (reading,) = read_all(write(plain="# Plain\n\n[a page](TeamRepo)\n"))
 
-    assert [problem.found for problem in reading.problems] == ["a link leads to `TeamRepo`, and there is no such file."]
+    assert [problem.problem for problem in reading.problems] == [
+        "a link leads to `TeamRepo`, and there is no such file."
+    ]

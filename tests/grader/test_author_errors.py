@@ -10,8 +10,8 @@ import pytest
 
 from grader.exercise import ExerciseError, load
 from grader.grading import Options, grading_of
-from grader.problem import Problem
 from grader.workers import WorkerPool
+from groundwork.problem import Problem
 
 ROOT = Path(__file__).parents[2]
 
@@ -81,7 +81,7 @@ def test_what_is_wrong_is_reported_with_its_file(
     change(course / "exercises" / "small" / file, old, new)
     problem = problem_of(course, workers)
     assert problem.file.name == file
-    assert re.search(message, problem.found), problem.found
+    assert re.search(message, problem.problem), problem.problem
     assert problem.fix
 
 
@@ -101,5 +101,5 @@ def test_a_solution_that_crashes(course: Path, workers: WorkerPool) -> None:
     change(course / "solutions" / "small" / "solution.py", "if math.isfinite(position)", "if math.no(position)")
     problem = problem_of(course, workers)
     assert problem.file.name == "solution.py"
-    assert "AttributeError" in problem.found
+    assert "AttributeError" in problem.problem
     assert problem.line

@@ -140,7 +140,7 @@ def test_a_step_that_can_not_be_is_reported_with_its_line(tmp_path: Path, step: 
     with pytest.raises(ExerciseError) as caught:
         scenario_of(tmp_path, step)
     assert (caught.value.problem.file.name, caught.value.problem.line) == ("scenarios.py", STEP_LINE)
-    assert re.search(message, f"{caught.value.problem.found} {caught.value.problem.fix}"), str(caught.value)
+    assert re.search(message, f"{caught.value.problem.problem} {caught.value.problem.fix}"), str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -166,7 +166,7 @@ def test_so_is_what_is_wrong_with_a_peer(tmp_path: Path, more: str, message: str
     with pytest.raises(ExerciseError) as caught:
         scenario_of(tmp_path, more=more)
     assert caught.value.problem.line
-    assert re.search(message, f"{caught.value.problem.found} {caught.value.problem.fix}"), str(caught.value)
+    assert re.search(message, f"{caught.value.problem.problem} {caught.value.problem.fix}"), str(caught.value)
 
 
 def test_one_name_for_two_scenarios_is_reported_with_the_line_of_the_second(tmp_path: Path) -> None:
@@ -285,4 +285,4 @@ def test_what_is_wrong_in_exercise_toml_is_reported_with_its_line(
     with pytest.raises(ExerciseError) as caught:
         load(exercise_in(tmp_path, toml=TOML.replace(old, new, 1)))
     assert (caught.value.problem.file.name, caught.value.problem.line) == ("exercise.toml", line), str(caught.value)
-    assert re.search(message, f"{caught.value.problem.found} {caught.value.problem.fix}"), str(caught.value)
+    assert re.search(message, f"{caught.value.problem.problem} {caught.value.problem.fix}"), str(caught.value)

@@ -11,9 +11,9 @@ from grader.report.as_json import STUDENTS
 
 KILLED = """
 import os, pathlib, signal, sys
-import grader.files
+import groundwork.files
 os.replace = lambda old, new: os.kill(os.getpid(), signal.SIGKILL)
-grader.files.write_if_changed(pathlib.Path(sys.argv[1]), "half")
+groundwork.files.write_if_changed(pathlib.Path(sys.argv[1]), "half")
 """
 
 

@@ -14,6 +14,7 @@ from click.testing import CliRunner, Result
 from prepared_python import run_prepared
 
 import grader
+import groundwork
 import interface_compiler
 import rcl_python
 import rmw_lockstep
@@ -180,7 +181,7 @@ def test_an_audit_of_the_untouched_course_has_nothing_to_fix(pristine: Path, tmp
 
 def test_a_spinbook_that_came_with_a_handout_says_that_it_has_no_templates(tmp_path: Path) -> None:
     without = shutil.ignore_patterns("template", "kinds", "__pycache__")
-    for package in (spinbook, grader, interface_compiler, rmw_lockstep, rcl_python):
+    for package in (spinbook, grader, groundwork, interface_compiler, rmw_lockstep, rcl_python):
         folder = Path(package.__path__[0])
         shutil.copytree(folder, tmp_path / folder.name, ignore=without)
 

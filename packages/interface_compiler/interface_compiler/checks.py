@@ -32,7 +32,7 @@ def check(definitions: Sequence[Definition], known: Known) -> list[Fault]:
     faults += _same_names(definitions)
     faults += _circles(readings)
     faults += _package_circles(definitions, readings)
-    return sorted(faults, key=lambda fault: (str(fault.file), fault.line or 0, fault.found))
+    return sorted(faults, key=lambda fault: (str(fault.file), fault.line or 0, fault.problem))
 
 
 def dependencies(definitions: Sequence[Definition]) -> dict[str, set[str]]:

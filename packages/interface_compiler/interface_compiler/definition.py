@@ -47,12 +47,12 @@ class Fault:
 
     file: Path
     line: int | None
-    found: str
+    problem: str
     fix: str
 
     def __str__(self) -> str:
         place = f"{self.file}:{self.line}" if self.line is not None else f"{self.file}"
-        return f"{place}: {self.found}\n    {self.fix}"
+        return f"{place}: {self.problem}\n    {self.fix}"
 
 
 class DefinitionError(Exception):

@@ -71,7 +71,7 @@ def test_a_wrong_line_is_reported_with_its_number_and_the_remedy(line: str, foun
     (fault,) = faults(definition("msg/Thing.msg", f"# A thing\nint32 fine\n{line}\n"))
 
     assert (str(fault.file), fault.line) == ("interfaces/robot_interfaces/msg/Thing.msg", 3)
-    assert found in fault.found
+    assert found in fault.problem
     assert fix in fault.fix
 
 
@@ -81,7 +81,7 @@ def test_a_constant_that_is_the_same_in_two_parts_needs_a_comment() -> None:
     (fault,) = faults(definition("action/Go.action", text.format("")))
 
     assert fault.line == 6
-    assert "`NONE=0` is in line 3 too" in fault.found
+    assert "`NONE=0` is in line 3 too" in fault.problem
     assert faults(definition("action/Go.action", text.format(" # nothing yet"))) == []
 
 
@@ -89,7 +89,7 @@ def test_a_field_twice_names_the_first_ones_line() -> None:
     (fault,) = faults(definition("msg/Thing.msg", "int32 a\nint32 b\n\nfloat64 a\n"))
 
     assert fault.line == 4
-    assert "`a` is already taken in line 1" in fault.found
+    assert "`a` is already taken in line 1" in fault.problem
 
 
 def test_request_and_response_may_have_the_same_field() -> None:
@@ -107,7 +107,7 @@ def test_request_and_response_may_have_the_same_field() -> None:
 def test_a_definition_of_the_wrong_shape_is_reported(path: str, text: str, found: str) -> None:
     (fault,) = faults(definition(path, text))
 
-    assert fault.found == found
+    assert fault.problem == found
 
 
 def test_a_bad_name_comes_with_a_good_one() -> None:
@@ -129,7 +129,7 @@ def test_a_message_that_contains_itself_is_reported_with_the_circle() -> None:
     (fault,) = faults(definition("msg/A.msg", "int32 x\nB b\n"), definition("msg/B.msg", "A[] a\n"))
 
     assert fault.line in (1, 2)
-    assert "contains itself: robot_interfaces/" in fault.found
+    assert "contains itself: robot_interfaces/" in fault.problem
 
 
 def test_each_circle_is_reported() -> None:
@@ -137,7 +137,7 @@ def test_each_circle_is_reported() -> None:
         definition("msg/A.msg", "B b\n"), definition("msg/B.msg", "A[] a\n"), definition("msg/C.msg", "C[] parts\n")
     )
 
-    assert [fault.found for fault in found] == [
+    assert [fault.problem for fault in found] == [
         "`robot_interfaces/A` contains itself: robot_interfaces/A -> robot_interfaces/B -> robot_interfaces/A.",
         "`robot_interfaces/C` contains itself: robot_interfaces/C -> robot_interfaces/C.",
     ]
@@ -156,13 +156,13 @@ def test_packages_that_need_one_another_are_reported() -> None:
         definition("msg/C.msg", "int32 x\n", "one_interfaces"),
     )
 
-    assert "packages that need one another" in fault.found
+    assert "packages that need one another" in fault.problem
 
 
 def test_two_texts_for_one_name_are_reported() -> None:
     (fault,) = faults(definition("msg/A.msg", "int32 x\n"), definition("msg/A.msg", "int32 y\n"))
 
-    assert "is defined in interfaces/robot_interfaces/msg/A.msg:1 too" in fault.found
+    assert "is defined in interfaces/robot_interfaces/msg/A.msg:1 too" in fault.problem
 
 
 def test_lines_are_the_chapters_where_a_definition_is_a_fence_of_one() -> None:

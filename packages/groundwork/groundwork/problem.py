@@ -19,14 +19,14 @@ class Severity(str, Enum):
 class Problem:
     """One thing to fix in one file.
 
-    `found` says what is there, `fix` what was expected and what to do. `line` counts from 1, and is None if it is about
-    the whole file. Problems of one `group` have one cause, such as a package that is not installed: a report counts
-    them. `alone` says that there is no other problem in that place.
+    `problem` says what is there, `fix` what was expected and what to do. `line` counts from 1, and is None if it is
+    about the whole file. Problems of one `group` have one cause, such as a package that is not installed: a report
+    counts them. `alone` says that there is no other problem in that place.
     """
 
     file: Path
     line: int | None
-    found: str
+    problem: str
     fix: str
     severity: Severity = Severity.ERROR
     group: str = ""
@@ -43,4 +43,4 @@ class Problem:
         return f"{self.file}:{self.line}" if self.line is not None else f"{self.file}"
 
     def __str__(self) -> str:
-        return f"{self.place}: {self.severity.value}: {self.found}\n    {self.fix}"
+        return f"{self.place}: {self.severity.value}: {self.problem}\n    {self.fix}"

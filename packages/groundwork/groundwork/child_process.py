@@ -1,5 +1,5 @@
 """Runs a program to its end, for a limited time, and ends everything that it has started when the time is over. Use it
-for trusted programs. Students' programs run in `grader.sandbox`, nodes of notebooks in `spinbook.kernel.process`.
+for trusted programs: students' programs and nodes of notebooks have other ways to run.
 """
 
 from __future__ import annotations

@@ -1,0 +1,1 @@
+"""What the grader and the generator share: an author's error, files that are written whole, and trusted programs."""
