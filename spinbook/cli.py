@@ -68,8 +68,8 @@ STUDENTS = {
     "update": Verb("spinbook.update.command:update", "Update your folder to a newer handout; your work stays."),
 }
 EVERYBODY = {
-    "ros2": Verb("spinbook.ros2.command:ros2", "The ros2 command, without a ROS 2 installation."),
-    "turtle": Verb("spinbook.turtlesim.command:turtle", "Draw the running turtlesim.", needs="rclpy"),
+    "ros2": Verb("ros_in_python.ros2.command:ros2", "The ros2 command, without a ROS 2 installation."),
+    "turtle": Verb("ros_in_python.turtlesim.command:turtle", "Draw the running turtlesim.", needs="rclpy"),
     "doctor": Verb("spinbook.doctor.command:doctor", "Say what works on this machine, and how to fix what does not."),
 }
 SECTIONS = {"Authors": AUTHORS, "Instructors": INSTRUCTORS, "Students": STUDENTS, "Everybody": EVERYBODY}

@@ -32,12 +32,18 @@ LATER = {
     "site": ("spinbook.site.contents", "spinbook.site.sphinx_build", "myst_nb.sphinx_ext"),
     "grade": _GRADING,
     "grader": _GRADING,
-    "spinbook.ros2": (
+    "ros_in_python.ros2": (
         *(
-            f"spinbook.ros2.{name}"
+            f"ros_in_python.ros2.{name}"
             for name in ("action", "graph", "interfaces", "messages", "node", "param", "service")
         ),
-        *("spinbook.ros2.topic.echo", "spinbook.ros2.topic.listing", "numpy", "rclpy.action", "rclpy.parameter_client"),
+        *(
+            "ros_in_python.ros2.topic.echo",
+            "ros_in_python.ros2.topic.listing",
+            "numpy",
+            "rclpy.action",
+            "rclpy.parameter_client",
+        ),
     ),
 }
 #: The threads of LTTng's that `import rclpy` starts.

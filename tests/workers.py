@@ -20,7 +20,7 @@ LONGEST = (
     *("audit", "marking", "site", "handout", "interface_compiler", "interfaces", "sandbox", "check"),
     "runtime/test_commands.py",
     *("build/test_execution.py", "course", "grader/test_solutions.py", "gradescope", "grader/test_course_solutions.py"),
-    *("hostile/test_through_the_grader.py", "runtime", "feedback", "grader", "ros2", "runner", "turtlesim", "new"),
+    *("hostile/test_through_the_grader.py", "runtime", "feedback", "grader", "ros_in_python", "runner", "new"),
     *("style", "graph", "chapters", "browser", "submit", "doctor", "package", "setup", "build", "rcl_python"),
 )
 

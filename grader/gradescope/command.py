@@ -28,7 +28,10 @@ SOURCE = Path(__file__).parents[2]
 #: The parts of it that the container needs.
 NEEDED = ("pyproject.toml", "README.md", "LICENSE", "constraints.txt", "constraints-ros.txt")
 
-PACKAGES = ("grader", "spinbook", "packages/groundwork", "packages/rmw_lockstep", "packages/interface_compiler")
+PACKAGES = (
+    *("grader", "spinbook", "packages/groundwork", "packages/rmw_lockstep"),
+    *("packages/interface_compiler", "packages/ros_in_python"),
+)
 
 #: The same content gives the same bytes: every entry has the earliest date that a zip can name.
 DATE = (1980, 1, 1, 0, 0, 0)

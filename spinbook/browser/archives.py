@@ -18,6 +18,7 @@ import groundwork
 import interface_compiler
 import rcl_python
 import rmw_lockstep
+import ros_in_python
 import spinbook
 from interface_compiler import prefixes
 
@@ -29,7 +30,6 @@ _LEXERS = ("__init__.py", "_mapping.py", "python.py", "diff.py")
 _SPINBOOK = (
     "__init__.py",
     "problem.py",
-    "ros2",
     "kernel/__init__.py",
     "kernel/entry.py",
     "kernel/recorder_lines.py",
@@ -37,8 +37,6 @@ _SPINBOOK = (
     "kernel/timeline_picture.py",
     "kernel/timeline_recorder.py",
     "kernel/plot",
-    "animation.py",
-    "turtlesim",
     "browser",
     "graph",
     "chapter/__init__.py",
@@ -51,12 +49,13 @@ _TEXTS = (".msg", ".srv", ".action")
 
 
 def ros_archive() -> bytes:
-    """rclpy, every interface package, rcl_python, and the parts of Spinbook that run in the page."""
+    """Return rclpy, every interface package, `ros2` with its nodes, and the parts of Spinbook that run in the page."""
     packages = [*_ROS, *interface_packages()]
     files = {name: data for package in packages for name, data in _module(package)}
     # The original imports code that finds compiled libraries.
     files["rosidl_generator_py/__init__.py"] = b"from .import_type_support_impl import import_type_support\n"
     files |= dict(_python_files(Path(rcl_python.__file__).parent, "rcl_python"))
+    files |= dict(_python_files(Path(ros_in_python.__file__).parent, "ros_in_python"))
     files |= dict(_python_files(Path(interface_compiler.__file__).parent, "interface_compiler"))  # `ros2` reads with it
     files["rcl_python/type_hashes.json"] = json.dumps(_type_hashes(), sort_keys=True).encode()
     root = Path(spinbook.__file__).parent

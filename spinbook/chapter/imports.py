@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from interface_compiler import prefixes, shipped
+from ros_in_python.ros2 import interfaces as interface_files
 from spinbook.chapter.python_code import PythonCode
-from spinbook.ros2 import interfaces as interface_files
 
 #: Module -> its package on PyPI, if the two names differ.
 _DISTRIBUTIONS = {

@@ -11,9 +11,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from interface_compiler import prefixes
+from ros_in_python.ros2 import interfaces
 from spinbook.chapter.class_pieces import assembled
 from spinbook.chapter.python_code import CodeError, inspect
-from spinbook.ros2 import interfaces
 
 #: Module -> the names that ROS 2's own tutorials import from it.
 _USUAL = {

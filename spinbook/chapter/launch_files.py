@@ -11,8 +11,8 @@ import shlex
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from ros_in_python.launch.python_file import MODULES
 from spinbook.chapter.terminal import Command, CommandKind
-from spinbook.ros2.launch.python_file import MODULES
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,12 @@ from pathlib import Path
 from grader.recording.types import OWN_SERVICES
 from groundwork.problem import Problem, Severity
 from interface_compiler import prefixes
+from ros_in_python.ros2 import executables
 from spinbook.chapter.classify import CellKind, Classified
 from spinbook.chapter.imports import interfaces_of, own_names, remedy, ros_packages
 from spinbook.chapter.launch_files import launched_nodes
 from spinbook.chapter.own_packages import OwnPackages, created_package
 from spinbook.chapter.terminal import Command, CommandKind
-from spinbook.ros2 import executables
 
 #: Commands that fail for a name that does not exist: noun -> verbs.
 _ASKING = {

@@ -10,8 +10,8 @@ import click
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
+from ros_in_python.ros2.cli import CONTEXT, CommandError
 from spinbook.doctor.diagnosis import CHECKS, Check, Finding, State, diagnose, is_able, show
-from spinbook.ros2.cli import CONTEXT, CommandError
 
 
 @click.command()

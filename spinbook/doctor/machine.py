@@ -15,9 +15,9 @@ from typing import Any
 
 from groundwork.child_process import run_program
 from interface_compiler import prefixes, shipped, toolchain
+from ros_in_python.ros2.executables import is_built_in, real_ros2
 from spinbook.doctor import python_build
 from spinbook.doctor.diagnosis import Finding, missing, ok, warning
-from spinbook.ros2.executables import is_built_in, real_ros2
 
 OLDEST, NEWEST = (3, 10), (3, 14)
 

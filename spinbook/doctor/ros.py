@@ -9,10 +9,10 @@ from importlib.metadata import version as distribution_version
 from pathlib import Path
 from xml.etree import ElementTree
 
+from ros_in_python.ros2.executables import GUARD
 from spinbook.doctor.diagnosis import Finding, missing, ok, warning
 from spinbook.doctor.ros_origin import NoRos, ros_origin, this_machine
 from spinbook.kernel.environment import HIGHEST, LOOPBACK_PROFILE
-from spinbook.ros2.executables import GUARD
 
 #: Packages that the chapters and the grader use.
 MESSAGES = ("builtin_interfaces", "geometry_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs")

@@ -29,11 +29,12 @@ from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
+from ros_in_python.ros2.cli import CommandError
+from ros_in_python.ros2.domain import domain_id, hears_other_hosts, participants
+from ros_in_python.ros2.graph import LOOK, Graph
+from ros_in_python.ros2.interfaces import message_class
+from ros_in_python.ros2.opening import prepare
 from spinbook.graph.model import End, NodeGraph, SeenNode, Topic
-from spinbook.ros2.cli import CommandError
-from spinbook.ros2.graph import LOOK, Graph
-from spinbook.ros2.interfaces import message_class
-from spinbook.ros2.opening import domain_id, hears_other_hosts, participants, prepare
 
 #: A rate is measured over at least this long (s).
 ENOUGH_S = 0.8

@@ -19,7 +19,7 @@ from grader.exercise.starter import hidden_blocks, starter
 _ONE_LINE = 40
 _LINES, _CHARACTERS = 3, 40
 #: Spinbook's own modules, in a wheel or in what a page loads.
-_OWN = re.compile(r"\.(whl|zip)/(spinbook|grader|groundwork|interface_compiler|rcl_python|rmw_lockstep)/")
+_OWN = re.compile(r"\.(whl|zip)/(spinbook|grader|groundwork|interface_compiler|rcl_python|rmw_lockstep|ros_in_python)/")
 #: How many characters of a secret are looked up before the whole of it is compared.
 _PIECE = 8
 

@@ -32,7 +32,7 @@ FOR_AUTHORS = ("spinbook/new/template/", "spinbook/new/kinds/")
 
 _BUILD = "import sys; from setuptools.build_meta import build_wheel; print(build_wheel(sys.argv[1]))"
 #: Everything that the commands import, as pyproject.toml lists it.
-_PACKAGES = ("spinbook", "grader", "groundwork", "interface_compiler", "rcl_python", "rmw_lockstep")
+_PACKAGES = ("spinbook", "grader", "groundwork", "interface_compiler", "rcl_python", "rmw_lockstep", "ros_in_python")
 _SOURCES = ("pyproject.toml", "README.md", "LICENSE", "spinbook", "grader", "packages")
 
 

@@ -53,7 +53,7 @@ def show_turtle() -> None:
     """Ask the running turtlesim for its picture and show it. Raises CellFailed where none answers."""
     with tempfile.TemporaryDirectory(prefix="spinbook-") as folder:
         file, moving = Path(folder) / "turtle.png", Path(folder) / "turtle.svg"
-        argv = [sys.executable, "-m", "spinbook.turtlesim.picture", os.fspath(file), "--moving", os.fspath(moving)]
+        argv = [sys.executable, "-m", "ros_in_python.turtlesim", os.fspath(file), "--moving", os.fspath(moving)]
         process = KeptProcess(argv, os.environ, Path.cwd())
         try:
             status = process.wait(_TURTLE_LIMIT_S)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from spinbook.ros2.cli import CommandError
+from ros_in_python.ros2.cli import CommandError
 
 
 def write_line(kind: str, *values: Any) -> None:

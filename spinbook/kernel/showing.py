@@ -9,8 +9,8 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from ros_in_python.ros2.domain import participates
 from spinbook.kernel.process import KeptProcess
-from spinbook.ros2.opening import participates
 
 #: Lines shown as they come, and lines kept for the end when more come.
 FIRST_LINES = 60

@@ -56,7 +56,7 @@ def run_ros2(session: Session, words: list[str], bound: Bound) -> None:
     if words[:2] == ["pkg", "create"]:
         _create_package(session, words)
         return
-    argv = [sys.executable, "-m", "spinbook.ros2", *words]
+    argv = [sys.executable, "-m", "ros_in_python.ros2", *words]
     session.run_command(argv, {}, _folder(session, words), bound, "ros2 " + " ".join(words[:2]))
 
 
@@ -70,7 +70,7 @@ def _launch(session: Session, words: list[str], bound: Bound) -> None:
     """`ros2 launch …`: continues in the background as a node does, under the name of its file: `humanoid`."""
     files = [word.rpartition("/")[2] for word in words if re.search(r"launch\.(py|ya?ml|xml)$", word)]
     name = files[0].split(".")[0] if files else "launch"
-    argv = [sys.executable, "-m", "spinbook.ros2", *words]
+    argv = [sys.executable, "-m", "ros_in_python.ros2", *words]
     session.run_background(name, argv, {}, _folder(session, words), bound)
 
 
@@ -94,7 +94,7 @@ def _run_executable(session: Session, words: list[str], bound: Bound) -> None:
     name = _renamed(words[2:]) or executable
     if session.run_executable(words[0], executable, words[2:], bound, name):
         return
-    argv = [sys.executable, "-m", "spinbook.ros2", "run", *words]
+    argv = [sys.executable, "-m", "ros_in_python.ros2", "run", *words]
     cwd = session.workspace if session.workspace.is_dir() else Path.cwd()
     session.run_background(name, argv, {}, cwd, bound)
 

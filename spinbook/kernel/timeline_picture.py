@@ -12,7 +12,7 @@ from html import escape
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from spinbook.animation import Cycle, coord, on_paper
+from ros_in_python.animation import Cycle, coord, on_paper
 from spinbook.kernel.plot.drawing import Scale
 from spinbook.kernel.timeline import Lane, Mark, Span, in_words
 

@@ -35,9 +35,9 @@ from rclpy.qos import (
 )
 from rclpy.signals import SignalHandlerOptions
 
+from ros_in_python.ros2.interfaces import action_class, message_class, service_class
 from spinbook.kernel.recorder_lines import errors_written, write_line
 from spinbook.kernel.reply_reader import ReplyReader
-from spinbook.ros2.interfaces import action_class, message_class, service_class
 
 _HEARS_ALL = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE)
 _FEEDBACK = QoSProfile(depth=100)

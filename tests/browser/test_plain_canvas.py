@@ -5,9 +5,9 @@ from __future__ import annotations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from ros_in_python.turtlesim.canvas import Canvas
+from ros_in_python.turtlesim.events import Pen
 from spinbook.browser.in_page.canvas import PlainCanvas
-from spinbook.turtlesim.canvas import Canvas
-from spinbook.turtlesim.events import Pen
 
 PLACES = st.tuples(st.floats(-1, 12), st.floats(-1, 12))
 PENS = st.builds(Pen, r=st.integers(0, 255), g=st.integers(0, 255), b=st.integers(0, 255), width=st.integers(1, 20))

@@ -86,11 +86,11 @@ def test_a_module_that_is_missed_only_while_a_verb_runs_is_one_sentence_too(
 
 
 def test_ros2_run_without_ros_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setenv("SPINBOOK_ROS2", "own")
+    monkeypatch.setenv("ROS_IN_PYTHON", "own")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
 
     done = CliRunner().invoke(cli.spinbook, ["ros2", "run", "turtlesim", "turtlesim_node"])
 
     assert done.exit_code == 1
-    assert "pip install 'spinbook[ros]'" in done.output
+    assert "pip install 'ros-jazzy-rclpy[fastrtps]'" in done.output

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
 import sys
 
 from rich.console import Console
@@ -37,6 +39,18 @@ def test_help_names_every_check_and_the_exit_code() -> None:
     text = doctor("--help").stdout
     assert all(check.word in text for check in CHECKS)
     assert "Exit code: 0" in text
+
+
+def test_ros2_doctor_says_whether_ros_works() -> None:
+    run = subprocess.run(
+        [sys.executable, "-m", "ros_in_python.ros2", "doctor", "--report"],
+        env={**os.environ, "ROS_IN_PYTHON": "own"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr
+    assert "All 8 checks passed" in run.stdout
 
 
 def shown(*findings: Finding) -> str:

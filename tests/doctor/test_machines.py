@@ -13,10 +13,10 @@ import pytest
 from running import doctor, finding_of
 
 from grader.sandbox import isolation
+from ros_in_python.ros2.executables import GUARD
 from spinbook.doctor import machine, python_build, sandbox
 from spinbook.doctor.diagnosis import State
 from spinbook.doctor.ros import wheels_installed
-from spinbook.ros2.executables import GUARD
 
 with_wheels = pytest.mark.skipif(not wheels_installed(), reason="ROS 2 is a sourced one here")
 

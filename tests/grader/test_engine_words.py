@@ -29,7 +29,6 @@ ABOUT_ROS_MESSAGES = (
     "grader/scenario/joint_states.py",
     "grader/scenario/models.py",
     "spinbook/kernel/plot/quantity.py",
-    "spinbook/turtlesim/",
     "spinbook/new/",
 )
 

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import pytest
 import rclpy
 
+from ros_in_python.ros2 import graph
+from ros_in_python.ros2.domain import participants
 from spinbook.graph import watcher
 from spinbook.graph.watcher import GraphWatcher
-from spinbook.ros2 import graph
-from spinbook.ros2.opening import participants
 
 #: So many questions for the participants take far longer than the graph has to rest to be taken for known.
 LATE = 60

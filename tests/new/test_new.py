@@ -18,6 +18,7 @@ import groundwork
 import interface_compiler
 import rcl_python
 import rmw_lockstep
+import ros_in_python
 import spinbook
 from spinbook.course.course import read_course
 from spinbook.new.command import new
@@ -181,7 +182,7 @@ def test_an_audit_of_the_untouched_course_has_nothing_to_fix(pristine: Path, tmp
 
 def test_a_spinbook_that_came_with_a_handout_says_that_it_has_no_templates(tmp_path: Path) -> None:
     without = shutil.ignore_patterns("template", "kinds", "__pycache__")
-    for package in (spinbook, grader, groundwork, interface_compiler, rmw_lockstep, rcl_python):
+    for package in (spinbook, grader, groundwork, interface_compiler, rmw_lockstep, rcl_python, ros_in_python):
         folder = Path(package.__path__[0])
         shutil.copytree(folder, tmp_path / folder.name, ignore=without)
 

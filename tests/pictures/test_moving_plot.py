@@ -13,7 +13,7 @@ import pytest
 from browser import opened
 from playwright.sync_api import Browser
 
-from spinbook.animation import BEFORE_S
+from ros_in_python.animation import BEFORE_S
 from spinbook.kernel.picture_cells import RecordingTime
 from spinbook.kernel.plot.drawing import MOST_CURVES, Scale, around, moving_plot
 from spinbook.kernel.plot.quantity import Recording

@@ -14,12 +14,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from playwright.sync_api import Browser
 
-from spinbook.animation import BEFORE_S, thinned
-from spinbook.turtlesim.events import DT, PIXELS_PER_UNIT, SIDE, TICK_NS, Pen
-from spinbook.turtlesim.moving import LONGEST_S, LONGEST_WAIT_S, MOST_SAMPLES, moving_svg, timeline
-from spinbook.turtlesim.trail import HEADING_TOLERANCE, PLACE_TOLERANCE, Sample, Track
-from spinbook.turtlesim.world import World
-from spinbook.turtlesim.world_picture import BLUE, WorldPicture, picture_of
+from ros_in_python.animation import BEFORE_S, thinned
+from ros_in_python.turtlesim.events import DT, PIXELS_PER_UNIT, SIDE, TICK_NS, Pen
+from ros_in_python.turtlesim.moving import LONGEST_S, LONGEST_WAIT_S, MOST_SAMPLES, moving_svg, timeline
+from ros_in_python.turtlesim.trail import HEADING_TOLERANCE, PLACE_TOLERANCE, Sample, Track
+from ros_in_python.turtlesim.world import World
+from ros_in_python.turtlesim.world_picture import BLUE, WorldPicture, picture_of
 
 #: A quarter of a turn on a radius of 2, then a wait of 5 s, then 2 units straight on.
 TURN_TICKS, WAIT_TICKS, STRAIGHT_TICKS = 98, 312, 62

@@ -175,7 +175,7 @@ def test_a_demo_node_runs_in_a_cell_and_is_heard_in_the_next(new_kernel: Callabl
 def test_ros2_is_a_command_of_the_shell_too_though_the_environment_is_not_activated(
     new_kernel: Callable[..., Kernel],
 ) -> None:
-    kernel = new_kernel(PATH="/usr/bin:/bin", SPINBOOK_ROS2="own")
+    kernel = new_kernel(PATH="/usr/bin:/bin", ROS_IN_PYTHON="own")
     assert "The daemon is not running" in kernel.run("!ros2 daemon status").text
     assert "The daemon is not running" in kernel.run("%%bash\nros2 daemon status").text
 

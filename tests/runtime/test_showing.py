@@ -9,9 +9,9 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+from ros_in_python.ros2.domain import participants, participates
 from spinbook.kernel.process import KeptProcess
 from spinbook.kernel.showing import Bound, Countdown
-from spinbook.ros2.opening import participants, participates
 
 
 @dataclass

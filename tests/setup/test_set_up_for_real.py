@@ -13,10 +13,11 @@ from pathlib import Path
 import pytest
 from sourced_ros import sourcing
 
+from ros_in_python.ros2.executables import without_bootstrap
 from spinbook.doctor.ros import wheels_installed
-from spinbook.ros2.executables import without_bootstrap
 
 ROOT = Path(__file__).parents[2]
+ROS2 = "packages/ros_in_python/tests/ros2"
 
 pytestmark = [pytest.mark.soak, pytest.mark.timeout(1800)]
 
@@ -124,7 +125,7 @@ def test_a_sourced_ros_is_used_alone_and_an_environment_with_wheels_makes_way_fo
     run = make(folder, ros, "-n", "test")
     pytest_line = next(line for line in run.stdout.splitlines() if line.startswith("PYTEST"))
     tried = subprocess.run(
-        ["sh", "-c", f"{pytest_line} tests/chapter tests/ros2/test_ros2_pub.py tests/ros2/test_ros2_interface.py"],
+        ["sh", "-c", f"{pytest_line} tests/chapter {ROS2}/test_ros2_pub.py {ROS2}/test_ros2_interface.py"],
         cwd=folder,
         env=ros,
         capture_output=True,

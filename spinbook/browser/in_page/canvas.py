@@ -1,11 +1,11 @@
-"""Turtlesim's canvas without numpy: does what spinbook/turtlesim/canvas.py does, pixel by pixel."""
+"""Turtlesim's canvas without numpy: does what ros_in_python/turtlesim/canvas.py does, pixel by pixel."""
 
 from __future__ import annotations
 
 import math
 
-from spinbook.turtlesim import canvas
-from spinbook.turtlesim.events import PIXELS_PER_UNIT, WINDOW_PX, Pen
+from ros_in_python.turtlesim import canvas
+from ros_in_python.turtlesim.events import PIXELS_PER_UNIT, WINDOW_PX, Pen
 
 _PIXEL = 3
 

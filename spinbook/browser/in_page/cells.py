@@ -76,7 +76,7 @@ def define(path: str, text: str) -> int:
 
 def run_command(line: str) -> int:
     """Run one `ros2 …` of a terminal; return its exit status."""
-    os.environ["SPINBOOK_ROS2"] = "own"
+    os.environ["ROS_IN_PYTHON"] = "own"
     # One command changes the signal handlers, and the next expects them unchanged.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     words = shlex.split(line)
@@ -86,7 +86,7 @@ def run_command(line: str) -> int:
 
 
 def _ros2(words: Sequence[str]) -> None:
-    from spinbook.ros2.command import ros2
+    from ros_in_python.ros2.command import ros2
 
     ros2(list(words), prog_name="ros2")
 
@@ -116,7 +116,7 @@ def record(topics: Sequence[str], seconds: float) -> list[dict[str, Any]]:
 
 def _subscribed(node: Any, path: str, line: dict[str, Any], began: float) -> bool:
     """Subscribe to the topic that the path begins with. Return whether there is one."""
-    from spinbook.ros2.interfaces import message_class
+    from ros_in_python.ros2.interfaces import message_class
 
     for topic, kinds in node.get_topic_names_and_types():
         if path.startswith(topic) and path[len(topic) : len(topic) + 1] in ("/", "[", "."):

@@ -8,8 +8,8 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from spinbook.ros2.launch import command, processes
-from spinbook.ros2.launch.processes import ProcessToStart
+from ros_in_python.launch import command, processes
+from ros_in_python.launch.processes import ProcessToStart
 
 _planned: list[dict[str, Any]] = []
 

@@ -7,7 +7,7 @@ import { turtle } from "./turtle.js";
 
 const TURTLESIM =
   "import sys\nfrom spinbook.browser.in_page import canvas\ncanvas.use()\n" +
-  "from spinbook.turtlesim.node import main\nsys.exit(main())\n";
+  "from ros_in_python.turtlesim.node import main\nsys.exit(main())\n";
 const DEMOS = /^demo_nodes_(cpp|py)\/(talker|listener|add_two_ints_server|add_two_ints_client)$/;
 // How long `ros2 run` of a turtlesim_node shows output before the cell goes on (s).
 const SHOWN_S = 3;
@@ -93,7 +93,7 @@ function demoNode(pack, executable) {
   const [, language, name] = DEMOS.exec(`${pack}/${executable}`) ?? [];
   // A chapter may show the package's own program.
   if (!name || cellOf("", `${pack}/${executable}`)) return undefined;
-  const source = `import sys\nfrom spinbook.ros2.demo_nodes import main\nsys.exit(main(["${language}", "${name}"]))\n`;
+  const source = `import sys\nfrom ros_in_python.demo_nodes import main\nsys.exit(main(["${language}", "${name}"]))\n`;
   return { source, file: `${name}.py` };
 }
 

@@ -11,7 +11,7 @@ from html import escape
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from spinbook.animation import Cycle, coord, on_paper, thinned
+from ros_in_python.animation import Cycle, coord, on_paper, thinned
 from spinbook.kernel.plot.quantity import Curve, Recording
 
 if TYPE_CHECKING:

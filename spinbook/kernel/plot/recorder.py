@@ -19,9 +19,9 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
+from ros_in_python.ros2.interfaces import message_class
 from spinbook.kernel.plot.quantity import TopicPath, quantities, resolve, stamp_of
 from spinbook.kernel.recorder_lines import errors_written, write_line
-from spinbook.ros2.interfaces import message_class
 
 #: Hears publishers of every reliability and durability.
 _HEARS_ALL = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE)

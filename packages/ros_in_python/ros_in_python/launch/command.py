@@ -1,0 +1,127 @@
+"""`ros2 launch`: finds a launch file, reads it, and runs what it describes."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from interface_compiler import prefixes
+from ros_in_python.launch import markup_file, python_file
+from ros_in_python.launch.description import Context, DeclareLaunchArgument, LaunchDescription, text_of
+from ros_in_python.launch.processes import Plan, arguments_of
+from ros_in_python.launch.running import Launched
+from ros_in_python.ros2 import executables
+from ros_in_python.ros2.cli import CONTEXT, CommandError
+
+#: How launch files' names end.
+SUFFIXES = (".py", ".yaml", ".yml", ".xml")
+
+
+@click.command(context_settings=CONTEXT)
+@click.option("-s", "--show-args", "--show-arguments", is_flag=True, help="Show the file's arguments; start nothing.")
+@click.option("-n", "--noninteractive", is_flag=True, expose_value=False, help="Always so here.")
+@click.argument("package_or_file")
+@click.argument("words", nargs=-1, metavar="[LAUNCH_FILE] [NAME:=VALUE ...]")
+def launch(show_args: bool, package_or_file: str, words: tuple[str, ...]) -> None:
+    """Start the nodes of a launch file, and end them all with Ctrl-C.
+
+    \b
+      ros2 launch humanoid_control humanoid.launch.py highest:=1.5
+      ros2 launch src/humanoid_control/launch/humanoid.launch.yaml
+      ros2 launch --show-args humanoid_control humanoid.launch.py
+
+    It reads Python, YAML and XML files of nodes with parameters, remappings, arguments, conditions, groups and
+    namespaces. Whatever else ROS 2's own launch knows is refused by name.
+    """
+    cwd = Path.cwd()
+    _source(cwd)
+    file, rest = _find(package_or_file, words, cwd)
+    given = _given(rest)
+    description = read(file)
+    declared = list(arguments_of(description.entities))
+    if show_args:
+        _show(declared)
+        return
+    _refuse_unknown(given, declared)
+    with tempfile.TemporaryDirectory(prefix="launch_params_") as folder:
+        steps = list(Plan.into(Path(folder), cwd).steps(description.entities, Context(given)))
+        raise click.exceptions.Exit(Launched().run(steps))
+
+
+def read(file: Path) -> LaunchDescription:
+    """What a launch file describes. Raises `CommandError`."""
+    return python_file.read(file) if file.suffix == ".py" else markup_file.read(file)
+
+
+def _source(cwd: Path) -> None:
+    """Know the packages of the workspace here, as after `source install/setup.bash`."""
+    for near in executables.workspaces_near(cwd)[:1]:
+        near.extend(os.environ)
+
+
+def _find(first: str, words: Sequence[str], cwd: Path) -> tuple[Path, list[str]]:
+    """(the launch file, the words behind it)."""
+    if not words or ":=" in words[0]:
+        file = Path(first)
+        if not file.is_file():
+            raise CommandError(
+                f"'{first}' is not a launch file. Name a package and a file in it, or the path of a file:",
+                "  ros2 launch humanoid_control humanoid.launch.py",
+            )
+        return file, list(words)
+    return _in_package(first, words[0]), list(words[1:])
+
+
+def _in_package(package: str, name: str) -> Path:
+    prefix = prefixes.prefix_of(package, prefixes.installed())
+    if prefix is None:
+        raise CommandError(
+            f"Package '{package}' not found", "Run `colcon build --symlink-install` in its workspace, and this there."
+        )
+    share = prefix / "share" / package
+    there = sorted(path for suffix in SUFFIXES for path in share.rglob(f"*launch{suffix}"))
+    found = [path for path in sorted(share.rglob(name)) if path.is_file()]
+    if not found:
+        raise CommandError(
+            f"file '{name}' was not found in the share directory of package '{package}'",
+            f"Launch files there: {', '.join(path.name for path in there) or 'none'}.",
+            "setup.py installs them: data_files has a line for share/PACKAGE/launch. Build again after a change of it.",
+        )
+    if len(found) > 1:
+        raise CommandError(f"file '{name}' was found more than once:", *(f"- {path}" for path in found))
+    return found[0]
+
+
+def _given(words: Sequence[str]) -> dict[str, str]:
+    given: dict[str, str] = {}
+    for word in words:
+        name, mark, value = word.partition(":=")
+        if not mark or not name:
+            raise CommandError(f"malformed launch argument '{word}', expected format '<name>:=<value>'")
+        given[name] = value
+    return given
+
+
+def _refuse_unknown(given: dict[str, str], declared: Sequence[DeclareLaunchArgument]) -> None:
+    names = [argument.name for argument in declared]
+    unknown = [name for name in given if name not in names]
+    if unknown:
+        raise CommandError(f"the launch file has no argument '{unknown[0]}'. It has: {', '.join(names) or 'none'}.")
+
+
+def _show(declared: Sequence[DeclareLaunchArgument]) -> None:
+    """As the real command shows them."""
+    click.echo("Arguments (pass arguments as '<name>:=<value>'):")
+    if not declared:
+        click.echo("\n  No arguments.")
+    for argument in declared:
+        click.echo(f"\n    '{argument.name}':")
+        click.echo(f"        {argument.description or 'no description given'}")
+        if argument.choices:
+            click.echo(f"        One of: {', '.join(argument.choices)}")
+        if argument.default_value is not None:
+            click.echo(f"        (default: '{text_of(argument.default_value, Context())}')")

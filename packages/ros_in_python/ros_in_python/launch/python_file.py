@@ -1,0 +1,106 @@
+"""Reads a Python launch file: runs it with modules `launch` and `launch_ros` that hold what is supported."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from ros_in_python.launch import description as known
+from ros_in_python.launch.description import LaunchDescription
+from ros_in_python.ros2.cli import CommandError
+
+#: The modules of ROS 2's launch API and what of each there is here.
+MODULES: dict[str, dict[str, Any]] = {
+    "launch": {"LaunchDescription": LaunchDescription},
+    "launch.actions": {
+        "DeclareLaunchArgument": known.DeclareLaunchArgument,
+        "GroupAction": known.GroupAction,
+        "LogInfo": known.LogInfo,
+    },
+    "launch.conditions": {"IfCondition": known.IfCondition, "UnlessCondition": known.UnlessCondition},
+    "launch.substitutions": {
+        "EnvironmentVariable": known.EnvironmentVariable,
+        "LaunchConfiguration": known.LaunchConfiguration,
+        "PathJoinSubstitution": known.PathJoinSubstitution,
+        "TextSubstitution": known.TextSubstitution,
+    },
+    "launch_ros": {},
+    "launch_ros.actions": {"Node": known.Node, "PushRosNamespace": known.PushRosNamespace},
+    "launch_ros.parameter_descriptions": {"ParameterValue": known.ParameterValue},
+    "launch_ros.substitutions": {"FindPackageShare": known.FindPackageShare},
+}
+_ELSEWHERE = "ROS 2's own launch, which `ros2 launch` uses where ROS 2 is installed, knows more."
+
+
+class _Module(ModuleType):
+    """One of those modules; a name that it does not have is refused with those that it has."""
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        there = ", ".join(sorted(MODULES[self.__name__])) or "nothing"
+        raise CommandError(f"`{name}` of {self.__name__} is not supported here. It has: {there}.", _ELSEWHERE)
+
+
+def read(file: Path) -> LaunchDescription:
+    """What `generate_launch_description()` of a file returns. Raises `CommandError` with the file's line."""
+    variables: dict[str, Any] = {"__name__": "launch_file", "__file__": str(file)}
+    with _modules():
+        try:
+            exec(compile(file.read_text(encoding="utf-8"), str(file), "exec"), variables)
+            found = variables["generate_launch_description"]()
+        except CommandError as refusal:
+            raise CommandError(f"{file}{_line(refusal, file)}: {refusal.message}") from None
+        except KeyError as error:
+            if error.args != ("generate_launch_description",):
+                raise CommandError(f"{file}{_line(error, file)}: {_describe(error)}") from None
+            raise CommandError(f"{file} has no function generate_launch_description().") from None
+        except SyntaxError as error:
+            raise CommandError(f"{file}:{error.lineno}: not valid Python: {error.msg}") from None
+        except Exception as error:
+            raise CommandError(f"{file}{_line(error, file)}: {_describe(error)}") from None
+    if not isinstance(found, LaunchDescription):
+        raise CommandError(
+            f"{file}: generate_launch_description() returned {type(found).__name__}, not a LaunchDescription."
+        )
+    return found
+
+
+@contextmanager
+def _modules() -> Iterator[None]:
+    """Let `import launch` and the others find ours for a while."""
+    before = {name: sys.modules.get(name) for name in MODULES}
+    made = {name: _Module(name) for name in MODULES}
+    for name, module in made.items():
+        vars(module).update(MODULES[name])
+        # A package has a path; so the import system looks for parts of it in sys.modules.
+        vars(module)["__path__"] = []
+        above, _, last = name.rpartition(".")
+        if above:
+            vars(made[above])[last] = module
+    sys.modules.update(made)
+    try:
+        yield
+    finally:
+        for name, earlier in before.items():
+            if earlier is None:
+                del sys.modules[name]
+            else:
+                sys.modules[name] = earlier
+
+
+def _line(error: BaseException, file: Path) -> str:
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(file)]
+    return f":{lines[-1]}" if lines else ""
+
+
+def _describe(error: BaseException) -> str:
+    if isinstance(error, ModuleNotFoundError) and (error.name or "").split(".")[0] in {"launch", "launch_ros"}:
+        there = ", ".join(MODULES)
+        return f"the module {error.name} is not supported here. There is: {there}.\n{_ELSEWHERE}"
+    return f"{type(error).__name__}: {error}"

@@ -1,0 +1,124 @@
+"""`ros2`: the nouns, and what happens around every verb."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from interface_compiler.near import use_near
+from ros_in_python.ros2 import cli
+from ros_in_python.ros2.cli import CONTEXT, Entry, Menu
+from ros_in_python.ros2.executables import hand_over
+
+NOUNS = {
+    "action": Entry("ros_in_python.ros2.action:action", "List actions, send a goal to one."),
+    "bag": Entry("ros_in_python.ros2.bag:bag", "Record topics into a file, play them again."),
+    "daemon": Entry("ros_in_python.ros2.command:daemon", "Say that there is no daemon."),
+    "interface": Entry("ros_in_python.ros2.interfaces:interface", "Show the fields of messages, services and actions."),
+    "launch": Entry("ros_in_python.launch.command:launch", "Start the nodes of a launch file."),
+    "node": Entry("ros_in_python.ros2.node:node", "List running nodes, show what one offers."),
+    "param": Entry("ros_in_python.ros2.param:param", "Read and change parameters of running nodes."),
+    "pkg": Entry("ros_in_python.ros2.pkg:pkg", "List packages and their executables, make a package."),
+    "run": Entry("ros_in_python.ros2.executables:run", "Start an executable of a package."),
+    "service": Entry("ros_in_python.ros2.service:service", "List services, call one."),
+    "topic": Entry("ros_in_python.ros2.topic:topic", "Watch, measure and publish topics."),
+}
+
+
+class Ros2(Menu):
+    """The whole command: hands over to the real one where it is installed, and ends quietly on a signal."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        if not ctx.resilient_parsing:
+            hand_over(args)
+            # A course's own types are known in its folder; nothing has to be sourced.
+            use_near(Path.cwd())
+        if not args or args[0] not in NOUNS:
+            self.entries = dict(sorted({**NOUNS, **_nouns_of_others()}.items()))
+        return super().parse_args(ctx, args)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        cli.listen()
+        try:
+            return super().invoke(ctx)
+        except cli.Stopped as stopped:
+            raise click.exceptions.Exit(stopped.exit_code) from None
+
+
+#: The entry points by which another installed distribution adds a noun: NAME = "module:click_command".
+GROUP = "ros_in_python.nouns"
+
+
+def _nouns_of_others() -> dict[str, Entry]:
+    from importlib.metadata import entry_points  # takes long, and only other nouns than ours need it
+
+    found = entry_points(group=GROUP)
+    return {entry.name: Entry(entry.value, entry.load().get_short_help_str(100)) for entry in found}
+
+
+ros2 = Ros2(
+    name="ros2",
+    entries=NOUNS,
+    help="""Look at running ROS 2 nodes and talk to them; works without a ROS installation.
+
+    Start a node, and in another terminal:
+
+    \b
+      ros2 node list                       which nodes run
+      ros2 topic list -t                   the topics, with their types
+      ros2 topic hz /joint_commands        how many messages per second
+      ros2 topic echo /joint_commands      what is in them (Ctrl-C ends it)
+      ros2 interface show sensor_msgs/msg/JointState
+
+    Where a ROS 2 installation provides `ros2`, that one answers. ROS_IN_PYTHON=own prevents it.
+    """,
+)
+
+
+daemon = Menu(
+    name="daemon",
+    entries={
+        "start": Entry("ros_in_python.ros2.command:start", "Say that none is needed."),
+        "status": Entry("ros_in_python.ros2.command:status", "Say that none is running."),
+        "stop": Entry("ros_in_python.ros2.command:stop", "Say that none is running."),
+    },
+    help="""The ROS 2 installation's ros2 keeps a daemon that remembers the graph. Here each call looks for itself.
+
+    \b
+      ros2 daemon status
+    """,
+)
+
+_WHY = "(none is needed: each command looks at the graph itself, so there is nothing to restart)"
+
+
+@click.command(context_settings=CONTEXT)
+def status() -> None:
+    """Say that none is running.
+
+    \b
+      ros2 daemon status
+    """
+    click.echo(f"The daemon is not running {_WHY}")
+
+
+@click.command(context_settings=CONTEXT)
+def start() -> None:
+    """Say that none is needed.
+
+    \b
+      ros2 daemon start
+    """
+    click.echo(f"The daemon has not been started {_WHY}")
+
+
+@click.command(context_settings=CONTEXT)
+def stop() -> None:
+    """Say that none is running.
+
+    \b
+      ros2 daemon stop
+    """
+    click.echo(f"The daemon is not running {_WHY}")

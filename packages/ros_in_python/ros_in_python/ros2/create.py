@@ -1,0 +1,110 @@
+"""`ros2 pkg create`: a new package of Python."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import click
+
+from ros_in_python.ros2.ament_python import Manifest, package_files
+from ros_in_python.ros2.cli import CONTEXT, CommandError
+
+NODE = """\
+def main():
+    print('Hi from {package}.')
+
+
+if __name__ == '__main__':
+    main()
+"""
+
+
+@click.command(
+    context_settings={**CONTEXT, "ignore_unknown_options": True},
+    options_metavar="[--build-type ament_python] [--node-name NODE] [--dependencies PACKAGE…]",
+)
+@click.argument("words", nargs=-1, type=click.UNPROCESSED, metavar="PACKAGE_NAME")
+def create(words: tuple[str, ...]) -> None:
+    """Make a new package of Python in this folder.
+
+    \b
+      ros2 pkg create --build-type ament_python --node-name talker my_package
+      ros2 pkg create --build-type ament_python my_package --dependencies rclpy std_msgs
+
+    Also: --license, --description, --maintainer-name, --maintainer-email, --destination-directory. A package of C++
+    (ament_cmake, the default of the real command) needs a ROS 2 installation.
+    """
+    given = _read(words)
+    if given.build_type != "ament_python":
+        raise CommandError(
+            "Only packages of Python can be made without a ROS 2 installation.",
+            f"ros2 pkg create --build-type ament_python {given.package_name}",
+        )
+    name = given.package_name
+    # REP 144's rule for package names.
+    if not (name[:1].isalpha() and name.isidentifier() and name.islower() and "__" not in name):
+        raise CommandError(
+            f"'{name}' is not a valid package name: use lower-case letters, digits and single underscores."
+        )
+    folder = Path(given.destination_directory) / name
+    if folder.exists():
+        raise CommandError(
+            f"\nAborted!\nThe directory already exists: {folder}\nEither remove the directory or choose another."
+        )
+    _write_new(folder, given)
+
+
+def _read(words: tuple[str, ...]) -> argparse.Namespace:
+    reader = argparse.ArgumentParser(prog="ros2 pkg create", add_help=False, allow_abbrev=False)
+    reader.add_argument("package_name")
+    reader.add_argument("--build-type", default="ament_cmake")
+    reader.add_argument("--package-format", default="3")
+    reader.add_argument("--dependencies", nargs="+", default=[])
+    reader.add_argument("--node-name", default="")
+    reader.add_argument("--license", default="TODO: License declaration")
+    reader.add_argument("--description", default="TODO: Package description")
+    reader.add_argument("--maintainer-name", default="TODO")
+    reader.add_argument("--maintainer-email", default="todo@todo.todo")
+    reader.add_argument("--destination-directory", default=".")
+    return reader.parse_args(list(words))
+
+
+def _write_new(folder: Path, given: argparse.Namespace) -> None:
+    manifest = Manifest(
+        given.package_name,
+        "0.0.0",
+        given.description,
+        given.maintainer_name,
+        given.maintainer_email,
+        given.license,
+        depends=given.dependencies,
+    )
+    files = package_files(manifest, [(given.node_name, given.node_name)] if given.node_name else [])
+    if given.node_name:
+        files[f"{manifest.name}/{given.node_name}.py"] = NODE.format(package=manifest.name)
+    _say(manifest, given)
+    click.echo(f"creating folder {folder}")
+    for path, text in files.items():
+        click.echo(f"creating {folder / path}")
+        file = folder / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+
+
+def _say(manifest: Manifest, given: argparse.Namespace) -> None:
+    click.echo("going to create a new package")
+    for what, value in (
+        ("package name", manifest.name),
+        ("destination directory", Path(given.destination_directory).resolve()),
+        ("package format", 3),
+        ("version", manifest.version),
+        ("description", manifest.description),
+        ("maintainer", [f"{manifest.maintainer} <{manifest.email}>"]),
+        ("licenses", [manifest.license]),
+        ("build type", given.build_type),
+        ("dependencies", given.dependencies),
+    ):
+        click.echo(f"{what}: {value}")
+    if given.node_name:
+        click.echo(f"node_name: {given.node_name}")

@@ -1,0 +1,332 @@
+"""Finds what `ros2 run` starts: in ROS prefixes, in colcon workspaces nearby, and in this package itself."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import signal
+import sys
+from collections.abc import Iterator, Mapping, MutableMapping, Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+import click
+
+from interface_compiler import prefixes
+from ros_in_python.ros2.cli import CONTEXT, CommandError
+from ros_in_python.ros2.opening import check_installed
+
+# The wheels' `.pth` file re-executes Python once with the wheels' libraries in LD_LIBRARY_PATH, and marks that with a
+# guard variable. Another Python that inherits the guard skips its own turn and then misses its libraries; a program of
+# a ROS installation that inherits the libraries gets the wrong ones. So neither is passed on: each program that needs
+# them sets both for itself.
+
+
+GUARD = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
+
+
+def without_bootstrap(environment: Mapping[str, str]) -> dict[str, str]:
+    """A copy of `environment` as it was before this Python's wheels changed it."""
+    clean = dict(environment)
+    if clean.pop(GUARD, None) is None:
+        return clean
+    entries = [entry for entry in clean.pop("LD_LIBRARY_PATH", "").split(os.pathsep) if entry]
+    kept = [entry for entry in entries if not _from_wheels(Path(entry))]
+    if kept:
+        clean["LD_LIBRARY_PATH"] = os.pathsep.join(kept)
+    return clean
+
+
+def _from_wheels(folder: Path) -> bool:
+    prefix = Path(sys.prefix)
+    return folder == prefix / "lib" or (folder.is_relative_to(prefix) and folder.match("ros_*.libs"))
+
+
+_LAYOUT = ".colcon_install_layout"
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """A built colcon workspace: its `install` folder and the prefixes in it (one, or one a package)."""
+
+    install: Path
+    prefixes: tuple[Path, ...]
+
+    def extend(self, environment: MutableMapping[str, str]) -> None:
+        """Change `environment` as sourcing `install/setup.bash` would, as far as packages say it in .dsv files."""
+        for prefix in reversed(self.prefixes):
+            _prepend(environment, "AMENT_PREFIX_PATH", str(prefix))
+            for package in sorted((prefix / "share").glob("*/package.dsv")):
+                _apply(package, prefix, environment)
+            for site in sorted(prefix.glob(f"lib/python{sys.version_info.major}.*/site-packages")):
+                if site.parent.name == f"python{sys.version_info.major}.{sys.version_info.minor}":
+                    _append(environment, "PYTHONPATH", str(site))
+
+
+def workspaces_near(folder: Path) -> list[Workspace]:
+    """Return the built workspaces of `folder` and its parents, nearest first.
+
+    In each of them, that is the folder itself, then the folders in it that are named as workspaces are: `ros2_ws`.
+    """
+    folder = folder.absolute()
+    places = (place for at in (folder, *folder.parents) for place in (at, *sorted(at.glob("*_ws"))))
+    return [workspace for workspace in (_built(place / "install") for place in places) if workspace is not None]
+
+
+def _built(install: Path) -> Workspace | None:
+    try:
+        layout = (install / _LAYOUT).read_text().strip()
+    except OSError:
+        return None
+    if layout == "merged":
+        return Workspace(install, (install,))
+    prefixes = (folder for folder in install.iterdir() if (folder / "share" / folder.name).is_dir())
+    return Workspace(install, tuple(sorted(prefixes)))
+
+
+# The .dsv format is colcon's: an operation and its arguments in a line, divided by ';'.
+# https://colcon.readthedocs.io/en/released/developer/environment.html
+
+
+def _apply(file: Path, prefix: Path, environment: MutableMapping[str, str]) -> None:
+    for operation, arguments in _operations(file):
+        if operation == "source" and arguments[0].endswith(".dsv"):
+            _apply(prefix / arguments[0], prefix, environment)
+        elif operation in ("set", "set-if-unset") and len(arguments) == 2:
+            if operation == "set" or arguments[0] not in environment:
+                environment[arguments[0]] = arguments[1]
+        elif operation.startswith("prepend-non-duplicate"):
+            for value in _existing(operation, arguments[1:], prefix):
+                _prepend(environment, arguments[0], value)
+        elif operation.startswith("append-non-duplicate"):
+            for value in _existing(operation, arguments[1:], prefix):
+                _append(environment, arguments[0], value)
+
+
+def _operations(file: Path) -> Iterator[tuple[str, list[str]]]:
+    try:
+        lines = file.read_text().splitlines()
+    except OSError:
+        return
+    for line in lines:
+        operation, *arguments = line.split(";")
+        if arguments:
+            yield operation, arguments
+
+
+def _existing(operation: str, values: list[str], prefix: Path) -> list[str]:
+    """The values as paths, relative ones below the prefix; only those that exist where the operation says so."""
+    paths = [prefix / value if value else prefix for value in values or [""]]
+    return [str(path) for path in paths if path.exists() or not operation.endswith("-if-exists")]
+
+
+def _prepend(environment: MutableMapping[str, str], name: str, value: str) -> None:
+    entries = [entry for entry in environment.get(name, "").split(os.pathsep) if entry and entry != value]
+    environment[name] = os.pathsep.join([value, *entries])
+
+
+def _append(environment: MutableMapping[str, str], name: str, value: str) -> None:
+    entries = [entry for entry in environment.get(name, "").split(os.pathsep) if entry]
+    if value not in entries:
+        environment[name] = os.pathsep.join([*entries, value])
+
+
+_DEMOS = ("add_two_ints_client", "add_two_ints_server", "listener", "talker")
+#: Package -> executable -> the module that is it, with the words that it gets. Used where the package has no
+#: executables: of turtlesim, set-up compiles the messages alone, and of the demo nodes, PyPI has nothing.
+BUILT_IN = {
+    "demo_nodes_cpp": {name: f"ros_in_python.demo_nodes cpp {name}" for name in _DEMOS},
+    "demo_nodes_py": {name: f"ros_in_python.demo_nodes py {name}" for name in _DEMOS},
+    "turtlesim": {
+        "draw_square": "ros_in_python.turtlesim.draw_square",
+        "mimic": "ros_in_python.turtlesim.mimic",
+        "turtle_teleop_key": "ros_in_python.turtlesim.teleop_key",
+        "turtlesim_node": "ros_in_python.turtlesim.node",
+    },
+}
+
+
+def interfaces_used(package: str, executable: str) -> str:
+    """The package of interfaces without which an executable of ours does not run; "" for none."""
+    if package not in BUILT_IN:
+        return ""
+    return "turtlesim" if package == "turtlesim" else "example_interfaces" if "two_ints" in executable else ""
+
+
+@dataclass(frozen=True)
+class Launch:
+    """How to start an executable: the command (append the arguments for the node) and its whole environment."""
+
+    argv: list[str]
+    env: dict[str, str]
+
+
+def find(package: str, executable: str, cwd: Path) -> Launch:
+    """How to start a package's executable from the folder `cwd`.
+
+    Searched are, in this order, the prefixes of AMENT_PREFIX_PATH and of this Python, the colcon workspaces of `cwd`
+    and its parents, and what this package brings. A workspace's environment is made as its setup scripts would make it,
+    so it need not be sourced. Raises `CommandError` with what is there if the package or the executable is not.
+    """
+    environment = without_bootstrap(os.environ)
+    prefix = prefixes.prefix_of(package, prefixes.installed())
+    if prefix is None:
+        for near in workspaces_near(cwd):
+            prefix = prefixes.prefix_of(package, near.prefixes)
+            if prefix is not None:
+                near.extend(environment)
+                break
+    there = in_prefix(prefix, package) if prefix is not None else []
+    if there or (prefix is not None and package not in BUILT_IN):
+        return Launch([str(_only(there, package, executable))], environment)
+    modules = BUILT_IN.get(package)
+    if modules is None:
+        raise CommandError(
+            f"Package '{package}' not found",
+            _where(cwd),
+            f"Packages to run from here: {', '.join(runnable(cwd))}.",
+        )
+    if executable not in modules:
+        raise CommandError("No executable found", f"Executables of {package}: {', '.join(sorted(modules))}.")
+    check_installed()
+    return Launch([sys.executable, "-m", *modules[executable].split()], environment)
+
+
+def is_built_in(package: str, prefix: Path | None) -> bool:
+    """Return whether our own executables of a package are used: those of its prefix come first."""
+    return package in BUILT_IN and (prefix is None or not in_prefix(prefix, package))
+
+
+def in_prefix(prefix: Path, package: str) -> list[Path]:
+    """The executables that a package installed in a prefix, in its folder below `lib`, sorted by path."""
+    found = []
+    for folder, folders, files in os.walk(prefix / "lib" / package):
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        found += [Path(folder, name) for name in sorted(files) if os.access(Path(folder, name), os.X_OK)]
+    return found
+
+
+def everywhere(cwd: Path) -> dict[str, Path]:
+    """Package -> prefix of all packages that `find` would search, without those that we bring."""
+    places = [*prefixes.installed(), *(prefix for near in workspaces_near(cwd) for prefix in near.prefixes)]
+    return dict(sorted(prefixes.packages(places).items()))
+
+
+def runnable(cwd: Path) -> list[str]:
+    """The packages of near workspaces that have an executable, and those that we bring, sorted."""
+    built = prefixes.packages(prefix for near in workspaces_near(cwd) for prefix in near.prefixes)
+    return sorted({package for package, prefix in built.items() if in_prefix(prefix, package)} | set(BUILT_IN))
+
+
+def _only(paths: list[Path], package: str, executable: str) -> Path:
+    named = [path for path in paths if path.name == executable]
+    if len(named) > 1:
+        raise CommandError("Multiple executables found:", *(f"- {path}" for path in named))
+    if not named:
+        there = ", ".join(path.name for path in paths)
+        raise CommandError(
+            "No executable found",
+            f"Executables of {package}: {there or 'none'}.",
+            "A Python package names its executables under console_scripts in setup.py; build again after a change.",
+        )
+    return named[0]
+
+
+def _where(cwd: Path) -> str:
+    built = workspaces_near(cwd)
+    if built:
+        places = ", ".join(str(near.install) for near in built)
+        return f"Looked in ROS 2 itself and in {places}: is its name right, and is it built?"
+    return (
+        "There is no built workspace here: run `colcon build --symlink-install` in the workspace, and this from there."
+    )
+
+
+#: What the script of this command has in it, in whichever environment it is installed.
+OURS = b"ros_in_python.ros2"
+
+#: Runs the `ros2` of this very environment where its script is not: conda's, over which pip has written ours.
+AS_MODULE = "import sys; from ros2cli.cli import main; sys.argv[0] = 'ros2'; sys.exit(main())"
+
+#: `own` here keeps this package's command even where the real one is installed.
+CHOICE = "ROS_IN_PYTHON"
+
+
+def real_ros2(arguments: Sequence[str], environment: Mapping[str, str]) -> list[str] | None:
+    """Return the command that should answer `arguments` instead of this package, without them, or None."""
+    if environment.get(CHOICE) == "own" or _ours_all_the_same(arguments):
+        return None
+    for folder in environment.get("PATH", os.defpath).split(os.pathsep):
+        path = shutil.which("ros2", path=folder)
+        if path is not None and not _is_ours(Path(path)):
+            return [path]
+    return [sys.executable, "-c", AS_MODULE] if find_spec("ros2cli") else None
+
+
+def _is_ours(script: Path) -> bool:
+    """Tell whether this `ros2` is the one that installing this package writes."""
+    try:
+        with script.open("rb") as file:
+            return OURS in file.read(2000)
+    except OSError:
+        return False
+
+
+def hand_over(arguments: Sequence[str]) -> None:
+    """Become the real `ros2` if it is installed; return if not."""
+    command = real_ros2(arguments, os.environ)
+    if command is None:
+        return
+    sys.stdout.flush()
+    sys.stderr.flush()
+    # Should that `ros2` be a wrapper around this command, it must not come here a second time.
+    os.execve(command[0], [*command, *arguments], without_bootstrap(os.environ) | {CHOICE: "own"})
+
+
+def _ours_all_the_same(arguments: Sequence[str]) -> bool:
+    """Whether this runs a package that is not installed and of which we have the nodes: turtlesim, the demo nodes."""
+    if not arguments or arguments[0] != "run":
+        return False
+    rest = list(arguments[1:])
+    while rest and rest[0].startswith("-"):
+        takes_value = rest[0] == "--prefix"
+        rest = rest[2 if takes_value else 1 :]
+    return bool(rest) and is_built_in(rest[0], prefixes.prefix_of(rest[0], prefixes.installed()))
+
+
+@click.command(context_settings={**CONTEXT, "ignore_unknown_options": True, "allow_interspersed_args": False})
+@click.option("--prefix", metavar="COMMAND", help="A command to run the executable with, as in 'gdb --args'.")
+@click.argument("package_name")
+@click.argument("executable_name")
+@click.argument("arguments", nargs=-1, type=click.UNPROCESSED)
+def run(prefix: str | None, package_name: str, executable_name: str, arguments: tuple[str, ...]) -> None:
+    """Start an executable of a package; a colcon workspace here need not be sourced.
+
+    \b
+      ros2 run turtlesim turtlesim_node
+      ros2 run humanoid_control joint_publisher --ros-args -p use_sim_time:=true -r __node:=left
+    """
+    launch = find(package_name, executable_name, Path.cwd())
+    command = [*(shlex.split(prefix) if prefix else []), *launch.argv, *arguments]
+    program = shutil.which(command[0], path=launch.env.get("PATH"))
+    if program is None:
+        raise CommandError(f"'{command[0]}' can't be run: there is no such program.")
+    _become(program, command, launch.env)
+
+
+def _become(program: str, command: list[str], environment: dict[str, str]) -> None:
+    """Replace this process, so that signals and the exit status are the node's own."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    # Python ignores these two for itself; what it starts should not inherit that.
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
+    try:
+        os.execve(program, command, environment)
+    except OSError as error:
+        raise CommandError(
+            f"{program} could not be started: {error.strerror}",
+            "Its first line may name a Python that is gone: build the workspace again.",
+        ) from None

@@ -1,0 +1,319 @@
+"""Interface types by name, and `ros2 interface`, which shows them."""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Literal
+
+import click
+
+from interface_compiler import prefixes, shipped
+from ros_in_python.ros2.cli import CONTEXT, CommandError, Entry, Menu
+
+DEFINITION_KINDS = ("msg", "srv", "action")
+
+_PRIMITIVE = re.compile(r"(bool|byte|char|float32|float64|u?int(8|16|32|64)|w?string(<=\d+)?)$")
+_ARRAY = re.compile(r"\[(<=)?\d*\]$")
+_SEPARATOR = "---"
+
+
+def installed_interfaces() -> dict[str, list[str]]:
+    """Package -> its interfaces as `msg/String`, sorted; every installed package that has any."""
+    markers = prefixes.resources("rosidl_interfaces", prefixes.installed())
+    return {package: _read(marker) for package, marker in sorted(markers.items())}
+
+
+def interfaces_of(package: str) -> list[str] | None:
+    """One package's interfaces as `msg/String`, sorted; None if it has none or is not installed."""
+    marker = prefixes.resources("rosidl_interfaces", prefixes.installed()).get(package)
+    return None if marker is None else _read(marker)
+
+
+def folder_of(package: str) -> Path:
+    """The folder of an installed package's shared files."""
+    prefix = prefixes.prefix_of(package, prefixes.installed())
+    assert prefix is not None
+    return prefix / "share" / package
+
+
+def _read(marker: Path) -> list[str]:
+    names = {line.strip().rpartition(".") for line in marker.read_text().splitlines()}
+    return sorted(
+        {
+            stem
+            for stem, _, ending in names
+            if ending in (*DEFINITION_KINDS, "idl") and stem.split("/")[0] in DEFINITION_KINDS
+        }
+    )
+
+
+def unfold(interface: str, *, comments: bool, nested_comments: bool, depth: int = 0) -> Iterator[str]:
+    """The lines of an interface's file, each field of a message type followed by that type's lines, indented by
+    a tab for each level.
+
+    Comments and blank lines are those of the file itself, of nested files only with `nested_comments`.
+    `interface` is `PACKAGE/KIND/NAME` of an installed type.
+    """
+    package, kind, name = interface.split("/")
+    text = (folder_of(package) / kind / f"{name}.{kind}").read_text()
+    for line in text.splitlines():
+        raw = line.rstrip()
+        shown = raw if comments else _without_comment(raw)
+        if shown or comments:
+            yield "\t" * depth + shown if shown else ""
+        nested = _nested_type(raw, package)
+        if nested is not None:
+            yield from unfold(nested, comments=nested_comments, nested_comments=nested_comments, depth=depth + 1)
+
+
+def _nested_type(line: str, package: str) -> str | None:
+    """The message type of the field in this line, in full; None if it is another type's or no field."""
+    words = _without_comment(line).split()
+    if len(words) < 2 or line == _SEPARATOR:
+        return None
+    base = _ARRAY.sub("", words[0])
+    if _PRIMITIVE.match(base) or base == _SEPARATOR:
+        return None
+    owner, _, name = base.rpartition("/")
+    return f"{(owner or package).split('/')[0]}/msg/{name}"
+
+
+def _without_comment(line: str) -> str:
+    """The line up to its comment; a '#' in a quoted default is none."""
+    quote = None
+    for place, letter in enumerate(line):
+        if quote:
+            quote = None if letter == quote else quote
+        elif letter in "\"'":
+            quote = letter
+        elif letter == "#":
+            return line[:place].strip()
+    return line.strip()
+
+
+Kind = Literal["msg", "srv", "action"]
+
+#: How the type of an action's feedback topic ends.
+_FEEDBACK = "_FeedbackMessage"
+
+KINDS: dict[Kind, str] = {"msg": "message", "srv": "service", "action": "action"}
+
+
+def message_class(name: str) -> Any:
+    """The class of a message type. Raises `CommandError` for a name that is not a type installed here.
+
+    An action's feedback topic has a type of its own, such as `turtlesim/action/RotateAbsolute_FeedbackMessage`.
+    """
+    action, is_feedback, _ = name.partition(_FEEDBACK)
+    return action_class(action).Impl.FeedbackMessage if is_feedback else _load(name, "msg")
+
+
+def service_class(name: str) -> Any:
+    """The class of a service type, with `Request` and `Response`. Raises as `message_class` does."""
+    return _load(name, "srv")
+
+
+def action_class(name: str) -> Any:
+    """The class of an action type, with `Goal`, `Result` and `Feedback`. Raises as `message_class` does."""
+    return _load(name, "action")
+
+
+def interface_class(name: str) -> Any:
+    """The class of a message, service or action type, by its name with the middle part."""
+    parts = name.split("/")
+    if len(parts) != 3 or parts[1] not in KINDS:
+        raise CommandError(
+            f"The passed type '{name}' is invalid",
+            "Expected PACKAGE/msg/NAME, PACKAGE/srv/NAME or PACKAGE/action/NAME.",
+        )
+    return _load(name, parts[1])
+
+
+def _load(name: str, kind: Kind) -> Any:
+    full = full_name(name, kind)
+    package, _, short = full.split("/")
+    check_installed(full)
+    try:
+        return getattr(importlib.import_module(f"{package}.{kind}"), short)
+    except (ImportError, AttributeError) as error:
+        raise CommandError(
+            f"The type '{full}' has no Python code in this environment: {error}",
+            f"Its package was found in {folder_of(package)}, built for another Python perhaps.",
+        ) from None
+
+
+def full_name(name: str, kind: Kind) -> str:
+    """`std_msgs/String` -> `std_msgs/msg/String`. Raises `CommandError` for what can't be a type's name."""
+    parts = name.split("/")
+    if len(parts) == 2:
+        parts.insert(1, kind)
+    if len(parts) != 3 or parts[1] != kind or not all(parts):
+        raise CommandError(
+            f"The passed {KINDS[kind]} type is invalid: '{name}'",
+            f"Expected PACKAGE/{kind}/NAME. `ros2 interface list` shows what is installed.",
+        )
+    return "/".join(parts)
+
+
+def check_installed(full: str) -> None:
+    """Raise `CommandError` where the type `PACKAGE/KIND/NAME` is not installed: how to get it, or what is like it."""
+    package, kind, short = full.split("/")
+    known = interfaces_of(package)
+    if known is not None and f"{kind}/{short}" in known:
+        return
+    if known is not None:
+        raise CommandError(f"The package '{package}' has no type '{kind}/{short}'.", _alike(full))
+    advice = shipped.how_to_add(package) or _alike(full)
+    raise CommandError(f"Unknown package '{package}': the type '{full}' is not installed here.", advice)
+
+
+def _alike(full: str) -> str:
+    everything = [f"{package}/{name}" for package, names in installed_interfaces().items() for name in names]
+    short = full.rpartition("/")[2]
+    alike = [name for name in everything if name.rpartition("/")[2].lower() == short.lower()]
+    alike += difflib.get_close_matches(full, everything, n=3, cutoff=0.85)
+    if alike:
+        return f"Did you mean {' or '.join(list(dict.fromkeys(alike))[:3])}?"
+    return "`ros2 interface list` shows what is installed."
+
+
+interface = Menu(
+    name="interface",
+    entries={
+        "list": Entry("ros_in_python.ros2.interfaces:list_", "Every type installed here."),
+        "package": Entry("ros_in_python.ros2.interfaces:package", "The types of one package."),
+        "packages": Entry("ros_in_python.ros2.interfaces:packages", "The packages that have types."),
+        "proto": Entry("ros_in_python.ros2.interfaces:proto", "A type's fields with their defaults, to copy into pub."),
+        "show": Entry("ros_in_python.ros2.interfaces:show", "The definition of a type."),
+    },
+    help="""Show the fields of message, service and action types.
+
+    \b
+      ros2 interface show sensor_msgs/msg/JointState
+      ros2 interface proto geometry_msgs/msg/Twist
+    """,
+)
+
+_TITLES = {"msg": "Messages", "srv": "Services", "action": "Actions"}
+
+
+def _kinds(only_msgs: bool, only_srvs: bool, only_actions: bool) -> list[str]:
+    chosen = [kind for kind, wanted in zip(_TITLES, (only_msgs, only_srvs, only_actions), strict=True) if wanted]
+    return chosen or list(_TITLES)
+
+
+_only_msgs = click.option("-m", "--only-msgs", is_flag=True, help="Messages.")
+_only_srvs = click.option("-s", "--only-srvs", is_flag=True, help="Services.")
+_only_actions = click.option("-a", "--only-actions", is_flag=True, help="Actions.")
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("type_name", metavar="TYPE")
+@click.option("--all-comments", is_flag=True, help="Comments of nested types too.")
+@click.option("--no-comments", is_flag=True, help="No comments and no blank lines.")
+def show(type_name: str, all_comments: bool, no_comments: bool) -> None:
+    """The definition of a type; `-` reads its name from standard input.
+
+    \b
+      ros2 interface show geometry_msgs/msg/Twist
+      ros2 topic type /joint_commands | ros2 interface show -
+    """
+    if all_comments and no_comments:
+        raise click.UsageError("--all-comments and --no-comments exclude each other")
+    if type_name == "-":
+        type_name = sys.stdin.readline().strip()
+    full = _full(type_name)
+    for line in unfold(full, comments=not no_comments, nested_comments=all_comments):
+        click.echo(line)
+
+
+@click.command(name="list", context_settings=CONTEXT)
+@_only_msgs
+@_only_srvs
+@_only_actions
+def list_(only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
+    """Every type installed here.
+
+    \b
+      ros2 interface list -a
+      Actions:
+          test_msgs/action/Fibonacci
+    """
+    everything = installed_interfaces()
+    for kind in _kinds(only_msgs, only_srvs, only_actions):
+        click.echo(f"{_TITLES[kind]}:")
+        for package_name, names in everything.items():
+            for name in names:
+                if name.startswith(f"{kind}/"):
+                    click.echo(f"    {package_name}/{name}")
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("package_name")
+@_only_msgs
+@_only_srvs
+@_only_actions
+def package(package_name: str, only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
+    """The types of one package.
+
+    \b
+      ros2 interface package std_srvs
+    """
+    names = interfaces_of(package_name)
+    if names is None:
+        advice = shipped.how_to_add(package_name) or "`ros2 interface packages` shows those that have types."
+        raise CommandError(f"Unknown package '{package_name}'", advice)
+    kinds = _kinds(only_msgs, only_srvs, only_actions)
+    for name in names:
+        if name.split("/")[0] in kinds:
+            click.echo(f"{package_name}/{name}")
+
+
+@click.command(context_settings=CONTEXT)
+@_only_msgs
+@_only_srvs
+@_only_actions
+def packages(only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
+    """The packages that have types.
+
+    \b
+      ros2 interface packages -a
+    """
+    kinds = _kinds(only_msgs, only_srvs, only_actions)
+    for package_name, names in installed_interfaces().items():
+        if any(name.split("/")[0] in kinds for name in names):
+            click.echo(package_name)
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("type_name", metavar="TYPE")
+@click.option("--no-quotes", is_flag=True, help="Without the quotes around it.")
+def proto(type_name: str, no_quotes: bool) -> None:
+    """A type's fields with their defaults: a message's, a service's request's, or an action's goal's.
+
+    \b
+      ros2 interface proto geometry_msgs/msg/Twist
+    """
+    from ros_in_python.ros2.messages import to_yaml
+
+    kind = interface_class(_full(type_name))
+    filled_in = getattr(kind, "Goal", None) or getattr(kind, "Request", None) or kind
+    text = to_yaml(filled_in())
+    click.echo(text if no_quotes else f'"{text}"')
+
+
+def _full(type_name: str) -> str:
+    """The full name of an installed type. Raises `CommandError` for any other."""
+    parts = type_name.split("/")
+    if len(parts) != 3 or parts[1] not in _TITLES or not all(parts):
+        raise CommandError(
+            f"Invalid name '{type_name}'. Expected three parts separated by '/'",
+            "As in sensor_msgs/msg/JointState, std_srvs/srv/Trigger or test_msgs/action/Fibonacci.",
+        )
+    check_installed(type_name)
+    return type_name

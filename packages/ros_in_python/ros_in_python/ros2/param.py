@@ -1,0 +1,394 @@
+"""`ros2 param`: list, get, set, describe, dump and delete, through each node's parameter services."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+import yaml
+
+from ros_in_python.ros2.cli import CONTEXT, CommandError, Entry, Menu, discovery_options
+from ros_in_python.ros2.opening import open_graph
+
+if TYPE_CHECKING:
+    from ros_in_python.ros2.graph import Graph
+
+
+#: Seconds that a node's parameter services get to appear, and then to answer.
+READY, ANSWER = 5.0, 10.0
+
+# By rcl_interfaces/msg/ParameterType.
+_VALUE_FIELDS = (
+    "",
+    "bool_value",
+    "integer_value",
+    "double_value",
+    "string_value",
+    "byte_array_value",
+    "bool_array_value",
+    "integer_array_value",
+    "double_array_value",
+    "string_array_value",
+)
+
+
+def find_node(graph: Graph, node_name: str, include_hidden: bool) -> str:
+    """The full name of a running node. Raises `CommandError` with those that run if it does not."""
+    from ros_in_python.ros2.graph import absolute_node, seen
+
+    full = absolute_node(node_name)
+
+    def visible() -> list[str]:
+        return [node.full_name for node in graph.nodes() if include_hidden or not node.hidden]
+
+    graph.settle(lambda: full in visible())
+    if full not in visible():
+        raise CommandError("Node not found", seen("Nodes", visible()))
+    return full
+
+
+def client_of(graph: Graph, name: str) -> Any:
+    """A client of a node's parameter services that the node knows. Raises `CommandError` if it has none."""
+    from rclpy.parameter_client import AsyncParameterClient
+
+    client = AsyncParameterClient(graph.node, name)
+    if not graph.spin_until(client.services_are_ready, READY):
+        raise CommandError(
+            f"Wait for service timed out waiting for parameter services for node {name}",
+            "The node has none (start_parameter_services=False), or is ending.",
+        )
+    graph.wait_until_known(name)
+    return client
+
+
+def answer(graph: Graph, name: str, future: Any) -> Any:
+    """What a node replied. Raises `CommandError` if it is silent."""
+    if not graph.spin_until(future.done, ANSWER):
+        raise CommandError(
+            f"The node {name} did not answer within {ANSWER:.0f} s.",
+            "A node answers while it spins: it may be stuck in a callback, or never call rclpy.spin.",
+        )
+    if future.exception() is not None or future.result() is None:
+        raise CommandError(f"Exception while calling service of node '{name}': {future.exception()}")
+    return future.result()
+
+
+def parameter_value(text: str) -> Any:
+    """What was typed as a rcl_interfaces/msg/ParameterValue, of the type that YAML gives it."""
+    from rclpy.parameter import get_parameter_value
+
+    try:
+        return get_parameter_value(text)
+    except yaml.YAMLError:
+        from rcl_interfaces.msg import ParameterType, ParameterValue
+
+        # Not YAML, so a text, as the real command takes it.
+        return ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=text)
+
+
+def parameters_of_file(file: Path, node: str, *, use_wildcard: bool) -> list[Any]:
+    """What a parameter file says for a node (full name), as rcl_interfaces/msg/Parameter. Raises `CommandError`."""
+    from rclpy.parameter import parameter_dict_from_yaml_file
+
+    try:
+        found = parameter_dict_from_yaml_file(str(file), use_wildcard, target_nodes=[node])
+    except OSError as error:
+        raise CommandError(f"{file}: {error.strerror}") from None
+    except yaml.YAMLError as error:
+        raise CommandError(f"{file} is not valid YAML: {error}") from None
+    except (RuntimeError, TypeError, AttributeError, ValueError) as error:
+        raise CommandError(
+            f"{file} has no parameters for {node}: {error}",
+            f"It needs the node's name, then ros__parameters, then the parameters: {node}: {{ros__parameters: {{…}}}}",
+        ) from None
+    return list(found.values())
+
+
+def value_of(value: Any) -> Any:
+    """The value of a rcl_interfaces/msg/ParameterValue as the message has it; None if it is not set."""
+    return getattr(value, _VALUE_FIELDS[value.type]) if 0 < value.type < len(_VALUE_FIELDS) else None
+
+
+param = Menu(
+    name="param",
+    entries={
+        "delete": Entry("ros_in_python.ros2.param:delete", "Delete a parameter of a node."),
+        "describe": Entry("ros_in_python.ros2.param:describe", "Describe a parameter: type, range."),
+        "dump": Entry("ros_in_python.ros2.param:dump", "All parameters of a node, in a parameter file's YAML."),
+        "get": Entry("ros_in_python.ros2.param:get", "The value of a parameter."),
+        "list": Entry("ros_in_python.ros2.param:list_", "The parameters of one node or of all."),
+        "load": Entry("ros_in_python.ros2.param:load", "Set a node's parameters from a parameter file."),
+        "set": Entry("ros_in_python.ros2.param:set_", "Set a parameter."),
+    },
+    help="""Read and change parameters of running nodes.
+
+    \b
+      ros2 param list /joint_state_monitor
+      ros2 param get /joint_state_monitor use_sim_time
+    """,
+)
+
+# By rcl_interfaces/msg/ParameterType: how `describe` names a type, and how `get` begins its line.
+_TYPES = {
+    0: ("not set", "Parameter not set."),
+    1: ("boolean", "Boolean value is:"),
+    2: ("integer", "Integer value is:"),
+    3: ("double", "Double value is:"),
+    4: ("string", "String value is:"),
+    5: ("byte array", "Byte values are:"),
+    6: ("boolean array", "Boolean values are:"),
+    7: ("integer array", "Integer values are:"),
+    8: ("double array", "Double values are:"),
+    9: ("string array", "String values are:"),
+}
+_hidden_nodes = click.option("-a", "--include-hidden-nodes", is_flag=True, help="Hidden nodes too.")
+
+
+@click.command(name="list", context_settings=CONTEXT)
+@click.argument("node_name", required=False)
+@_hidden_nodes
+@click.option("--param-type", is_flag=True, help="Show each parameter's type too.")
+@discovery_options
+def list_(
+    node_name: str | None, include_hidden_nodes: bool, param_type: bool, spin_time: float | None, use_sim_time: bool
+) -> None:
+    """The parameters of one node or of all.
+
+    \b
+      ros2 param list /joint_state_monitor
+    """
+    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        if node_name is None:
+            graph.settle()
+            names = sorted({node.full_name for node in graph.nodes() if include_hidden_nodes or not node.hidden})
+        else:
+            names = [find_node(graph, node_name, include_hidden_nodes)]
+        for name in names:
+            try:
+                client = client_of(graph, name)
+                params = sorted(answer(graph, name, client.list_parameters()).result.names)
+                types = _described(graph, name, client, params) if param_type else {}
+            except CommandError as refusal:
+                if node_name is not None:
+                    raise
+                refusal.show()
+                continue
+            if node_name is None:
+                click.echo(f"{name}:")
+            for parameter in params:
+                click.echo(f"  {parameter} (type: {types[parameter]})" if param_type else f"  {parameter}")
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("node_name")
+@click.argument("parameter_name")
+@_hidden_nodes
+@click.option("--hide-type", is_flag=True, help="The value alone.")
+@discovery_options
+def get(
+    node_name: str,
+    parameter_name: str,
+    include_hidden_nodes: bool,
+    hide_type: bool,
+    spin_time: float | None,
+    use_sim_time: bool,
+) -> None:
+    """The value of a parameter.
+
+    \b
+      ros2 param get /joint_state_monitor use_sim_time
+      Boolean value is: False
+    """
+    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        name = find_node(graph, node_name, include_hidden_nodes)
+        client = client_of(graph, name)
+        values = answer(graph, name, client.get_parameters([parameter_name])).values
+        if not values:
+            raise CommandError("Parameter not set", _parameters_of(graph, name, client))
+    kind = values[0].type
+    label = _TYPES.get(kind, ("", f"Unknown parameter type '{kind}'"))[1]
+    value = _plain(value_of(values[0]))
+    if hide_type:
+        click.echo(str(value))
+    else:
+        click.echo(label if value is None else f"{label} {value}")
+
+
+# Negative values begin as an option does.
+@click.command(name="set", context_settings={**CONTEXT, "ignore_unknown_options": True})
+@click.argument("node_name")
+@click.argument("parameter_name")
+@click.argument("value")
+@_hidden_nodes
+@discovery_options
+def set_(
+    node_name: str,
+    parameter_name: str,
+    value: str,
+    include_hidden_nodes: bool,
+    spin_time: float | None,
+    use_sim_time: bool,
+) -> None:
+    """Give a parameter another value, in YAML: 3 is an integer, 3.0 a double, true a boolean.
+
+    \b
+      ros2 param set /joint_state_monitor use_sim_time true
+    """
+    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        from rcl_interfaces.msg import Parameter
+
+        name = find_node(graph, node_name, include_hidden_nodes)
+        client = client_of(graph, name)
+        wanted = Parameter(name=parameter_name, value=parameter_value(value))
+        result = answer(graph, name, client.set_parameters([wanted])).results[0]
+    if result.successful:
+        click.echo(_with_reason("Set parameter successful", result.reason))
+    else:
+        # As ROS 2's own command: a node that refuses a value has answered, and the command has not failed.
+        click.echo(_with_reason("Setting parameter failed", result.reason), err=True)
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("node_name")
+@click.argument("parameter_name")
+@_hidden_nodes
+@discovery_options
+def delete(
+    node_name: str, parameter_name: str, include_hidden_nodes: bool, spin_time: float | None, use_sim_time: bool
+) -> None:
+    """Delete a parameter of a node, which most nodes refuse for those they declared.
+
+    \b
+      ros2 param delete /joint_state_monitor gain
+    """
+    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        name = find_node(graph, node_name, include_hidden_nodes)
+        client = client_of(graph, name)
+        result = answer(graph, name, client.delete_parameters([parameter_name])).results[0]
+        if not result.successful:
+            raise CommandError(_with_reason("Deleting parameter failed", result.reason))
+    click.echo(_with_reason("Deleted parameter successfully", result.reason))
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("node_name")
+@click.argument("parameter_names", nargs=-1, required=True)
+@_hidden_nodes
+@discovery_options
+def describe(
+    node_name: str,
+    parameter_names: tuple[str, ...],
+    include_hidden_nodes: bool,
+    spin_time: float | None,
+    use_sim_time: bool,
+) -> None:
+    """What is known of a parameter: its type and range.
+
+    \b
+      ros2 param describe /joint_state_monitor use_sim_time
+    """
+    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        name = find_node(graph, node_name, include_hidden_nodes)
+        client = client_of(graph, name)
+        descriptors = answer(graph, name, client.describe_parameters(list(parameter_names))).descriptors
+        if not descriptors:
+            raise CommandError("Parameter not set", _parameters_of(graph, name, client))
+    for descriptor in descriptors:
+        for line in _description(descriptor):
+            click.echo(line)
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("node_name")
+@_hidden_nodes
+@discovery_options
+def dump(node_name: str, include_hidden_nodes: bool, spin_time: float | None, use_sim_time: bool) -> None:
+    """All parameters of a node, as a parameter file for `ros2 run … --ros-args --params-file FILE`.
+
+    \b
+      ros2 param dump /joint_state_monitor > monitor.yaml
+    """
+    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        name = find_node(graph, node_name, include_hidden_nodes)
+        client = client_of(graph, name)
+        names = sorted(answer(graph, name, client.list_parameters()).result.names)
+        values = answer(graph, name, client.get_parameters(names)).values if names else []
+    tree: dict[str, Any] = {}
+    for parameter, value in zip(names, values, strict=True):
+        *branches, leaf = parameter.split(".")
+        branch = tree
+        for step in branches:
+            branch = branch.setdefault(step, {})
+        branch[leaf] = _plain(value_of(value))
+    click.echo(yaml.dump({name: {"ros__parameters": tree}}, default_flow_style=False))
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("node_name")
+@click.argument("parameter_file", type=click.Path(path_type=Path))
+@_hidden_nodes
+@click.option("--no-use-wildcard", is_flag=True, help="Leave out what the file has under /**.")
+@discovery_options
+def load(
+    node_name: str,
+    parameter_file: Path,
+    include_hidden_nodes: bool,
+    no_use_wildcard: bool,
+    spin_time: float | None,
+    use_sim_time: bool,
+) -> None:
+    """Set a running node's parameters from a parameter file, one after another.
+
+    \b
+      ros2 param load /joint_state_monitor monitor.yaml
+    """
+    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        name = find_node(graph, node_name, include_hidden_nodes)
+        parameters = parameters_of_file(parameter_file, name, use_wildcard=not no_use_wildcard)
+        client = client_of(graph, name)
+        results = answer(graph, name, client.set_parameters(parameters)).results
+    refused = []
+    for parameter, result in zip(parameters, results, strict=True):
+        outcome = "successful" if result.successful else "failed"
+        line = _with_reason(f"Set parameter {parameter.name} {outcome}", result.reason)
+        if result.successful:
+            click.echo(line)
+        else:
+            refused.append(line)
+    if refused:
+        raise CommandError(*refused)
+
+
+def _parameters_of(graph: Graph, name: str, client: Any) -> str:
+    names = sorted(answer(graph, name, client.list_parameters()).result.names)
+    return f"Parameters of {name}: {', '.join(names)}."
+
+
+def _described(graph: Graph, name: str, client: Any, params: list[str]) -> dict[str, str]:
+    descriptors = answer(graph, name, client.describe_parameters(params)).descriptors
+    return {descriptor.name: _TYPES[descriptor.type][0] for descriptor in descriptors}
+
+
+def _description(descriptor: Any) -> list[str]:
+    lines = [f"Parameter name: {descriptor.name}", f"  Type: {_TYPES[descriptor.type][0]}"]
+    if descriptor.description:
+        lines.append(f"  Description: {descriptor.description}")
+    lines.append("  Constraints:")
+    if descriptor.read_only:
+        lines.append("    Read only: true")
+    for limits in [*descriptor.floating_point_range, *descriptor.integer_range][:1]:
+        lines += [f"    Min value: {limits.from_value}", f"    Max value: {limits.to_value}"]
+        if limits.step:
+            lines.append(f"    Step: {limits.step}")
+    if descriptor.additional_constraints:
+        lines.append(f"    Additional constraints: {descriptor.additional_constraints}")
+    return lines
+
+
+def _plain(value: Any) -> Any:
+    return value if isinstance(value, (bool, int, float, str, type(None))) else list(value)
+
+
+def _with_reason(text: str, reason: str) -> str:
+    return f"{text}: {reason}" if reason else text

@@ -1,0 +1,138 @@
+"""`ros2 topic echo`."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+import click
+import yaml
+
+from ros_in_python.ros2 import interfaces, qos
+from ros_in_python.ros2.cli import CONTEXT, discovery_options
+from ros_in_python.ros2.opening import open_graph
+from ros_in_python.ros2.topic.selection import check_path, field, field_path, filter_option
+
+if TYPE_CHECKING:
+    from ros_in_python.ros2.graph import Graph
+
+LENGTH = 128
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("topic_name")
+@click.argument("message_type", required=False)
+@click.option("--once", is_flag=True, help="Print the first message and exit.")
+@click.option("--timeout", type=click.FloatRange(min=0, min_open=True), metavar="N", help="Exit after N seconds.")
+@click.option("--field", metavar="FIELD", help="Only this field, as in header.stamp")
+@click.option("--csv", is_flag=True, help="One line per message, values separated by commas.")
+@click.option("--flow-style", is_flag=True, help="Arrays on one line.")
+@click.option("--no-arr", is_flag=True, help="Print only the type and length of arrays.")
+@click.option("--no-str", is_flag=True, help="Print only the length of strings.")
+@click.option("-f", "--full-length", is_flag=True, help="Print arrays and strings whole.")
+@click.option(
+    "-l",
+    "--truncate-length",
+    type=click.IntRange(min=0),
+    default=LENGTH,
+    show_default=True,
+    help="Elements or characters to show before '...'.",
+)
+@filter_option
+@click.option("-i", "--include-message-info", is_flag=True, help="Time stamps and numbers of each message.")
+@click.option("--raw", is_flag=True, help="The bytes as they arrived.")
+@click.option("--no-lost-messages", is_flag=True, help="Don't report lost messages.")
+@click.option("--lost-messages", is_flag=True, expose_value=False, hidden=True)
+@qos.qos_options("sensor_data")
+@discovery_options
+def echo(topic_name: str, message_type: str | None, **options: Any) -> None:
+    """Print the messages of a topic; Ctrl-C ends it.
+
+    \b
+      ros2 topic echo --once /joint_commands
+      ros2 topic echo /joint_commands --field position
+      ros2 topic echo --csv /joint_commands > joints.csv
+
+    It asks for the QoS that the topic's publishers offer, so that it hears every one.
+    """
+    asked = qos.asked(options)
+    with open_graph(spin_time=options.pop("spin_time"), use_sim_time=options.pop("use_sim_time")) as graph:
+        from ros_in_python.ros2.graph import absolute
+        from ros_in_python.ros2.topic.selection import type_or_refusal
+
+        name = absolute(topic_name)
+        path = field_path(options["field"])
+        message = None if message_type is None else interfaces.message_class(message_type)
+        qos.profile(asked)
+        graph.settle(lambda: bool(graph.publishers(name)))
+        if message is None:
+            message = type_or_refusal(graph, name)
+        if not options["raw"]:
+            check_path(message, path)
+        _listen(graph, name, message, path, qos.suiting(graph, name, asked), options)
+
+
+def _listen(graph: Graph, topic: str, message: Any, path: list[str], profile: Any, options: dict[str, Any]) -> None:
+    from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
+
+    printed = 0
+    text = _printer(options)
+    wanted = options["filter_expression"]
+    start = time.monotonic()
+
+    def arrived(data: Any, info: dict[str, Any]) -> None:
+        nonlocal printed
+        if options["once"] and printed:
+            return
+        part = data if options["raw"] else field(data, path)
+        if wanted is None or wanted(part):
+            sys.stdout.write(text(part, info))
+            sys.stdout.flush()
+            printed += 1
+
+    # A callback of two arguments gets the message and what is known of it; the annotation in rclpy has one only.
+    callback: Any = arrived
+
+    def subscribe(events: Any) -> None:
+        graph.node.create_subscription(message, topic, callback, profile, event_callbacks=events, raw=options["raw"])
+
+    try:
+        subscribe(SubscriptionEventCallbacks(message_lost=None if options["no_lost_messages"] else _lost))
+    except UnsupportedEventTypeError:
+        subscribe(None)
+
+    if graph.spin_until(lambda: bool(options["once"] and printed), options["timeout"]):
+        return
+    waited = time.monotonic() - start
+    if not printed:
+        click.echo(f"No message on {topic} within {waited:.0f} s.", err=True)
+
+
+def _printer(options: dict[str, Any]) -> Any:
+    from ros_in_python.ros2.messages import Brevity, is_message, to_csv, to_yaml
+
+    length = None if options["full_length"] else options["truncate_length"]
+    brevity = Brevity(length, options["no_arr"], options["no_str"])
+    with_info = options["include_message_info"]
+
+    def text(part: Any, info: dict[str, Any]) -> str:
+        if not is_message(part):
+            about = f"---Got new message, message info:---\n{info}\n---Message data:---\n" if with_info else ""
+            return f"{about}{part}\n---\n"
+        if options["csv"]:
+            about = ",".join(str(value) for value in info.values()) + "," if with_info else ""
+            return about + to_csv(part, brevity) + "\n"
+        about = f"{yaml.dump(info)}---\n" if with_info else ""
+        return about + to_yaml(part, brevity, flow_style=options["flow_style"]) + "---\n"
+
+    return text
+
+
+def _lost(status: Any) -> None:
+    """Report lost messages, line ends as the real command's."""
+    print(
+        f"A message was lost!!!\n\ttotal count change:{status.total_count_change}\n\ttotal count: {status.total_count}",
+        end="---\n",
+        flush=True,
+    )

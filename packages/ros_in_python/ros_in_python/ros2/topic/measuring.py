@@ -1,0 +1,301 @@
+"""`ros2 topic hz`, `bw` and `delay`: how often, how much, how late."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import click
+
+from ros_in_python.ros2.cli import CONTEXT, CommandError, F, discovery_options
+from ros_in_python.ros2.opening import open_graph
+from ros_in_python.ros2.topic.selection import Filter, filter_option
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Mean, least, greatest and population standard deviation of `count` values, in the values' unit."""
+
+    mean: float
+    least: float
+    greatest: float
+    deviation: float
+    count: int
+
+
+def spread(values: deque[int]) -> Spread:
+    """The spread of at least one value; the deviation is divided by n, not by n - 1."""
+    count = len(values)
+    mean = sum(values) / count
+    deviation = math.sqrt(sum((value - mean) ** 2 for value in values) / count)
+    return Spread(mean, min(values), max(values), deviation, count)
+
+
+class Rate:
+    """The rate of arrivals over the last `window` intervals. Times are in ns."""
+
+    def __init__(self, window: int) -> None:
+        self._intervals: deque[int] = deque(maxlen=window)
+        self._latest: int | None = None
+        self._reported = 0
+
+    def arrived(self, now: int) -> None:
+        """A message came at `now`; a clock that went back starts over."""
+        if self._latest is None or now < self._latest:
+            self._intervals.clear()
+        else:
+            self._intervals.append(now - self._latest)
+        self._latest = now
+
+    def reset(self) -> bool:
+        """Forget the intervals, as when a simulation starts over; whether there were any."""
+        had = bool(self._intervals)
+        self._intervals.clear()
+        return had
+
+    def report(self) -> str | None:
+        """The two lines to print, at most once per second of arrivals; None if none are due."""
+        if not self._intervals or self._latest is None:
+            return None
+        if self._reported == 0 or self._latest < self._reported:
+            self._reported = self._latest
+            return None
+        if self._latest < self._reported + 1_000_000_000:
+            return None
+        self._reported = self._latest
+        result = spread(self._intervals)
+        rate = 1e9 / result.mean if result.mean > 0 else 0.0
+        return f"average rate: {rate:.3f}\n\t" + _seconds(result)
+
+
+class Delay:
+    """The age of messages on arrival over the last `window`. Times are in ns."""
+
+    def __init__(self, window: int) -> None:
+        self._delays: deque[int] = deque(maxlen=window)
+        self._latest: int | None = None
+        self._reported: int | None = None
+
+    def arrived(self, now: int, stamp: int) -> None:
+        """A message with the header stamp `stamp` came at `now`. The first is left out, as the real one does."""
+        if self._latest is None or now < self._latest:
+            self._delays.clear()
+        else:
+            self._delays.append(now - stamp)
+        self._latest = now
+
+    def report(self) -> str | None:
+        """The lines to print this second; None before there is anything."""
+        if not self._delays:
+            return None
+        if self._latest == self._reported:
+            return "no new messages"
+        self._reported = self._latest
+        result = spread(self._delays)
+        return f"average delay: {result.mean * 1e-9:.3f}\n\t" + _seconds(result)
+
+
+class Bandwidth:
+    """Bytes a second over the last `window` messages. Times are in s."""
+
+    def __init__(self, window: int) -> None:
+        self._sizes: deque[int] = deque(maxlen=window)
+        self._times: deque[float] = deque(maxlen=window)
+
+    def arrived(self, now: float, size: int) -> None:
+        """A message of `size` bytes came at `now`."""
+        self._times.append(now)
+        self._sizes.append(size)
+
+    def report(self, now: float) -> str | None:
+        """The two lines to print at `now`; None before there are two messages."""
+        if len(self._times) < 2 or now <= self._times[0]:
+            return None
+        total, count = sum(self._sizes), len(self._sizes)
+        rate = total / (now - self._times[0])
+        unit = _unit(rate)
+        mean, least, greatest = (unit(value) for value in (total / count, min(self._sizes), max(self._sizes)))
+        return f"{unit(rate)}/s from {count} messages\n\tMessage size mean: {mean} min: {least} max: {greatest}"
+
+
+def _seconds(result: Spread) -> str:
+    return (
+        f"min: {result.least * 1e-9:.3f}s max: {result.greatest * 1e-9:.3f}s "
+        f"std dev: {result.deviation * 1e-9:.5f}s window: {result.count}"
+    )
+
+
+def _unit(rate: float) -> Callable[[float], str]:
+    """The unit that suits a rate in bytes per second; all other figures in the report use the same one."""
+    if rate < 1000:
+        return lambda size: f"{size:.0f} B"
+    if rate < 1_000_000:
+        return lambda size: f"{size / 1000:.2f} KB"
+    return lambda size: f"{size / 1_000_000:.2f} MB"
+
+
+#: How many messages are averaged over, and how many for the bandwidth.
+WINDOW = 10000
+BANDWIDTH_WINDOW = 100
+
+
+def _window_option(messages: int) -> Callable[[F], F]:
+    """The option `--window`; by default this many messages."""
+    return click.option(
+        "-w",
+        "--window",
+        type=click.IntRange(min=1),
+        default=messages,
+        show_default=True,
+        help="Messages to average over.",
+    )
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("topic_name")
+@_window_option(WINDOW)
+@click.option("--wall-time", is_flag=True, help="Measure in wall time, even with --use-sim-time.")
+@filter_option
+@discovery_options
+def hz(
+    topic_name: str,
+    window: int,
+    wall_time: bool,
+    filter_expression: Filter | None,
+    spin_time: float | None,
+    use_sim_time: bool,
+) -> None:
+    """How many messages per second arrive; Ctrl-C ends it.
+
+    \b
+      ros2 topic hz /joint_commands
+      average rate: 10.001
+              min: 0.099s max: 0.101s std dev: 0.00031s window: 11
+
+    It is the rate of arrival here, which a busy machine or a best-effort QoS makes less than what is published.
+    """
+    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        from rclpy.clock import Clock, ClockType
+        from rclpy.qos import qos_profile_sensor_data
+
+        from ros_in_python.ros2.graph import absolute
+        from ros_in_python.ros2.topic.selection import wait_for_type
+
+        name = absolute(topic_name)
+        message = wait_for_type(graph, name)
+        rate = Rate(window)
+        clock = Clock(clock_type=ClockType.SYSTEM_TIME) if wall_time else graph.node.get_clock()
+
+        def arrived(data: Any) -> None:
+            if filter_expression is not None and not filter_expression(data):
+                return
+            now = clock.now().nanoseconds
+            if now:
+                rate.arrived(now)
+            elif rate.reset():
+                print("time has reset, resetting counters", flush=True)
+
+        # Messages are only opened for a filter.
+        graph.node.create_subscription(message, name, arrived, qos_profile_sensor_data, raw=filter_expression is None)
+        while True:
+            graph.spin_once()
+            report = rate.report()
+            if report is not None:
+                print(report, flush=True)
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("topic_name")
+@click.option(
+    "-w",
+    "--window",
+    type=click.IntRange(min=1),
+    default=BANDWIDTH_WINDOW,
+    show_default=True,
+    help="Messages to average over.",
+)
+@discovery_options
+def bw(topic_name: str, window: int, spin_time: float | None, use_sim_time: bool) -> None:
+    """How many bytes per second a topic carries; Ctrl-C ends it.
+
+    \b
+      ros2 topic bw /joint_commands
+      Subscribed to [/joint_commands]
+      3.04 KB/s from 10 messages
+              Message size mean: 0.30 KB min: 0.30 KB max: 0.30 KB
+    """
+    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        from rclpy.qos import qos_profile_sensor_data
+
+        from ros_in_python.ros2.graph import absolute
+        from ros_in_python.ros2.topic.selection import wait_for_type
+
+        name = absolute(topic_name)
+        message = wait_for_type(graph, name)
+        bandwidth = Bandwidth(window)
+
+        def now() -> float:
+            seconds: float = graph.node.get_clock().now().nanoseconds * 1e-9
+            return seconds if use_sim_time else time.monotonic()
+
+        def arrived(data: bytes) -> None:
+            bandwidth.arrived(now(), len(data))
+
+        def print_report() -> None:
+            report = bandwidth.report(now())
+            if report is not None:
+                print(report, flush=True)
+
+        graph.node.create_subscription(message, name, arrived, qos_profile_sensor_data, raw=True)
+        print(f"Subscribed to [{name}]", flush=True)
+        graph.node.create_timer(1, print_report)
+        while True:
+            graph.spin_once()
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("topic_name")
+@_window_option(WINDOW)
+@discovery_options
+def delay(topic_name: str, window: int, spin_time: float | None, use_sim_time: bool) -> None:
+    """How old messages are on arrival: the clock here less `header.stamp`; Ctrl-C ends it.
+
+    \b
+      ros2 topic delay /joint_commands
+      average delay: 0.001
+              min: 0.000s max: 0.002s std dev: 0.00021s window: 10
+    """
+    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+        from rclpy.qos import qos_profile_sensor_data
+        from rclpy.time import Time
+
+        from ros_in_python.ros2.graph import absolute
+        from ros_in_python.ros2.messages import field_names, type_name
+        from ros_in_python.ros2.topic.selection import wait_for_type
+
+        name = absolute(topic_name)
+        message = wait_for_type(graph, name)
+        if "header" not in message.get_fields_and_field_types():
+            raise CommandError(
+                "msg does not have header",
+                f"Fields of {type_name(message)}: {field_names(message)}. The delay is taken from header.stamp.",
+            )
+        delays = Delay(window)
+        clock = graph.node.get_clock()
+
+        def arrived(data: Any) -> None:
+            delays.arrived(clock.now().nanoseconds, Time.from_msg(data.header.stamp).nanoseconds)
+
+        def print_report() -> None:
+            report = delays.report()
+            if report is not None:
+                print(report, flush=True)
+
+        graph.node.create_subscription(message, name, arrived, qos_profile_sensor_data)
+        graph.node.create_timer(1, print_report)
+        while True:
+            graph.spin_once()
