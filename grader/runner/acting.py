@@ -19,7 +19,7 @@ from grader.scenario.scenario import SECOND
 from grader.scenario.servers import ActionServer as Declared
 from grader.scenario.servers import GoalScript
 from rmw_lockstep.hub import Asked, Publisher, Qos, Server
-from rmw_lockstep.hub.qos import TRANSIENT_LOCAL
+from rmw_lockstep.qos import TRANSIENT_LOCAL
 
 #: What rcl gives the status topic (rcl_action_qos_profile_status_default).
 STATUS_QOS = Qos(depth=1, durability=TRANSIENT_LOCAL)

@@ -19,7 +19,7 @@ from grader.scenario.scenario import SECOND, START, ComputerTime
 from rmw_lockstep.hub import Hub, HubNode
 from rmw_lockstep.hub import Qos as HubQos
 from rmw_lockstep.hub.ends import Heard, Moment
-from rmw_lockstep.hub.qos import BEST_EFFORT, RELIABLE, TRANSIENT_LOCAL, VOLATILE
+from rmw_lockstep.qos import BEST_EFFORT, RELIABLE, TRANSIENT_LOCAL, VOLATILE
 
 #: How much of the computer's time passes per unit of simulated time, by a scenario's `computer_time`.
 PACES: dict[ComputerTime, tuple[int, int]] = {"apart": (5, 4), "simulated": (1, 1)}

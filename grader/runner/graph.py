@@ -9,7 +9,7 @@ from grader.recording.types import OWN_SERVICES
 from rmw_lockstep.hub import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, Hub
 from rmw_lockstep.hub import EndPoint as OnHub
 from rmw_lockstep.hub.graph import Graph
-from rmw_lockstep.hub.qos import INFINITE, KEEP_ALL
+from rmw_lockstep.qos import INFINITE, KEEP_ALL
 
 #: Topics that every node has.
 OWN_TO_ROS = ("/rosout", "/parameter_events")

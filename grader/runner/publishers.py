@@ -8,7 +8,7 @@ from grader.runner.ends import hub_qos
 from grader.runner.message import message_class
 from grader.scenario.scenario import Message, Scenario
 from rmw_lockstep.hub import HubNode, Publisher, Qos
-from rmw_lockstep.hub.qos import TRANSIENT_LOCAL
+from rmw_lockstep.qos import TRANSIENT_LOCAL
 
 #: Compatible with whatever a student's subscription requests.
 OFFER = Qos(depth=1_000, durability=TRANSIENT_LOCAL)

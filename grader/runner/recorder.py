@@ -14,7 +14,7 @@ from grader.runner.message import message_class
 from grader.runner.order import in_canonical_order, place_of, unordered_sources, without_order
 from grader.runner.student import Stopped, Task
 from rmw_lockstep.hub import Heard, HubNode, Qos, Subscription
-from rmw_lockstep.hub.qos import BEST_EFFORT
+from rmw_lockstep.qos import BEST_EFFORT
 
 #: No exercise needs more than this from a node in one scenario.
 MOST_MESSAGES = 5_000

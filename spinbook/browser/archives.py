@@ -57,7 +57,10 @@ def ros_archive() -> bytes:
     files |= dict(_python_files(Path(rcl_python.__file__).parent, "rcl_python"))
     files |= dict(_python_files(Path(ros_in_python.__file__).parent, "ros_in_python"))
     files |= dict(_python_files(Path(interface_compiler.__file__).parent, "interface_compiler"))  # `ros2` reads with it
-    files["rcl_python/type_hashes.json"] = json.dumps(_type_hashes(), sort_keys=True).encode()
+    files["rmw_lockstep/type_hashes.json"] = json.dumps(_type_hashes(), sort_keys=True).encode()
+    middleware = Path(rmw_lockstep.__file__).parent
+    for name in ("__init__.py", "qos.py", "type_hash.py"):
+        files[f"rmw_lockstep/{name}"] = (middleware / name).read_bytes()
     root = Path(spinbook.__file__).parent
     for part in _SPINBOOK:
         files |= _part(root / part, f"spinbook/{part}")
@@ -101,9 +104,7 @@ def check_archive(exercises: Mapping[str, bytes]) -> bytes:
     root = Path(spinbook.__file__).parent.parent / "grader"
     for part in _GRADER:
         files |= _part(root / part, f"grader/{part}")
-    middleware = Path(rmw_lockstep.__file__).parent
-    files |= _part(middleware / "__init__.py", "rmw_lockstep/__init__.py")
-    files |= _part(middleware / "hub", "rmw_lockstep/hub")
+    files |= _part(Path(rmw_lockstep.__file__).parent / "hub", "rmw_lockstep/hub")
     return zipped({**_used_outside_checks(root), **files, **exercises})
 
 

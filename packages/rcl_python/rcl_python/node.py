@@ -11,8 +11,8 @@ from rcl_python.context import Context
 from rcl_python.graph import CLIENT, PUBLISHER, SERVICE, SUBSCRIPTION, EndpointInfo, NodeInfo, names_and_types
 from rcl_python.handle import Destroyable
 from rcl_python.parameters import applies
-from rcl_python.type_hash import hash_of
 from rcl_python.values import NodeNameNonExistentError, RCLError, at
+from rmw_lockstep.type_hash import type_hash
 
 _FEEDBACK = "/_action/feedback"
 _FEEDBACK_TYPE = "_FeedbackMessage"
@@ -238,11 +238,12 @@ def _infos(node: Node, kind: str, topic: str, number: int) -> list[dict[str, obj
 
 def _info(graph: Any, end: EndpointInfo, number: int) -> dict[str, object]:
     owner = graph.nodes.get(end.node)
+    version, *digest = type_hash(end.type)
     return {
         "node_name": owner.name if owner else "_NODE_NAME_UNKNOWN_",
         "node_namespace": owner.namespace if owner else "_NODE_NAMESPACE_UNKNOWN_",
         "topic_type": end.type,
-        "topic_type_hash": {"version": 1, "value": hash_of(end.type)},
+        "topic_type_hash": {"version": version, "value": bytes(digest)},
         "endpoint_type": number,
         "endpoint_gid": _gid(end.gid),
         "qos_profile": qos.reported(end.qos).to_dict(),

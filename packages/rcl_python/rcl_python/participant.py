@@ -40,6 +40,7 @@ from rcl_python.values import (
     rmw_requested_deadline_missed_status_t,
     rmw_requested_qos_incompatible_event_status_t,
 )
+from rmw_lockstep.qos import KEEP_ALL, TRANSIENT_LOCAL
 
 
 @dataclass(frozen=True)
@@ -76,9 +77,9 @@ class Endpoint:
         self.participant = participant
         self.info = info
         profile = info.qos
-        kept = None if profile.history == quality.KEEP_ALL else max(profile.depth, 1)
+        kept = None if profile.history == KEEP_ALL else max(profile.depth, 1)
         self.inbox: deque[Arrival] = deque(maxlen=kept if info.kind == SUBSCRIPTION else None)
-        remembers = info.kind == PUBLISHER and profile.durability == quality.TRANSIENT_LOCAL
+        remembers = info.kind == PUBLISHER and profile.durability == TRANSIENT_LOCAL
         self.history: deque[Arrival] | None = deque(maxlen=kept) if remembers else None
         self.matched: dict[str, EndpointInfo] = {}
         self.statuses = Statuses()
@@ -159,7 +160,7 @@ class Endpoint:
         status.current_count_change += 1
         self.statuses.liveliness.alive_count += 1
         self.statuses.liveliness.alive_count_change += 1
-        if self.history and other.qos.durability == quality.TRANSIENT_LOCAL:
+        if self.history and other.qos.durability == TRANSIENT_LOCAL:
             now = self.participant.link.system()
             for message in self.history:
                 if not _outlived(message, self.info.qos, now):

@@ -1,4 +1,4 @@
-"""Quality of service: profiles, and which publishers and subscriptions match.
+"""Quality of service: rclpy's profiles, and what they come to. Which ends match is in `rmw_lockstep.qos`.
 
 Numbers are those of rmw/types.h; the rules of rmw/qos_profiles.h and rmw_dds_common's qos.cpp.
 """
@@ -16,27 +16,32 @@ from rcl_python.values import (
     rcl_duration_t,
     rmw_qos_policy_kind_t,
 )
+from rmw_lockstep.qos import (
+    AUTOMATIC,
+    BEST_EFFORT,
+    KEEP_LAST,
+    MANUAL_BY_TOPIC,
+    RELIABLE,
+    TRANSIENT_LOCAL,
+    VOLATILE,
+    Qos,
+    first_mismatch,
+)
 
+# Values of rmw/types.h that only a profile has that is not resolved yet.
 SYSTEM_DEFAULT, UNKNOWN = 0, 3
-KEEP_LAST, KEEP_ALL = 1, 2
-RELIABLE, BEST_EFFORT, BEST_AVAILABLE = 1, 2, 4
-TRANSIENT_LOCAL, VOLATILE = 1, 2
-AUTOMATIC, MANUAL_BY_TOPIC, LIVELINESS_UNKNOWN, LIVELINESS_BEST_AVAILABLE = 1, 3, 4, 5
+BEST_AVAILABLE, LIVELINESS_UNKNOWN, LIVELINESS_BEST_AVAILABLE = 4, 4, 5
 
 _HISTORY_OF_DEFAULT, _DEPTH_OF_DEFAULT = KEEP_LAST, 1
 
 
 @dataclass(frozen=True)
-class Profile:
-    """A profile of quality of service. Times are in ns; 0 means "not given"."""
+class Profile(Qos):
+    """A profile of quality of service, as rclpy gives it: 0 means "not given"."""
 
-    history: int = KEEP_LAST
-    depth: int = 10
-    reliability: int = RELIABLE
-    durability: int = VOLATILE
-    lifespan: int = 0
-    deadline: int = 0
     liveliness: int = 0
+    deadline: int = 0
+    lifespan: int = 0
     lease: int = 0
     avoid_ros_namespace_conventions: bool = False
 
@@ -75,8 +80,8 @@ class rmw_qos_profile_t:  # noqa: N801
         avoid: bool,
     ) -> Profile:
         policies = (int(history), int(depth), int(reliability), int(durability))
-        times = (lifespan.nanoseconds, deadline.nanoseconds)
-        return Profile(*policies, *times, int(liveliness), lease.nanoseconds, bool(avoid))
+        times = (deadline.nanoseconds, lifespan.nanoseconds, lease.nanoseconds)
+        return Profile(*policies, int(liveliness), *times, bool(avoid))
 
     @staticmethod
     def predefined(name: str) -> Profile:
@@ -164,19 +169,9 @@ def reported(profile: Profile) -> Profile:
 
 
 def first_incompatible(offered: Profile, requested: Profile) -> rmw_qos_policy_kind_t | None:
-    """Return the policy that prevents a match (DDS 1.4, 2.2.3), or None. Both profiles are resolved."""
-    kinds = rmw_qos_policy_kind_t
-    if offered.durability == VOLATILE and requested.durability == TRANSIENT_LOCAL:
-        return kinds.RMW_QOS_POLICY_DURABILITY
-    if _span(offered.deadline) > _span(requested.deadline):
-        return kinds.RMW_QOS_POLICY_DEADLINE
-    if (offered.liveliness or AUTOMATIC) < (requested.liveliness or AUTOMATIC):
-        return kinds.RMW_QOS_POLICY_LIVELINESS
-    if _span(offered.lease) > _span(requested.lease):
-        return kinds.RMW_QOS_POLICY_LIVELINESS
-    if offered.reliability == BEST_EFFORT and requested.reliability == RELIABLE:
-        return kinds.RMW_QOS_POLICY_RELIABILITY
-    return None
+    """Return the policy that prevents a match, or None. Both profiles are resolved."""
+    policy = first_mismatch(offered, requested)
+    return rmw_qos_policy_kind_t(policy) if policy else None
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,8 @@ from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import String
 
 from rmw_lockstep.hub import BEGIN, Hub, Qos
-from rmw_lockstep.hub.qos import BEST_EFFORT, KEEP_ALL
 from rmw_lockstep.library import Library, library
+from rmw_lockstep.qos import BEST_EFFORT, KEEP_ALL
 
 SECOND = 1_000_000_000
 MS = 1_000_000

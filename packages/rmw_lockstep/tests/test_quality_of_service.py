@@ -5,7 +5,7 @@ from __future__ import annotations
 from programs import Watch, serialized
 
 from rmw_lockstep.hub import Qos
-from rmw_lockstep.hub.qos import TRANSIENT_LOCAL
+from rmw_lockstep.qos import TRANSIENT_LOCAL
 
 
 def test_a_missed_deadline_is_told_to_both_ends_at_the_time_at_which_it_is_missed(watch: Watch) -> None:

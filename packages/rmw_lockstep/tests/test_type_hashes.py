@@ -7,7 +7,7 @@ import ast
 from programs import Watch
 
 from rmw_lockstep.hub import Qos
-from rmw_lockstep.hub.hashes import NO_HASH, type_hash
+from rmw_lockstep.type_hash import NO_HASH, type_hash
 
 STRING = "std_msgs/msg/String"
 

@@ -6,7 +6,7 @@ import json
 
 from rcl_python import participant
 from rcl_python.graph import PUBLISHER, SUBSCRIPTION, EndpointInfo, Graph, NodeInfo
-from rcl_python.qos import first_incompatible
+from rmw_lockstep.qos import compatible
 from spinbook.graph.layout import drawings
 from spinbook.graph.model import End, NodeGraph, SeenNode, Topic
 from spinbook.graph.picture import in_words, node_graph_svgs
@@ -62,7 +62,7 @@ def _ends(ends: list[EndpointInfo], others: list[EndpointInfo], nodes: dict[str,
 
 def _fit(one: EndpointInfo, other: EndpointInfo) -> bool:
     publisher, subscription = (one, other) if one.kind == PUBLISHER else (other, one)
-    return one.type == other.type and first_incompatible(publisher.qos, subscription.qos) is None
+    return one.type == other.type and compatible(publisher.qos, subscription.qos)
 
 
 def _full_name(node: NodeInfo) -> str:

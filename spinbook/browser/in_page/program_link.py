@@ -17,8 +17,8 @@ from rcl_python.context import interrupt
 from rcl_python.graph import CLIENT, PUBLISHER, SERVICE, SUBSCRIPTION, EndpointInfo
 from rcl_python.link import Frame
 from rmw_lockstep.hub import EPOCH, frames
-from rmw_lockstep.hub.hashes import NO_HASH
-from rmw_lockstep.hub.qos import AUTOMATIC, INFINITE, Qos
+from rmw_lockstep.qos import AUTOMATIC, INFINITE, KEEP_LAST, Qos
+from rmw_lockstep.type_hash import NO_HASH
 from spinbook.browser.in_page import program_imports, threads
 from spinbook.browser.in_page.busy_threads import BusyThreads
 from spinbook.browser.in_page.hub import PROGRAM, Over, PageHub, Turns
@@ -236,7 +236,7 @@ def _key(number: int) -> str:
 def _end_point(frame: Frame) -> frames.EndPoint:
     given = frame["qos"]
     qos = Qos(
-        given["history"] or quality.KEEP_LAST,
+        given["history"] or KEEP_LAST,
         given["depth"],
         given["reliability"],
         given["durability"],
@@ -265,10 +265,7 @@ def _node(payload: bytes, number: int) -> tuple[Frame, bytes]:
 
 def _new_end_point(payload: bytes, number: int) -> tuple[Frame, bytes]:
     end = frames.end_point(payload)
-    qos = end.qos
-    profile = quality.Profile(
-        qos.history, qos.depth, qos.reliability, qos.durability, qos.lifespan, qos.deadline, qos.liveliness, qos.lease
-    )
+    profile = quality.Profile(**vars(end.qos))
     names = {"gid": _key(end.id), "node": _key(end.node), "topic": end.name, "type": end.type}
     return {"op": "endpoint", **names, "kind": _KINDS[end.kind], "qos": vars(profile), "domain": 0}, b""
 

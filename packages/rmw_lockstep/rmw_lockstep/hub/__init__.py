@@ -4,7 +4,7 @@ from rmw_lockstep.hub.ends import Asked, Client, Heard, HubNode, Moment, Publish
 from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, EndPoint, Node
 from rmw_lockstep.hub.hub import BEGIN, EPOCH, SOCKET, TICK_S, Hub
 from rmw_lockstep.hub.limits import Limits, Violation
-from rmw_lockstep.hub.qos import Qos
+from rmw_lockstep.qos import Qos
 
 __all__ = [
     "BEGIN",

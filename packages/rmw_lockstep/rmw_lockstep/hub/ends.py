@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 from rmw_lockstep.hub.frames import EndPoint, Node
-from rmw_lockstep.hub.qos import KEEP_ALL, TRANSIENT_LOCAL, Qos
+from rmw_lockstep.qos import KEEP_ALL, TRANSIENT_LOCAL, Qos
 
 
 class Heard(NamedTuple):

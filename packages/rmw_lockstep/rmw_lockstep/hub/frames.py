@@ -11,14 +11,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from rmw_lockstep.hub.limits import Violation
-from rmw_lockstep.hub.qos import Qos
+from rmw_lockstep.qos import Qos
+from rmw_lockstep.type_hash import HASH_BYTES
 
 VERSION = 3
 
 PUBLISHER, SUBSCRIPTION, SERVER, CLIENT = range(4)
-
-#: Bytes of a type hash: its version, and SHA-256.
-HASH_BYTES = 33
 
 #: No name in ROS 2 may be longer than this (rmw_validate_full_topic_name, rmw_validate_node_name).
 LONGEST_NAME = 255

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, EndPoint, Node
-from rmw_lockstep.hub.qos import compatible
+from rmw_lockstep.qos import compatible
 
 #: The number of the hub among the processes.
 HUB = 0

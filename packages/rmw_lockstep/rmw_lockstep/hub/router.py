@@ -10,11 +10,11 @@ from rmw_lockstep.hub import frames
 from rmw_lockstep.hub.ends import Asked, Client, End, Heard, Moment, Publisher, Server, Subscription
 from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, EndPoint, Node
 from rmw_lockstep.hub.graph import HUB, Graph
-from rmw_lockstep.hub.hashes import type_hash
 from rmw_lockstep.hub.limits import Use, Violation
 from rmw_lockstep.hub.link import Link
 from rmw_lockstep.hub.moment import AtOnce
-from rmw_lockstep.hub.qos import TRANSIENT_LOCAL, Qos
+from rmw_lockstep.qos import TRANSIENT_LOCAL, Qos
+from rmw_lockstep.type_hash import type_hash
 
 #: Requests of other processes that one process may leave unanswered.
 MOST_REQUESTS = 10_000

@@ -12,6 +12,8 @@ KEEP_LAST, KEEP_ALL = 1, 2
 RELIABLE, BEST_EFFORT = 1, 2
 TRANSIENT_LOCAL, VOLATILE = 1, 2
 AUTOMATIC, MANUAL_BY_TOPIC = 1, 3
+#: The policies that can keep end points from matching: rmw_qos_policy_kind_t.
+DURABILITY, DEADLINE, LIVELINESS, RELIABILITY = 2, 4, 8, 16
 
 _RELIABILITY = {RELIABLE: "reliable", BEST_EFFORT: "best_effort"}
 _DURABILITY = {TRANSIENT_LOCAL: "transient_local", VOLATILE: "volatile"}
@@ -42,17 +44,23 @@ class Qos:
 
 
 def compatible(offered: Qos, requested: Qos) -> bool:
-    """Return whether a subscription that requests one gets what a publisher sends that offers the other.
+    """Return whether a subscription that requests one gets what a publisher sends that offers the other."""
+    return not first_mismatch(offered, requested)
 
-    The rules are DDS's "requested versus offered" (DDS 1.4, section 2.2.3).
+
+def first_mismatch(offered: Qos, requested: Qos) -> int:
+    """Return the policy that keeps two end points from matching, 0 if they match.
+
+    The rules are DDS's "requested versus offered" (DDS 1.4, section 2.2.3), in the order in which Fast DDS reports.
     """
-    return (
-        (requested.reliability != RELIABLE or offered.reliability == RELIABLE)
-        and (requested.durability != TRANSIENT_LOCAL or offered.durability == TRANSIENT_LOCAL)
-        and (requested.liveliness != MANUAL_BY_TOPIC or offered.liveliness == MANUAL_BY_TOPIC)
-        and _duration(offered.deadline) <= _duration(requested.deadline)
-        and _duration(offered.lease) <= _duration(requested.lease)
-    )
+    mismatches = {
+        DURABILITY: requested.durability == TRANSIENT_LOCAL != offered.durability,
+        DEADLINE: _duration(offered.deadline) > _duration(requested.deadline),
+        LIVELINESS: (requested.liveliness == MANUAL_BY_TOPIC != offered.liveliness)
+        or _duration(offered.lease) > _duration(requested.lease),
+        RELIABILITY: requested.reliability == RELIABLE != offered.reliability,
+    }
+    return next((policy for policy, differs in mismatches.items() if differs), 0)
 
 
 def _duration(nanoseconds: int) -> int:
