@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import copy
 import struct
-from typing import Any
+from typing import Any, Protocol
 
 from rcl_python import participant
 from rcl_python.cdr import deserialize, serialize
 from rcl_python.clock import Clock
-from rcl_python.graph import CLIENT, PUBLISHER, SERVICE, SUBSCRIPTION
+from rcl_python.context import Context
+from rcl_python.graph import CLIENT, PUBLISHER, SERVICE, SUBSCRIPTION, NodeInfo
 from rcl_python.handle import Destroyable
 from rcl_python.names import full_topic_fault, topic_fault
-from rcl_python.node import Node
 from rcl_python.participant import Arrival, Endpoint
 from rcl_python.qos import Profile
 from rcl_python.values import (
@@ -38,10 +38,23 @@ def type_name_of(message_class: Any) -> str:
     return f"{package}/{middle}/{message_class.__name__}"
 
 
+class Owner(Protocol):
+    """What an endpoint needs of its node."""
+
+    context: Context
+    info: NodeInfo
+
+    def resolve(self, name: str, kind: str, only_expand: bool = False) -> str:
+        """Return the absolute name of a topic or a service (`kind`), remapped."""
+
+    def logger_name(self) -> str:
+        """Return the name of the node's logger."""
+
+
 class _End(Destroyable):
     """What all four have in common: a node, a name and a place in the graph."""
 
-    def __init__(self, node: Node, kind: str, the_type: Any, name: str, profile: Profile | None, what: str) -> None:
+    def __init__(self, node: Owner, kind: str, the_type: Any, name: str, profile: Profile | None, what: str) -> None:
         self._destroyed = True
         service = kind in (SERVICE, CLIENT)
         fault = topic_fault(name)
@@ -77,7 +90,7 @@ class _End(Destroyable):
 class Publisher(_End):
     """A publisher."""
 
-    def __init__(self, node: Node, message_class: Any, topic: str, profile: Profile | None) -> None:
+    def __init__(self, node: Owner, message_class: Any, topic: str, profile: Profile | None) -> None:
         super().__init__(node, PUBLISHER, message_class, topic, profile, "publisher")
 
     def publish(self, message: Any) -> None:
@@ -108,7 +121,7 @@ class Publisher(_End):
 class Subscription(_End):
     """A subscription."""
 
-    def __init__(self, node: Node, message_class: Any, topic: str, profile: Profile | None) -> None:
+    def __init__(self, node: Owner, message_class: Any, topic: str, profile: Profile | None) -> None:
         super().__init__(node, SUBSCRIPTION, message_class, topic, profile, "subscription")
 
     def take_message(self, message_class: Any, raw: bool) -> tuple[Any, dict[str, int | None]] | None:
@@ -191,7 +204,7 @@ def _client_gid(client: str) -> Any:
 class Service(_Introspected):
     """The server end of a service."""
 
-    def __init__(self, node: Node, service_class: Any, name: str, profile: Profile | None) -> None:
+    def __init__(self, node: Owner, service_class: Any, name: str, profile: Profile | None) -> None:
         super().__init__(node, SERVICE, service_class, name, profile, "service")
 
     @property
@@ -229,7 +242,7 @@ def header_of(arrival: Arrival) -> rmw_service_info_t:
 class Client(_Introspected):
     """The client end of a service."""
 
-    def __init__(self, node: Node, service_class: Any, name: str, profile: Profile | None) -> None:
+    def __init__(self, node: Owner, service_class: Any, name: str, profile: Profile | None) -> None:
         super().__init__(node, CLIENT, service_class, name, profile, "client")
 
     @property

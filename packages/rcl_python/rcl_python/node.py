@@ -8,6 +8,7 @@ from typing import Any
 from rcl_python import logs, names, participant, qos
 from rcl_python.arguments import Arguments, Remap, parse, remapped, remapped_node
 from rcl_python.context import Context
+from rcl_python.endpoints import Publisher
 from rcl_python.graph import CLIENT, PUBLISHER, SERVICE, SUBSCRIPTION, EndpointInfo, NodeInfo, names_and_types
 from rcl_python.handle import Destroyable
 from rcl_python.parameters import applies
@@ -41,7 +42,7 @@ class Node(Destroyable):
         self.context = context
         enclave = context.arguments.enclave
         self.info: NodeInfo = participant.current().add_node(self.name, self.namespace, context.domain, enclave)
-        self._rosout: Any = None
+        self._rosout: Publisher | None = None
         if enable_rosout and context.arguments.rosout:
             self._open_rosout()
         super().__init__()
@@ -59,8 +60,6 @@ class Node(Destroyable):
 
     def _open_rosout(self) -> None:
         from rcl_interfaces.msg import Log
-
-        from rcl_python.endpoints import Publisher
 
         self._rosout = Publisher(self, Log, "/rosout", qos.ROSOUT)
         logs.add_rosout(self.logger_name(), self._rosout.publish)

@@ -8,22 +8,40 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from rcl_python import participant
 from spinbook.browser.in_page import threads
-
-if TYPE_CHECKING:
-    from spinbook.browser.in_page.program_link import ProgramLink
 
 #: How many more times a thread that has to end may wait, such as in a `finally`.
 _WAITS_AFTER_END = 100
 
 
+class HubTime(Protocol):
+    """What the scheduler needs of the program's connection to the hub."""
+
+    @property
+    def is_wanted(self) -> bool:
+        """Whether the main thread has a request to handle."""
+
+    @property
+    def has_frames(self) -> bool:
+        """Whether frames are waiting."""
+
+    def steady(self) -> int:
+        """Return the hub's time (ns)."""
+
+    def heed(self) -> None:
+        """Do, in the main thread, what the hub wants."""
+
+    def wait_for_hub(self, until: int | None, in_ros: int) -> None:
+        """Wait, with `in_ros` threads in ROS, until a frame, the time (ns) or a signal arrives."""
+
+
 class Scheduler:
     """The threads of one program; the one that makes it is the main thread."""
 
-    def __init__(self, link: ProgramLink) -> None:
+    def __init__(self, link: HubTime) -> None:
         self._link = link
         self._main = threads.get_ident()
         self._gates: dict[int, Any] = {self._main: _closed()}
