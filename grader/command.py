@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
@@ -47,8 +47,25 @@ FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
     type=click.Choice([middleware.value for middleware in Middleware]),
     help="The middleware between the node and the grader.  [default: lockstep, the grader's own, if available]",
 )
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="A class: the folder for the results.")
+@click.option("--out", type=click.Path(path_type=Path), help="A class: the folder for the results.")
 @click.option("--jobs", type=click.IntRange(1, 64), help="A class: how many submissions to grade at once.")
+@click.option(
+    "--format", "form", metavar="NAME", default="", help="A class: how to read it, such as canvas, if it is not clear."
+)
+@click.option(
+    "--attempts", type=click.Choice(["last", "first", "best"]), help="A class: which of several attempts counts."
+)
+@click.option(
+    "--roster",
+    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    help="A class: everybody in it, as a CSV file with the column student, or a list that your platform exports.",
+)
+@click.option(
+    "--groups",
+    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    help="A class: a CSV file with the columns group, student.",
+)
+@click.option("--skip", is_flag=True, help="A class: grade everything that is clear, and end with exit code 1.")
 @click.option(
     "--regrade",
     multiple=True,
@@ -85,6 +102,11 @@ def grade(
     middleware: str | None,
     out: Path | None,
     jobs: int | None,
+    form: str,
+    attempts: str | None,
+    roster: Path | None,
+    groups: Path | None,
+    skip: bool,
     regrade: tuple[str, ...],
     overrides: Path | None,
     scheduler: str,
@@ -111,10 +133,11 @@ def grade(
 
     Exit codes: 0 full marks, 1 less than full marks, 2 wrong usage, 3 a fault of the course or the machine.
 
-    A class is a folder with one file (or one folder) per student, nbgrader's folder, a zip from Moodle or Canvas, or a
-    CSV file with the columns file and student. The command does not grade unchanged submissions again, and continues a
-    run that was stopped. Exit codes for a class: 0 all graded, 1 some need your decision, 2 wrong usage, 3 a fault
-    of Spinbook or the machine.
+    A class is a folder with one file (or one folder) per student, nbgrader's folder, the download of a learning
+    platform such as Moodle or Canvas, or a CSV file with the columns file and student. If it is not clear whose a file
+    is, which one counts or when it was handed in, the command says so and grades nothing. It does not grade unchanged
+    submissions again, and continues a run that was stopped. Exit codes for a class: 0 all graded, 1 some need your
+    decision, 2 wrong usage, 3 a fault of Spinbook or the machine.
 
     \b
       spinbook grade joint_velocity submissions/ --out results/
@@ -138,11 +161,21 @@ def grade(
             click.echo(warning, err=True)
         found = load(_folder(exercise))
         if out and not mistake:
-            sys.exit(
-                _class(
-                    found, Path(submission), out, wanted, (jobs, regrade, overrides, scheduler, rejudge, yes, publish)
-                )
-            )
+            wishes = {
+                "jobs": jobs,
+                "format": form,
+                "attempts": attempts or "",
+                "roster": roster,
+                "groups": groups,
+                "skip": skip,
+                "regrade": regrade,
+                "overrides": overrides,
+                "scheduler": scheduler,
+                "rejudge": rejudge,
+                "replace": yes,
+                "publish": publish,
+            }
+            sys.exit(_class(found, Path(submission), out, wanted, wishes))
         if not mistake and (Path(submission).is_dir() or submission.endswith(".csv")):
             raise click.UsageError(f"{submission}: to grade a class, give a folder for the results with --out.")
         handed_in = _mistake(mistake, found) if mistake else read(submission, found)
@@ -177,19 +210,24 @@ def _options(wanted: dict[str, Any]) -> Options:
     return Options(**wanted)
 
 
-def _class(exercise: Exercise, submissions: Path, out: Path, wanted: dict[str, Any], wishes: tuple[Any, ...]) -> int:
+def _class(exercise: Exercise, submissions: Path, out: Path, wanted: dict[str, Any], wishes: dict[str, Any]) -> int:
     """Grade a class. The imports are here, so that a single submission is graded sooner."""
     from rich.console import Console
 
     from grader.classroom.class_run import grade_class
     from grader.classroom.deadline import OverridesError
+    from grader.classroom.formats.registry import FORMATS
     from grader.classroom.handed_in import SubmissionsError
     from grader.classroom.request import ClassRequest, NoCluster
-    from grader.classroom.results import Busy
+    from grader.classroom.results import Busy, NotWritable
 
-    class_request = ClassRequest(submissions, out, _options(wanted), *wishes)
+    if wishes["format"] not in ("", *FORMATS):
+        raise click.UsageError(f"--format {wishes['format']}: there are {', '.join(FORMATS)}.")
+    class_request = ClassRequest(submissions, out, _options(wanted), **wishes)
     try:
         return grade_class(exercise, class_request, Console(soft_wrap=False, highlight=False))
+    except NotWritable as error:
+        _stop(f"{error} Give another folder with --out.")
     except (SubmissionsError, OverridesError, Busy, NoCluster) as error:
         raise click.UsageError(str(error)) from None
 
@@ -240,6 +278,6 @@ def _folder(exercise: str) -> Path:
         raise click.UsageError(str(error)) from None
 
 
-def _stop(message: str) -> None:
+def _stop(message: str) -> NoReturn:
     click.echo(message, err=True)
     sys.exit(OUR_FAULT)

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from grader.classroom.course_gradebook import course_csv, course_page, course_rows, graded_exercises
-from grader.classroom.gradebook import BYTE_ORDER_MARK
+from grader.classroom.tables import BYTE_ORDER_MARK
 from grader.exercise.exercise import ExerciseError
 from grader.exercise.loading import load
 from groundwork.files import write_if_changed

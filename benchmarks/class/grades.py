@@ -9,7 +9,7 @@ from typing import Any
 
 from students import Expected, Handed
 
-from grader.classroom.handed_in import student_id
+from grader.classroom.names import student_id
 
 
 def wrong_with(handed: Handed, results: Path) -> str:

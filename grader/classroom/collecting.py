@@ -3,318 +3,227 @@
 from __future__ import annotations
 
 import os
-import re
-import stat
-import zipfile
-import zlib
-from collections.abc import Iterator
-from dataclasses import replace
-from datetime import datetime, timezone
-from pathlib import Path, PurePosixPath
+import shutil
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from datetime import tzinfo
+from pathlib import Path
 
-from grader.classroom.handed_in import (
-    SUFFIXES,
-    File,
-    HandedIn,
-    Question,
-    Sorted,
-    Submissions,
-    SubmissionsError,
-    moment,
-    student_id,
-    table_rows,
-)
+from grader.classroom.archive import CANT_BE_READ, ENCRYPTED, unpacked, walk
+from grader.classroom.class_table import by_row
+from grader.classroom.formats.format import Upload
+from grader.classroom.groups import Attempt, Group, Unit, in_groups
+from grader.classroom.handed_in import File, HandedIn, Question, Submissions, SubmissionsError
+from grader.classroom.names import normal, unique_ids
+from grader.classroom.recognising import PACKAGE, Recogniser, can_be_graded
+from grader.classroom.roster import RosterRow, match, probably_same, with_row
+from grader.exercise.exercise import Exercise
 from grader.grading.grade import Skipped, Student
-from grader.submission.reading import MOST_BYTES
 
-# The first number is the student's, the second the upload's; `-2` marks a second submission. Canvas leaves out what
-# was replaced. Source: Canvas Instructor Guide, "How do I download all student submissions for an
-# assignment?".
+KINDS = "not one of .py, .ipynb, .zip"
 
 
-CANVAS_NAME = re.compile(r"(?P<name>[^_/]+)(?P<late>_LATE)?_(?P<user>\d+)_(?P<upload>\d+)_(?P<file>.+)")
+@dataclass(frozen=True)
+class Wishes:
+    """What the instructor says about a class: see the options of `spinbook grade`.
 
-
-def by_user(files: list[File]) -> Sorted | None:
-    """Return the files by Canvas's users, or None unless most of the files have names as Canvas gives them."""
-    graded = [file for file in files if file.can_be_graded]
-    if 2 * sum(bool(CANVAS_NAME.fullmatch(file.parts[-1])) for file in graded) <= len(graded):
-        return None
-    found, skipped = [], []
-    for file in files:
-        match = CANVAS_NAME.fullmatch(file.parts[-1])
-        if match:
-            student = Student(student_id(f"{match['name']}_{match['user']}"), match["name"], "", {"ID": match["user"]})
-            found.append((student, file))
-        else:
-            skipped.append(Skipped(file.name, "its name is none that Canvas gives"))
-    return Sorted("a download from Canvas", tuple(found), tuple(skipped))
-
-
-# Full Name_1234567_assignsubmission_file_/node.py, or Full Name_1234567_assignsubmission_file_node.py. Source:
-# mod/assign/locallib.php of Moodle, download_submissions.
-
-
-MOODLE_NAME = re.compile(r"(?P<name>.+?)_(?P<number>\d+)_assignsubmission_(?P<kind>[a-z]+)(?:_|$)")
-
-
-def by_participant(files: list[File]) -> Sorted | None:
-    """Return the files by Moodle's participants, or None if no file has a name that Moodle gives."""
-    found: list[tuple[Student, File]] = []
-    skipped = []
-    for file in files:
-        match = next(filter(None, (MOODLE_NAME.match(part) for part in file.parts)), None)
-        if not match:
-            skipped.append(Skipped(file.name, "its name is none that Moodle gives"))
-        elif match["kind"] != "file":
-            skipped.append(Skipped(file.name, "a text written in Moodle, not a file"))
-        else:
-            # The names in Moodle's grading worksheet.
-            lms = {"Identifier": f"Participant {match['number']}", "Full name": match["name"]}
-            found.append((Student(student_id(f"{match['name']}_{match['number']}"), match["name"], "", lms), file))
-    return Sorted("a download from Moodle", tuple(found), tuple(skipped)) if found else None
-
-
-# Source of the layout: nbgrader's documentation, "The philosophy and the approach" and "Collecting submissions".
-
-
-TIMESTAMP = "timestamp.txt"
-WRITTEN = re.compile(r"(\d{4}-\d\d-\d\d[ T]\d\d:\d\d:\d\d)(?:\.\d+)?\s*(.*)")
-
-
-def by_assignment(files: list[File], root: str, exercise: str) -> Sorted | None:
-    """Return the files of one assignment, or None if these are not nbgrader's folders.
-
-    `root` is the name of the given folder: it may be `submitted` itself, or its parent.
+    `attempts` is "last", "first" or "best"; without it, several attempts are a question. `zone` is the time zone of
+    times that have none; None is this machine's.
     """
-    if any(file.parts[0] == "submitted" for file in files):
-        inside = [(file, file.parts[1:]) for file in files if file.parts[0] == "submitted"]
-    else:
-        inside = [(file, file.parts) for file in files]
-        named = any(len(parts) > 2 and parts[1] == exercise for _, parts in inside)
-        if root != "submitted" and not named:
-            return None
-    assignments = {parts[1] for _, parts in inside if len(parts) > 2}
-    if not assignments:
-        return None
-    # A course may use any name for the assignment, as long as there is only one.
-    wanted = next(iter(assignments)) if len(assignments) == 1 else exercise
-    dates = {parts[0]: _date(file) for file, parts in inside if parts[1:] == (wanted, TIMESTAMP)}
-    found, skipped = [], [Skipped(f"*/{name}", "another assignment") for name in sorted(assignments - {wanted})]
-    for file, parts in inside:
-        if len(parts) < 3:
-            skipped.append(Skipped(file.name, "it is not in a STUDENT/ASSIGNMENT folder"))
-        elif parts[1] == wanted and parts[2:] != (TIMESTAMP,):
-            date = dates.get(parts[0])
-            dated = replace(file, submitted=date, submitted_from=TIMESTAMP) if date else file
-            name = parts[0] if parts[0] != student_id(parts[0]) else ""
-            found.append((Student(student_id(parts[0]), name), dated))
-    return Sorted("nbgrader's folder of submissions", tuple(found), tuple(skipped))
+
+    format: str = ""
+    attempts: str = ""
+    zone: tzinfo | None = None
+    roster: tuple[RosterRow, ...] = ()
+    groups: tuple[Group, ...] = ()
 
 
-def _date(file: File) -> datetime | None:
-    """Return the time in a timestamp.txt, which ends with a time zone's name; None if the zone is unknown."""
-    try:
-        match = WRITTEN.match(file.path.read_text(encoding="utf-8", errors="replace")[:200])
-        if not match:
-            return None
-        written = datetime.fromisoformat(match[1])
-        return written.replace(tzinfo=_zone(match[2].strip()))
-    except (OSError, ValueError):
-        return None
-
-
-def _zone(name: str):  # type: ignore[no-untyped-def]  # noqa: ANN202 - tzinfo, of two kinds
-    from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
-
-    if name in ("", "UTC", "GMT"):
-        return timezone.utc
-    try:
-        return ZoneInfo(name)
-    except ZoneInfoNotFoundError:
-        raise ValueError(name) from None
-
-
-#: Made by operating systems, editors and Python, never by a student.
-NOISE = {"__MACOSX", "__pycache__", "Thumbs.db", "desktop.ini"}
-WHY_NOISE = "made by a program, not handed in"
-
-
-def is_noise(name: str) -> bool:
-    """Return whether a file or folder of this name can be ignored."""
-    return name in NOISE or name.startswith(".")
-
-
-def walk(root: Path) -> Iterator[File | Skipped]:
-    """Yield every file below `root`, sorted by name; symbolic links are not followed."""
-    for folder, folders, names in os.walk(root):
-        inside = Path(folder).relative_to(root)
-        for name in sorted([*folders, *names]):
-            if is_noise(name):
-                yield Skipped((inside / name).as_posix(), WHY_NOISE)
-        folders[:] = sorted(name for name in folders if not is_noise(name))
-        for name in sorted(names):
-            if not is_noise(name):
-                path = Path(folder, name)
-                yield File((inside / name).as_posix(), path, date_of(path), "the file's date")
-
-
-def date_of(path: Path) -> datetime | None:
-    """Return the file's date, if any; an archive can give a file a date that does not exist."""
-    try:
-        return datetime.fromtimestamp(path.lstat().st_mtime, timezone.utc)
-    except (OSError, ValueError, OverflowError):
-        return None
-
-
-def by_student(files: list[File]) -> Sorted:
-    """Sort files named STUDENT.py, or in one folder per student, by student."""
-    found = []
-    for file in files:
-        top = file.parts[0]
-        name = top if len(file.parts) > 1 else top.rpartition(".")[0] or top
-        found.append((Student(student_id(name), name if name != student_id(name) else ""), file))
-    return Sorted("a folder with one file (or one folder) per student", tuple(found))
-
-
-NEEDED = ("file", "student")
-KNOWN = (*NEEDED, "name", "email", "submitted")
-
-
-def by_row(table: Path) -> Sorted:
-    """Return the files in the rows, relative to the CSV file's folder. Raises `SubmissionsError` for a row with a
-    mistake.
-
-    Other columns are kept for each student, as their learning platform's.
-    """
-    found, skipped = [], []
-    for number, row in table_rows(table, NEEDED):
-        if not row["student"] or not row["file"]:
-            raise SubmissionsError(
-                f"{table}:{number}: file = {row['file']!r}, student = {row['student']!r}. Give both."
-            )
-        path = table.parent / row["file"]
-        if not path.is_file() and not path.is_symlink():
-            skipped.append(Skipped(row["file"], f"line {number} names it, but there is no such file"))
-            continue
-        if row.get("submitted"):
-            date, date_source = moment(row["submitted"]), "the CSV file"
-            if date is None:
-                given = row["submitted"]
-                raise SubmissionsError(f"{table}:{number}: submitted = {given!r}. Write it as 2026-11-22 23:59.")
-        else:
-            date, date_source = date_of(path), "the file's date"
-        lms = {column: value for column, value in row.items() if column not in KNOWN}
-        student = Student(student_id(row["student"]), row.get("name", ""), row.get("email", ""), lms)
-        found.append((student, File(row["file"], path, date, date_source)))
-    return Sorted(f"the files that {table.name} names", tuple(found), tuple(skipped))
-
-
-#: A thousand students with as many files as they like.
-MOST_FILES = 20_000
-MOST_BYTES_IN_ALL = 2_000_000_000
-
-#: A little more than a submission may have: reading it says what is wrong with a larger one.
-MOST_BYTES_OF_ONE = max(MOST_BYTES.values()) + 1
-
-BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError, OSError, ValueError)
-
-
-def unpacked(archive: Path, into: Path) -> Iterator[File | Skipped]:
-    """Yield the files in `archive` that can be submissions, written into the folder `into` with numbers as names.
-
-    Raises `SubmissionsError` when it is not a zip, or holds more than any class submits.
-    """
-    try:
-        opened = zipfile.ZipFile(archive)
-    except BROKEN as error:
-        raise SubmissionsError(f"{archive}: it is not a valid zip file: {error}. Was the download cut off?") from None
-    with opened:
-        entries = [entry for entry in opened.infolist() if not entry.is_dir()]
-        if len(entries) > MOST_FILES:
-            raise SubmissionsError(f"{archive}: it holds {len(entries):,} files, more than {MOST_FILES:,}.")
-        left = MOST_BYTES_IN_ALL
-        for number, entry in enumerate(sorted(entries, key=lambda entry: entry.filename)):
-            name = _name(entry)
-            why = _why_not(entry, name)
-            if why:
-                yield Skipped(name, why)
-                continue
-            path = into / f"{number:05}{PurePosixPath(name).suffix}"
-            try:
-                with opened.open(entry) as packed:
-                    content = packed.read(min(MOST_BYTES_OF_ONE, left + 1))
-            except BROKEN as error:
-                yield Skipped(name, f"it can't be read: {error}")
-                continue
-            left -= len(content)
-            if left < 0:
-                raise SubmissionsError(f"{archive}: unpacked, it is larger than {MOST_BYTES_IN_ALL // 10**9} GB.")
-            path.write_bytes(content)
-            yield File(name, path, _entry_date(entry), "the zip file")
-
-
-def _name(entry: zipfile.ZipInfo) -> str:
-    parts = PurePosixPath(entry.filename.replace("\\", "/")).parts
-    return "/".join(part for part in parts if part not in ("/", "..")) or "nameless"
-
-
-def _why_not(entry: zipfile.ZipInfo, name: str) -> str:
-    """Return why an entry is left out, or an empty text."""
-    if any(is_noise(part) for part in name.split("/")):
-        return WHY_NOISE
-    if stat.S_ISLNK(entry.external_attr >> 16):
-        return "a symbolic link, not a file"
-    if entry.flag_bits & 1:
-        return "it is encrypted"
-    # nbgrader's time stamps are not submissions, but they say when one was submitted.
-    return "" if name.endswith((*SUFFIXES, "/timestamp.txt")) else f"not one of {', '.join(SUFFIXES)}"
-
-
-def _entry_date(entry: zipfile.ZipInfo) -> datetime | None:
-    """Return an entry's date. A zip has the local time of its creator, without a zone: taken as this machine's."""
-    try:
-        return datetime(*entry.date_time).astimezone()
-    except (ValueError, OverflowError, OSError):
-        return None
-
-
-def collect(source: Path, exercise: str, unpack_into: Path) -> Submissions:
+def collect(source: Path, exercise: Exercise, unpack_into: Path, wishes: Wishes | None = None) -> Submissions:
     """Return what the class submitted, from a folder, a zip or a CSV file; the file names decide how to read it.
 
     A zip's files are written into the folder `unpack_into`, which has to be empty. Raises `SubmissionsError` when
-    there is nothing at all to grade.
+    there is nothing at all to grade, or when it is not clear how to read it.
     """
+    wishes = wishes or Wishes()
     if not source.exists():
         raise SubmissionsError(f"{source}: there is no such file or folder.")
-    if source.suffix == ".csv":
-        return _chosen(by_row(source), ())
-    found = list(walk(source) if source.is_dir() else unpacked(source, unpack_into))
-    files = [file for file in found if isinstance(file, File)]
-    left_out = tuple(skipped for skipped in found if isinstance(skipped, Skipped))
+    if source.suffix.lower() == ".csv":
+        uploads, skipped = by_row(source, wishes.zone)
+        found = Found(f"the files that {source.name} names", uploads, skipped)
+    else:
+        found = _found(source, exercise, unpack_into, wishes)
+    if not any(can_be_graded(file.name) or file.path.is_dir() for file, _ in found.uploads):
+        text = "".join(f"\n  {skip.file}: {skip.why}" for skip in found.skipped[:10])
+        raise SubmissionsError(f"There is no submission in it.{text}")
+    return Collector(exercise, unpack_into, wishes).submissions(found)
+
+
+@dataclass(frozen=True)
+class Found:
+    """The files of a class whose owners are known, and the others; see `Submissions`."""
+
+    kind: str
+    uploads: Sequence[tuple[File, Upload]]
+    skipped: Sequence[Skipped]
+    left_out: Sequence[Skipped] = ()
+    dates: str = ""
+
+
+def _found(source: Path, exercise: Exercise, unpack_into: Path, wishes: Wishes) -> Found:
+    everything = list(walk(source) if source.is_dir() else unpacked(source, unpack_into))
+    files = {tuple(one.name.split("/")): one for one in everything if isinstance(one, File)}
+    left_out = [one for one in everything if isinstance(one, Skipped)]
+    if not files:
+        return Found("", (), left_out)
     root = source.resolve().name.removesuffix(".zip")
-    return _chosen(
-        by_participant(files) or by_assignment(files, root, exercise) or by_user(files) or by_student(files), left_out
+    recognised = Recogniser(files, root, exercise, wishes.zone).recognise(wishes.format)
+    folder = f", in {'/'.join(recognised.inside)}/" if recognised.inside else ""
+    uploads = [(file, place) for file, place in recognised.understood if isinstance(place, Upload)]
+    odd = [Skipped(file.name, f"its name is not one of {recognised.form.title}") for _, file in recognised.misfits]
+    others = [Skipped(file.name, place) for file, place in recognised.understood if isinstance(place, str) and place]
+    others += [Skipped(file.name, f"not in {'/'.join(recognised.inside)}/") for file in recognised.others]
+    unreadable = [one for one in left_out if one.why.startswith((CANT_BE_READ, ENCRYPTED))]
+    return Found(
+        recognised.form.title + folder,
+        uploads,
+        [*left_out, *others, *odd],
+        [one for one in (*odd, *unreadable) if can_be_graded(one.file)],
+        recognised.form.dates,
     )
 
 
-def _chosen(files: Sorted, left_out: tuple[Skipped, ...]) -> Submissions:
-    """Choose one file per student; several files become a question, never a guess."""
-    skipped = [*left_out, *files.skipped]
-    candidates: dict[str, tuple[Student, list[File]]] = {}
-    for student, file in files.files:
-        if file.can_be_graded:
-            candidates.setdefault(student.id, (student, []))[1].append(file)
-        else:
-            skipped.append(Skipped(file.name, f"not one of {', '.join(SUFFIXES)}"))
-    handed_in, questions = [], []
-    for _, (student, theirs) in sorted(candidates.items()):
-        if len(theirs) == 1:
-            handed_in.append(HandedIn(student, theirs[0]))
-        else:
-            questions.append(Question(student, tuple(file.name for file in theirs)))
-    if not candidates:
-        kinds = ", ".join(SUFFIXES)
-        text = "".join(f"\n  {skip.file}: {skip.why}" for skip in skipped[:10])
-        raise SubmissionsError(f"There is no submission in it: no file that ends with one of {kinds}.{text}")
-    return Submissions(files.kind, tuple(handed_in), tuple(sorted(skipped, key=lambda s: s.file)), tuple(questions))
+@dataclass(frozen=True)
+class Collector:
+    """From files whose owners are known to one submission per student."""
+
+    exercise: Exercise
+    folder: Path
+    wishes: Wishes
+
+    def submissions(self, found: Found) -> Submissions:
+        """Return one submission per student; what is not clear becomes a question, never a guess."""
+        units = in_groups(_units(found.uploads), self.wishes.groups)
+        extras: list[Skipped] = []
+        theirs: dict[str, list[HandedIn | Question]] = defaultdict(list)
+        for number, unit in enumerate(units):
+            for one in self._chosen(unit, number, extras):
+                theirs[normal(one.student.id)].append(one)
+        chosen = [_only(several) for several in theirs.values()]
+        rows = match(self.wishes.roster, [one.student for one in chosen])
+        missing = self._missing([one.student for one in chosen], rows)
+        ids = unique_ids([*(one.student.id for one in chosen), *(student.id for student in missing)])
+        named = [_named(one, rows.get(one.student.id), ids) for one in chosen]
+        handed_in = sorted((one for one in named if isinstance(one, HandedIn)), key=lambda one: one.student.id)
+        questions = sorted((one for one in named if isinstance(one, Question)), key=lambda one: one.student.id)
+        return Submissions(
+            found.kind,
+            tuple(handed_in),
+            tuple(sorted((*found.skipped, *extras), key=lambda one: one.file)),
+            tuple(questions),
+            tuple(sorted(found.left_out, key=lambda one: one.file)),
+            tuple(replace(student, id=ids[normal(student.id)]) for student in missing),
+            (*_notes(handed_in), *_not_gradable(handed_in), *self._strangers(chosen, rows)),
+            found.dates,
+        )
+
+    def _chosen(self, unit: Unit, number: int, extras: list[Skipped]) -> list[HandedIn | Question]:
+        """Return the submission of each of the unit's students; of several attempts those that the policy names."""
+        attempts = [unit.attempts[key] for key in sorted(unit.attempts)]
+        if len(attempts) > 1 and not self.wishes.attempts:
+            names = tuple(attempt[0][0].name for attempt in attempts)
+            return [Question(student, names, attempts=True) for student in unit.students]
+        if self.wishes.attempts == "first":
+            attempts = attempts[:1]
+        elif self.wishes.attempts == "last":
+            attempts = attempts[-1:]
+        files = []
+        for nth, attempt in enumerate(reversed(attempts)):
+            file = self._submission(attempt, f"{number}-{nth}", extras)
+            if file is None:
+                return [Question(student, tuple(one.name for one, _ in attempt)) for student in unit.students]
+            files.append(file)
+        return [HandedIn(student, files[0], tuple(files[1:])) for student in unit.students]
+
+    def _submission(self, attempt: Attempt, name: str, extras: list[Skipped]) -> File | None:
+        """Return one attempt's file, or the folder of its files; None if it is not clear which one counts."""
+        several = [file for file, _ in attempt if can_be_graded(file.name)]
+        is_package = any(upload.inside[-1] in PACKAGE for _, upload in attempt)
+        if is_package or (self.exercise.programs and len(several) > 1):
+            return self._folder(attempt, name)
+        if len(several) > 1:
+            return None
+        chosen = several[0] if several else attempt[0][0]
+        extras += [Skipped(file.name, KINDS) for file, _ in attempt if several and file is not chosen]
+        return replace(chosen, time=next(upload.time for file, upload in attempt if file is chosen))
+
+    def _folder(self, attempt: Attempt, name: str) -> File:
+        """Return the attempt's files in a folder of their own, under the names that the student gave them."""
+        folder = self.folder / f"submission-{name}"
+        for file, upload in attempt:
+            if file.path.is_symlink():
+                continue
+            to = folder.joinpath(*(part.encode()[:200].decode(errors="ignore") for part in upload.inside))
+            to.parent.mkdir(parents=True, exist_ok=True)
+            try:
+                os.link(file.path, to)
+            except OSError:
+                shutil.copyfile(file.path, to)
+        first, upload = attempt[0]
+        parts = first.name.split("/")
+        return File("/".join(parts[: len(parts) - len(upload.inside)]) or first.name, folder, upload.time)
+
+    def _missing(self, students: Sequence[Student], rows: dict[str, RosterRow]) -> list[Student]:
+        """Return everybody of the roster and of the groups from whom there is nothing."""
+        there = list(rows.values())
+        missing = [row.student for row in self.wishes.roster if row not in there]
+        for group in self.wishes.groups:
+            for member in group.members:
+                known = [*students, *missing, *(row.student for row in there)]
+                if not any(probably_same(member, student) for student in known):
+                    missing.append(member)
+        return missing
+
+    def _strangers(self, chosen: Sequence[HandedIn | Question], rows: dict[str, RosterRow]) -> list[str]:
+        strangers = [one.student.id for one in chosen if one.student.id not in rows]
+        return [f"not on the roster: {', '.join(strangers)}"] if self.wishes.roster and strangers else []
+
+
+def _units(uploads: Sequence[tuple[File, Upload]]) -> list[Unit]:
+    units: dict[tuple[str, ...], Unit] = {}
+    for file, upload in uploads:
+        key = tuple(student.id for student in upload.students)
+        unit = units.setdefault(key, Unit(upload.students, {}))
+        units[key] = replace(
+            unit, attempts={**unit.attempts, upload.attempt: [*unit.attempts.get(upload.attempt, ()), (file, upload)]}
+        )
+    return list(units.values())
+
+
+def _only(several: list[HandedIn | Question]) -> HandedIn | Question:
+    """Return a student's submission; alone and in a group, it is a question which one counts."""
+    if len(several) == 1:
+        return several[0]
+    names = [one.files if isinstance(one, Question) else (one.file.name,) for one in several]
+    return Question(several[0].student, tuple(name for some in names for name in some))
+
+
+def _named(one: HandedIn | Question, row: RosterRow | None, ids: dict[str, str]) -> HandedIn | Question:
+    student = replace(with_row(one.student, row), id=ids[normal(one.student.id)])
+    if isinstance(one, HandedIn) and row and row.time.at:
+        return HandedIn(student, replace(one.file, time=row.time), one.others)
+    return replace(one, student=student)
+
+
+def _not_gradable(handed_in: Sequence[HandedIn]) -> list[str]:
+    files = [one.file.name for one in handed_in if not can_be_graded(one.file.name) and not one.file.path.is_dir()]
+    return [f"handed in, but {KINDS}: {', '.join(files)}"] if files else []
+
+
+def _notes(handed_in: Sequence[HandedIn]) -> list[str]:
+    """Return how ambiguous times were read, and of how many students."""
+    count: dict[str, int] = defaultdict(int)
+    for one in handed_in:
+        if one.file.time.note:
+            count[f"{one.file.time.source}: {one.file.time.note}"] += 1
+    return [f"{note}, of {number} student{'s' if number > 1 else ''}" for note, number in count.items()]

@@ -8,8 +8,8 @@ from functools import cache
 from pathlib import Path
 from urllib.parse import quote
 
-from grader.classroom.gradebook import Cell, csv_text
 from grader.classroom.overview import OUTCOMES, Distribution, Tally, distribution, tallies
+from grader.classroom.tables import Cell, csv_text
 from grader.grading.grade import Entry, Student
 from grader.report.as_json import STUDENTS, from_json
 from grader.report.pages import render
@@ -153,7 +153,7 @@ def column_of(exercise: GradedExercise) -> Column:
     return Column(
         exercise=exercise,
         page=f"{quote(exercise.name, safe='')}/index.html",
-        handed_in=len(exercise.entries),
+        handed_in=sum(entry.grade.outcome != "missing" for entry in exercise.entries.values()),
         mean=sum(finals) / len(finals) if finals else 0.0,
         full=sum(final >= exercise.points for final in finals),
     )

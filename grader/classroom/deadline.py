@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import date, datetime, timedelta
+from datetime import date, datetime, timedelta, timezone, tzinfo
 from pathlib import Path
 from typing import Any
 
-from grader.classroom.handed_in import SubmissionsError, moment, table_rows
+from grader.classroom.handed_in import HandedIn, SubmissionsError
+from grader.classroom.names import normal
+from grader.classroom.tables import table_rows
+from grader.classroom.times import later, localized, moment, units_begun, zone_named
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.grading.grade import Adjustment, Entry
 
@@ -28,7 +31,7 @@ UNITS = {
 LENGTH = re.compile(r"(\d+) *(minute|hour|day|week)s?")
 RULE = re.compile(r"(\d+(?:\.\d+)?) *% +(?:an?|per) +(minute|hour|day|week)(?: +up +to +(\d+(?:\.\d+)?) *%)?")
 
-KEYS = ("due", "grace", "penalty", "closes")
+KEYS = ("due", "zone", "grace", "penalty", "closes")
 
 
 @dataclass(frozen=True)
@@ -36,7 +39,8 @@ class Deadline:
     """When work is due and what lateness costs.
 
     Work submitted within `grace` after `due` is on time. Later work loses `percent` of its score for each `unit` that
-    has begun since `due`, at most `at_most` percent; after `closes` it loses everything.
+    has begun since `due`, at most `at_most` percent; after `closes` it loses everything. Days and weeks are those of
+    the calendar of `zone`, None for this machine's: they end at the time of day of `due`, also if the clocks change.
     """
 
     due: datetime
@@ -45,19 +49,29 @@ class Deadline:
     unit: timedelta = UNITS["day"]
     at_most: float = 100.0
     closes: datetime | None = None
+    zone: tzinfo | None = None
+
+    @property
+    def costs(self) -> bool:
+        """Whether lateness costs anything."""
+        return bool(self.percent or self.closes)
 
     def lost(self, submitted: datetime, due: datetime | None = None) -> float:
         """Return how many percent of its score work loses if submitted then; `due` is a student's own later due date.
 
         A student's own due date also postpones the closing date if that is earlier.
         """
-        due = due or self.due
+        due, submitted = (due or self.due).astimezone(timezone.utc), submitted.astimezone(timezone.utc)
         if self.closes and submitted > max(self.closes, due):
             return 100.0
-        if submitted <= due + self.grace:
+        if submitted <= later(due, self.grace, self.zone):
             return 0.0
-        begun = -((due - submitted) // self.unit)
-        return min(self.at_most, self.percent * begun)
+        return min(self.at_most, self.percent * units_begun(due, submitted, self.unit, self.zone))
+
+    def __str__(self) -> str:
+        """Return when work is due, and by which calendar days count."""
+        calendar = f"the calendar of {self.zone}" if self.zone else "this machine's calendar"
+        return f"due {date_shown(self.due.astimezone(self.zone))}, days by {calendar}"
 
 
 def deadline_of(exercise: Exercise) -> Deadline | None:
@@ -76,21 +90,36 @@ def deadline_of(exercise: Exercise) -> Deadline | None:
     if "due" not in entries:
         raise ExerciseError(file, "[deadline] has no due", "Write due = 2026-11-22T23:59:00+01:00.")
     percent, unit, at_most = _rule(entries.get("penalty", "0 % a day"), file)
+    zone = _zone(entries, file)
     return Deadline(
-        due=_moment(entries["due"], "due", file),
+        due=_moment(entries["due"], "due", file, zone),
         grace=_length(entries.get("grace", "0 minutes"), file),
         percent=percent,
         unit=unit,
         at_most=at_most,
-        closes=_moment(entries["closes"], "closes", file) if "closes" in entries else None,
+        closes=_moment(entries["closes"], "closes", file, zone) if "closes" in entries else None,
+        zone=zone,
     )
 
 
-def _moment(value: Any, key: str, file: Path) -> datetime:
+def _zone(entries: dict[str, Any], file: Path) -> tzinfo | None:
+    """Return the zone that is named; otherwise this machine's, unless `due` has another offset."""
+    if "zone" in entries:
+        try:
+            return zone_named(str(entries["zone"]))
+        except ValueError as error:
+            raise ExerciseError(file, str(error), 'Write one of the IANA names, zone = "Europe/Berlin".') from None
+    due = entries["due"]
+    if isinstance(due, datetime) and due.tzinfo and due.utcoffset() != due.astimezone().utcoffset():
+        return due.tzinfo
+    return None
+
+
+def _moment(value: Any, key: str, file: Path, zone: tzinfo | None) -> datetime:
     if isinstance(value, datetime):
-        return value if value.tzinfo else value.astimezone()
+        return value if value.tzinfo else localized(value, zone)
     if isinstance(value, date):
-        return datetime(value.year, value.month, value.day, 23, 59, 59).astimezone()
+        return localized(datetime(value.year, value.month, value.day, 23, 59, 59), zone)
     raise ExerciseError(file, f"{key} = {value!r}", f"Write a time without quotes, {key} = 2026-11-22T23:59:00+01:00.")
 
 
@@ -126,24 +155,24 @@ class Override:
     due: datetime | None = None
 
 
-def overrides_in(file: Path, students: set[str]) -> dict[str, tuple[Override, ...]]:
+def overrides_in(file: Path, students: set[str], zone: tzinfo | None = None) -> dict[str, tuple[Override, ...]]:
     """Return the rows by student, each of whom must be one of `students`.
 
-    Columns: student, reason, and points or due. `85` are the points that count; `+5` and `-5` are added to the score.
-    Raises `OverridesError`.
+    Columns: student, reason, and points or due, which is in `zone` if it names none. `85` are the points that count;
+    `+5` and `-5` are added to the score. Raises `OverridesError`.
     """
     found: dict[str, tuple[Override, ...]] = {}
     try:
         for number, row in table_rows(file, ("student", "reason")):
-            override = _override(row, f"{file}:{number}", students)
+            override = _override(row, f"{file}:{number}", students, zone)
             found[override.student] = (*found.get(override.student, ()), override)
     except SubmissionsError as error:
         raise OverridesError(str(error)) from None
     return found
 
 
-def _override(row: dict[str, str], place: str, students: set[str]) -> Override:
-    student, points, due = row["student"], row.get("points", ""), row.get("due", "")
+def _override(row: dict[str, str], place: str, students: set[str], zone: tzinfo | None) -> Override:
+    student, points, due = normal(row["student"]), row.get("points", ""), row.get("due", "")
     if student not in students:
         raise OverridesError(f"{place}: no student is called {student!r}. Write the name of a folder in the results.")
     if not row["reason"]:
@@ -151,7 +180,7 @@ def _override(row: dict[str, str], place: str, students: set[str]) -> Override:
     if bool(points) == bool(due):
         raise OverridesError(f"{place}: points = {points!r}, due = {due!r}. Give one of the two.")
     if due:
-        date = moment(due)
+        date = moment(due, zone)
         if date is None:
             raise OverridesError(f"{place}: due = {due!r}. Write it as 2026-11-22 23:59.")
         return Override(student, row["reason"], due=date)
@@ -190,16 +219,28 @@ class Adjusting:
         made += [Adjustment("override", one.added, one.reason) for one in theirs if one.added is not None]
         return tuple(made)
 
+    def undated(self, handed_in: Sequence[HandedIn]) -> list[HandedIn]:
+        """Return the submissions whose lateness would cost points, but is not known."""
+        if not self.deadline or not self.deadline.costs:
+            return []
+        decided = {
+            who for who, theirs in self.overrides.items() if any(override.points is not None for override in theirs)
+        }
+        return [
+            one
+            for one in handed_in
+            if one.student.id not in decided
+            and any(file.submitted is None and file.time.late is not False for file in one.files)
+        ]
+
     def _late(self, entry: Entry, due: datetime | None) -> Adjustment | None:
-        if not self.deadline or not entry.submitted or entry.grade.outcome == "host-error":
+        if not self.deadline or not entry.submitted or not entry.grade.has_score:
             return None
         percent = self.deadline.lost(entry.submitted, due)
         if not percent:
             return None
-        behind = entry.submitted - (due or self.deadline.due)
-        reason = (
-            f"handed in {length(behind)} late, by {entry.submitted_from}: {percent:g} % of {entry.grade.score:g} points"
-        )
+        behind = lateness(due or self.deadline.due, entry.submitted, self.deadline.zone)
+        reason = f"handed in {behind} late, by {entry.submitted_from}: {percent:g} % of {entry.grade.score:g} points"
         return Adjustment("late", -round(entry.grade.score * percent / 100, 6), reason)
 
 
@@ -208,10 +249,13 @@ def date_shown(moment: datetime | None) -> str:
     return moment.strftime("%Y-%m-%d %H:%M %z") if moment else ""
 
 
-def length(time: timedelta) -> str:
-    """Return `2 days 3 h`, `3 h 20 min` or `5 min`; a minute that has begun counts."""
-    minutes = -(-time // timedelta(minutes=1))
-    days, minutes = divmod(minutes, 24 * 60)
+def lateness(due: datetime, submitted: datetime, zone: tzinfo | None) -> str:
+    """Return `2 days 3 h`, `3 h 20 min` or `5 min`; a minute that has begun counts. Days are those of the calendar."""
+    submitted = submitted.astimezone(timezone.utc)
+    days = units_begun(due, submitted, UNITS["day"], zone)
+    if later(due, days * UNITS["day"], zone) > submitted:
+        days -= 1
+    minutes = -((later(due, days * UNITS["day"], zone) - submitted) // UNITS["minute"])
     hours, minutes = divmod(minutes, 60)
     if days:
         return f"{days} day{'s' if days > 1 else ''} {hours} h"

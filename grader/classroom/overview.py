@@ -24,6 +24,8 @@ OUTCOMES = {
     "timed-out": "hung",
     "over-limit": "over a limit",
     "host-error": "not graded",
+    "missing": "nothing handed in",
+    "undecided": "undecided",
 }
 
 
@@ -159,11 +161,11 @@ def overview_page(
 ) -> str:
     """Return the page `results/index.html`: the class's results, a row per student, the costliest checks and mistakes.
 
-    `entries` have a score; `faults` have none, through a fault of ours. Each row links to
+    `entries` have a score; `faults` have none, through a fault of ours or before a decision. Each row links to
     `students/STUDENT/feedback.html` next to the page. The page is one HTML file; its one script sorts the table,
     which is also sorted without it.
     """
-    faulty = [*faults, *(entry for entry in entries if entry.final is None and entry not in faults)]
+    unscored = [*faults, *(entry for entry in entries if entry.final is None and entry not in faults)]
     scored = [entry for entry in entries if entry.final is not None]
     rows = [row(entry, misconceptions) for entry in scored]
     rows.sort(key=lambda row: (row.name.casefold(), row.entry.student.id))
@@ -180,7 +182,8 @@ def overview_page(
         misconceptions=misconceptions,
         broken=broken,
         skipped=skipped,
-        faults=faulty,
+        faults=[entry for entry in unscored if entry.grade.outcome != "undecided"],
+        undecided=[entry for entry in unscored if entry.grade.outcome == "undecided"],
         page_of=page_of,
         several=sum(len(misconceptions.of(entry)) > 1 for entry in scored),
     )

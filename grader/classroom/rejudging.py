@@ -10,12 +10,11 @@ from rich.text import Text
 
 from grader.classroom.handed_in import HandedIn, Submissions
 from grader.classroom.request import Graded
-from grader.classroom.results import ClassGrading, recordings_key
+from grader.classroom.results import ClassGrading, Tries, recordings_key
 from grader.grading.grade import Grade
 from grader.grading.grading import Grading
 from grader.report.feedback_plot import picture
 from grader.report.printable import printable
-from grader.submission.reading import Submission
 
 
 @dataclass(frozen=True)
@@ -31,7 +30,7 @@ def rejudge(
     marking: ClassGrading,
     grading: Grading,
     collected: Submissions,
-    submissions: Mapping[str, Submission],
+    submissions: Mapping[str, Tries],
     console: Console,
     may_replace: Callable[[int], bool],
 ) -> None:
@@ -44,11 +43,12 @@ def rejudge(
     for one in collected.handed_in:
         who = one.student.id
         kept = marking.results.entry(who)
-        recordings = marking.results.recordings(who, recordings_key(grading, submissions[who]))
-        if kept is None or recordings is None:
+        keys = {recordings_key(grading, submission): submission for submission in submissions[who]}
+        stored = marking.results.stored(who)
+        if kept is None or stored is None or stored.key not in keys:
             missing.append(who)
             continue
-        grade = grading.judge(submissions[who], recordings)
+        grade = replace(grading.judge(keys[stored.key], stored.recordings), submission=kept[0].file)
         graded = Graded(who, replace(grade, seconds=kept[0].grade.seconds), picture(grade, marking.exercise))
         found.append(Rejudged(one, graded, difference(kept[0].grade, grade)))
     _report(console, found, missing)

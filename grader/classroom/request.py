@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
-from grader.grading.grade import Grade, Options
+from grader.grading.grade import Grade, Options, Outcome
 from grader.grading.reference import versions
 from grader.grading.running import ScenarioRunner
 from grader.submission.reading import Submission
@@ -17,17 +18,23 @@ from grader.submission.reading import Submission
 class ClassRequest:
     """A class to grade: where the submissions are, where to write the results, and how.
 
-    `jobs` is how many submissions are graded at once, None for as many as suit
-    this machine. `regrade` names students whose submissions are graded again
-    even if nothing has changed, `*` all of them. `overrides` is a CSV file, `scheduler` a Dask scheduler's address.
-    `rejudge` requests new verdicts on stored recordings, and `replace` keeping them without asking. `publish` requests
-    one zip per student.
+    `jobs` is how many submissions are graded at once, None for as many as suit this machine. `format` is the name of a
+    format, empty for the one that fits; `attempts` is which of several counts: "last", "first" or "best". `roster` and
+    `groups` are CSV files. With `skip`, what needs a decision is not graded, and everything else is. `regrade` names
+    students whose submissions are graded again even if nothing has changed, `*` all of them. `overrides` is a CSV file,
+    `scheduler` a Dask scheduler's address. `rejudge` requests new verdicts on stored recordings, and `replace` keeping
+    them without asking. `publish` requests one zip per student.
     """
 
     source: Path
     out: Path
     options: Options
     jobs: int | None = None
+    format: str = ""
+    attempts: str = ""
+    roster: Path | None = None
+    groups: Path | None = None
+    skip: bool = False
     regrade: tuple[str, ...] = ()
     overrides: Path | None = None
     scheduler: str = ""
@@ -66,12 +73,18 @@ class Backend(Protocol):
 
 def host_error(runner: ScenarioRunner, submission: Submission, text: str) -> Grade:
     """Return the grade without a score; `text` is for the instructor."""
+    grade = no_grade(runner, "host-error", f"This is not your fault: {text}")
+    return replace(grade, submission=submission.name, digest=submission.digest)
+
+
+def no_grade(runner: ScenarioRunner, outcome: Outcome, message: str) -> Grade:
+    """Return the grade of a student from whom nothing was run."""
     return Grade(
         exercise=runner.exercise.name,
-        submission=submission.name,
-        digest=submission.digest,
-        outcome="host-error",
-        message=f"This is not your fault: {text}",
+        submission="",
+        digest=hashlib.sha256().hexdigest(),
+        outcome=outcome,
+        message=message,
         score=0.0,
         points=runner.exercise.points,
         verdicts=(),

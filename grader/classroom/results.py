@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import gzip
 import hashlib
 import json
@@ -14,10 +15,11 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from grader.classroom.deadline import Adjusting
 from grader.classroom.handed_in import HandedIn, Submissions
 from grader.classroom.request import Backend, Graded
 from grader.exercise.exercise import Exercise
-from grader.grading.grade import Adjustment, Entry
+from grader.grading.grade import Entry, Grade, Student
 from grader.grading.grading import Grading
 from grader.grading.reference import digest_of, versions
 from grader.recording.recording import Recording
@@ -28,8 +30,21 @@ from grader.report.feedback import feedback_page
 from grader.submission.reading import Submission
 from groundwork.files import remove_parts, try_lock, write_if_changed
 
-#: In a student's folder: the recordings, as JSON below a line with the key of what they depend on.
+#: In a student's folder: the recordings, as JSON below a line with the key of what they depend on, and the name of the
+#: file next to `students/` with the solution's.
 RECORDINGS = "recordings.json.gz"
+REFERENCE = "reference-{}.json.gz"
+
+#: After one of these, no other student's results can be written either.
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
+
+
+class NotWritable(Exception):
+    """Raised when the results can't be written; the text tells the instructor why."""
+
+    def __init__(self, folder: Path, error: OSError) -> None:
+        why = error.strerror or str(error)
+        super().__init__(f"{error.filename or folder}: the results can't be written: {why}.")
 
 
 class Busy(Exception):
@@ -42,6 +57,7 @@ class Results:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self._lock = -1
+        self._reference: tuple[dict[str, Recording], str] = ({}, "")
 
     def entry(self, student: str) -> tuple[Entry, str] | None:
         """Return the stored entry of a student, and the key of the grade; None if missing or unreadable."""
@@ -57,20 +73,32 @@ class Results:
         except (OSError, ValueError):
             return None
 
-    def recordings(self, student: str, key: str) -> dict[str, Recording] | None:
-        """Return the stored recordings of a student's run, by scenario; None if there are none under this key."""
+    def stored(self, student: str) -> Stored | None:
+        """Return what is stored of a student's run; None if there is nothing."""
         try:
-            content = (folder_of(self.folder, student) / RECORDINGS).read_bytes()
-            first, _, text = gzip.decompress(content).decode().partition("\n")
-            return recordings_from_json(text) if first == key else None
-        except (OSError, EOFError, zlib.error, ValueError, KeyError, TypeError):
+            first, recordings = _read_recordings(folder_of(self.folder, student) / RECORDINGS)
+        except UNREADABLE:
             return None
+        key, _, reference = first.partition(" ")
+        try:
+            references = _read_recordings(self.folder / Path(reference).name)[1] if reference else {}
+        except UNREADABLE:
+            references = {}
+        return Stored(key, recordings, references)
 
-    def keep_recordings(self, student: str, key: str, recordings: dict[str, Recording]) -> None:
-        """Keep what was recorded of a student's run, so that changed checks can judge it."""
-        text = f"{key}\n{recordings_to_json(recordings)}"
+    def keep_recordings(self, student: str, key: str, grade: Grade) -> None:
+        """Keep what was recorded of a student's run, so that changed checks can judge it, and a dispute be settled."""
+        if grade.references is not self._reference[0]:
+            name = REFERENCE.format(hashlib.sha256(recordings_to_json(grade.references).encode()).hexdigest()[:12])
+            self._write_recordings(self.folder / name, "", grade.references)
+            self._reference = (grade.references, name)
+        first = f"{key} {self._reference[1]}"
+        self._write_recordings(folder_of(self.folder, student) / RECORDINGS, first, grade.recordings)
+
+    def _write_recordings(self, file: Path, first: str, recordings: dict[str, Recording]) -> None:
+        text = f"{first}\n{recordings_to_json(recordings)}"
         content = gzip.compress(text.encode(), compresslevel=3, mtime=0)  # a third of 6's time, a third larger
-        write_if_changed(folder_of(self.folder, student) / RECORDINGS, content, durable=True)
+        write_if_changed(file, content, durable=True)
 
     def write(self, entry: Entry, key: str, page: str, plot: str | None) -> None:
         """Store a student's entry. Whenever this is interrupted, the files are complete, or are made again."""
@@ -105,8 +133,13 @@ class Results:
         )
 
     def __enter__(self) -> Results:
-        self.folder.mkdir(parents=True, exist_ok=True)
-        lock = try_lock(self.folder / ".lock")
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            lock = try_lock(self.folder / ".lock")
+        except FileExistsError as error:
+            raise NotWritable(self.folder, NotADirectoryError(errno.ENOTDIR, "Not a folder", error.filename)) from None
+        except OSError as error:
+            raise NotWritable(self.folder, error) from None
         if lock is None:
             raise Busy(f"{self.folder}: another grading is writing to this folder. Wait until it has finished.")
         self._lock = lock
@@ -118,6 +151,24 @@ class Results:
         self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None
     ) -> None:
         os.close(self._lock)
+
+
+#: What reading a stored file raises if it is damaged.
+UNREADABLE = (OSError, EOFError, zlib.error, ValueError, KeyError, TypeError)
+
+
+@dataclass(frozen=True)
+class Stored:
+    """The recordings of a student's run and of the solution's, by scenario; `key` is what they depend on."""
+
+    key: str
+    recordings: dict[str, Recording]
+    references: dict[str, Recording]
+
+
+def _read_recordings(file: Path) -> tuple[str, dict[str, Recording]]:
+    first, _, text = gzip.decompress(file.read_bytes()).decode().partition("\n")
+    return first, recordings_from_json(text)
 
 
 def grade_key(grading: Grading) -> str:
@@ -167,8 +218,8 @@ def submission_key(key: str, digest: str) -> str:
     return hashlib.sha256(f"{key} {digest}".encode()).hexdigest()
 
 
-#: How late work and the instructor's overrides change a score.
-Adjust = Callable[[Entry], tuple[Adjustment, ...]]
+#: A student's submissions, as many as there are attempts that may count: most often one.
+Tries = tuple[Submission, ...]
 
 
 @dataclass(frozen=True)
@@ -187,14 +238,12 @@ class ClassGrading:
     exercise: Exercise
     markers: Backend
     results: Results
-    adjust: Adjust
+    adjust: Adjusting
     grading: Grading | None = None
     """Set if recordings are to be stored."""
     entries: dict[str, Entry] = field(default_factory=dict)
 
-    def plan(
-        self, collected: Submissions, submissions: Mapping[str, Submission], regrade: Callable[[str], bool]
-    ) -> Plan:
+    def plan(self, collected: Submissions, submissions: Mapping[str, Tries], regrade: Callable[[str], bool]) -> Plan:
         """Return what has to be graded: what has no grade yet, what has changed, and what `regrade` names.
 
         `submissions` are those of `collected`, read, by student.
@@ -218,28 +267,68 @@ class ClassGrading:
             if kept and one.student.id not in self.entries:
                 self.entries[one.student.id] = kept[0]
 
-    def run(self, plan: Plan, submissions: Mapping[str, Submission]) -> Iterator[Entry]:
+    def run(self, plan: Plan, submissions: Mapping[str, Tries]) -> Iterator[Entry]:
         """Grade what has to be graded, and yield each entry once it is stored.
 
-        If we or the machine were at fault, the submission is tried once more after all others; if that fails as well,
-        the entry says so, has no score, and is graded again by the next run.
+        What several students handed in together is graded once. If we or the machine were at fault, the submission is
+        tried once more after all others; if that fails as well, the entry says so, has no score, and is graded again by
+        the next run.
         """
-        handed_in = {one.student.id: one for one in plan.to_grade}
-        again: list[str] = []
-        for graded in self.markers.mark({who: submissions[who] for who in handed_in}):
-            if graded.grade.outcome == "host-error":
-                again.append(graded.who)
-            else:
-                yield self._kept(handed_in[graded.who], graded, submissions[graded.who])
-        for graded in self.markers.mark({who: submissions[who] for who in sorted(again)}):
-            yield self._kept(handed_in[graded.who], graded, submissions[graded.who])
+        jobs = {
+            str(file.path): submission
+            for one in plan.to_grade
+            for file, submission in zip(one.files, submissions[one.student.id], strict=True)
+        }
+        waiting = {one.student.id: one for one in plan.to_grade}
+        done: dict[str, Graded] = {}
+        again: dict[str, Submission] = {}
+        for last_try in (False, True):
+            for graded in self.markers.mark(again if last_try else jobs):
+                if graded.grade.outcome == "host-error" and not last_try:
+                    again[graded.who] = jobs[graded.who]
+                    continue
+                done[graded.who] = graded
+                yield from self._complete(waiting, done, submissions)
 
-    def _kept(self, handed_in: HandedIn, graded: Graded, submission: Submission) -> Entry:
+    def _complete(
+        self, waiting: dict[str, HandedIn], done: dict[str, Graded], submissions: Mapping[str, Tries]
+    ) -> Iterator[Entry]:
+        """Store and yield the entries of students all of whose attempts are graded; let go of what nobody waits for."""
+        for one in [one for one in waiting.values() if all(str(file.path) in done for file in one.files)]:
+            del waiting[one.student.id]
+            graded = self._best(one, [done[str(file.path)] for file in one.files])
+            yield self._kept(one, graded, submissions[one.student.id])
+        needed = {str(file.path) for one in waiting.values() for file in one.files}
+        for path in done.keys() - needed:
+            del done[path]
+
+    def _best(self, handed_in: HandedIn, attempts: list[Graded]) -> Graded:
+        """Return the attempt with the most points, late or not; after a fault of ours nobody knows which that is."""
+        if faults := [graded for graded in attempts if not graded.grade.has_score]:
+            return faults[0]
+        finals = []
+        for file, graded in zip(handed_in.files, attempts, strict=True):
+            entry = _of_file(Entry(handed_in.student, file.name, graded.grade), handed_in)
+            finals.append(replace(entry, adjustments=self.adjust(entry)).final or 0.0)
+        best = finals.index(max(finals))
+        name = handed_in.files[best].name
+        return replace(attempts[best], grade=replace(attempts[best].grade, submission=name))
+
+    def _kept(self, handed_in: HandedIn, graded: Graded, tries: Tries) -> Entry:
         """Store a grade; one whose page or files can't be written becomes a `host-error`; others go on."""
         try:
-            return self.keep(handed_in, graded, submission)
+            return self.keep(handed_in, graded, tries)
         except Exception as error:
+            stop_if_no_room(self.results.folder, error)
             return self.give_up(Entry(handed_in.student, handed_in.file.name, graded.grade), not_written(error))
+
+    def record(self, student: Student, grade: Grade) -> Entry:
+        """Store the entry of a student from whom nothing is graded."""
+        entry = Entry(student, "", grade)
+        entry = replace(entry, adjustments=self.adjust(entry))
+        self.entries[student.id] = entry
+        self.results.write(entry, "", feedback_page(entry, self.exercise, None), None)
+        return entry
 
     def give_up(self, entry: Entry, what: str) -> Entry:
         """Turn an entry into a `host-error` that says `what` happened; the next run tries it again."""
@@ -251,15 +340,15 @@ class ClassGrading:
         self.results.forget(entry.student.id)
         return entry
 
-    def keep(self, handed_in: HandedIn, graded: Graded, submission: Submission) -> Entry:
+    def keep(self, handed_in: HandedIn, graded: Graded, tries: Tries) -> Entry:
         """Write a grade with its page into the student's folder."""
-        # The grading process may see the file under another name.
-        grade = replace(graded.grade, submission=handed_in.file.name)
-        entry = self._entry(handed_in, Entry(handed_in.student, handed_in.file.name, grade))
-        key = "" if grade.outcome == "host-error" else self._key(submission)
+        submission = next((one for one in tries if one.digest == graded.grade.digest), tries[0])
+        entry = self._entry(handed_in, Entry(handed_in.student, graded.grade.submission, graded.grade))
+        grade = entry.grade
+        key = self._key(tries) if grade.has_score else ""
         if grade.recordings and self.grading:
             recorded = recordings_key(self.grading, submission)
-            self.results.keep_recordings(entry.student.id, recorded, grade.recordings)
+            self.results.keep_recordings(entry.student.id, recorded, grade)
         self.results.write(entry, key, feedback_page(entry, self.exercise, graded.plot), graded.plot)
         # The recordings are in the page now; kept for a whole class, they would fill the memory.
         self.entries[entry.student.id] = entry = replace(entry, grade=replace(grade, recordings={}, references={}))
@@ -269,6 +358,7 @@ class ClassGrading:
         try:
             return self._unchanged(handed_in, kept, key)
         except Exception as error:
+            stop_if_no_room(self.results.folder, error)
             return self.give_up(Entry(handed_in.student, handed_in.file.name, kept.grade), not_written(error))
 
     def _unchanged(self, handed_in: HandedIn, kept: Entry, key: str) -> Entry:
@@ -279,22 +369,36 @@ class ClassGrading:
         return entry
 
     def _entry(self, handed_in: HandedIn, of: Entry) -> Entry:
-        file = handed_in.file
-        entry = replace(
-            of,
-            student=handed_in.student,
-            file=file.name,
-            grade=replace(of.grade, submission=file.name),
-            submitted=file.submitted,
-            submitted_from=file.submitted_from if file.submitted else "",
-            adjustments=(),
-        )
+        entry = _of_file(of, handed_in)
         entry = replace(entry, adjustments=self.adjust(entry))
         self.entries[entry.student.id] = entry
         return entry
 
-    def _key(self, submission: Submission) -> str:
-        return submission_key(self.markers.key, f"{submission.digest} {submission.warning}")
+    def _key(self, tries: Tries) -> str:
+        return submission_key(self.markers.key, " ".join(sorted(f"{one.digest} {one.warning}" for one in tries)))
+
+
+def _of_file(of: Entry, handed_in: HandedIn) -> Entry:
+    """Return the entry with the student's name and the file's date as they are now.
+
+    The grading process may see a file under another name; of several attempts, the entry's own is known by its name.
+    """
+    file = next((file for file in handed_in.files if file.name == of.file), handed_in.file)
+    return replace(
+        of,
+        student=handed_in.student,
+        file=file.name,
+        grade=replace(of.grade, submission=file.name),
+        submitted=file.submitted,
+        submitted_from=file.submitted_from if file.submitted else "",
+        adjustments=(),
+    )
+
+
+def stop_if_no_room(folder: Path, error: Exception) -> None:
+    """Raise `NotWritable` for an error after which nothing else can be written either."""
+    if isinstance(error, OSError) and error.errno in NO_ROOM:
+        raise NotWritable(folder, error) from None
 
 
 def not_written(error: Exception) -> str:

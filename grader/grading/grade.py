@@ -14,8 +14,9 @@ from grader.recording.recording import Ending, Recording
 from grader.sandbox.isolation import Isolation
 from grader.sandbox.program import Limits, Middleware
 
-#: What happened. Only `host-error` is not the student's: it gives no score and has to be graded again.
-Outcome = Literal["graded", "did-not-start", "crashed", "timed-out", "over-limit", "host-error"]
+#: What happened. `host-error` is not the student's fault: it gives no score and has to be graded again. `missing` is a
+#: student who handed in nothing; `undecided` waits for the instructor to say which submission counts.
+Outcome = Literal["graded", "did-not-start", "crashed", "timed-out", "over-limit", "host-error", "missing", "undecided"]
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,11 @@ class Grade:
     seconds: float = field(default=0.0, compare=False)
     recordings: dict[str, Recording] = field(default_factory=dict, compare=False, repr=False)
     references: dict[str, Recording] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def has_score(self) -> bool:
+        """Whether the score counts: after a fault of ours, or before a decision, there is none."""
+        return self.outcome not in ("host-error", "undecided")
 
     @property
     def full_marks(self) -> bool:
@@ -150,8 +156,8 @@ class Entry:
     """One student's submission, its grade, and what happened to the score.
 
     `file` is what was graded, relative to the class's folder. `submitted` is when it was submitted, with a time zone,
-    if known, and `submitted_from` is where that comes from: "timestamp.txt", "the CSV file", "the zip file" or "the
-    file's date". A grade that was read back from results has no recordings.
+    if known, and `submitted_from` is where that comes from: "timestamp.txt", "the CSV file", "the file's date" or the
+    platform. A grade that was read back from results has no recordings.
     """
 
     student: Student
@@ -163,8 +169,8 @@ class Entry:
 
     @property
     def final(self) -> float | None:
-        """The points that count, at least 0; more than the exercise's with extra credit. None for a fault of ours."""
-        if self.grade.outcome == "host-error" and not any(a.kind == "override" for a in self.adjustments):
+        """The points that count, at least 0; more than the exercise's with extra credit. None if there is no score."""
+        if not self.grade.has_score and not any(a.kind == "override" for a in self.adjustments):
             return None
         return max(0.0, self.grade.score + sum(adjustment.points for adjustment in self.adjustments))
 

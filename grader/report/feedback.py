@@ -109,6 +109,11 @@ HEADLINES: dict[Outcome, tuple[str, str]] = {
         "This could not be graded, and that is not your fault",
         "The machine or the grader was at fault. This is not a score, and it costs you nothing.",
     ),
+    "missing": ("Nothing was handed in", "There is no submission of yours, so there are no points."),
+    "undecided": (
+        "Not graded yet",
+        "Several submissions of yours are there. Your instructor decides which one counts.",
+    ),
 }
 
 
@@ -135,6 +140,8 @@ def advice(grade: Grade, exercise: Exercise) -> Advice | None:
             f"{again}, and watch it with top.",
         ),
         "host-error": ("There is nothing for you to do: it will be graded again.",),
+        "missing": ("If you did hand something in, tell your instructor.",),
+        "undecided": ("If you know which one counts, tell your instructor.",),
     }
     return Advice(headline, meaning, steps[grade.outcome])
 

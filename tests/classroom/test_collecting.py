@@ -7,12 +7,16 @@ import stat
 import zipfile
 from datetime import datetime, timezone
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from grader.classroom.collecting import MOST_FILES, collect
+from grader.classroom.archive import MOST_FILES
+from grader.classroom.collecting import Wishes, collect
 from grader.classroom.handed_in import Submissions, SubmissionsError
+from grader.exercise import load
 
+ROOT = Path(__file__).parents[2]
 EXERCISE = "joint_velocity"
 
 
@@ -30,10 +34,10 @@ def zipped(file: Path, *names: str) -> Path:
     return file
 
 
-def taken(source: Path, tmp_path: Path) -> Submissions:
+def taken(source: Path, tmp_path: Path, **wishes: Any) -> Submissions:
     unpacked = tmp_path / "unpacked"
-    unpacked.mkdir()
-    return collect(source, EXERCISE, unpacked)
+    unpacked.mkdir(exist_ok=True)
+    return collect(source, load(ROOT / "exercises" / EXERCISE), unpacked, Wishes(**wishes))
 
 
 def files(collected: Submissions) -> dict[str, str]:
@@ -47,9 +51,9 @@ def why(collected: Submissions) -> dict[str, str]:
 def test_a_file_a_student_or_a_folder_a_student(tmp_path: Path) -> None:
     root = written(tmp_path / "s", "anna.py", "bert.ipynb", "cleo/node.py", "cleo/report.pdf", "notes.txt", ".DS_Store")
     collected = taken(root, tmp_path)
-    assert files(collected) == {"anna": "anna.py", "bert": "bert.ipynb", "cleo": "cleo/node.py"}
+    assert files(collected) == {"anna": "anna.py", "bert": "bert.ipynb", "cleo": "cleo/node.py", "notes": "notes.txt"}
     assert "not one of" in why(collected)["cleo/report.pdf"]
-    assert "not one of" in why(collected)["notes.txt"]
+    assert collected.notes == ("handed in, but not one of .py, .ipynb, .zip: notes.txt",)
     assert "made by a program" in why(collected)[".DS_Store"]
     assert not collected.questions
 
@@ -93,8 +97,12 @@ def test_nbgraders_folder_of_submissions(tmp_path: Path) -> None:
         datetime(2026, 11, 20, 18, 30, tzinfo=timezone.utc),
         "timestamp.txt",
     )
-    assert bert.submitted_from == "the file's date"
-    assert why(collected) == {"*/other": "another assignment"}
+    assert bert.submitted is None
+    other = "submitted/anna/other/other.ipynb"
+    assert why(collected) == {
+        other: "another assignment, other",
+        "source/joint_velocity/joint_velocity.ipynb": "not in submitted/",
+    }
 
 
 def test_nbgraders_folder_itself(tmp_path: Path) -> None:
@@ -118,12 +126,8 @@ def test_a_download_from_moodle(tmp_path: Path, packed: bool) -> None:
     assert (anna.student.id, anna.student.name) == ("Anna_Müller_1234567", "Anna Müller")
     assert bert.student.lms == {"Identifier": "Participant 1234568", "Full name": "Bert O'Neil"}
     assert anna.file.path.read_text() == f"# {MOODLE[0]}\n"
-    if packed:
-        assert anna.file.submitted_from == "the zip file"
-        assert anna.file.submitted
-        assert anna.file.submitted.replace(tzinfo=None) == datetime(2026, 11, 20, 18, 30)
-    else:
-        assert "written in Moodle" in why(collected)[MOODLE[2]]
+    assert anna.file.submitted is None, "Moodle writes no dates into its zip"
+    assert "written in Moodle" in why(collected)[MOODLE[2]]
 
 
 CANVAS = ("muelleranna_12345_678901_joint_velocity-2.py", "oneilbert_LATE_12346_678902_joint_velocity.py")

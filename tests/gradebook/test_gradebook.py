@@ -11,7 +11,7 @@ from pathlib import Path
 import plain_grades as plain
 from rich.console import Console
 
-from grader.classroom.class_run import show_result
+from grader.classroom.class_display import show_result
 from grader.classroom.gradebook import write_gradebook
 from grader.grading.grade import Adjustment, Entry, Student
 
@@ -136,7 +136,7 @@ def test_a_student_whom_moodle_does_not_know_has_no_identifier_and_that_is_said(
     assert found == {"Jörg Müller": "Participant 77", "Ada Lovelace": ""}
     for entries, message in (([known], ""), ([known, unknown], "1 of the 2 students"), ([unknown], "any student")):
         said = io.StringIO()
-        show_result(Console(file=said, width=500), entries, [], [])
+        show_result(Console(file=said, width=500), entries, [])
         assert (
             (f"moodle.csv has no Identifier for {message}, so" in said.getvalue())
             if message

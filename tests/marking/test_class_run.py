@@ -16,7 +16,18 @@ import jsonschema
 import pytest
 from small_class import POINTS, ROOT, SmallClass
 
+from grader.classroom.formats.registry import TABLES
+
 SCHEMA = json.loads((ROOT / "docs" / "grade.schema.json").read_text(encoding="utf-8"))
+
+
+#: What a class's results have besides the students' folders and the solution's recordings.
+CLASS_FILES = {".lock", "index.html", "grades.csv", "junit.xml", *(table.file for table in TABLES)}
+
+
+def files_for_the_class(results: Path) -> set[str]:
+    """Return the names of the files, without the solution's recordings."""
+    return {file.name for file in results.iterdir() if file.is_file() and not file.name.startswith("reference-")}
 
 
 @pytest.fixture
@@ -34,7 +45,7 @@ def test_everybody_gets_what_is_theirs_whatever_others_hand_in(graded: tuple[Sma
     small, printed = graded
     assert small.finals() == POINTS
     assert small.entry("fay")["grade"]["outcome"] == "did-not-start"
-    assert "6 submissions in a folder with one file (or one folder) per student." in printed
+    assert "6 students in a folder with one file (or one folder) per student." in printed
     assert "fay: 0 of 20 points (did-not-start)" in printed
     assert "6 grades: median 17 of 20 points, 2 with full marks." in printed
 
@@ -47,9 +58,7 @@ def test_each_grade_is_as_the_published_schema_says(graded: tuple[SmallClass, st
 
 def test_all_files_lie_where_they_are_looked_for(graded: tuple[SmallClass, str]) -> None:
     results = graded[0].folder / "results"
-    assert {file.name for file in results.iterdir() if file.is_file()} == {
-        *(".lock", "index.html", "grades.csv", "nbgrader.csv", "canvas.csv", "moodle.csv", "junit.xml"),
-    }
+    assert files_for_the_class(results) == CLASS_FILES
     for student in POINTS:
         there = {file.name for file in (results / "students" / student).iterdir()}
         assert there - {"plot.svg", "recordings.json.gz"} == {"feedback.html", "grade.json", "results.json"}
@@ -125,7 +134,8 @@ def test_a_fault_of_ours_is_tried_again_listed_apart_and_never_scored(done: Smal
     page = (done.folder / "results" / "index.html").read_text(encoding="utf-8")
     assert "Not graded because of a fault on our side" in page
     with (done.folder / "results" / "grades.csv").open(encoding="utf-8-sig") as file:
-        assert [row["student"] for row in csv.DictReader(file)] == ["ana", "bert", "dora", "fay"]
+        points = {row["student"]: row["points"] for row in csv.DictReader(file)}
+    assert points == {"ana": "20", "bert": "20", "carl": "", "dora": "18", "fay": "0"}
     hidden.write_text(right, encoding="utf-8")
     code, printed = done.grade()
     assert code == 0, printed
@@ -136,7 +146,13 @@ def test_two_files_of_one_student_are_a_question(done: SmallClass) -> None:
     (done.submissions / "ana.ipynb").write_text("{}", encoding="utf-8")
     code, printed = done.grade()
     assert code == 1
-    assert "not graded: ana handed in 2 files: ana.ipynb, ana.py. Which one counts?" in printed
+    assert "ana handed in 2 files: ana.ipynb, ana.py. Which one counts?" in printed
+    assert "Nothing was graded. Decide, or grade all others with --skip." in printed
+    assert done.finals() == POINTS, "what was graded stays"
+    code, printed = done.grade("--skip")
+    assert code == 1
+    assert "5 unchanged since they were graded." in printed
+    assert done.finals() == {**POINTS, "ana": None}
     assert "ana.ipynb" in (done.folder / "results" / "index.html").read_text(encoding="utf-8")
 
 
@@ -179,7 +195,7 @@ def test_two_gradings_never_write_into_one_folder(done: SmallClass) -> None:
 #: File names that are also names of files in the results, that have a meaning in a spreadsheet, a page, a terminal or
 #: a shell, or that no text can contain.
 HOSTILE_NAMES = (
-    *("index.html", "grades.csv", "nbgrader.csv", "canvas.csv", "moodle.csv", "junit.xml", "students", "plot.svg"),
+    *("index.html", "grades.csv", "junit.xml", "students", "plot.svg", *(table.file for table in TABLES)),
     *("=HYPERLINK(1)", "<script>alert(1)<_script>", "[bold]red[_bold]", "\x1b[2J", "a\nb", "\udcff", "-rf", "--out"),
     *("CON", "$(reboot)", "%s%n", "\u202egnp", "x" * 240, "\u00e9" * 100, "{{ 7 * 7 }}"),
 )
@@ -202,7 +218,7 @@ def test_no_name_of_a_student_and_no_fault_in_one_stops_a_class_of_thirty(small_
     assert len(kept) == 29
     assert {"index.html", "grades.csv", "junit.xml", "students"} < kept
     with (results / "grades.csv").open(encoding="utf-8-sig", newline="") as file:
-        assert len(list(csv.DictReader(file))) == 29
+        assert sorted(row["points"] for row in csv.DictReader(file)) == ["", *["0"] * 29]
     page = (results / "index.html").read_text(encoding="utf-8")
     assert 'href="students/index.html/feedback.html"' in page
     (results / "students" / "student00").unlink()
@@ -231,9 +247,7 @@ def test_sixty_students_get_the_grades_of_their_programs_whatever_their_files_ar
     assert len(finals) == 60
     assert Counter(finals.values()) == expected
     results = small_class.folder / "results"
-    assert {file.name for file in results.iterdir()} == {
-        *(".lock", "students", "index.html", "grades.csv", "nbgrader.csv", "canvas.csv", "moodle.csv", "junit.xml")
-    }
+    assert files_for_the_class(results) == CLASS_FILES
 
 
 def test_changed_checks_judge_what_was_recorded_and_replace_nothing_unasked(done: SmallClass) -> None:

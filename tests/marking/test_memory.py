@@ -24,8 +24,8 @@ def test_recordings_of_graded_students_do_not_stay_in_memory(
 ) -> None:
     monkeypatch.setenv("SPINBOOK_CACHE", str(cache))
     exercise = load(small_class.exercise)
-    collected = collect(small_class.submissions, exercise.name, tmp_path)
-    submissions = {one.student.id: read(str(one.file.path), exercise) for one in collected.handed_in}
+    collected = collect(small_class.submissions, exercise, tmp_path)
+    submissions = {one.student.id: (read(str(one.file.path), exercise),) for one in collected.handed_in}
     with Results(small_class.folder / "results") as results, WorkerPool() as workers:
         grading = grading_of(exercise, Options(), workers)
         marking = ClassGrading(exercise, LocalBackend(grading, 2), results, Adjusting())

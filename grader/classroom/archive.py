@@ -1,0 +1,125 @@
+"""The files in a class's folder or zip, without what programs leave there."""
+
+from __future__ import annotations
+
+import os
+import stat
+import zipfile
+import zlib
+from collections.abc import Iterator
+from datetime import datetime, timezone
+from pathlib import Path, PurePosixPath
+
+from grader.classroom.handed_in import File, SubmissionsError
+from grader.classroom.times import Time
+from grader.grading.grade import Skipped
+from grader.submission.reading import MOST_BYTES
+
+#: Made by operating systems, editors and Python, never by a student.
+NOISE = {"__MACOSX", "__pycache__", "Thumbs.db", "desktop.ini"}
+WHY_NOISE = "made by a program, not handed in"
+
+#: A thousand students with as many files as they like.
+MOST_FILES = 20_000
+MOST_BYTES_IN_ALL = 2_000_000_000
+
+#: A little more than a submission may have: reading it says what is wrong with a larger one.
+MOST_BYTES_OF_ONE = max(MOST_BYTES.values()) + 1
+
+BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError, OSError, ValueError)
+
+
+def is_noise(name: str) -> bool:
+    """Return whether a file or folder of this name can be ignored."""
+    return name in NOISE or name.startswith(".")
+
+
+def walk(root: Path) -> Iterator[File | Skipped]:
+    """Yield every file below `root`, sorted by name; symbolic links are not followed."""
+    for folder, folders, names in os.walk(root):
+        inside = Path(folder).relative_to(root)
+        for name in sorted([*folders, *names]):
+            if is_noise(name):
+                yield Skipped((inside / name).as_posix(), WHY_NOISE)
+        folders[:] = sorted(name for name in folders if not is_noise(name))
+        for name in sorted(names):
+            if not is_noise(name):
+                path = Path(folder, name)
+                yield File((inside / name).as_posix(), path, date_of(path))
+
+
+def date_of(path: Path) -> Time:
+    """Return the file's date, if any; an archive can give a file a date that does not exist."""
+    try:
+        return Time(datetime.fromtimestamp(path.lstat().st_mtime, timezone.utc), "the file's date")
+    except (OSError, ValueError, OverflowError):
+        return Time()
+
+
+def unpacked(archive: Path, into: Path) -> Iterator[File | Skipped]:
+    """Yield the files in `archive`, written into the folder `into` with numbers as names.
+
+    Raises `SubmissionsError` when it is not a zip, or holds more than any class submits.
+    """
+    try:
+        opened = zipfile.ZipFile(archive)
+    except BROKEN as error:
+        raise SubmissionsError(f"{archive}: it is not a valid zip file: {error}. Was the download cut off?") from None
+    with opened:
+        entries = [entry for entry in opened.infolist() if not entry.is_dir()]
+        if len(entries) > MOST_FILES:
+            raise SubmissionsError(f"{archive}: it holds {len(entries):,} files, more than {MOST_FILES:,}.")
+        left = MOST_BYTES_IN_ALL
+        for number, entry in enumerate(sorted(entries, key=_name)):
+            name = _name(entry)
+            if why := _why_not(entry, name):
+                yield Skipped(name, why)
+                continue
+            try:
+                with opened.open(entry) as packed:
+                    content = packed.read(min(MOST_BYTES_OF_ONE, left + 1))
+            except BROKEN as error:
+                yield Skipped(name, f"{CANT_BE_READ}: {error}")
+                continue
+            left -= len(content)
+            if left < 0:
+                raise SubmissionsError(f"{archive}: unpacked, it is larger than {MOST_BYTES_IN_ALL // 10**9} GB.")
+            path = into / f"{number:05}{PurePosixPath(name).suffix[:20]}"
+            path.write_bytes(content)
+            yield File(name, path, _entry_date(entry))
+
+
+CANT_BE_READ = "it can't be read"
+ENCRYPTED = "it is encrypted"
+
+
+def _name(entry: zipfile.ZipInfo) -> str:
+    parts = PurePosixPath(_decoded(entry).replace("\\", "/")).parts
+    return "/".join(part for part in parts if part not in ("/", "..")) or "nameless"
+
+
+def _decoded(entry: zipfile.ZipInfo) -> str:
+    """Return the name; macOS writes UTF-8 without the flag that says so (APPNOTE.TXT, appendix D)."""
+    if entry.flag_bits & 0x800:
+        return entry.filename
+    try:
+        return entry.filename.encode("cp437").decode("utf-8")
+    except UnicodeError:
+        return entry.filename
+
+
+def _why_not(entry: zipfile.ZipInfo, name: str) -> str:
+    """Return why an entry is left out, or an empty text."""
+    if any(is_noise(part) for part in name.split("/")):
+        return WHY_NOISE
+    if stat.S_ISLNK(entry.external_attr >> 16):
+        return "a symbolic link, not a file"
+    return ENCRYPTED if entry.flag_bits & 1 else ""
+
+
+def _entry_date(entry: zipfile.ZipInfo) -> Time:
+    """Return an entry's date. A zip has the local time of its creator, without a zone: taken as this machine's."""
+    try:
+        return Time(datetime(*entry.date_time).astimezone(), "the zip file")
+    except (ValueError, OverflowError, OSError):
+        return Time()

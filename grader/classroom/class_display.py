@@ -1,0 +1,120 @@
+"""What the command prints about a class: how it was read, what needs a decision, the progress, and the result."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from types import TracebackType
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.text import Text
+
+from grader.classroom.formats.moodle import unknown_to_moodle
+from grader.classroom.handed_in import Submissions
+from grader.grading.grade import Entry, Skipped
+from grader.report.printable import printable
+
+#: How many files that were skipped for the same reason are named; the overview page names all.
+MOST_NAMED = 5
+
+
+def say(console: Console, text: str, style: str = "") -> None:
+    """Print a line, without anything in it that a terminal obeys."""
+    console.print(Text(printable(text), style=style), soft_wrap=True)
+
+
+def counted(number: int, what: str) -> str:
+    """Return `1 student` or `2 students`."""
+    return f"{number} {what}{'' if number == 1 else 's'}"
+
+
+def show_submissions(console: Console, collected: Submissions) -> None:
+    """Print how the submissions were read, and what was left out; the first line is the format and the count."""
+    students = len(collected.students) - len(collected.missing)
+    paths = {file.path for one in collected.handed_in for file in one.files}
+    together = students - len(collected.questions) - len({one.file.path for one in collected.handed_in})
+    shared = f", who handed in {counted(len(paths), 'submission')}" if together else ""
+    say(console, f"{counted(students, 'student')} in {collected.kind}{shared}.")
+    if collected.missing:
+        names = ", ".join(student.id for student in collected.missing)
+        say(console, f"{counted(len(collected.missing), 'student')} handed in nothing: {names}")
+    for note in collected.notes:
+        say(console, note, "yellow")
+    _list(console, [skip for skip in collected.skipped if skip not in collected.left_out])
+
+
+def _list(console: Console, skipped: Iterable[Skipped]) -> None:
+    reasons: dict[str, list[str]] = {}
+    for one in skipped:
+        reasons.setdefault(one.why, []).append(one.file)
+    for why, files in reasons.items():
+        more = f" and {len(files) - MOST_NAMED} more" if len(files) > MOST_NAMED else ""
+        say(console, f"skipped, {why}: {', '.join(files[:MOST_NAMED])}{more}", "yellow")
+
+
+def show_result(console: Console, entries: Sequence[Entry], unscored: Sequence[Entry]) -> None:
+    """Print the class's result, and what is left to do for the instructor."""
+    finals = sorted(entry.final for entry in entries if entry.final is not None)
+    if finals:
+        points = entries[0].grade.points
+        middle = (finals[(len(finals) - 1) // 2] + finals[len(finals) // 2]) / 2
+        full = sum(final >= points for final in finals)
+        say(console, f"{len(finals)} grades: median {middle:g} of {points:g} points, {full} with full marks.", "bold")
+    if entries and (unknown := unknown_to_moodle(entries)):
+        who = "any student" if unknown == len(entries) else f"{unknown} of the {len(entries)} students"
+        say(
+            console,
+            f"moodle.csv has no Identifier for {who}, so Moodle can't match them. If you use Moodle, grade the folder "
+            "that you downloaded from it, or give its grading worksheet with --roster.",
+            "dim",
+        )
+    faults = [entry for entry in unscored if entry.grade.outcome != "undecided"]
+    for entry in faults:
+        say(
+            console,
+            f"not graded, because of a fault of Spinbook or the machine: {entry.student.id}: {entry.grade.message}",
+            "red",
+        )
+    if faults:
+        say(console, "Run the same command to try them again.", "red")
+
+
+class ProgressDisplay:
+    """Prints each entry as it is done. Use it as a context manager."""
+
+    def __init__(self, console: Console, total: int) -> None:
+        self._console, self._total, self._done = console, total, 0
+        self._bar = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            TextColumn("left"),
+            TimeRemainingColumn(compact=True),
+            console=console,
+            disable=not console.is_terminal,
+            transient=True,
+        )
+        self._task = self._bar.add_task("grading", total=total)
+
+    def done(self, entry: Entry, changed: str) -> None:
+        """Count one more as done; `changed` says what an earlier grade was, if it was different."""
+        self._done += 1
+        self._bar.update(self._task, advance=1)
+        if self._console.is_terminal and not changed:
+            return
+        grade = entry.grade
+        what = f"{grade.score:g} of {grade.points:g} points" if grade.has_score else "not graded"
+        text = f"{self._done}/{self._total} {entry.student.id}: {changed or what}"
+        if grade.has_score and grade.outcome != "graded" and not changed:
+            text += f" ({grade.outcome})"
+        self._console.print(Text(printable(text)), soft_wrap=True)
+
+    def __enter__(self) -> ProgressDisplay:
+        self._bar.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._bar.stop()

@@ -1,0 +1,80 @@
+"""What only the instructor can decide: the command asks before it grades anything, and never leaves anybody out in
+silence."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from rich.console import Console
+
+from grader.classroom.class_display import counted, say
+from grader.classroom.deadline import Adjusting
+from grader.classroom.handed_in import File, HandedIn, Submissions
+
+
+@dataclass(frozen=True)
+class Decision:
+    """One thing to decide: what it is, every file or student that it is about, and what to do."""
+
+    what: str
+    about: tuple[str, ...]
+    remedy: str
+
+
+def decisions(collected: Submissions, adjusting: Adjusting) -> list[Decision]:
+    """Return what is not clear about a class."""
+    attempts = [str(question) for question in collected.questions if question.attempts]
+    several = [str(question) for question in collected.questions if not question.attempts]
+    unread = [f"{one.student.id}: {file.time.fault}" for one, file in _faults(collected.handed_in)]
+    found = [
+        Decision(
+            f"{counted(len(collected.left_out), 'file')} could be graded, but it is not clear whose",
+            tuple(f"{one.file}: {one.why}" for one in collected.left_out),
+            "Rename or remove them, name them in a CSV file, or say with --format how to read the class.",
+        ),
+        Decision(
+            f"{counted(len(attempts), 'student')} handed in several times",
+            tuple(attempts),
+            "Say which attempt counts, for everybody: --attempts last, first or best.",
+        ),
+        Decision(
+            f"{counted(len(several), 'student')} handed in several files",
+            tuple(several),
+            "Keep one of them, or name it in a CSV file.",
+        ),
+        Decision(
+            f"{counted(len(unread), 'time')} of submission can't be read",
+            tuple(unread),
+            "Write them as 2026-11-22 23:59:00 UTC, or give them in a table with --roster.",
+        ),
+        _undated(collected, adjusting),
+    ]
+    return [decision for decision in found if decision.about]
+
+
+def _faults(handed_in: Iterable[HandedIn]) -> Iterator[tuple[HandedIn, File]]:
+    return ((one, file) for one in handed_in for file in one.files if file.time.fault)
+
+
+def _undated(collected: Submissions, adjusting: Adjusting) -> Decision:
+    undated = [one for one in adjusting.undated(collected.handed_in) if not one.file.time.fault]
+    late = [one for one in undated if one.file.time.late]
+    marked = f", {counted(len(late), 'student')} marked as late" if late else ""
+    return Decision(
+        f"exercise.toml has a [deadline], but the dates of {counted(len(undated), 'submission')} are unknown{marked}",
+        tuple(f"{one.student.id}: {one.file.name}" for one in undated),
+        f"{collected.dates} Give a table with --roster that has the columns student (or those of your platform's list) "
+        "and submitted, set points with --overrides, or remove [deadline].".strip(),
+    )
+
+
+def show_decisions(console: Console, found: Sequence[Decision], skip: bool) -> None:
+    """Print everything that is to be decided, in full, and what to do."""
+    for decision in found:
+        say(console, f"{decision.what}:", "yellow")
+        for about in decision.about:
+            say(console, f"  {about}")
+        say(console, f"  {decision.remedy}")
+    if found and not skip:
+        say(console, "Nothing was graded. Decide, or grade all others with --skip.", "bold")

@@ -1,0 +1,76 @@
+"""Blackboard's "Download assignment submissions": ASSIGNMENT_USER_attempt_TIME_FILE in one folder, each with a .txt.
+
+Source: Blackboard's help, "Download assignments". The time has no zone: it is the institution's.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+
+from grader.classroom.formats.format import OWN, Export, Format, Parts, Understood, Upload, person
+from grader.classroom.times import Time, read_time
+from grader.grading.grade import Student
+
+NAME = re.compile(
+    r"(?P<before>.+?)_attempt_(?P<day>\d{4}-\d\d-\d\d)-(?P<h>\d\d)-(?P<m>\d\d)-(?P<s>\d\d)(?:_(?P<file>.+)|(?P<own>\.txt))"
+)
+WHO = re.compile(r"^Name: (?P<name>.*?) \((?P<user>[^()]*)\)\s*$", re.MULTILINE)
+SOURCE = "Blackboard"
+
+
+def read(export: Export) -> Callable[[Parts], Understood]:
+    """Understand names as Blackboard gives them. What all have before the user's name is the assignment's."""
+    before = [match["before"] for parts in export.files if (match := NAME.fullmatch(parts[-1]))]
+    texts = {match["before"]: export.text(*parts) for parts in export.files if (match := _own(parts))}
+    common = _assignment(before)
+
+    def understand(parts: Parts) -> Understood:
+        match = NAME.fullmatch(parts[-1])
+        if not match or len(parts) > 1:
+            return None
+        if match["own"]:
+            return OWN
+        who = WHO.search(texts.get(match["before"], ""))
+        user = match["before"].removeprefix(common)
+        if who and match["before"].endswith(f"_{who['user']}"):
+            user = who["user"]
+        time = _time(match, export)
+        student = person(user, who["name"] if who else "", Username=user)
+        return Upload((student,), (match["file"],), f"{match['day']} {match['h']}{match['m']}{match['s']}", time)
+
+    return understand
+
+
+def _own(parts: Parts) -> re.Match[str] | None:
+    match = NAME.fullmatch(parts[-1])
+    return match if match and match["own"] else None
+
+
+def _assignment(before: list[str]) -> str:
+    """Return what every name begins with, up to an underscore: the assignment's name may have some itself."""
+    split = [name.split("_") for name in before]
+    if not split:
+        return ""
+    most = min(len(words) for words in split) - 1
+    if len({tuple(words) for words in split}) == 1:  # one student: the assignment's is all but the last word
+        return "".join(f"{word}_" for word in split[0][:-1])
+    same = 0
+    while same < most and len({words[same] for words in split}) == 1:
+        same += 1
+    return "".join(f"{word}_" for word in split[0][:same])
+
+
+def _time(match: re.Match[str], export: Export) -> Time:
+    return read_time(f"{match['day']} {match['h']}:{match['m']}:{match['s']}", SOURCE, export.zone)
+
+
+def of_row(row: Mapping[str, str]) -> Student | None:
+    """Return the student in a row of Blackboard's grade center."""
+    if not {"Username", "Last Name", "First Name"} <= row.keys() or "OrgDefinedId" in row:
+        return None
+    name = f"{row['First Name']} {row['Last Name']}".strip()
+    return Student(person(row["Username"]).id, person("", name).name, row.get("Email", ""), dict(row))
+
+
+FORMAT = Format("blackboard", "a download from Blackboard", read, of_row=of_row)

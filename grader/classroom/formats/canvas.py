@@ -1,0 +1,109 @@
+"""Canvas: NAME[_LATE]_USER_UPLOAD_FILE in one folder, and its gradebook.
+
+Source of the names: canvas-lms, lib/content_zipper.rb: the name in small letters without spaces, or the group's;
+`LATE`; the user's number, or `anon_` and a key in anonymous marking; the upload's number. A file of a name that the
+user has used before gets `-1`, `-2`, as in Attachment.make_unique_filename. The zip's entries have the date of the
+download.
+Source of the table: canvas-lms, lib/gradebook_exporter.rb and gradebook_importer.rb.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Callable, Mapping, Sequence
+from datetime import datetime
+
+from grader.classroom.formats.format import Export, Format, Parts, Table, Understood, Upload, last_first, person
+from grader.classroom.tables import Cell, csv_text
+from grader.classroom.times import Time
+from grader.exercise.exercise import Exercise
+from grader.grading.grade import Entry, Student
+
+NAME = re.compile(
+    r"(?:(?P<anonymous_late>LATE_)?(?P<anonymous>anon_[A-Za-z0-9]+)|(?P<name>.*?)(?P<late>_LATE)?_(?P<user>\d+))_"
+    r"(?:(?P<upload>\d+)_(?P<file>.+)|(?P<page>text|link)\.html)",
+    re.DOTALL,
+)
+AGAIN = re.compile(r"(?P<stem>.+)-(?P<number>\d{1,3})(?P<suffix>(?:\.[^.]+)*)")
+
+
+def read(export: Export) -> Callable[[Parts], Understood]:
+    """Understand names as Canvas gives them."""
+    first: dict[str, set[str]] = defaultdict(set)
+    for parts in export.files:
+        if match := NAME.fullmatch(parts[-1]):
+            first[_user(match)].add(match["file"] or "")
+
+    def understand(parts: Parts) -> Understood:
+        match = NAME.fullmatch(parts[-1])
+        if not match or len(parts) > 1:
+            return None
+        if match["page"]:
+            return "a text or a link entered in Canvas, not a file"
+        name, user = match["name"] or "", _user(match)
+        student = person("_".join(filter(None, (name, user))), name, ID=user)
+        attempt, file = _attempt(match["file"], first[user])
+        time = Time(source="Canvas", late=bool(match["late"] or match["anonymous_late"]))
+        return Upload((student,), (file,), attempt, time)
+
+    return understand
+
+
+def _user(match: re.Match[str]) -> str:
+    return str(match["user"] or match["anonymous"])
+
+
+def _attempt(file: str, others: set[str]) -> tuple[str, str]:
+    """Return which attempt a file is, and its name; `-1` counts only if the file without it, or another, is there."""
+    again = AGAIN.fullmatch(file)
+    stem = f"{again['stem']}{again['suffix']}" if again else file
+    same = [other for other in others if other == stem or _without_number(other) == stem]
+    if len(same) < 2:
+        return "", file
+    return (f"{int(again['number']):03}" if again else "000"), stem
+
+
+def _without_number(file: str) -> str:
+    again = AGAIN.fullmatch(file)
+    return f"{again['stem']}{again['suffix']}" if again else file
+
+
+def of_row(row: Mapping[str, str]) -> Student | None:
+    """Return the student in a row of Canvas's gradebook: "Müller, Jörg" with ID 12 is müllerjörg_12 in names."""
+    if not {"Student", "ID"} <= row.keys() or not row["ID"].isdigit():
+        return None
+    name = re.sub(r"[^\w]", "", row["Student"].lower())
+    return Student(person(f"{name}_{row['ID']}").id, row["Student"], "", dict(row))
+
+
+def table(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = None) -> str:
+    """Return what Canvas exports and imports.
+
+    The name Canvas has for a student comes from `Student.lms`; Canvas finds students by ID, otherwise by SIS User ID,
+    SIS Login ID, name. The assignment's column is the one of `lms` with a name as Canvas gives to assignments,
+    "Name (1234)", or otherwise the exercise's title, from which Canvas creates a new assignment. Without a score the
+    cell stays empty, and Canvas leaves the grade as it is.
+    """
+    known = [name for entry in entries for name in entry.student.lms]
+    assignment = next((name for name in known if re.fullmatch(r".+ \(\d+\)", name)), exercise.title)
+    identity = ["ID", *(["SIS User ID"] if "SIS User ID" in known else []), "SIS Login ID", "Section"]
+    points = entries[0].grade.points if entries else exercise.points
+    rows: list[list[Cell]] = [["    Points Possible", *[None] * len(identity), points]]
+    for entry in entries:
+        lms = entry.student.lms
+        login = lms.get("SIS Login ID", "" if "ID" in lms else entry.student.id)
+        cells = {**lms, "SIS Login ID": login}
+        name = lms.get("Student") or last_first(entry.student)
+        rows.append([name, *(cells.get(column, "") for column in identity), entry.final])
+    return csv_text(["Student", *identity, assignment], rows)
+
+
+FORMAT = Format(
+    "canvas",
+    "a download from Canvas",
+    read,
+    of_row=of_row,
+    dates="Canvas writes no dates, only LATE.",
+    table=Table("canvas.csv", table),
+)

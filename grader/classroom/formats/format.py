@@ -1,0 +1,107 @@
+"""What a format is: how it reads the names in a class's export, and the table of grades that its platform imports."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime, tzinfo
+
+from grader.classroom.handed_in import File
+from grader.classroom.names import normal
+from grader.classroom.times import UNKNOWN, Time
+from grader.exercise.exercise import Exercise
+from grader.grading.grade import Entry, Student
+
+#: A file's place in the export: its folders, and its own name.
+Parts = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Upload:
+    """What a file's place says: whose it is, which attempt, its place in what the student handed in, and when.
+
+    A student's `id` is a text that no other student of the export has. `attempt` is empty if there is only one;
+    attempts are in the order of these texts.
+    """
+
+    students: tuple[Student, ...]
+    inside: Parts
+    attempt: str = ""
+    time: Time = UNKNOWN
+
+
+#: An upload; the reason why a file is not one, if the instructor is to know it; None if a file does not fit.
+Understood = Upload | str | None
+
+#: The platform wrote this itself.
+OWN = ""
+
+
+@dataclass(frozen=True)
+class Export:
+    """The files of a class, by their places. `root` is the name of the folder or zip that they are in.
+
+    `zone` is the time zone of times that have none, None for this machine's.
+    """
+
+    files: Mapping[Parts, File]
+    root: str
+    exercise: Exercise
+    zone: tzinfo | None
+
+    def text(self, *parts: str) -> str:
+        """Return the text of a file; empty if there is none."""
+        file = self.files.get(parts)
+        if not file or file.path.is_symlink() or not file.path.is_file():
+            return ""
+        content = file.path.read_bytes()
+        utf16 = content.startswith((b"\xff\xfe", b"\xfe\xff"))
+        return content.decode("utf-16" if utf16 else "utf-8-sig", errors="replace")
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of grades: the file's name, and its content for some entries and the due date."""
+
+    file: str
+    content: Callable[[Exercise, Sequence[Entry], datetime | None], str]
+
+
+@dataclass(frozen=True)
+class Format:
+    """A platform, or another way to keep submissions.
+
+    `read` returns how to understand a place in an export, or None if the export is not of this format. `inside` are
+    folders of the export that hold the submissions, `beside` what may be next to them. `of_row` returns the student in
+    a row of the platform's own list of students, named as in its export, or None for another table. `dates` says where
+    the dates of submissions can come from if the export has none.
+    """
+
+    name: str
+    title: str
+    read: Callable[[Export], Callable[[Parts], Understood] | None]
+    inside: tuple[str, ...] = ()
+    beside: tuple[str, ...] = ()
+    of_row: Callable[[Mapping[str, str]], Student | None] | None = None
+    dates: str = ""
+    table: Table | None = None
+
+
+def person(unique: str, name: str = "", email: str = "", **lms: str) -> Student:
+    """Return a student as an export names them; names are in Unicode's form NFC."""
+    return Student(normal(unique), normal(name), email, lms)
+
+
+def last_and_first(student: Student) -> tuple[str, str]:
+    """Return last and first name: "Müller, Jörg" is split at the comma, "Jörg Müller" before the last word."""
+    name = student.name.strip()
+    if "," in name:
+        last, _, first = name.partition(",")
+    else:
+        first, _, last = name.rpartition(" ")
+    return last.strip(), first.strip()
+
+
+def last_first(student: Student) -> str:
+    """Return the name as Canvas sorts it: "Müller, Jörg"; the id of a student without a name."""
+    return ", ".join(filter(None, last_and_first(student))) or student.id

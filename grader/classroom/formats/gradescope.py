@@ -1,0 +1,68 @@
+"""Gradescope's "Export submissions": submission_NUMBER/, and who submitted them in submission_metadata.yml.
+
+Source: Gradescope's guide, "Exporting submissions"; its file has `:submitters:` with `:name:`, `:sid:` and `:email:`,
+and `:created_at:`, per folder.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from datetime import timezone
+from typing import Any
+
+import yaml
+
+from grader.classroom.formats.format import OWN, Export, Format, Parts, Understood, Upload, person
+from grader.classroom.times import read_time
+from grader.grading.grade import Student
+
+METADATA = "submission_metadata.yml"
+FOLDER = re.compile(r"submission_\d+")
+
+
+def read(export: Export) -> Callable[[Parts], Understood] | None:
+    """Understand the folders that the export's own list has."""
+    try:
+        listed = yaml.load(export.text(METADATA), Loader=yaml.BaseLoader)
+    except yaml.YAMLError:
+        return None
+    if not isinstance(listed, dict) or not any(FOLDER.fullmatch(str(name)) for name in listed):
+        return None
+    uploads = {name: _upload(one) for name, one in listed.items() if isinstance(one, dict)}
+
+    def understand(parts: Parts) -> Understood:
+        if parts == (METADATA,):
+            return OWN
+        upload = uploads.get(parts[0]) if len(parts) > 1 else None
+        return Upload(upload.students, parts[1:], upload.attempt, upload.time) if upload else None
+
+    return understand
+
+
+def _upload(one: dict[str, Any]) -> Upload | None:
+    students = tuple(_student(who) for who in one.get(":submitters") or [] if isinstance(who, dict))
+    created = str(one.get(":created_at", ""))
+    time = read_time(created, METADATA, timezone.utc)
+    return Upload(students, (), time.at.isoformat() if time.at else created, time) if students else None
+
+
+def _student(who: dict[str, Any]) -> Student:
+    name, sid, email = (str(who.get(f":{key}") or "") for key in ("name", "sid", "email"))
+    return _named(name, sid, email, {})
+
+
+def _named(name: str, sid: str, email: str, lms: Mapping[str, str]) -> Student:
+    unique = "_".join(filter(None, (name, sid or email)))
+    return Student(person(unique).id, person("", name).name, email, {**({"SID": sid} if sid else {}), **lms})
+
+
+def of_row(row: Mapping[str, str]) -> Student | None:
+    """Return the student in a row of Gradescope's roster or grades."""
+    if "SID" not in row or not {"First Name", "Last Name"} <= row.keys():
+        return None
+    name = f"{row['First Name']} {row['Last Name']}".strip()
+    return _named(name, row["SID"], row.get("Email", ""), dict(row))
+
+
+FORMAT = Format("gradescope", "an export from Gradescope", read, of_row=of_row)

@@ -1,0 +1,117 @@
+"""Moodle: NAME_NUMBER_assignsubmission_file/, and its grading worksheet.
+
+Source of the names: mod/assign/classes/downloader.php, earlier mod/assign/locallib.php: a folder per student, with an
+underscore at the end before Moodle 4, or one folder of files. A team's is called `Team_NUMBER`, earlier
+`Team-NAME_NUMBER` per member. files/classes/local/archive_writer/zip_writer.php writes no file's date. Source of the
+table: mod/assign/feedback/offline/importgradeslib.php.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from datetime import datetime
+from html import escape
+
+from grader.classroom.formats.format import Export, Format, Parts, Table, Understood, Upload, person
+from grader.classroom.tables import Cell, csv_text, number
+from grader.exercise.exercise import Exercise
+from grader.grading.grade import Entry, Student
+from grader.report.feedback import shown_checks
+
+NAME = re.compile(r"(?P<name>.+?)(?:_(?P<number>\d+))?_assignsubmission_(?P<kind>[a-z]+)(?:_(?P<file>.*))?", re.DOTALL)
+WORKSHEET = ("Identifier", "Full name")
+
+
+def read(export: Export) -> Callable[[Parts], Understood]:
+    """Understand names of folders, or of files, as Moodle gives them."""
+    names = {match["name"] for parts in export.files if (match := NAME.fullmatch(parts[0]))}
+    teams = {name.partition("-")[0] for name in names}
+    # Earlier versions put a team's name before each member's: then all names have one, and some have the same.
+    in_teams = all("-" in name for name in names) and 2 * len(teams) <= len(names)
+
+    def understand(parts: Parts) -> Understood:
+        match = NAME.fullmatch(parts[0])
+        if not match or (len(parts) == 1 and not match["file"]):
+            return None
+        if match["kind"] != "file":
+            return "a text written in Moodle, not a file"
+        team, _, rest = match["name"].partition("-")
+        name = rest if in_teams else match["name"]
+        student = _student(name, match["number"] or "", {"Group": team} if in_teams else {})
+        return Upload((student,), parts[1:] or (match["file"],))
+
+    return understand
+
+
+def _student(name: str, number: str, more: dict[str, str]) -> Student:
+    lms = {"Identifier": f"Participant {number}", "Full name": name} if number else {}
+    return Student(person("_".join(filter(None, (name, number)))).id, person("", name).name, "", {**lms, **more})
+
+
+def of_row(row: Mapping[str, str]) -> Student | None:
+    """Return the student in a row of the grading worksheet."""
+    if not set(WORKSHEET) <= row.keys() or not row["Identifier"]:
+        return None
+    student = _student(row["Full name"], row["Identifier"].rpartition(" ")[2], dict(row))
+    return Student(student.id, student.name, row.get("Email address", ""), student.lms)
+
+
+def table(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = None) -> str:
+    """Return Moodle's offline grading worksheet, ready to upload.
+
+    Moodle finds students by Identifier, "Participant 1234567", which is only in Moodle's own download or a table: it is
+    empty if neither had it, and Moodle then does not find the student. It leaves out a row whose grade is above the
+    maximum, so extra credit is cut off there, which the comment says; and a row without a grade, so a fault of ours
+    changes nothing. Columns of a worksheet that was read are returned as they were.
+    """
+    columns = ["Identifier", "Full name", "Email address", "Status", "Grade", "Maximum Grade"]
+    columns += ["Grade can be changed", "Last modified (submission)", "Last modified (grade)", "Feedback comments"]
+    rows: list[list[Cell]] = []
+    for entry in entries:
+        final, points = entry.final, entry.grade.points
+        cells: dict[str, Cell] = {
+            "Identifier": "",
+            "Full name": entry.student.name,
+            "Email address": entry.student.email,
+            "Status": "No submission" if entry.grade.outcome == "missing" else "Submitted for grading",
+            "Grade can be changed": "Yes",
+            "Last modified (submission)": "-",
+            "Last modified (grade)": "-",
+            **{name: value for name, value in entry.student.lms.items() if name in columns},
+            "Grade": None if final is None else min(final, points),
+            "Maximum Grade": points,
+            "Feedback comments": _comment(entry),
+        }
+        rows.append([cells[column] for column in columns])
+    return csv_text(columns, rows)
+
+
+def unknown_to_moodle(entries: Sequence[Entry]) -> int:
+    """Return how many students Moodle can't find, because their Moodle identifier is unknown."""
+    return sum(not entry.student.lms.get("Identifier") for entry in entries)
+
+
+def _comment(entry: Entry) -> str:
+    """Return what a student reads on a platform, as the HTML that Moodle expects in comments."""
+    grade, final = entry.grade, entry.final
+    if final is None:
+        return ""
+    lines = [f"{number(final)} of {number(grade.points)} points."]
+    lines += [f"{a.points:+g}: {a.reason}" for a in entry.adjustments]
+    if grade.message:
+        lines.append(grade.message[:500])
+    for check in shown_checks(grade):
+        if check.status == "failed" and (check.finding or check.hint):
+            lines.append(f"✗ {check.title}" + (f" Hint: {check.hint}" if check.hint else ""))
+    return "<br>".join(escape(line) for line in lines)
+
+
+FORMAT = Format(
+    "moodle",
+    "a download from Moodle",
+    read,
+    of_row=of_row,
+    dates="Moodle's download has no dates; its grading worksheet has them.",
+    table=Table("moodle.csv", table),
+)

@@ -1,0 +1,93 @@
+"""nbgrader: submitted/STUDENT/ASSIGNMENT/, with a timestamp.txt.
+
+Source of the layout: nbgrader's documentation, "The philosophy and the approach" and "Collecting submissions"; of the
+columns: nbgrader/plugins/export.py, CsvExportPlugin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from datetime import datetime, timezone
+
+from grader.classroom.formats.format import (
+    OWN,
+    Export,
+    Format,
+    Parts,
+    Table,
+    Understood,
+    Upload,
+    last_and_first,
+    person,
+)
+from grader.classroom.tables import Cell, csv_text
+from grader.classroom.times import UNKNOWN, Time, read_time
+from grader.exercise.exercise import Exercise
+from grader.grading.grade import Entry
+
+SUBMITTED = "submitted"
+TIMESTAMP = "timestamp.txt"
+
+
+def read(export: Export) -> Callable[[Parts], Understood] | None:
+    """Understand places if the folder is called so, or if it has folders with the exercise's name."""
+    assignments = {parts[1] for parts in export.files if len(parts) > 2}
+    if export.root != SUBMITTED and export.exercise.name not in assignments:
+        return None
+    # A course may use any name for the assignment, as long as there is only one.
+    wanted = next(iter(assignments)) if len(assignments) == 1 else export.exercise.name
+    times = {student: _time(export, student, wanted) for student in {parts[0] for parts in export.files}}
+
+    def understand(parts: Parts) -> Understood:
+        if len(parts) < 3:
+            return None
+        if parts[1] != wanted:
+            return f"another assignment, {parts[1]}"
+        if parts[2:] == (TIMESTAMP,):
+            return OWN
+        return Upload((person(parts[0]),), parts[2:], time=times[parts[0]])
+
+    return understand
+
+
+def _time(export: Export, student: str, assignment: str) -> Time:
+    if (student, assignment, TIMESTAMP) not in export.files:
+        return UNKNOWN
+    # nbgrader itself reads a time without a zone as UTC.
+    return read_time(export.text(student, assignment, TIMESTAMP), TIMESTAMP, timezone.utc, export.zone)
+
+
+def table(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = None) -> str:
+    """Return what `nbgrader export` writes: its columns, times in UTC.
+
+    `late_submission_penalty` is what was taken for lateness, `raw_score` the score before that.
+    """
+    header = ["assignment", "duedate", "timestamp", "student_id", "last_name", "first_name", "email", "raw_score"]
+    rows: list[list[Cell]] = []
+    for entry in entries:
+        last, first = last_and_first(entry.student)
+        penalty = -sum(a.points for a in entry.adjustments if a.kind == "late")
+        raw = None if entry.final is None else entry.final + penalty
+        rows.append(
+            [
+                *(exercise.name, _utc(due), _utc(entry.submitted), entry.student.id),
+                *(last, first, entry.student.email, raw, None if raw is None else penalty),
+                *(entry.final, entry.grade.points),
+            ]
+        )
+    return csv_text([*header, "late_submission_penalty", "score", "max_score"], rows)
+
+
+def _utc(moment: datetime | None) -> str:
+    return str(moment.astimezone(timezone.utc).replace(tzinfo=None)) if moment else ""
+
+
+FORMAT = Format(
+    "nbgrader",
+    "nbgrader's folder of submissions",
+    read,
+    inside=(SUBMITTED,),
+    beside=("source", "release", "autograded", "feedback", "nbgrader_config.py", "gradebook.db"),
+    dates=f"Each STUDENT/ASSIGNMENT folder may have a {TIMESTAMP}.",
+    table=Table("nbgrader.csv", table),
+)

@@ -1,0 +1,32 @@
+"""One file, or one folder, per student: `anna.py`, `carl/joint_velocity.py`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from grader.classroom.formats.format import Export, Format, Parts, Understood, Upload, person
+from grader.classroom.names import normal, student_id
+from grader.classroom.times import UNKNOWN
+
+SUFFIX = re.compile(r"(\.py\.txt|\.ipynb\.(json|txt)|\.tar\.\w+|\.[^.]+)$", re.IGNORECASE)
+
+#: Instructors' own tables and notes, next to the submissions.
+NOT_WORK = (".csv", ".tsv", ".xls", ".xlsx", ".ods", ".md", ".yml", ".yaml", ".toml", ".html")
+
+
+def read(export: Export) -> Callable[[Parts], Understood]:
+    """Understand every name as a student's."""
+
+    def understand(parts: Parts) -> Understood:
+        if len(parts) == 1 and parts[0].lower().endswith(NOT_WORK):
+            return "a table, a note or a page, not a submission"
+        name = normal(parts[0] if len(parts) > 1 else SUFFIX.sub("", parts[0]) or parts[0])
+        file = export.files.get(parts)
+        student = person(name, name if name != student_id(name) else "")
+        return Upload((student,), parts[1:] or parts, time=file.time if file else UNKNOWN)
+
+    return understand
+
+
+FORMAT = Format("folder", "a folder with one file (or one folder) per student", read)

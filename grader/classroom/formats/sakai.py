@@ -1,0 +1,65 @@
+"""Sakai: a folder `Last, First(login)` per student, with timestamp.txt and the attachments in a folder.
+
+Source: sakai, AssignmentServiceImpl.java, zipSubmissions and zipGroupSubmissions. A group's folder has members.txt,
+"Last, First(login); Last, First(login)". Names of folders depend on the language, those of Sakai's own files do not.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from datetime import timezone
+
+from grader.classroom.formats.format import OWN, Export, Format, Parts, Understood, Upload, person
+from grader.classroom.times import UNKNOWN, read_time
+from grader.grading.grade import Student
+
+FOLDER = re.compile(r"(?P<name>[^()]*,[^()]*)\((?P<login>[^()]+)\)")
+MEMBER = re.compile(r"\s*(?P<name>[^()]*,[^()]*)\((?P<login>[^()]+)\)\s*")
+TIMESTAMP, MEMBERS = "timestamp.txt", "members.txt"
+SAKAIS = {"comments.txt", "feedbackText.html", TIMESTAMP, MEMBERS}
+OF_ALL = re.compile(r"grades\.(csv|xls|xlsx)|.*\.html")
+
+
+def read(export: Export) -> Callable[[Parts], Understood] | None:
+    """Understand folders that are called as Sakai calls them, or have a list of members."""
+    folders = {parts[0] for parts in export.files if len(parts) > 1}
+    if not any(FOLDER.fullmatch(folder) or export.text(folder, MEMBERS) for folder in folders):
+        return None
+    students = {folder: _students(export, folder) for folder in folders}
+    times = {
+        folder: read_time(export.text(folder, TIMESTAMP), TIMESTAMP, timezone.utc)
+        if (folder, TIMESTAMP) in export.files
+        else UNKNOWN
+        for folder in folders
+    }
+
+    def understand(parts: Parts) -> Understood:
+        if len(parts) == 1:
+            return OWN if OF_ALL.fullmatch(parts[0]) else None
+        if not students[parts[0]]:
+            return None
+        if len(parts) == 2 and (parts[1] in SAKAIS or parts[1].endswith("_submissionText.html")):
+            return OWN
+        return Upload(students[parts[0]], parts[2:] or parts[1:], time=times[parts[0]])
+
+    return understand
+
+
+def _students(export: Export, folder: str) -> tuple[Student, ...]:
+    members = export.text(folder, MEMBERS).split(";")
+    listed = [match for member in members if (match := MEMBER.fullmatch(member))]
+    if not listed and (match := FOLDER.fullmatch(folder)):
+        listed = [match]
+    return tuple(person(match["login"], match["name"].strip(" ,"), EID=match["login"]) for match in listed)
+
+
+def of_row(row: Mapping[str, str]) -> Student | None:
+    """Return the student in a row of Sakai's grades.csv."""
+    if not {"Display ID", "ID", "Last Name", "First Name"} <= row.keys():
+        return None
+    name = f"{row['Last Name']}, {row['First Name']}"
+    return Student(person(row["ID"] or row["Display ID"]).id, person("", name).name, "", dict(row))
+
+
+FORMAT = Format("sakai", "a download from Sakai", read, of_row=of_row, dates=f"Each folder may have a {TIMESTAMP}.")

@@ -1,0 +1,57 @@
+"""Names of students: the same name is written in several ways, and becomes the name of a folder."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import unicodedata
+from collections import defaultdict
+from collections.abc import Iterable
+
+#: Zero-width (non-)joiners, which Indic and Persian names need between letters (Unicode 15, chapter 23.2).
+JOINERS = "\u200c\u200d"
+
+LONGEST = 120
+
+
+def normal(text: str) -> str:
+    """Return a text in Unicode's form NFC: macOS writes é as two characters, other systems as one."""
+    return unicodedata.normalize("NFC", text)
+
+
+def student_id(text: str) -> str:
+    """Return `text` as a name that a folder can have on any system: letters with their marks, digits and `.@+-_`."""
+    kept = "".join(char if _is_kept(char) else " " for char in normal(text))
+    return _cut(re.sub(r"\s+", "_", kept).strip("._" + JOINERS), LONGEST) or "nameless"
+
+
+def _is_kept(char: str) -> bool:
+    # Vowel signs and accents are marks (M): without them, other names remain.
+    return char.isalnum() or char in ".@+-_" + JOINERS or unicodedata.category(char).startswith("M")
+
+
+def _cut(text: str, most: int) -> str:
+    while len(text.encode("utf-8", errors="replace")) > most:
+        text = text[:-1]
+    return text
+
+
+def unique_ids(names: Iterable[str]) -> dict[str, str]:
+    """Return an id for each name; no two share one, also where small and capital letters are the same."""
+    by_id: dict[str, list[str]] = defaultdict(list)
+    for name in dict.fromkeys(map(normal, names)):
+        by_id[student_id(name).casefold()].append(name)
+    ids = {}
+    for same in by_id.values():
+        for name in same:
+            ids[name] = student_id(name) if len(same) == 1 else f"{_cut(student_id(name), LONGEST - 7)}-{_digest(name)}"
+    return ids
+
+
+def _digest(name: str) -> str:
+    return hashlib.sha256(name.encode("utf-8", errors="surrogateescape")).hexdigest()[:6]
+
+
+def comparable(name: str) -> str:
+    """Return a name with only its letters and digits, small, to compare names that platforms have shortened."""
+    return "".join(char for char in normal(name).casefold() if _is_kept(char) and char not in ".@+-_")

@@ -1,0 +1,144 @@
+"""Which format a class's export has: one is taken only if nearly everything in it fits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from datetime import tzinfo
+
+from grader.classroom.formats.format import Export, Format, Parts, Upload
+from grader.classroom.formats.registry import FORMATS, PLAIN, PLATFORMS
+from grader.classroom.handed_in import File, SubmissionsError
+from grader.exercise.exercise import Exercise
+
+#: What submissions can be, with any capitals; what else students save is read as well, and named.
+GRADABLE = (".py", ".ipynb", ".zip", ".py.txt", ".ipynb.json", ".ipynb.txt")
+
+#: A folder with one of these is one student's package, not a class.
+PACKAGE = {"package.xml", "setup.py", "setup.cfg", "CMakeLists.txt"}
+
+
+def can_be_graded(name: str) -> bool:
+    """Return whether submissions are called like this."""
+    return name.lower().endswith(GRADABLE)
+
+
+@dataclass(frozen=True)
+class Recognised:
+    """A class's files as one format understands them, below the folder `inside`.
+
+    `misfits` are files that it does not understand, each with the file or folder of the class that it is in; `others`
+    are next to `inside`, and the platform's own.
+    """
+
+    form: Format
+    inside: Parts
+    understood: tuple[tuple[File, Upload | str], ...]
+    misfits: tuple[tuple[str, File], ...]
+    others: tuple[File, ...]
+
+    @property
+    def fits(self) -> set[tuple[str, ...]]:
+        """Whose submissions are understood."""
+        return {tuple(s.id for s in place.students) for _, place in self.understood if isinstance(place, Upload)}
+
+    @property
+    def odd(self) -> set[str]:
+        """The files and folders of the class with something to grade that do not fit."""
+        return {top for top, file in self.misfits if can_be_graded(file.name)}
+
+    @property
+    def nearly_all(self) -> bool:
+        """Whether this is the format: one in ten may be odd, and in a small class one."""
+        return len(self.fits) > len(self.odd) <= max(1, len(self.fits) // 10)
+
+
+@dataclass(frozen=True)
+class Recogniser:
+    """The files of a class, by their places, in a folder or zip called `root`; for `zone` see `Export`."""
+
+    files: Mapping[Parts, File]
+    root: str
+    exercise: Exercise
+    zone: tzinfo | None
+
+    def recognise(self, name: str = "") -> Recognised:
+        """Return the files as the format `name` understands them, or the one that fits nearly all of them.
+
+        Raises `SubmissionsError` if a format fits many of them but not nearly all, or if none fits `name`.
+        """
+        if name == PLAIN.name:
+            return self._plain()
+        tried = [one for form in PLATFORMS if name in ("", form.name) for one in self._tried(form)]
+        tried.sort(key=lambda one: (len(one.odd), -len(one.fits)))
+        if name and not any(one.fits for one in tried):
+            raise SubmissionsError(f"--format {name}: no name here is one of {FORMATS[name].title}.")
+        if name:
+            return max(tried, key=lambda one: len(one.fits))
+        for one in tried:
+            if one.nearly_all:
+                return one
+            if len(one.fits) > 1 and len(one.fits) >= len(one.odd):
+                raise SubmissionsError(_unclear(one))
+        return self._plain()
+
+    def _tried(self, form: Format) -> Iterator[Recognised]:
+        for inside in self._levels(form):
+            understood = self._read(form, inside)
+            if understood:
+                yield understood
+
+    def _plain(self) -> Recognised:
+        understood = self._read(PLAIN, self._class_folder())
+        assert understood
+        return understood
+
+    def _read(self, form: Format, inside: Parts) -> Recognised | None:
+        skip = len(inside)
+        below = {parts[skip:]: file for parts, file in self.files.items() if parts[:skip] == inside}
+        root = inside[-1] if inside else self.root
+        understand = form.read(Export(below, root, self.exercise, self.zone))
+        if not understand:
+            return None
+        places = [(parts, file, understand(parts)) for parts, file in below.items()]
+        misfits = [(parts[0], file) for parts, file, place in places if place is None]
+        outside = [(parts, file) for parts, file in self.files.items() if parts[:skip] != inside]
+        misfits += [(parts[skip - 1], file) for parts, file in outside if parts[skip - 1] not in form.beside]
+        others = tuple(file for parts, file in outside if parts[skip - 1] in form.beside)
+        understood = tuple((file, place) for _, file, place in places if place is not None)
+        return Recognised(form, inside, understood, tuple(misfits), others)
+
+    def _levels(self, form: Format) -> Iterator[Parts]:
+        """Yield the folders that may be the class's: a lone folder around everything, and those that `form` names."""
+        for inside in self._lone_folders():
+            yield inside
+            for name in sorted(self._entries(inside) & set(form.inside)):
+                yield (*inside, name)
+
+    def _lone_folders(self) -> Iterator[Parts]:
+        inside: Parts = ()
+        while True:
+            yield inside
+            entries = self._entries(inside)
+            if len(entries) != 1 or (*inside, *entries) in self.files:
+                return
+            inside = (*inside, *entries)
+
+    def _entries(self, inside: Parts) -> set[str]:
+        return {parts[len(inside)] for parts in self.files if parts[: len(inside)] == inside}
+
+    def _class_folder(self) -> Parts:
+        """Return the lone folder around a class of files or folders; one around a single student's work is theirs."""
+        deepest = list(self._lone_folders())[-1]
+        skip = len(deepest)
+        with_work = {parts[skip] for parts in self.files if len(parts) > skip and can_be_graded(parts[-1])}
+        is_package = any(parts[-1] in PACKAGE for parts in self.files)
+        return deepest if len(with_work) > 1 and not is_package else ()
+
+
+def _unclear(one: Recognised) -> str:
+    others = "".join(f"\n  {name}" for name in sorted(one.odd))
+    return (
+        f"{len(one.fits)} submissions have names as in {one.form.title}, and {len(one.odd)} do not:{others}\n"
+        f"Say how to read them: --format {one.form.name}, or --format {PLAIN.name} for {PLAIN.title}."
+    )

@@ -1,0 +1,155 @@
+"""Everybody in the class: a table of the instructor's, or the list that a platform exports."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime, tzinfo
+from pathlib import Path
+
+from grader.classroom.formats.registry import PLATFORMS
+from grader.classroom.handed_in import SubmissionsError
+from grader.classroom.names import comparable, normal, student_id
+from grader.classroom.tables import table_rows
+from grader.classroom.times import UNKNOWN, Time, localized, read_time
+from grader.grading.grade import Student
+
+#: Columns in which a platform writes who a student is.
+IDENTITY = {
+    *("ID", "Identifier", "Username", "EID", "Display ID", "SID", "Login", "UserID", "OrgDefinedId", "Email address"),
+    *("SIS User ID", "SIS Login ID", "Email", "student", "login", "username"),
+}
+
+#: When it was handed in, in our own table and in Moodle's grading worksheet.
+SUBMITTED = ("submitted", "Last modified (submission)")
+
+#: How Moodle writes a time in English (langconfig.php, strftimedatetime).
+MOODLE_TIMES = ("%A, %d %B %Y, %I:%M %p", "%A, %d %B %Y, %H:%M", "%d %B %Y, %I:%M %p", "%d/%m/%y, %H:%M")
+
+
+@dataclass(frozen=True)
+class RosterRow:
+    """A student of the class, and when the table says that they handed in."""
+
+    student: Student
+    time: Time = UNKNOWN
+
+
+def read_roster(table: Path, zone: tzinfo | None) -> tuple[RosterRow, ...]:
+    """Return the students in a table with the column student, and perhaps name, email, submitted and others, or in a
+    list that a platform has exported; times without a zone are in `zone`.
+
+    Raises `SubmissionsError` for a table that has none of these columns, and for a row with a mistake.
+    """
+    rows = []
+    for number, row in table_rows(table, ()):
+        student = _student(row)
+        if student is None:
+            raise SubmissionsError(
+                f"{table}:{number}: nothing says who this is. Write a column student, or give the list of students, "
+                "grades or submissions that your platform exports."
+            )
+        if student.id and student.id != "Points Possible":
+            rows.append(RosterRow(student, _time(row, f"{table}:{number}", zone)))
+    return tuple(rows)
+
+
+def _student(row: Mapping[str, str]) -> Student | None:
+    if "student" in row:
+        return generic_student(row) if row["student"] else None
+    if row.get("Student", "").strip() in ("Points Possible", "Student, Test"):  # Canvas's own rows
+        return Student("")
+    return next((student for form in PLATFORMS if form.of_row and (student := form.of_row(row))), None)
+
+
+def generic_student(row: Mapping[str, str]) -> Student:
+    """Return the student in a row of our own tables."""
+    lms = {name: value for name, value in row.items() if name not in ("student", "name", "email", "group", "submitted")}
+    return Student(normal(row["student"]), normal(row.get("name", "")), row.get("email", ""), lms)
+
+
+def _time(row: Mapping[str, str], place: str, zone: tzinfo | None) -> Time:
+    column = next((name for name in SUBMITTED if row.get(name, "").strip() not in ("", "-")), "")
+    if not column:
+        return UNKNOWN
+    source = "the roster" if column == "submitted" else "Moodle's worksheet"
+    for written in MOODLE_TIMES:
+        try:
+            text = re.sub(r"\s+", " ", row[column])
+            return Time(localized(datetime.strptime(text, written), zone), source)
+        except ValueError:
+            continue
+    time = read_time(row[column], source, zone, zone)
+    if time.fault:
+        raise SubmissionsError(f"{place}: {column} = {row[column]!r}. Write it as 2026-11-22 23:59.")
+    return time
+
+
+def same_person(one: Student, other: Student) -> bool:
+    """Return whether an id, an address or a number is the same; names alone do not tell."""
+    return bool(_keys(one) & _keys(other) or _ids(one) & _ids(other))
+
+
+def probably_same(one: Student, other: Student) -> bool:
+    """Return whether it is the same person, or has the same name: enough among the members of a group."""
+    return same_person(one, other) or bool(_names(one) & _names(other))
+
+
+def _keys(student: Student) -> set[str]:
+    known = [student.id, student.email, *(value for name, value in student.lms.items() if name in IDENTITY)]
+    return {normal(key).strip().casefold() for key in known} - {""}
+
+
+def _ids(student: Student) -> set[str]:
+    """Return the id as the export writes it, and as the results' folder is called."""
+    return {normal(student.id).casefold(), student_id(student.id).casefold()}
+
+
+def _names(student: Student) -> set[str]:
+    """Return the name as platforms write it: in any order of its words, and without what is between them."""
+    words = re.split(r"[\s,_]+", normal(student.name or student.id).casefold())
+    return {" ".join(sorted(filter(None, words))), comparable(student.name or student.id)} - {""}
+
+
+def match(rows: Sequence[RosterRow], students: Sequence[Student]) -> dict[str, RosterRow]:
+    """Return the row of each student who has one, by the student's id.
+
+    A student without a number or address in common is found by the name, if nobody else has it. Raises
+    `SubmissionsError` if two have it.
+    """
+    found: dict[str, RosterRow] = {}
+    for keys in (_keys, _ids):
+        used = list(found.values())
+        rows_by_key = {key: row for row in rows if row not in used for key in keys(row.student)}
+        for student in students:
+            row = next((rows_by_key[key] for key in sorted(keys(student)) if key in rows_by_key), None)
+            if row and student.id not in found:
+                found[student.id] = row
+    free = [row for row in rows if row not in found.values()]
+    for student in students:
+        if student.id in found:
+            continue
+        same = [row for row in free if _names(row.student) & _names(student)]
+        others = [other for other in students if other.id not in found and _names(other) & _names(student)]
+        if len(same) == 1 and len(others) == 1:
+            found[student.id] = same[0]
+        elif same:
+            raise SubmissionsError(
+                f"{student.name or student.id}: several students have this name, and the roster does not say who of "
+                "them handed this in. Give it a column that the export has, too, such as student, ID or email."
+            )
+    return found
+
+
+def with_row(student: Student, row: RosterRow | None) -> Student:
+    """Return the student with what the roster says; the id stays."""
+    if not row:
+        return student
+    listed = row.student
+    return replace(
+        student,
+        name=listed.name or student.name,
+        email=listed.email or student.email,
+        lms={**listed.lms, **student.lms},
+    )

@@ -1,0 +1,71 @@
+"""Tables as CSV: those that instructors and platforms write, and those that are written for them."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from grader.classroom.handed_in import SubmissionsError
+from grader.report.printable import printable
+
+Cell = str | float | None
+
+#: Excel reads a CSV file as UTF-8 only if it begins with this. Only in the file for people.
+BYTE_ORDER_MARK = "\ufeff"
+
+#: A spreadsheet takes a text that begins like this for a formula (OWASP, "CSV Injection").
+FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "＝", "＋", "－", "＠")
+
+LONGEST_CELL = 20_000
+
+
+def table_rows(table: Path, needed: Sequence[str]) -> list[tuple[int, dict[str, str]]]:
+    """Return the rows, each with its line number; values without the spaces around them. Empty rows are left out.
+
+    Commas, semicolons or tabs separate columns. Raises `SubmissionsError` if the file can't be read or lacks a column.
+    """
+    try:
+        text = table.read_bytes().decode("utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        raise SubmissionsError(f"{table}: it can't be read: {error}. Save it as CSV in UTF-8.") from None
+    first = text.partition("\n")[0]
+    reader = csv.DictReader(io.StringIO(text), delimiter=max(",;\t", key=first.count), restval="")
+    columns = [column.strip() for column in reader.fieldnames or []]
+    for column in needed:
+        if column not in columns:
+            there = ", ".join(columns) or "none"
+            raise SubmissionsError(f"{table}:1: there is no column {column!r} (there are: {there}).")
+    reader.fieldnames = columns
+    try:
+        rows = [(reader.line_num, {column: (row[column] or "").strip() for column in columns}) for row in reader]
+    except csv.Error as error:
+        raise SubmissionsError(f"{table}:{reader.line_num}: {error}") from None
+    return [(number, row) for number, row in rows if any(row.values())]
+
+
+def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
+    """Return header and rows as CSV (RFC 4180): quoted if needed, numbers as `number` writes them, None as nothing.
+
+    A text that a spreadsheet would take for a formula gets an apostrophe in front of it. Control characters are
+    replaced.
+    """
+    out = io.StringIO()
+    writer = csv.writer(out)
+    writer.writerow([_text(name) for name in header])
+    writer.writerows(
+        [[number(cell) if isinstance(cell, (int, float)) else _text(cell) for cell in row] for row in rows]
+    )
+    return out.getvalue()
+
+
+def number(value: float) -> str:
+    """Return points with at most two decimals, as learning platforms store them: 81, 80.5, 33.33."""
+    return f"{value:.2f}".rstrip("0").rstrip(".")
+
+
+def _text(cell: str | None) -> str:
+    text = printable(cell or "", LONGEST_CELL)
+    formula = text.lstrip(" ").startswith(FORMULA) and text.strip() != "-"
+    return f"'{text}" if formula else text

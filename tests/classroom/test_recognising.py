@@ -1,0 +1,96 @@
+"""A format is taken only if nearly everything fits; a single name decides nothing."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from classes import archive, collected, files, folder
+
+from grader.classroom.handed_in import SubmissionsError
+
+LURES = [
+    "x_7_assignsubmission_file_node.py",
+    "miller_12_34_node.py",
+    "Lab_x_attempt_2026-11-20-22-01-00_node.py",
+    "joint_velocity/node.py",
+    "joint_velocity/timestamp.txt",
+    "submitted/a/joint_velocity/node.py",
+    "submission_metadata.yml",
+    "12-34 - Eve Evil - Nov 20, 2020 1001 PM/node.py",
+    "Lee, Ann(ann1)/node.py",
+    "Lee_Ann_ann1_312/node.py",
+]
+
+
+@pytest.mark.parametrize("inside", ["", "eve/"])
+@pytest.mark.parametrize("lure", LURES)
+def test_one_students_names_decide_nothing_for_others(tmp_path: Path, lure: str, inside: str) -> None:
+    others = ["anna.py", "bert/node.py", "carl/joint_velocity/joint_velocity.py", "dora.ipynb"]
+    source = folder(tmp_path / "class", [*others, f"{inside}{lure}"])
+    found = files(collected(source))
+    assert {who: found.get(who) for who in ("anna", "bert", "carl", "dora")} == {
+        "anna": "anna.py",
+        "bert": "bert/node.py",
+        "carl": "carl/joint_velocity/joint_velocity.py",
+        "dora": "dora.ipynb",
+    }
+
+
+def test_names_inside_a_students_own_folder_date_nothing(tmp_path: Path) -> None:
+    made = {f"s{n}/node.py": "" for n in range(3)} | {"eve/node.py": "", "eve/timestamp.txt": "2020-01-01 00:00 UTC"}
+    eve = next(one for one in collected(folder(tmp_path / "class", made)).handed_in if one.student.id == "eve")
+    assert eve.file.submitted_from == "the file's date"
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ["Week 3/anna.py", "Week 3/bert.py", "__MACOSX/Week 3/._anna.py", "Week 3/.DS_Store"],
+        ["export/Week 3/anna/node.py", "export/Week 3/bert/node.py"],
+    ],
+)
+def test_a_lone_folder_is_gone_through(tmp_path: Path, names: list[str]) -> None:
+    found = collected(archive(tmp_path / "class.zip", names))
+    assert list(files(found)) == ["anna", "bert"]
+    assert found.kind.endswith("Week 3/")
+
+
+def test_a_class_of_one_is_a_student_and_not_a_folder_around_a_class(tmp_path: Path) -> None:
+    assert list(files(collected(folder(tmp_path / "a", ["anna/node.py", "anna/report.pdf"])))) == ["anna"]
+    package = ["anna/ws/pkg/setup.py", "anna/ws/pkg/pkg/node.py", "anna/ws/pkg/package.xml"]
+    assert list(files(collected(folder(tmp_path / "b", package)))) == ["anna"]
+
+
+def test_what_is_half_a_platforms_is_asked_and_every_name_listed(tmp_path: Path) -> None:
+    ours = [f"miller{n}_{n}_{n}_node.py" for n in range(6)]
+    others = [f"student{n}.py" for n in range(5)]
+    source = folder(tmp_path / "class", [*ours, *others])
+    with pytest.raises(SubmissionsError, match="6 submissions have names as in a download from Canvas") as error:
+        collected(source)
+    assert all(name in str(error.value) for name in others)
+    assert "--format canvas, or --format folder" in str(error.value)
+    assert len(collected(source, format="folder").handed_in) == 11
+    forced = collected(source, format="canvas")
+    assert len(forced.handed_in) == 6
+    assert [one.file for one in forced.left_out] == others
+
+
+def test_a_format_that_nothing_fits_is_refused(tmp_path: Path) -> None:
+    source = folder(tmp_path / "class", ["anna.py", "bert.py"])
+    with pytest.raises(
+        SubmissionsError, match=re.escape("--format sakai: no name here is one of a download from Sakai")
+    ):
+        collected(source, format="sakai")
+
+
+def test_a_package_is_one_submission_with_the_names_that_the_student_gave(tmp_path: Path) -> None:
+    names = ["anna/ws/pkg/package.xml", "anna/ws/pkg/pkg/node.py", "anna/ws/pkg/setup.py", "bert.py"]
+    anna, _ = collected(archive(tmp_path / "class.zip", names)).handed_in
+    assert anna.file.name == "anna"
+    assert sorted(file.relative_to(anna.file.path).as_posix() for file in anna.file.path.rglob("*.*")) == [
+        "ws/pkg/package.xml",
+        "ws/pkg/pkg/node.py",
+        "ws/pkg/setup.py",
+    ]
