@@ -50,6 +50,9 @@ INSTRUCTORS = {
     "audit": Verb(
         "grader.audit.command:audit", "Show whether an exercise's checks catch what is wrong.", needs="rclpy"
     ),
+    "replay": Verb(
+        "grader.classroom.replay:replay", "Show what a student's program did, as plots and bags.", needs="rclpy"
+    ),
     "gradebook": Verb("spinbook.gradebook:gradebook", "Write one page and one table for all exercises."),
     "gradescope": Verb(
         "grader.gradescope.command:gradescope", "Write an autograder to upload to Gradescope.", needs="rclpy"
