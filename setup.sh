@@ -168,8 +168,8 @@ try_ros() {
     esac
 }
 
-# The grader's own middleware is C++. It is compiled here, and again when its sources have changed. Without it the grader
-# uses Fast DDS, so a failure ends nothing.
+# The grader's own middleware is C++. It is compiled here, and again when its sources have changed. Chapters run without
+# it, so a failure ends nothing.
 compile_middleware() {
     middleware=packages/rmw_lockstep/rmw_lockstep
     sources=$(cat $middleware/*.py $middleware/lockstep/* $middleware/src/* 2>/dev/null | cksum)
@@ -178,8 +178,7 @@ compile_middleware() {
     if said=$("$VENV/bin/python" -m rmw_lockstep.build 2>&1); then
         printf '%s\n' "$sources" >"$VENV/.middleware"
     else
-        say "$said" "Until then the grader uses Fast DDS: it has to infer when a node is done, so a node with threads or sleeps of its
-own may get another result each time."
+        say "$said" "Until then nothing can be graded or checked. All else works."
     fi
 }
 

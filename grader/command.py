@@ -11,8 +11,8 @@ import click
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import NoExercise, find, load
 from grader.sandbox.isolation import Isolation
-from grader.sandbox.middleware import choose_middleware, to_be_compiled
-from grader.sandbox.program import Middleware, SandboxUnavailable
+from grader.sandbox.middleware import to_be_compiled
+from grader.sandbox.program import SandboxUnavailable
 from grader.submission.reading import NoSubmission, Submission, of_source, read
 from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
 
@@ -41,11 +41,6 @@ FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
     "--isolation",
     type=click.Choice([level.value for level in Isolation]),
     help="How to isolate the node from this machine.  [default: the strongest that works here]",
-)
-@click.option(
-    "--middleware",
-    type=click.Choice([middleware.value for middleware in Middleware]),
-    help="The middleware between the node and the grader.  [default: lockstep, the grader's own, if available]",
 )
 @click.option("--out", type=click.Path(path_type=Path), help="A class: the folder for the results.")
 @click.option("--jobs", type=click.IntRange(1, 64), help="A class: how many submissions to grade at once.")
@@ -99,7 +94,6 @@ def grade(
     real_time: bool,
     seed: int,
     isolation: str | None,
-    middleware: str | None,
     out: Path | None,
     jobs: int | None,
     form: str,
@@ -152,13 +146,10 @@ def grade(
         "isolation": Isolation(isolation) if isolation else None,
         "seed": seed,
         "pace": 1.0 if real_time else None,
-        "middleware": Middleware(middleware) if middleware else None,
     }
     try:
-        if wanted["middleware"] is not Middleware.FASTDDS and to_be_compiled():
+        if to_be_compiled():
             click.echo("Compiling the grader's middleware, once ...", err=True)
-        if warning := choose_middleware(wanted["middleware"]).warning:
-            click.echo(warning, err=True)
         found = load(_folder(exercise))
         if out and not mistake:
             wishes = {
@@ -179,7 +170,7 @@ def grade(
         if not mistake and (Path(submission).is_dir() or submission.endswith(".csv")):
             raise click.UsageError(f"{submission}: to grade a class, give a folder for the results with --out.")
         handed_in = _mistake(mistake, found) if mistake else read(submission, found)
-        with WorkerPool(wanted["middleware"]) as workers:
+        with WorkerPool() as workers:
             result = _graded(found, handed_in, wanted, workers)
             _show(result, found, json_, verbose)
     except NoSubmission as error:

@@ -46,7 +46,7 @@ def grade(*verdicts: Verdict, **fields: object) -> Grade:
         verdicts=verdicts,
         isolation="bubblewrap",
         seed=1,
-        versions={"python": "3.11", "middleware": "lockstep"},
+        versions={"python": "3.11"},
         seconds=2.5,
     )
     return replace(made, **fields)  # type: ignore[arg-type]

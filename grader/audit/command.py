@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import click
 from rich.console import Console
 
-from grader.audit.report import on, show, show_shadow, write_json
+from grader.audit.report import on, show, write_json
 from grader.audit.result import Audit, AuditProblem
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import COURSE, NoExercise, find, load
 from grader.exercise.mistakes import NoMistake, mistake_of
 from grader.grading.grade import Options
-from grader.sandbox.middleware import choose_middleware
-from grader.sandbox.program import Middleware, SandboxUnavailable
+from grader.sandbox.program import SandboxUnavailable
 from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
 from interface_compiler.near import use_near
 
@@ -39,12 +37,6 @@ PROVED, TO_FIX, OUR_FAULT, STOPPED = 0, 1, 3, 130
 @click.option(
     "--show", "shown", metavar="NAME", help="Print the whole program of one usual mistake, and audit nothing."
 )
-@click.option("--shadow", is_flag=True, help="Grade every file in solutions/ over both middlewares, and compare.")
-@click.option(
-    "--middleware",
-    type=click.Choice([middleware.value for middleware in Middleware]),
-    help="The middleware between nodes and the grader.  [default: lockstep, the grader's own, if available]",
-)
 @click.option("--parallel", type=click.IntRange(1, 64), help="How many runs at once.  [default: twice the cores]")
 def audit(
     exercises: tuple[str, ...],
@@ -55,8 +47,6 @@ def audit(
     json_: Path | None,
     html: Path | None,
     shown: str | None,
-    shadow: bool,
-    middleware: str | None,
     parallel: int | None,
 ) -> None:
     """Show that the checks of each EXERCISE catch what is wrong and pass what is right.
@@ -73,7 +63,6 @@ def audit(
       spinbook audit --solutions                  is each file of solutions/ graded as it has to be?
       spinbook audit joint_velocity --html a.html how much each check catches, and what it costs
       spinbook audit joint_velocity --show fixed_dt   one of its usual mistakes, as a whole program
-      spinbook audit --shadow                     do lockstep and Fast DDS lead to the same verdicts?
 
     EXERCISE is a name in the course's folder exercises/, or the path of an exercise's folder. The first audit of an
     exercise takes minutes. The results are kept until something that they depend on changes, so an audit after a change
@@ -93,25 +82,16 @@ def audit(
         raise click.UsageError("--solutions tries no mutants and no seeds: leave out --quick, --mutants and --seeds.")
     if solutions:
         mutants, seeds = 0, 1
-    if shadow and (quick or mutants is not None or seeds or json_ or html or middleware):
-        raise click.UsageError("--shadow can be combined only with --parallel.")
-    options = Options(middleware=Middleware(middleware) if middleware else None)
-    options = replace(options, parallel=parallel) if parallel else options
+    options = Options(parallel=parallel) if parallel else Options()
     audits: list[Audit] = []
-    differing = 0
     faulty: list[ExerciseError] = []
     console = Console(highlight=False)
     try:
-        if not shadow and (warning := choose_middleware(options.middleware).warning):
-            click.echo(warning, err=True)
         # Workers can import a course's own interfaces only if these are found before the workers start.
         use_near(Path.cwd(), COURSE)
-        with WorkerPool(*(Middleware if shadow else (options.middleware,))) as workers:
+        with WorkerPool() as workers:
             for folder in [_folder(name) for name in exercises] or _all_here():
                 try:
-                    if shadow:
-                        differing += _shadowed(load(folder), options, workers, console)
-                        continue
                     audits.append(_audited(load(folder), options, workers, console, quick, mutants, seeds))
                 except ExerciseError as error:
                     faulty.append(error)
@@ -131,7 +111,7 @@ def audit(
     except KeyboardInterrupt:
         click.echo("Stopped. The results so far are kept. Run the same command to continue.", err=True)
         sys.exit(STOPPED)
-    sys.exit(TO_FIX if faulty or differing or any(result.problems for result in audits) else PROVED)
+    sys.exit(TO_FIX if faulty or any(result.problems for result in audits) else PROVED)
 
 
 def _show_mistake(exercises: tuple[str, ...], name: str) -> None:
@@ -141,16 +121,6 @@ def _show_mistake(exercises: tuple[str, ...], name: str) -> None:
         click.echo(mistake_of(load(_folder(exercises[0])), name).source, nl=False)
     except (NoMistake, ExerciseError) as error:
         raise click.UsageError(str(error)) from None
-
-
-def _shadowed(exercise: Exercise, options: Options, workers: WorkerPool, console: Console) -> int:
-    """Show the verdicts on which the two middlewares disagree, and return their number."""
-    from grader.audit.shadow import shadow
-
-    with on(Console(stderr=True)) as progress:
-        result = shadow(exercise, options, workers, progress)
-    show_shadow(result, console)
-    return len(result.differing)
 
 
 def _audited(

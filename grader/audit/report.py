@@ -16,7 +16,7 @@ from rich.syntax import Syntax
 from rich.table import Table
 from rich.text import Text
 
-from grader.audit.result import Audit, AuditProblem, Fate, MutantResult, Shadow
+from grader.audit.result import Audit, AuditProblem, Fate, MutantResult
 from grader.report.pages import render
 from grader.report.printable import printable
 from groundwork.files import write_if_changed
@@ -31,19 +31,6 @@ def show(audit: Audit, console: Console) -> None:
     if audit.mutants and not audit.quick:
         console.print(_checks(audit))
     _show_score(audit, console)
-
-
-def show_shadow(shadow: Shadow, console: Console) -> None:
-    """Print each verdict on which the two middlewares disagree."""
-    console.print(Text(printable(f"{shadow.title} ({shadow.exercise})"), style="bold"))
-    for one in shadow.differing:
-        console.print(Text.assemble((" ≠ ", "yellow"), printable(f"{one.program}, {one.check}")), soft_wrap=True)
-        lines = (f"lockstep  {one.lockstep}", f"fastdds   {one.fast_dds}", one.reason or "no reason is known")
-        for line in lines:
-            console.print(Padding(Text(printable(line), style="dim"), (0, 0, 0, 3)))
-    verdicts = shadow.equal + len(shadow.differing)
-    text = f"{shadow.programs} programs over both middlewares: {len(shadow.differing)} of {verdicts} verdicts differ"
-    console.print(Text(f"{text} ({shadow.seconds:.0f} s)", style="yellow" if shadow.differing else "bold green"))
 
 
 def _show_programs(audit: Audit, console: Console) -> None:

@@ -173,41 +173,6 @@ def score_of(mutants: tuple[MutantResult, ...]) -> float:
     return sum(result.fate == "caught" for result in mutants) / many if many else 1.0
 
 
-@dataclass(frozen=True)
-class Opinion:
-    """The result over one middleware: a check's status or a grade's outcome, and the message for the student."""
-
-    verdict: str
-    text: str = ""
-
-    def __str__(self) -> str:
-        """Both."""
-        return f"{self.verdict}: {self.text}" if self.text else self.verdict
-
-
-@dataclass(frozen=True)
-class Differing:
-    """A verdict on which the two disagree. `reason` says why, if the recordings show it; otherwise it is empty."""
-
-    program: str
-    check: str
-    lockstep: Opinion
-    fast_dds: Opinion
-    reason: str
-
-
-@dataclass(frozen=True)
-class Shadow:
-    """All of one exercise. `equal` and `differing` are its verdicts, outcomes included."""
-
-    exercise: str
-    title: str
-    programs: int
-    equal: int
-    differing: tuple[Differing, ...]
-    seconds: float
-
-
 class Progress(Protocol):
     """Shows the progress of an audit."""
 

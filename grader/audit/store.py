@@ -25,7 +25,6 @@ from grader.grading.grading import Grading
 from grader.grading.reference import GRADER, cache_folder, digest_of, solution_file, versions
 from grader.grading.running import ScenarioRunner
 from grader.recording.recording import Recording, from_json, to_json
-from grader.sandbox.program import Middleware
 from grader.scenario.scenario import Scenario
 from grader.submission.reading import Submission
 from grader.workers.pool import Worker
@@ -67,7 +66,7 @@ class RecordedRuns:
         Raises `HostFault` if the machine or the grader is at fault, `Stopped` when no more recordings are wanted.
         """
         runner = self._grading.runner
-        made_by = (str(runner.isolation), engine(runner.middleware))
+        made_by = (str(runner.isolation), engine())
         exercise = runner.exercise
         interface = (exercise.topics, exercise.endpoints, exercise.parameters, exercise.programs, exercise.node_name)
         key = (submission.digest, scenario.digest, interface, exercise.reference_node, *made_by)
@@ -107,7 +106,7 @@ def tidy(exercise: str) -> None:
 
 
 @cache
-def engine(middleware: Middleware, also: tuple[str, ...] = ()) -> str:
+def engine(also: tuple[str, ...] = ()) -> str:
     """A digest of our code that decides what a recording contains, and of the versions of Python, ROS and the
     middleware.
 
@@ -115,7 +114,7 @@ def engine(middleware: Middleware, also: tuple[str, ...] = ()) -> str:
     """
     named = [GRADER / name for name in (*SPINNING_FILES, *SPINNING, *also)]
     files = [file for path in named for file in (sorted(path.rglob("*.py")) if path.is_dir() else [path])]
-    others = {name: version for name, version in versions(middleware).items() if name != "grader"}
+    others = {name: version for name, version in versions().items() if name != "grader"}
     return f"{digest_of(files)} {json.dumps(others, sort_keys=True)}"
 
 
@@ -129,7 +128,7 @@ class Store:
             "solution": digest_of([solution_file(exercise)]),
             "exercise": digest_of([exercise.folder / "exercise.toml", *exercise.check_files]),
             "scenarios": [scenario.digest for scenario in runner.scenarios],
-            "engine": engine(runner.middleware, JUDGING),
+            "engine": engine(JUDGING),
             "isolation": str(runner.isolation),
         }
         self._lock = threading.Lock()

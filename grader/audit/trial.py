@@ -28,8 +28,8 @@ def differences(recording: Recording, reference: Recording) -> tuple[Difference,
     if recording.nodes != reference.nodes:
         found.append(f"nodes {_named(recording.nodes)}, the solution's {_named(reference.nodes)}")
     found += _ends(recording, reference)
-    if recording.synchronization != reference.synchronization or recording.uses_sim_time != reference.uses_sim_time:
-        found.append("its services or its clock differ")
+    if recording.uses_sim_time != reference.uses_sim_time:
+        found.append("its clock differs")
     found += _messages(recording.received, reference.received)
     found += _events(recording, reference)
     return tuple(Difference(recording.scenario, what) for what in found)
@@ -128,7 +128,7 @@ class Trials:
         [first] = recordings.values()
         ending = Ending(first.ending.outcome, first.ending.message)
         names = [scenario.name for scenario in self.grading.runner.scenarios]
-        every = {name: Recording(name, (), (), (), (), "none", False, ending) for name in names} | recordings
+        every = {name: Recording(name, (), (), (), (), False, ending) for name in names} | recordings
         return self._trial(first.ending.message, recordings, self._judged(every), self.checks)
 
     def _shorter_first(self) -> list[Scenario]:
@@ -151,7 +151,7 @@ class Trials:
     def _nothing(self, problem: str) -> Trial:
         scenarios = self.grading.runner.scenarios
         ending = Ending("did-not-start", problem)
-        recordings = {s.name: Recording(s.name, (), (), (), (), "none", False, ending) for s in scenarios}
+        recordings = {s.name: Recording(s.name, (), (), (), (), False, ending) for s in scenarios}
         return self._trial(problem, {}, self._judged(recordings), self.checks)
 
     def _judged(self, recordings: dict[str, Recording]) -> dict[str, Verdict]:
@@ -166,9 +166,7 @@ class Trials:
             return {c.name: Verdict(c.name, c.title, "passed", c.points, c.hint) for c in self.checks}
         missing = Ending("did-not-start", "not spun")
         places = {
-            name: Recording(name, (), (), (), (), "none", False, missing)
-            for name in references
-            if name not in recordings
+            name: Recording(name, (), (), (), (), False, missing) for name in references if name not in recordings
         }
         return self._judged({**recordings, **places})
 

@@ -199,7 +199,7 @@ def pattern(run: RecordedRun, field: str, per: str = "", unit: str = "") -> str:
             elapsed += [_elapsed(before, exchange) for name in expected if name in got]
     if text := fixed_step(pairs, elapsed, field, unit):
         return text
-    return common(pairs, field, unit, clock=run.recording.synchronization == "lockstep")
+    return common(pairs, field, unit)
 
 
 def _elapsed(before: Exchange | None, exchange: Exchange) -> float:

@@ -48,10 +48,10 @@ def fixed_step(pairs: list[tuple[float, float]], elapsed: list[float], field: st
     return f" Every {field} would be right if {steps[0]:.4g} s had passed between the two messages."
 
 
-def common(pairs: Sequence[tuple[float, float]], field: str, unit: str = "", clock: bool = False) -> str:
+def common(pairs: Sequence[tuple[float, float]], field: str, unit: str = "") -> str:
     """What all pairs of an expected value and a value that was got have in common, as `pattern` says it.
 
-    `unit` is the unit that is asked for. With `clock`, a factor of 0.8 or 1.25 is attributed to the computer's clock.
+    `unit` is the unit that is asked for. A factor of 0.8 or 1.25 is attributed to the computer's clock.
     """
     telling = [(e, g) for e, g in pairs if abs(e) > SMALLEST and math.isfinite(e) and math.isfinite(g)]
     if len(telling) < FEWEST:
@@ -60,14 +60,14 @@ def common(pairs: Sequence[tuple[float, float]], field: str, unit: str = "", clo
         return f" Every {field} is {telling[0][1]:.6g}."
     ratio = telling[0][1] / telling[0][0]
     if all(math.isclose(g, ratio * e, rel_tol=1e-3, abs_tol=1e-9) for e, g in telling):
-        return _ratio(ratio, field, unit, clock)
+        return _ratio(ratio, field, unit)
     offset = telling[0][1] - telling[0][0]
     if all(math.isclose(g - e, offset, rel_tol=1e-3, abs_tol=1e-9) for e, g in telling):
         return f" Every {field} is {abs(offset):.4g} too {'large' if offset > 0 else 'small'}."
     return ""
 
 
-def _ratio(ratio: float, field: str, unit: str, clock: bool) -> str:
+def _ratio(ratio: float, field: str, unit: str) -> str:
     if math.isclose(ratio, 1, rel_tol=1e-3):
         return ""
     if math.isclose(ratio, -1, rel_tol=1e-3):
@@ -76,7 +76,7 @@ def _ratio(ratio: float, field: str, unit: str, clock: bool) -> str:
         if math.isclose(ratio, factor, rel_tol=1e-3) and (unit.split("/")[0] == asked or (not unit and asked == "rad")):
             return f" Every {field} is in {given}."
     text = f" Every {field} is {ratio:.4g} times what it should be"
-    if clock and any(math.isclose(ratio, factor, rel_tol=1e-3) for factor in (COMPUTER_CLOCK, 1 / COMPUTER_CLOCK)):
+    if any(math.isclose(ratio, factor, rel_tol=1e-3) for factor in (COMPUTER_CLOCK, 1 / COMPUTER_CLOCK)):
         return f"{text}: your node measures time with the computer's clock, which runs at another speed here."
     return f"{text}."
 

@@ -117,7 +117,7 @@ class RecordedRun:
         wanted, came = shown(found.expected, unit), shown(found.got, unit)
         numbers = [(_number(e, found.path), _number(g, found.path)) for e, g in pairs]
         known = [(e, g) for e, g in numbers if e is not None and g is not None]
-        general = common(known, found.path, unit, clock=self.recording.synchronization == "lockstep")
+        general = common(known, found.path, unit)
         self.wrong_at(at, f"expected {found.path} {wanted}, got {came}.", part, wanted, came, general or otherwise)
 
     def time_at(self, at: int, expected: int, part: str, time: float | None, since: int = START) -> None:

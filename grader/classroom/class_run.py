@@ -65,7 +65,7 @@ def grade_class(exercise: Exercise, class_request: ClassRequest, console: Consol
         collected = replace(
             collected, handed_in=tuple(one for one in collected.handed_in if one.student.id in submissions)
         )
-        with Results(class_request.out) as results, WorkerPool(class_request.options.middleware) as workers:
+        with Results(class_request.out) as results, WorkerPool() as workers:
             grading = grading_of(exercise, class_request.options, workers)
             with _backend(grading, class_request) as markers:
                 marking = ClassGrading(exercise, markers, results, adjusting, grading)
@@ -226,7 +226,7 @@ def _backend(grading: Grading, class_request: ClassRequest) -> Iterator[Backend]
         with dask_backend(grading, class_request.scheduler) as workers:
             yield workers
     else:
-        yield LocalBackend(grading, class_request.jobs or at_once(grading.runner.middleware))
+        yield LocalBackend(grading, class_request.jobs or at_once())
 
 
 @contextlib.contextmanager

@@ -20,8 +20,7 @@ from grader.grading.grade import Options
 from grader.grading.grading import Grading, grading_of
 from grader.grading.reference import versions
 from grader.report.feedback_plot import picture
-from grader.sandbox.middleware import choose_middleware
-from grader.sandbox.program import Middleware
+from grader.sandbox.middleware import require_middleware
 from grader.submission.reading import Submission
 from grader.workers.pool import WorkerPool
 
@@ -77,9 +76,10 @@ _ready: dict[str, PreparedGrading] = {}
 _lock = threading.Lock()
 
 
-def describe_worker(middleware: Middleware) -> dict[str, str]:
+def describe_worker() -> dict[str, str]:
     """Return what grades depend on here, besides the exercise. Raises `MiddlewareUnavailable`."""
-    return versions(choose_middleware(middleware).middleware)
+    require_middleware()
+    return versions()
 
 
 def grade_on_worker(packed: ExerciseFiles, options: Options, key: str, who: str, submission: Submission) -> Graded:
@@ -90,7 +90,7 @@ def grade_on_worker(packed: ExerciseFiles, options: Options, key: str, who: str,
     bench = _prepared_grading(packed, options)
     runner = bench.grading.runner
     if bench.key != key:
-        text = f"a worker of the cluster has other versions than this machine: {versions(runner.middleware)}"
+        text = f"a worker of the cluster has other versions than this machine: {versions()}"
         return Graded(who, host_error(runner, submission, text), None)
     with own_core() as core:
         runner = replace(runner, options=replace(options, parallel=1, core=core))
@@ -107,7 +107,7 @@ def _prepared_grading(packed: ExerciseFiles, options: Options) -> PreparedGradin
                 _ready.popitem()[1].resources.close()
             with contextlib.ExitStack() as resources:
                 folder = resources.enter_context(tempfile.TemporaryDirectory(prefix="spinbook-exercise-"))
-                workers = resources.enter_context(WorkerPool(options.middleware))
+                workers = resources.enter_context(WorkerPool())
                 grading = grading_of(load(packed.unpack(Path(folder))), options, workers)
                 _ready[name] = PreparedGrading(grading, grade_key(grading), resources.pop_all())
         return _ready[name]
@@ -180,8 +180,7 @@ def dask_backend(grading: Grading, address: str) -> Iterator[DaskBackend]:
             client.wait_for_workers(1, timeout=WORKER_S)
         except TimeoutError:
             raise NoCluster(f"--scheduler {address}: it has no worker. Start some: dask worker {address}") from None
-        middleware = grading.runner.middleware
-        _same_versions(versions(middleware), client.run(describe_worker, middleware, on_error="return"))
+        _same_versions(versions(), client.run(describe_worker, on_error="return"))
         yield DaskBackend(grading, client)
 
 

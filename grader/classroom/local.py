@@ -18,18 +18,16 @@ from grader.exercise.exercise import ExerciseError
 from grader.grading.grading import Grading
 from grader.grading.running import WorkStealing
 from grader.report.feedback_plot import picture
-from grader.sandbox.program import Middleware
 from grader.submission.reading import Submission
 from groundwork.files import claim_number
 
-#: How many submissions to grade at once per core: grader and program wait for each other, and over Fast DDS both
-#: wait for the network most of the time.
-PER_CORE = {Middleware.LOCKSTEP: 2, Middleware.FASTDDS: 4}
+#: How many submissions to grade at once per core: grader and program wait for each other.
+PER_CORE = 2
 
 
-def at_once(middleware: Middleware) -> int:
+def at_once() -> int:
     """Return how many submissions to grade at once on this machine."""
-    return PER_CORE[middleware] * len(os.sched_getaffinity(0))
+    return PER_CORE * len(os.sched_getaffinity(0))
 
 
 @dataclass(frozen=True)

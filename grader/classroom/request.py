@@ -90,5 +90,5 @@ def no_grade(runner: ScenarioRunner, outcome: Outcome, message: str) -> Grade:
         verdicts=(),
         isolation=str(runner.isolation),
         seed=runner.options.seed,
-        versions=versions(runner.middleware),
+        versions=versions(),
     )

@@ -201,7 +201,7 @@ def _of_a_run(grading: Grading) -> dict[str, Any]:
     runner = grading.runner
     return {
         "scenarios": [scenario.digest for scenario in runner.scenarios],
-        "versions": versions(runner.middleware),
+        "versions": versions(),
         "seed": runner.options.seed,
         "pace": runner.options.pace,
         "limits": asdict(runner.options.limits),

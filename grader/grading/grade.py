@@ -12,7 +12,7 @@ from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
 from grader.recording.recording import Ending, Recording
 from grader.sandbox.isolation import Isolation
-from grader.sandbox.program import Limits, Middleware
+from grader.sandbox.program import Limits
 
 #: What happened. `host-error` is not the student's fault: it gives no score and has to be graded again. `missing` is a
 #: student who handed in nothing; `undecided` waits for the instructor to say which submission counts.
@@ -24,7 +24,7 @@ class Grade:
     """One grading. Two gradings of one submission are equal: what may differ (timings, logs) does not count.
 
     `message` tells the student, or for a host error the instructor, what happened; `line` is the line of the student's
-    file that is to blame, if known. `synchronization` is how the runner knew that the node had handled a message.
+    file that is to blame, if known.
     `recordings` and `references` are what the node and the solution published, by scenario.
 
     A `self_check` judges by the public checks only, and is not the official grade; `hidden_checks` and `hidden_points`
@@ -45,7 +45,6 @@ class Grade:
     self_check: bool = False
     hidden_checks: int = 0
     hidden_points: float = 0.0
-    synchronization: str = "none"
     line: int | None = None
     log: str = field(default="", compare=False, repr=False)
     seconds: float = field(default=0.0, compare=False)
@@ -65,7 +64,7 @@ class Grade:
 
 @dataclass(frozen=True)
 class Options:
-    """How to grade. `isolation` None means the strongest that works here, `middleware` None lockstep if available.
+    """How to grade. `isolation` None means the strongest that works here.
 
     `seed` chooses the numbers of scenarios with random parts. `pace` is 1.0 for real time, None for as fast as
     possible.
@@ -80,7 +79,6 @@ class Options:
     parallel: int = field(default_factory=lambda: max(2, min(8, 2 * len(os.sched_getaffinity(0)))))
     limits: Limits = field(default_factory=Limits)
     core: int | None = None
-    middleware: Middleware | None = None
 
 
 #: What the sandbox has besides Python itself, as a student would import it.

@@ -62,8 +62,7 @@ class Grading:
             return self.runner.spin(submission)
         ending = Ending("did-not-start", submission.problem)
         return {
-            scenario.name: Recording(scenario.name, (), (), (), (), "none", False, ending)
-            for scenario in self.runner.scenarios
+            scenario.name: Recording(scenario.name, (), (), (), (), False, ending) for scenario in self.runner.scenarios
         }
 
     def _grade(
@@ -88,11 +87,10 @@ class Grading:
             verdicts=verdicts,
             isolation=str(self.runner.isolation),
             seed=self.runner.options.seed,
-            versions=versions(self.runner.middleware),
+            versions=versions(),
             self_check=self.public is not None,
             hidden_checks=self.public.hidden_checks if self.public else 0,
             hidden_points=self.public.hidden_points if self.public else 0.0,
-            synchronization=first.synchronization if first else "none",
             line=first.ending.line if first else None,
             log=first.log if first else "",
             seconds=time.monotonic() - began,
@@ -138,5 +136,5 @@ def _isolation_of_ones_own(options: Options) -> Isolation:
 def grade_submission(exercise: Exercise, submission: Submission, options: Options | None = None) -> Grade:
     """Return the grade of one submission. Raises what `grading_of` raises."""
     options = options or Options()
-    with WorkerPool(options.middleware) as workers:
+    with WorkerPool() as workers:
         return grading_of(exercise, options, workers).grade(submission)

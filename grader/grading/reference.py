@@ -15,7 +15,6 @@ from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.starter import MarkerError, starter
 from grader.grading.running import ScenarioRunner
 from grader.recording.recording import Recording, from_json, to_json
-from grader.sandbox.program import Middleware
 from grader.submission.reading import of_source
 from groundwork.files import cached, write_if_changed
 from interface_compiler import activation
@@ -25,13 +24,12 @@ GRADER = Path(__file__).parents[1]
 
 
 @cache
-def versions(middleware: Middleware) -> dict[str, str]:
-    """Return the middleware, versions of Python, ROS and the middleware, and a digest of the grader's own source."""
+def versions() -> dict[str, str]:
+    """Return the versions of Python and ROS, and digests of the middleware's and the grader's own source."""
     return {
         "python": platform.python_version(),
         "rclpy": _version("ros-jazzy-rclpy", "rclpy"),
-        "middleware": str(middleware),
-        "rmw": _lockstep() if middleware is Middleware.LOCKSTEP else _fast_dds(),
+        "rmw": digest_of([*sources(), *sorted(SOURCES.rglob("*.py"))])[:12],
         "grader": digest_of(sorted(GRADER.rglob("*.py")))[:12],
     }
 
@@ -44,15 +42,6 @@ def digest_of(files: list[Path]) -> str:
         total.update(f"{file.name} {len(content)}\n".encode())
         total.update(content)
     return total.hexdigest()
-
-
-def _lockstep() -> str:
-    """Return a digest of the middleware, its C++ end and its hub in Python."""
-    return digest_of([*sources(), *sorted(SOURCES.rglob("*.py"))])[:12]
-
-
-def _fast_dds() -> str:
-    return _version("ros-rmw-fastrtps-cpp", "rmw_fastrtps_cpp")
 
 
 def _version(*names: str) -> str:
@@ -103,7 +92,7 @@ def reference_key(runner: ScenarioRunner) -> str:
         "solution": digest_of([solution_file(exercise)]),
         "exercise": digest_of([exercise.folder / "exercise.toml", *exercise.check_files]),
         "scenarios": [scenario.digest for scenario in runner.scenarios],
-        "versions": versions(runner.middleware),
+        "versions": versions(),
         "interfaces": [prefix.name for prefix in activation.active()],
         "pace": runner.options.pace,
     }

@@ -16,13 +16,12 @@ from grader.exercise.exercise import Exercise
 from grader.grading.grade import Options
 from grader.recording.recording import Recording, likewise
 from grader.sandbox.isolation import Isolation
-from grader.sandbox.middleware import MiddlewareUnavailable, choose_middleware
-from grader.sandbox.program import Middleware, Program
+from grader.sandbox.program import Program
 from grader.scenario.command_line import ARGUMENTS, arguments
 from grader.scenario.scenario import Companion, Scenario
 from grader.submission.reading import Submission
 from grader.workers.jobs import JudgeJob, RunJob
-from grader.workers.pool import FAST_DDS_ENVIRONMENT, PROFILE, STUDENT_ENVIRONMENT, WorkerPool
+from grader.workers.pool import STUDENT_ENVIRONMENT, WorkerPool
 from grader.workers.shared import Sandbox
 
 
@@ -131,18 +130,6 @@ class ScenarioRunner:
     work_stealing: WorkStealing = field(default_factory=WorkStealing, compare=False)
     """Lets others help, besides the `options.parallel` workers of each submission."""
 
-    @property
-    def middleware(self) -> Middleware:
-        """The middleware of the programs. Raises `MiddlewareUnavailable` when the requested one is not available."""
-        middleware = choose_middleware(self.options.middleware).middleware
-        beyond = next((one for one in self.scenarios if not one.is_filter), None)
-        if middleware is Middleware.FASTDDS and beyond:
-            text = (
-                f"The scenario {beyond.name} does more than publish messages, which the middleware 'fastdds' can't do."
-            )
-            raise MiddlewareUnavailable(f"{text} Grade this exercise with --middleware lockstep.")
-        return middleware
-
     def spin(self, submission: Submission) -> dict[str, Recording]:
         """Return the recording of each scenario. Raises `HostFault` when there is none.
 
@@ -186,16 +173,10 @@ class ScenarioRunner:
     def job(self, submission: Submission, scenario: Scenario, number: int) -> RunJob:
         """Return the run of a program through one scenario; `number` chooses its core, in turn."""
         assert submission.program
-        fast_dds = self.middleware is Middleware.FASTDDS
         program = replace(
             submission.program,
             arguments=arguments(scenario),
-            environment={
-                **STUDENT_ENVIRONMENT,
-                **(FAST_DDS_ENVIRONMENT if fast_dds else {}),
-                **submission.program.environment,
-            },
-            readonly=(*((PROFILE,) if fast_dds else ()), *submission.program.readonly),
+            environment={**STUDENT_ENVIRONMENT, **submission.program.environment},
             hidden=self._hidden,
         )
         own = {one.file: one.arguments for one in scenario.programs}
@@ -209,7 +190,6 @@ class ScenarioRunner:
             scenario=scenario,
             program=program,
             isolation=self.isolation,
-            middleware=self.middleware,
             limits=self.options.limits,
             source=submission.source,
             file_name=submission.file_name,

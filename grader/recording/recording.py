@@ -40,7 +40,7 @@ class Received:
 
     `after` is how many messages had been sent by then: 3 means that it came after the third and before the fourth.
     `subscriber` is the name of the scenario's own subscriber that got it, and empty for the recorder, which hears
-    everything. `node` is the full name of the node that published it; over Fast DDS it is not known. What is
+    everything. `node` is the full name of the node that published it. What is
     `unordered` has no order among what its node published on the topic at the same moment: several threads did.
     """
 
@@ -58,8 +58,7 @@ class Received:
 class EndPoint:
     """An end point of the student's, as the ROS graph shows it; `topic` is also the name of a service or an action.
 
-    `depth` is 0 for "keep all". `deadline` and `lifespan` are in ns, and None without a limit. Over Fast DDS there are
-    publishers and subscriptions only, and these three are not known.
+    `depth` is 0 for "keep all". `deadline` and `lifespan` are in ns, and None without a limit.
     """
 
     node: str
@@ -94,8 +93,6 @@ class Ending:
 class Recording:
     """One run of one node through one scenario.
 
-    `synchronization` is how it was known that the node had handled a message. "lockstep": the middleware said so. The
-    others are for Fast DDS: by its parameter services, by its type description service, or by a wait until it was idle.
     `seconds` is how long the run took in real time, and `lockstep_seconds` the part of it from the first message to the
     last.
     """
@@ -105,7 +102,6 @@ class Recording:
     received: tuple[Received, ...]
     nodes: tuple[str, ...]
     end_points: tuple[EndPoint, ...]
-    synchronization: Literal["lockstep", "parameters", "type description", "idle", "none"]
     uses_sim_time: bool
     ending: Ending
     log: str = field(default="", compare=False)
@@ -138,7 +134,7 @@ def likewise(first: Recording, scenario: str) -> Recording:
     if first.scenario == scenario:
         return first
     ending = Ending(first.ending.outcome, first.ending.message)
-    return Recording(scenario, (), (), first.nodes, (), "none", False, ending)
+    return Recording(scenario, (), (), first.nodes, (), False, ending)
 
 
 def _of_goal(goal: Goal) -> list[Event]:

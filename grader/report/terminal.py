@@ -11,7 +11,6 @@ from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade
 from grader.report.printable import as_students_see_it, printable
 from grader.sandbox.isolation import Isolation
-from grader.sandbox.program import Middleware
 
 
 def points_so_far(grade: Grade) -> str:
@@ -33,8 +32,6 @@ def self_check_standing(grade: Grade) -> str:
     text = "This is a self-check, not your grade."
     if grade.isolation == Isolation.NONE.value:
         text += " Your code ran without a sandbox, and no grade of record is made that way."
-    if grade.versions["middleware"] == Middleware.FASTDDS.value:
-        text += " It ran over Fast DDS: a node with threads or sleeps of its own may get another result each time."
     return text
 
 
@@ -67,8 +64,7 @@ def show(grade: Grade, exercise: Exercise, console: Console, verbose: bool = Fal
             console.print(Text(first, style=style), *(Text(line) for line in rest), sep="\n", soft_wrap=True)
         else:
             console.print(Text(f"{grade.score:g} of {grade.points:g} points", style=style))
-    made_by = f"isolation: {grade.isolation}, middleware: {grade.versions['middleware']}"
-    console.print(Text(made_by, style="dim"))
+    console.print(Text(f"isolation: {grade.isolation}", style="dim"))
     if verbose:
         console.print(Text("the node's log:", style="bold"))
         console.print(Text(printable(as_students_see_it(grade.log)) or "(nothing)"), soft_wrap=True)

@@ -138,7 +138,6 @@ class Run:
             received=received,
             nodes=self._nodes,
             end_points=self._end_points,
-            synchronization="lockstep" if self._is_up else "none",
             uses_sim_time=self._sim_time,
             ending=ending,
             log=self._student.output().text,

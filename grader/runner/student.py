@@ -51,7 +51,7 @@ class Task:
     """One program, to be run through one scenario.
 
     `file_name` and `source` are the student's, to name lines in messages. `pace` is 1.0 for real time, and None for as
-    fast as possible. `domain` is the ROS domain, for Fast DDS only.
+    fast as possible.
     """
 
     exercise: Exercise
@@ -59,7 +59,6 @@ class Task:
     file_name: str
     source: str
     pace: float | None = None
-    domain: int = 0
 
 
 class Stopped(Exception):

@@ -36,13 +36,14 @@ def options(plan: Sequence[Mount]) -> bytes:
     return b"".join(map(_encoded, plan))
 
 
-def build(root: bytes, user_namespace: int, *, network: bool) -> Namespaces:
+def build(root: bytes, user_namespace: int) -> Namespaces:
     """Make the namespaces and their root, and move this process into them (except the pid namespace's children).
+
+    There is no network, not even loopback.
 
     Args:
         root: the `options` that build it.
         user_namespace: that of the student.
-        network: keep the current network; otherwise there is none, not even loopback.
 
     Raises:
         OSError: if bubblewrap could not be run or ended early; the text has its output.
@@ -51,7 +52,7 @@ def build(root: bytes, user_namespace: int, *, network: bool) -> Namespaces:
     if program is None:
         raise OSError("bubblewrap (bwrap) is not installed")
     texts = {_FIRST_TEXT + at: _memory_file(text.encode()) for at, text in enumerate(filesystem.TEXTS.values())}
-    filters = [_memory_file(seccomp.program(network=network))] if seccomp.supported() else []
+    filters = [_memory_file(seccomp.program())] if seccomp.supported() else []
     # Not on the command line, which the student can read and which would show what is hidden.
     arguments = _memory_file(root)
     information, information_end = os.pipe()
@@ -77,8 +78,7 @@ def build(root: bytes, user_namespace: int, *, network: bool) -> Namespaces:
     for holder in (init, *own_processes):
         _starve(holder)
     _join(init, user_namespace)
-    if not network:
-        syscalls.unshare(syscalls.CLONE_NEWNET)  # not by bubblewrap, which brings loopback up
+    syscalls.unshare(syscalls.CLONE_NEWNET)  # not by bubblewrap, which brings loopback up
     return Namespaces(init, own_processes, builder)
 
 

@@ -66,8 +66,7 @@ def confine(
     isolation = start.isolation
     if isolation is Isolation.NONE:
         return
-    network = start.program.hub is None
-    filters = seccomp.program(network=network, no_signals=_signals_leave(isolation)) if seccomp.supported() else None
+    filters = seccomp.program(no_signals=_signals_leave(isolation)) if seccomp.supported() else None
     user = USER_ID if isolation is not Isolation.LANDLOCK else Path(paths.home).stat().st_uid
     syscalls.drop_bounding_capabilities()
     if os.geteuid() != user:
@@ -78,7 +77,7 @@ def confine(
     syscalls.prctl(syscalls.PR_SET_DUMPABLE, 1)  # lost with the change of user; without it /proc/self is closed
     if isolation is Isolation.LANDLOCK:
         hidden = (*filesystem.own_packages(), *start.program.hidden)
-        landlock.restrict(paths, start.program.readonly, hidden, processes=not network)
+        landlock.restrict(paths, start.program.readonly, hidden)
     if filters is not None:
         seccomp.install(filters)
 

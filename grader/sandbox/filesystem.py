@@ -71,7 +71,7 @@ def mounts(readonly: tuple[Path, ...], hidden: tuple[Path, ...], scratch_bytes: 
     Args:
         readonly: what is shown besides Python and ROS 2.
         hidden: what is not shown, although it is inside something that is.
-        scratch_bytes: the size of each writable paths.
+        scratch_bytes: the size of each writable path.
     """
     shown = list(_without_nested([*interpreter(), *readonly]))
     plan = _MountPlan()

@@ -18,7 +18,7 @@ from grader.sandbox.confine import Start
 from grader.sandbox.isolation import Isolation, forget
 from grader.sandbox.middleware import variables
 from grader.sandbox.monitor import Exit, Monitor, Output
-from grader.sandbox.program import START_REQUEST, Limits, Middleware, Program, SandboxError
+from grader.sandbox.program import START_REQUEST, Limits, Program, SandboxError
 
 _START_S = 30.0
 _DEATH_S = 30.0
@@ -143,66 +143,51 @@ PRELOAD = (
 
 
 class ForkServer:
-    """Starts students. One serves a whole worker: create it before the runners are forked; each of them may use it.
+    """Starts students. One serves a whole worker: create it before the runners are forked; each of them may use it."""
 
-    It has one process per middleware, which is started when it is first needed.
-    """
-
-    def __init__(self, middlewares: Sequence[Middleware] = (), preload: Sequence[str] = PRELOAD) -> None:
-        """Start the processes for some middlewares; they import while the caller goes on.
+    def __init__(self, preload: Sequence[str] = PRELOAD) -> None:
+        """Start the process that students are forked from; it imports while the caller goes on.
 
         Args:
-            middlewares: those that runners will need. A runner that needs another one waits for its own process.
             preload: the modules to import beforehand; those that are not installed are left out.
-        """
-        self._preload = tuple(preload)
-        self._servers: dict[Middleware, _Process] = {}
-        for middleware in middlewares:
-            self.prepare(middleware)
-
-    def prepare(self, middleware: Middleware) -> None:
-        """Start the process for a middleware, unless it has been started.
 
         Raises:
             MiddlewareUnavailable: if the middleware has not been compiled here.
         """
-        if middleware not in self._servers:
-            self._servers[middleware] = _Process(middleware, self._preload)
+        self._preload = set(preload)
+        self._zygote = _Process(preload)
 
     def preload(self, module: str) -> None:
         """Import one more module for the programs that are started from now on: the types that an exercise uses."""
         if module not in self._preload:
-            self._preload = (*self._preload, module)
-            for server in self._servers.values():
-                server.preload(module)
+            self._preload.add(module)
+            self._zygote.preload(module)
 
     def start(
         self, program: Program, isolation: Isolation, limits: Limits | None = None, core: int | None = None
     ) -> Student:
-        """Start a student's program in a new sandbox: without a network, or without a hub in that of the caller.
+        """Start a student's program in a new sandbox, without a network.
 
         Args:
             program: what to start.
-            isolation: the level, the same that the caller has entered (`enter`).
+            isolation: the level.
             limits: what it may use.
             core: the CPU to keep it on; several cores make some executors slow without making any faster.
 
         Raises:
             SandboxError: if the sandbox could not be made: our fault or the machine's, never the student's.
-            MiddlewareUnavailable: if the program's middleware has not been compiled here.
         """
         limits = limits or Limits()
-        self.prepare(program.middleware)
         start = Start(program, isolation, limits, core, *_root(program, isolation, limits))
         passed = [_memory_file(pickle.dumps(start))]
         if isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
-            passed += _namespaces(program)
+            passed.append(os.dup(namespaces.user_namespace_of_this_process()))
         ours, control = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         output, output_end = os.pipe2(os.O_CLOEXEC)
         passed[1:1] = [os.dup(control.fileno()), output_end]
         control.close()
         try:
-            self._servers[program.middleware].request(passed)
+            self._zygote.request(passed)
         except OSError as fault:
             os.close(output)
             ours.close()
@@ -217,9 +202,8 @@ class ForkServer:
             raise
 
     def close(self) -> None:
-        """End the processes. The students they have started end with their runners."""
-        for server in self._servers.values():
-            server.close()
+        """End the process. The students it has started end with their runners."""
+        self._zygote.close()
 
     def __enter__(self) -> ForkServer:
         """Do nothing: it has been started already."""
@@ -233,18 +217,18 @@ class ForkServer:
 
 
 class _Process:
-    """The process from which students of one middleware are forked, as this process and its forks hold it."""
+    """The process from which students are forked, as this process and its forks hold it."""
 
-    def __init__(self, middleware: Middleware, preload: Sequence[str]) -> None:
+    def __init__(self, preload: Sequence[str]) -> None:
         self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         environment = {name: os.environ[name] for name in filesystem.RUNTIME_VARIABLES if name in os.environ}
-        environment |= variables(middleware, environment)
+        environment |= variables(environment)
         # One thread: a child forked from several could hang. And sets have the same order in each run of a submission.
         environment |= {"OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": "0", "PYTHONDONTWRITEBYTECODE": "1"}
         # Address space is limited, and by default each thread may reserve 64 MiB of it, more so on more cores.
         environment |= {"MALLOC_ARENA_MAX": "4"}
         self._owner = os.getpid()
-        command = [sys.executable, "-m", "grader.sandbox.zygote", str(theirs.fileno()), middleware.value, *preload]
+        command = [sys.executable, "-m", "grader.sandbox.zygote", str(theirs.fileno()), *preload]
         self._process = subprocess.Popen(
             command,
             pass_fds=[theirs.fileno()],
@@ -280,14 +264,6 @@ def _root(program: Program, isolation: Isolation, limits: Limits) -> tuple[tuple
     if program.hub:
         plan = filesystem.with_hub(plan, program.hub)
     return ((), bubblewrap.options(plan)) if isolation is Isolation.BUBBLEWRAP else (plan, b"")
-
-
-def _namespaces(program: Program) -> list[int]:
-    """Return the namespaces a student joins, as descriptors: the user namespace, and without a hub the network."""
-    if program.hub:
-        return [os.dup(namespaces.user_namespace_of_this_process())]
-    runner = [os.open(f"/proc/self/ns/{name}", os.O_RDONLY) for name in ("user", "net")]
-    return [os.dup(namespaces.students_users()), *runner]
 
 
 def _memory_file(content: bytes) -> int:

@@ -47,7 +47,7 @@ class Isolation(str, Enum):
     NAMESPACES = "namespaces"
     """The same namespaces, made by our own system calls."""
     LANDLOCK = "landlock"
-    """No namespaces: the kernel's Landlock for files, seccomp for the network (over Fast DDS only a ROS domain)."""
+    """No namespaces: the kernel's Landlock for files, seccomp for the network."""
     NONE = "none"
     """A plain process of the same user, with limits. For code that you trust."""
 

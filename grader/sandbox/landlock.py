@@ -1,8 +1,8 @@
 """On a machine without user namespaces: Landlock keeps a student's program away from the files of this machine.
 
 Weaker than the namespaces: the program sees the ids and command lines of other processes, and can connect to Unix
-sockets that its user may write to; over Fast DDS also to the machine's loopback network. It can neither read the memory
-of others nor, from Linux 6.12 on, signal them (before that, a seccomp filter refuses it every signal).
+sockets that its user may write to. It can neither read the memory of others nor, from Linux 6.12 on, signal them
+(before that, a seccomp filter refuses it every signal).
 
 Source: landlock(7) and Documentation/userspace-api/landlock.rst of the Linux kernel.
 """
@@ -64,17 +64,16 @@ def student_user() -> int:
     return dedicated_user()
 
 
-def restrict(paths: Paths, readonly: Sequence[Path], hidden: Sequence[Path], *, processes: bool) -> None:
+def restrict(paths: Paths, readonly: Sequence[Path], hidden: Sequence[Path]) -> None:
     """Confine this process, and everything it starts, to reading Python and ROS 2 and writing its own folders.
 
-    Needs no_new_privs.
+    Needs no_new_privs. It may also read /proc, in which its processes check whether they are idle. It then sees others'
+    command lines; Landlock itself keeps their memory, environment and files closed.
 
     Args:
         paths: its own folders.
         readonly: what else it may read.
         hidden: what it may not read, although it is inside something that it may; it sees the names in there.
-        processes: whether it may read /proc, in which its processes check whether they are idle. It then sees others'
-        command lines; Landlock itself keeps their memory, environment and files closed.
 
     Raises:
         OSError: if the kernel has no Landlock.
@@ -93,8 +92,7 @@ def restrict(paths: Paths, readonly: Sequence[Path], hidden: Sequence[Path], *, 
     )
     for path in (*filesystem.system(), *filesystem.interpreter(), *readonly, Path(paths.folder)):
         _allow_reading(ruleset, path, [path.resolve() for path in hidden])
-    if processes:
-        _allow(ruleset, Path("/proc"), _READ_FILE | _READ_FOLDER)
+    _allow(ruleset, Path("/proc"), _READ_FILE | _READ_FOLDER)
     for path in map(Path, ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")):
         _allow(ruleset, path, (_READ_FILE | _WRITE_FILE) & files)
     for path in (Path(paths.home), Path(paths.temporary)):

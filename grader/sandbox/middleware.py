@@ -1,4 +1,4 @@
-"""Which middleware the programs under test use, which ones this machine has, and the type support they need."""
+"""The middleware of the programs under test: whether this machine has it, and the type support they need."""
 
 from __future__ import annotations
 
@@ -8,72 +8,50 @@ import importlib
 import inspect
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from grader.sandbox.program import Middleware, SandboxUnavailable
+from grader.sandbox.program import SandboxUnavailable
 from rmw_lockstep.library import Library, Unavailable, compiler, library
 from rmw_lockstep.ros import installed_ros
 
 
 class MiddlewareUnavailable(SandboxUnavailable):
-    """Raised when the middleware that was requested is not available on this machine."""
-
-
-@dataclass(frozen=True)
-class Choice:
-    """A middleware; `warning` says in one sentence what is weaker than it could be, and what to do. Mostly empty."""
-
-    middleware: Middleware
-    warning: str = ""
+    """Raised when the grader's middleware is not available on this machine."""
 
 
 @cache
-def choose_middleware(wanted: Middleware | None = None) -> Choice:
-    """Return the middleware to use: the wanted one, or otherwise lockstep if available. Compiles it at the first call.
+def require_middleware() -> None:
+    """Make sure that the grader's middleware is there. Compiles it at the first call, if need be.
 
     Raises:
-        MiddlewareUnavailable: if lockstep is wanted and not available.
+        MiddlewareUnavailable: if it is neither installed nor can be compiled here.
     """
-    if wanted is Middleware.FASTDDS:
-        return Choice(wanted)
-    reason = _reason_against_lockstep()
-    if reason is None:
-        return Choice(Middleware.LOCKSTEP)
-    if wanted is Middleware.LOCKSTEP:
-        raise MiddlewareUnavailable(f"The middleware 'lockstep' can't be used here: {reason}")
-    return Choice(
-        Middleware.FASTDDS,
-        "Graded over Fast DDS: the grader has to infer when a node is done, so one with threads or sleeps of its own "
-        f"may get another result each time. Its own middleware can't be used here: {reason}",
-    )
-
-
-def to_be_compiled() -> bool:
-    """Return whether `choose_middleware` will compile lockstep, which takes seconds."""
-    return isinstance(library(), Unavailable) and installed_ros() is not None and compiler() is not None
-
-
-def _reason_against_lockstep() -> str | None:
     from rmw_lockstep.build import BuildError, build  # the processes that become students must not compile
 
     try:
-        found = build()
+        built = build()
     except BuildError as error:
-        return f"it could not be compiled. {error}"
-    return f"{found.reason}. {found.remedy}" if isinstance(found, Unavailable) else None
+        raise MiddlewareUnavailable(f"The grader's middleware could not be compiled. {error}") from None
+    if isinstance(built, Unavailable):
+        raise MiddlewareUnavailable(f"The grader's middleware is missing: {built.reason}. {built.remedy}")
 
 
-def variables(middleware: Middleware, of: Mapping[str, str]) -> dict[str, str]:
-    """Return what a process needs in its environment to load a middleware, given its environment without that.
+def to_be_compiled() -> bool:
+    """Return whether `require_middleware` will compile it, which takes seconds."""
+    return isinstance(library(), Unavailable) and installed_ros() is not None and compiler() is not None
+
+
+def variables(of: Mapping[str, str]) -> dict[str, str]:
+    """Return what a process needs in its environment to load the middleware, given its environment without that.
 
     Raises:
         MiddlewareUnavailable: if it has not been compiled.
     """
-    if middleware is Middleware.FASTDDS:
-        return {"RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}
-    return _library().environment(of)
+    built = library()
+    if isinstance(built, Unavailable):
+        raise MiddlewareUnavailable(f"The grader's middleware is missing: {built.reason}. {built.remedy}")
+    return built.environment(of)
 
 
 def choosable() -> bool:
@@ -86,16 +64,9 @@ def choosable() -> bool:
 
 
 def library_folder() -> Path | None:
-    """Return the folder of the compiled lockstep, which sandboxes show; None if there is none."""
+    """Return the folder of the compiled middleware, which sandboxes show; None if there is none."""
     found = library()
     return found.folder if isinstance(found, Library) else None
-
-
-def _library() -> Library:
-    found = library()
-    if isinstance(found, Unavailable):
-        raise MiddlewareUnavailable(f"The middleware 'lockstep' can't be used here: {found.reason}. {found.remedy}")
-    return found
 
 
 _this_process = ctypes.CDLL(None)

@@ -12,8 +12,7 @@ from typing import NoReturn
 
 from grader.sandbox import seccomp, syscalls
 from grader.sandbox.filesystem import USER_ID, Mount, dedicated_user
-from grader.sandbox.isolation import Isolation
-from grader.sandbox.program import SUBMISSION, SandboxError
+from grader.sandbox.program import SUBMISSION
 
 
 @dataclass(frozen=True)
@@ -84,23 +83,23 @@ _OLD = "/.old"
 _MOUNT = syscalls.MS_NOSUID | syscalls.MS_NODEV
 
 
-def build(plan: Sequence[Mount], user_namespace: int, *, network: bool) -> Namespaces:
+def build(plan: Sequence[Mount], user_namespace: int) -> Namespaces:
     """Make the namespaces and their root, and move this process into them (except the pid namespace's children).
 
-    With `network` the process keeps its current network; otherwise there is none, not even loopback.
+    There is no network, not even loopback.
 
     Raises:
         OSError: if a namespace or a mount is refused.
     """
     syscalls.setns(user_namespace, syscalls.CLONE_NEWUSER)
     flags = syscalls.CLONE_NEWNS | syscalls.CLONE_NEWPID | syscalls.CLONE_NEWIPC | syscalls.CLONE_NEWUTS
-    syscalls.unshare(flags if network else flags | syscalls.CLONE_NEWNET)
+    syscalls.unshare(flags | syscalls.CLONE_NEWNET)
     syscalls.sethostname("student")
     os.chdir("/")
     status_read, status_write = os.pipe()
     init = os.fork()
     if init == 0:
-        _be_init(plan, status_write, network)
+        _be_init(plan, status_write)
     os.close(status_write)
     with os.fdopen(status_read, "rb") as stream:
         status = stream.read()
@@ -110,7 +109,7 @@ def build(plan: Sequence[Mount], user_namespace: int, *, network: bool) -> Names
     return Namespaces(init)
 
 
-def _be_init(plan: Sequence[Mount], status_write: int, network: bool) -> NoReturn:
+def _be_init(plan: Sequence[Mount], status_write: int) -> NoReturn:
     """Run the first process of the pid namespace: build the root, then only reap orphans until killed."""
     try:
         syscalls.prctl(syscalls.PR_SET_PDEATHSIG, signal.SIGKILL)
@@ -122,7 +121,7 @@ def _be_init(plan: Sequence[Mount], status_write: int, network: bool) -> NoRetur
         syscalls.prctl(syscalls.PR_SET_NO_NEW_PRIVS, 1)
         syscalls.prctl(syscalls.PR_SET_DUMPABLE, 0)
         if seccomp.supported():
-            seccomp.install(seccomp.program(network=network))
+            seccomp.install(seccomp.program())
         os.write(status_write, b"ready")
     except BaseException as fault:
         os.write(status_write, str(fault).encode())
@@ -261,58 +260,3 @@ def create_user_namespace() -> int:
         os.close(status_read)
         os.close(ended_to)
         os.waitpid(child, 0)
-
-
-def enter(isolation: Isolation) -> None:
-    """Move this process into namespaces of its own: a network with nothing but loopback, /dev/shm, and System V IPC.
-
-    Only for students without a hub, which talk to their runner over Fast DDS. Those with a hub have no network.
-
-    Call it in a freshly forked process with a single thread, before rclpy is initialised. Its students join the same
-    network, so that runner and student can reach each other and nothing else. At the levels without namespaces only
-    orphans are caught (see PR_SET_CHILD_SUBREAPER in prctl(2)); there a ROS domain of its own separates the runner.
-
-    Called again by the same thread, before its next student, it moves into another new network: in the old one the
-    kernel may still reserve a port for a connection of the previous student.
-
-    Raises:
-        OSError: if this machine allows no such namespaces.
-    """
-    syscalls.prctl(syscalls.PR_SET_CHILD_SUBREAPER, 1)
-    if isolation not in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
-        return
-    if _made:
-        syscalls.unshare(syscalls.CLONE_NEWNET)
-        syscalls.bring_loopback_up()
-        return
-    flags = syscalls.CLONE_NEWNET | syscalls.CLONE_NEWNS | syscalls.CLONE_NEWIPC
-    user, group = os.geteuid(), os.getegid()
-    try:
-        syscalls.unshare(flags if user == 0 else flags | syscalls.CLONE_NEWUSER)
-    except OSError as fault:
-        which = "network or mount" if user == 0 else "user"
-        raise OSError(f"this machine allows no {which} namespaces: {fault}") from fault
-    if user != 0:
-        Path("/proc/self/setgroups").write_text("deny")
-        Path("/proc/self/uid_map").write_text(f"{user} {user} 1\n")
-        Path("/proc/self/gid_map").write_text(f"{group} {group} 1\n")
-    syscalls.mount("", "/", flags=syscalls.MS_REC | syscalls.MS_PRIVATE)
-    if Path("/dev/shm").is_dir():
-        syscalls.mount("tmpfs", "/dev/shm", "tmpfs", syscalls.MS_NOSUID | syscalls.MS_NODEV, "mode=1777,size=64m")
-    syscalls.bring_loopback_up()
-    _made.append(create_user_namespace())
-
-
-# The descriptor of the students' user namespace, once this process is a runner.
-_made: list[int] = []
-
-
-def students_users() -> int:
-    """Return the user namespace that this runner's students run in, in turn: a descriptor.
-
-    Raises:
-        SandboxError: if this process has not entered namespaces of its own.
-    """
-    if not _made:
-        raise SandboxError("call grader.sandbox.enter(isolation) in the runner's process before it starts a student")
-    return _made[-1]

@@ -1,4 +1,4 @@
-"""What is started in a sandbox: files, arguments, paths, middleware and limits; and what can go wrong."""
+"""What is started in a sandbox: files, arguments, paths and limits; and what can go wrong."""
 
 from __future__ import annotations
 
@@ -7,10 +7,7 @@ import os
 import resource
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import Enum
 from pathlib import Path, PurePosixPath
-
-from rmw_lockstep.library import IDENTIFIER
 
 SUBMISSION = "/submission"
 HUB = "/run/lockstep/hub"
@@ -20,28 +17,11 @@ START_REQUEST = b" start"
 
 
 class SandboxUnavailable(Exception):
-    """Raised when this machine does not allow the wanted sandbox or middleware, or any at all."""
+    """Raised when this machine does not allow the requested sandbox or lacks the middleware."""
 
 
 class SandboxError(Exception):
     """Raised when a sandbox could not be made or ended: a fault of ours or the machine's, never of the student."""
-
-
-class Middleware(str, Enum):
-    """The middlewares, the better one first."""
-
-    LOCKSTEP = "lockstep"
-    """rmw_lockstep: no network, and the hub knows when a program has nothing left to do."""
-    FASTDDS = "fastdds"
-    """Fast DDS over a network that the runner shares with its student."""
-
-    def __str__(self) -> str:
-        """Return the word that is used on the command line and in a grade."""
-        return self.value
-
-    def is_named(self, identifier: str) -> bool:
-        """Return whether `identifier` is the name by which rclpy knows this middleware once it has loaded it."""
-        return identifier == IDENTIFIER if self is Middleware.LOCKSTEP else identifier.startswith("rmw_fastrtps")
 
 
 @dataclass(frozen=True)
@@ -57,9 +37,8 @@ class Program:
         environment: variables beyond those that Python and ROS 2 need; nothing of the caller's own is passed on.
         readonly: files and folders of this machine that the program sees, read-only, at the same path.
         hidden: files and folders of this machine that it never sees, even inside one that it does.
-        hub: the socket of the hub that each of its processes connects to, over rmw_lockstep; alone in a folder that
-            belongs to the caller. The program then has no network at all. None: it uses Fast DDS, in the network of the
-            calling process.
+        hub: the socket of the hub that each of its processes connects to; alone in a folder that belongs to the caller.
+            None: it runs in the computer's time, and reaches no other program.
         preloaded: run in a fork of the fork server, in which rclpy has been imported already. Otherwise in a new Python
         process.
     """
@@ -87,11 +66,6 @@ class Program:
             raise ValueError(f"the main file {self.main!r} is not among the files: {', '.join(self.files) or 'none'}")
         if absolute and not any(Path(self.main).is_relative_to(shown) for shown in self.readonly):
             raise ValueError(f"the main file {self.main} is in none of the readonly folders")
-
-    @property
-    def middleware(self) -> Middleware:
-        """The middleware that it uses."""
-        return Middleware.LOCKSTEP if self.hub else Middleware.FASTDDS
 
 
 @dataclass(frozen=True)

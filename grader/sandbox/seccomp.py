@@ -36,8 +36,6 @@ _RETURN = 0x06  # BPF_RET | BPF_K
 _NUMBER_AT, _ARCHITECTURE_AT, _ARGUMENT_AT = 0, 4, 16  # offsets in struct seccomp_data, little-endian
 
 _NEW_NAMESPACES = 0x7E020000  # every CLONE_NEW… flag of clone(2)
-_LOCAL = (socket.AF_UNIX,)
-_NETWORK = (socket.AF_UNIX, socket.AF_INET, socket.AF_INET6, socket.AF_NETLINK)
 
 # name: (number on x86-64, number on arm64); None if it does not exist
 _FORBIDDEN: dict[str, tuple[int | None, int | None]] = {
@@ -124,11 +122,10 @@ def supported() -> bool:
 
 
 @cache
-def program(*, network: bool = True, no_signals: bool = False) -> bytes:
-    """Return the filter in the kernel's format (an array of struct sock_filter).
+def program(*, no_signals: bool = False) -> bytes:
+    """Return the filter in the kernel's format (an array of struct sock_filter): of sockets, Unix sockets only.
 
     Args:
-        network: allow sockets for IP and netlink, which Fast DDS needs. Without it, there are Unix sockets only.
         no_signals: also refuse every signal to another process, if neither a pid namespace nor Landlock does.
 
     Raises:
@@ -136,7 +133,6 @@ def program(*, network: bool = True, no_signals: bool = False) -> bytes:
     """
     if not supported():
         raise OSError(f"seccomp: the system calls of {platform.machine()} are not known here")
-    sockets = _NETWORK if network else _LOCAL
     column = 0 if platform.machine() == "x86_64" else 1
     forbidden = {name: pair[column] for name, pair in _FORBIDDEN.items()}
     if no_signals:
@@ -158,9 +154,9 @@ def program(*, network: bool = True, no_signals: bool = False) -> bytes:
         (_ANY_BIT, 0, 1, _NEW_NAMESPACES),
         _refuse(errno.EPERM),
         (_RETURN, 0, 0, _ALLOW),
-        (_EQUAL, 0, len(sockets) + 2, _SOCKET[column]),
+        (_EQUAL, 0, 3, _SOCKET[column]),
         (_LOAD, 0, 0, _ARGUMENT_AT),
-        *((_EQUAL, len(sockets) - at, 0, int(family)) for at, family in enumerate(sockets)),
+        (_EQUAL, 1, 0, int(socket.AF_UNIX)),
         _refuse(errno.EAFNOSUPPORT),
         (_RETURN, 0, 0, _ALLOW),
     ]

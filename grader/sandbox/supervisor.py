@@ -7,7 +7,6 @@ import json
 import os
 import select
 import signal
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
@@ -27,15 +26,14 @@ class Request:
     paths: Paths
 
 
-def supervise(start: Start, control: int, output: int, runner_namespaces: Sequence[int]) -> Request:
+def supervise(start: Start, control: int, output: int, users: int = -1) -> Request:
     """Start a student and stay with it until it is dead. Returns only in the student itself; the supervisor exits.
 
     Args:
         start: what to start.
         control: the socket to the runner.
         output: where the student's standard output and error go.
-        runner_namespaces: the user namespace that the runner made for its students, and for those without a hub its own
-        user and network namespace; empty for the levels without.
+        users: the user namespace that the runner made for its students, at the levels with namespaces.
     """
     reported = False
     try:
@@ -43,9 +41,6 @@ def supervise(start: Start, control: int, output: int, runner_namespaces: Sequen
         syscalls.prctl(syscalls.PR_SET_CHILD_SUBREAPER, 1)  # orphans of the student or bubblewrap are reaped here
         os.chdir("/")
         other_tasks = _other_tasks(start)
-        users, *runner = runner_namespaces or (-1,)
-        for namespace in runner:
-            _join(namespace)
         if start.program.hub:
             _admit_student_alone(start.program.hub, _owner(start.isolation))
         sandbox, paths = _build(start, users)
@@ -75,9 +70,9 @@ def _build(start: Start, users: int) -> tuple[namespaces.Namespaces | processes.
     program = start.program
     if start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
         if start.isolation is Isolation.BUBBLEWRAP:
-            sandbox = bubblewrap.build(start.options, users, network=not program.hub)
+            sandbox = bubblewrap.build(start.options, users)
         else:
-            sandbox = namespaces.build(start.plan, users, network=not program.hub)
+            sandbox = namespaces.build(start.plan, users)
         namespaces.write_files(program.files)
         return sandbox, Paths(SUBMISSION, filesystem.HOME, "/tmp", HUB if program.hub else None)
     owner = _owner(start.isolation)
@@ -166,15 +161,6 @@ def _receive(control: int) -> bytes:
 def _report(control: int, message: dict[str, object]) -> None:
     with contextlib.suppress(OSError):  # the runner is gone: noticed at the next read
         os.write(control, json.dumps(message).encode())
-
-
-def _join(namespace: int) -> None:
-    """Enter one of the runner's namespaces, unless this process is in it already."""
-    for name in ("user", "net"):
-        mine = Path(f"/proc/self/ns/{name}").stat()
-        if (mine.st_dev, mine.st_ino) == (os.fstat(namespace).st_dev, os.fstat(namespace).st_ino):
-            return
-    syscalls.setns(namespace)
 
 
 def _other_tasks(start: Start) -> int:

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import ctypes
-import fcntl
 import os
 import platform
-import socket
-import struct
 
 CLONE_NEWNS = 0x00020000
 CLONE_NEWUTS = 0x04000000
@@ -141,9 +138,3 @@ def drop_capabilities() -> None:
     header = (ctypes.c_uint32 * 2)(_CAPABILITY_VERSION_3, 0)
     data = (ctypes.c_uint32 * 6)()
     libc_call("capset", ctypes.byref(header), ctypes.byref(data), what="capset")
-
-
-def bring_loopback_up() -> None:
-    """Make 127.0.0.1 of this network namespace work: netdevice(7)."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:
-        fcntl.ioctl(any_socket, _SIOCSIFFLAGS, struct.pack("16sh14x", b"lo", _IFF_UP))

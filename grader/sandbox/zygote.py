@@ -23,8 +23,9 @@ from grader import preloaded
 from grader.sandbox import callers, filesystem, heap, middleware, seccomp, syscalls, uncaught
 from grader.sandbox import middleware as type_support
 from grader.sandbox.middleware import choosable
-from grader.sandbox.program import START_REQUEST, Middleware, Paths, Program
+from grader.sandbox.program import START_REQUEST, Paths, Program
 from grader.sandbox.supervisor import Request, refuse, supervise
+from rmw_lockstep.library import IDENTIFIER
 
 #: The number of cores that a program sees. It runs on one, but rclpy's MultiThreadedExecutor uses this as its number of
 #: threads, and with a single thread a program would hang here that works on every other machine.
@@ -114,7 +115,7 @@ def _modules_of_this_fork() -> list[str]:
 _ours: list[types.ModuleType] = []
 
 
-# python -m grader.sandbox.zygote DESCRIPTOR MIDDLEWARE MODULE…
+# python -m grader.sandbox.zygote DESCRIPTOR MODULE…
 
 
 #: In bytes. The longest is the name of a module.
@@ -124,9 +125,9 @@ _MOST_DESCRIPTORS = 8
 
 def main(arguments: list[str]) -> None:
     """Serve until the last user of the socket is gone. Return only as a student whose program has ended."""
-    requests, middleware, modules = int(arguments[0]), Middleware(arguments[1]), arguments[2:]
+    requests, modules = int(arguments[0]), arguments[1:]
     os.chdir("/")
-    fault = _load(modules, middleware)
+    fault = _load(modules)
     _prepare_for_forks()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # supervisors need no reaping
@@ -140,8 +141,7 @@ def _prepare_for_forks() -> None:
     filesystem.system()
     filesystem.interpreter()
     if seccomp.supported():
-        seccomp.program(network=False, no_signals=False)
-        seccomp.program(network=False)
+        seccomp.program()
     callers.remember_files()
     preloaded.choose()
     preloaded.hide()
@@ -175,12 +175,12 @@ def serve(requests: int, fault: str | None) -> Request | None:
             os.close(requests)
             for number in passed:  # no program may inherit what was received
                 os.set_inheritable(number, False)
-            request, control, output, *namespaces = passed
+            request, control, output, *users = passed
             with os.fdopen(request, "rb") as stream:
                 start = pickle.load(stream)
             if fault:
                 refuse(control, fault)
-            return supervise(start, control, output, namespaces)
+            return supervise(start, control, output, *users)
         for number in passed:
             os.close(number)
 
@@ -193,12 +193,12 @@ def _fork_supervisor() -> int:
     return syscalls.libc_call("fork", of=_with_python)
 
 
-# Keeps Python's lock during a call, as a process must that is to go on in Python after it.
+# Hold the GIL across the call: the child continues in Python.
 _with_python = ctypes.PyDLL(None, use_errno=True)
 
 
-def _load(modules: list[str], middleware: Middleware) -> str | None:
-    """Import modules, and return what is wrong if rclpy has loaded another middleware than it was started for."""
+def _load(modules: list[str]) -> str | None:
+    """Import modules, and return what is wrong if rclpy has loaded another middleware than the grader's."""
     wanted = os.environ.pop("RMW_IMPLEMENTATION", None)
     if wanted and choosable():
         os.environ["RMW_IMPLEMENTATION"] = wanted
@@ -209,9 +209,9 @@ def _load(modules: list[str], middleware: Middleware) -> str | None:
     if "rclpy" not in sys.modules:
         return None
     loaded = sys.modules["rclpy"].get_rmw_implementation_identifier()
-    if middleware.is_named(loaded):
+    if loaded == IDENTIFIER:
         return None
-    return f"rclpy has loaded the middleware {loaded}, not {middleware}. Run spinbook doctor: it says what is installed"
+    return f"rclpy has loaded the middleware {loaded}, not {IDENTIFIER}. Run spinbook doctor: it says what is installed"
 
 
 def _import(name: str) -> None:

@@ -17,8 +17,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from grader.sandbox.middleware import choose_middleware
-from grader.sandbox.program import Middleware
+from grader.sandbox.middleware import require_middleware
 from grader.workers.shared import SharedObjects
 
 if TYPE_CHECKING:
@@ -109,21 +108,12 @@ class Worker:
         self.close()
 
 
-PROFILE = Path(__file__).parents[1] / "loopback.xml"
-
-#: For every process that takes part in a run over Fast DDS. The ROS domain is added to it.
-FAST_DDS_ENVIRONMENT = {
-    "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILE),
-    "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
-}
-
 _THREADS_OF_NUMPY = "OPENBLAS_NUM_THREADS"
 
-#: For the worker and its runners. A second RMW or the user's ROS_STATIC_PEERS would separate runner and student.
+#: For the worker and its runners, which import ROS's message types. Without RMW_IMPLEMENTATION of the user's, which may
+#: name a middleware that is not installed.
 WORKER_ENVIRONMENT = {
-    **FAST_DDS_ENVIRONMENT,
     "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp",
-    "ROS_STATIC_PEERS": "",
     "PYTHONHASHSEED": "0",
     _THREADS_OF_NUMPY: "1",
 }
@@ -161,14 +151,13 @@ class WorkerPool:
     Any thread may call `do` and `reserve`; use it as a context manager.
     """
 
-    def __init__(self, *middlewares: Middleware | None) -> None:
-        """Start the worker, ready for programs of these middlewares; None is the default one.
+    def __init__(self) -> None:
+        """Start the worker.
 
         Raises:
-            MiddlewareUnavailable: if one of them is not available on this machine.
+            MiddlewareUnavailable: if the grader's middleware is not available on this machine.
         """
-        chosen = {choose_middleware(one).middleware for one in middlewares or (None,)}
-        self._middlewares = sorted(one.value for one in chosen)
+        require_middleware()
         # A job that is cancelled ends at once: what it has made, as the folder of its hub, goes with the pool. A
         # student that is another user goes through it to the hub.
         self._temporary = Path(tempfile.mkdtemp(prefix="spinbook-", dir=_place_for_sockets()))
@@ -184,7 +173,7 @@ class WorkerPool:
         self._worker = subprocess.Popen(
             [
                 *(sys.executable, "-m", "grader.workers.worker"),
-                *(str(theirs.fileno()), str(self._temporary), *self._middlewares),
+                *(str(theirs.fileno()), str(self._temporary)),
             ],
             pass_fds=[theirs.fileno()],
             stdin=subprocess.DEVNULL,

@@ -18,11 +18,10 @@ from typing import TYPE_CHECKING, NoReturn
 
 from grader.sandbox import filesystem, middleware
 from grader.sandbox.fork_server import ForkServer
-from grader.sandbox.program import Middleware
 from grader.workers.answers import answer_of
 from grader.workers.forking import fork
 from grader.workers.judges import Judges
-from grader.workers.pool import JUDGE, PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, PROFILE, SHARE
+from grader.workers.pool import JUDGE, PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, SHARE
 from grader.workers.shared import receive
 
 if TYPE_CHECKING:
@@ -33,7 +32,7 @@ if TYPE_CHECKING:
 def preload() -> None:
     """Import what runs a program, look at the file system, and leave the memory in a good state for forks to share."""
     importlib.import_module("grader.runner.run")
-    filesystem.mounts((PROFILE,), (), 0)
+    filesystem.mounts((), (), 0)
     _share()
 
 
@@ -71,14 +70,14 @@ def _share() -> None:
     gc.freeze()
 
 
-# python -m grader.workers.worker DESCRIPTOR FOLDER MIDDLEWARE…
+# python -m grader.workers.worker DESCRIPTOR FOLDER
 
 
 def main() -> None:
     """Serve jobs until the other end of the control socket is closed; remove the folder with all they have left."""
-    descriptor, folder, *middlewares = sys.argv[1:]
+    descriptor, folder = sys.argv[1:]
     control = socket.socket(fileno=int(descriptor))
-    with ForkServer([Middleware(name) for name in middlewares]) as fork_server:
+    with ForkServer() as fork_server:
         preload()
         working: set[int] = set()
         judges = Judges(working)

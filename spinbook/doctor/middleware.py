@@ -46,10 +46,7 @@ def examine_middleware(name: str) -> Finding:
     return missing(name, f"does not load: {lines[-1]}", "Set the environment up again: make setup")
 
 
-_WEAKER = (
-    "Without it the grader uses Fast DDS and has to infer when a node is done, so a node with threads or sleeps of its "
-    "own may get another result each time."
-)
+_NEEDED = "Without it nothing can be graded or checked."
 _NAME_LOCKSTEP = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
 
 
@@ -57,7 +54,7 @@ def examine_lockstep(name: str) -> Finding:
     """Let rclpy load it in a process of its own, and name it."""
     found = library()
     if not isinstance(found, Library):
-        return warning(name, f"not there: {found.reason}", f"{_WEAKER} {found.remedy}")
+        return warning(name, f"not there: {found.reason}", f"{_NEEDED} {found.remedy}")
     trial = _trial(found)
     loaded = trial.stdout.strip()
     if loaded == IDENTIFIER:
@@ -66,7 +63,7 @@ def examine_lockstep(name: str) -> Finding:
     return warning(
         name,
         f"compiled, but it does not load: {lines[-1]}",
-        f"{_WEAKER} Compile it again: rm -r {found.folder}; python -m rmw_lockstep.build",
+        f"{_NEEDED} Compile it again: rm -r {found.folder}; python -m rmw_lockstep.build",
     )
 
 

@@ -34,7 +34,7 @@ ENDS = (
     EndPoint("/worker", "action server", "/count", COUNT, "reliable", "volatile"),
 )
 
-EMPTY = Recording("plain", (), (), ("/worker",), ENDS, "lockstep", True, Ending("completed"))
+EMPTY = Recording("plain", (), (), ("/worker",), ENDS, True, Ending("completed"))
 
 
 def ns(seconds: float) -> int:

@@ -26,7 +26,7 @@ COUNT = 8
 def recording(*received: Received) -> Recording:
     """Return a recording of messages 0.1 s apart, and their answers."""
     sent = tuple(Sent(START + i * SECOND // 10, "/in", FLOAT, {"data": float(i)}) for i in range(COUNT))
-    return Recording("plain", sent, received, ("/doubler",), (), "lockstep", True, Ending("completed"))
+    return Recording("plain", sent, received, ("/doubler",), (), True, Ending("completed"))
 
 
 def answer(number: int, value: float, later: float = 0.0) -> Received:

@@ -12,7 +12,7 @@ from grader.grading.running import ARGUMENTS
 from grader.recording import Recording
 from grader.runner.run import run
 from grader.runner.student import Task
-from grader.sandbox import ForkServer, Limits, Middleware, Program, Student, choose
+from grader.sandbox import ForkServer, Limits, Program, Student, choose
 from grader.scenario import Scenario
 from grader.workers.pool import STUDENT_ENVIRONMENT
 from rmw_lockstep.hub import Limits as HubLimits
@@ -20,7 +20,7 @@ from rmw_lockstep.hub import Limits as HubLimits
 
 @pytest.fixture(scope="session")
 def fork_server() -> Iterator[ForkServer]:
-    with ForkServer([Middleware.LOCKSTEP]) as fork_server:
+    with ForkServer() as fork_server:
         yield fork_server
 
 

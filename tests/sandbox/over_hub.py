@@ -8,17 +8,12 @@ import time
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import pytest
 from sandbox_runner import Runner
 
-from grader.sandbox import Exit, ForkServer, Isolation, Limits, Middleware, Program, choose_middleware
+from grader.sandbox import Exit, ForkServer, Isolation, Limits, Program
 from rmw_lockstep.hub import Hub
 
 SECOND = 1_000_000_000
-
-needs_lockstep = pytest.mark.skipif(
-    choose_middleware().middleware is not Middleware.LOCKSTEP, reason=choose_middleware().warning
-)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""A runner in a process of its own, for tests: it enters its namespaces once, then runs what a test passes to it.
+"""A runner in a process of its own, for tests, which runs what a test passes to it.
 
 Also as a user who is not root, when the tests are run as root: the runner's process then first changes its user.
 """
@@ -18,7 +18,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
-from grader.sandbox import Exit, ForkServer, Isolation, Limits, Middleware, Program, available, enter, syscalls
+from grader.sandbox import Exit, ForkServer, Isolation, Limits, Program, available, syscalls
 
 NOBODY = 65534
 
@@ -103,8 +103,7 @@ def run_to_end(
 def _serve(connection: Connection, level: Isolation, home: str | None) -> None:
     if home:
         become_nobody(home)
-    with ForkServer([Middleware.FASTDDS]) as fork_server:
-        enter(level)
+    with ForkServer() as fork_server:
         while True:
             try:
                 function, arguments = connection.recv()

@@ -7,7 +7,6 @@ import signal
 import pytest
 from sandbox_runner import Runner
 
-from grader.runner.fastdds.idle import Threads
 from grader.sandbox import Exit, ForkServer, Isolation, Program
 
 #: Prints the modules of ROS that are there, and those that their packages have as attributes.
@@ -195,21 +194,17 @@ def test_an_interrupt_is_what_ctrl_c_is(any_runner: Runner) -> None:
     assert text.rstrip().endswith("KeyboardInterrupt")
 
 
-def watch_cpu(fork_server: ForkServer, level: Isolation) -> tuple[bool, float, int, int]:
+def watch_cpu(fork_server: ForkServer, level: Isolation) -> tuple[float, int, int]:
     busy = Program("n.py", {"n.py": b"print('ready')\nwhile True: pass"})
     with fork_server.start(busy, level, core=0) as student:
         while student.cpu_seconds() < 0.3:
             assert student.wait(0.001) is None
-        threads = Threads(student.pids)
-        runs = any(threads.at_work() for _ in range(100))
-        threads.close()
-        return runs, student.cpu_seconds(), student.processes(), student.pid
+        return student.cpu_seconds(), student.processes(), student.pid
 
 
 def test_the_rig_sees_what_the_program_uses(any_runner: Runner) -> None:
-    runs, cpu_s, processes, pid = any_runner.do(watch_cpu)
+    cpu_s, processes, pid = any_runner.do(watch_cpu)
 
-    assert runs
     assert cpu_s >= 0.3
     assert processes == 1
     assert pid > 1

@@ -11,7 +11,7 @@ import psutil
 import pytest
 from sandbox_runner import Runner, reason_against
 
-from grader.sandbox import Exit, ForkServer, Isolation, Program, enter
+from grader.sandbox import Exit, ForkServer, Isolation, Program
 
 #: Says that its daemons started only when the last of them has said so, in a pipe: it may end right after.
 DAEMON = """
@@ -129,33 +129,6 @@ def test_no_temporary_folder_is_left(any_runner: Runner) -> None:
     shown = any_runner.run("import os\nprint(os.path.dirname(os.path.dirname(__file__)))").text.strip()
 
     assert Path(shown).name not in folders() or shown == "/"
-
-
-NOTE = """
-import socket
-server = socket.socket()
-server.bind(("127.0.0.1", 5005))  # refused while the kernel keeps the port for a connection that has ended
-server.listen()
-client = socket.create_connection(("127.0.0.1", 5005))
-there, _ = server.accept()
-there.close()
-client.close()
-print("nobody was here before", flush=True)
-"""
-
-
-def test_no_connection_tells_a_program_that_it_ran_before(apart_runner: Runner) -> None:
-    assert apart_runner.run(NOTE).text == "nobody was here before\n"
-    assert "Address already in use" in apart_runner.run(NOTE).text
-
-    apart_runner.do(enter_again)
-
-    assert apart_runner.run(NOTE).text == "nobody was here before\n"
-
-
-def enter_again(fork_server: ForkServer, level: Isolation) -> None:
-    """Prepare the runner for the next program."""
-    enter(level)
 
 
 @pytest.mark.parametrize("times", [10, pytest.param(200, marks=pytest.mark.soak)])

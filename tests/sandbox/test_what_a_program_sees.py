@@ -205,22 +205,6 @@ print(json.dumps([subprocess.run([p, '--version'], capture_output=True).returnco
     assert 0 not in answer(apart_runner, code)
 
 
-def test_there_is_no_network_but_loopback(apart_runner: Runner) -> None:
-    code = """
-import socket
-reached = []
-for target in (('1.1.1.1', 53), ('192.0.2.1', 80), ('169.254.169.254', 80)):
-    s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    try:
-        s.connect(target)
-        reached.append(target)
-    except OSError:
-        pass
-print(json.dumps([reached, [name for _, name in socket.if_nameindex()]]))"""
-
-    assert answer(apart_runner, code) == [[], ["lo"]]
-
-
 def test_a_server_of_this_machine_is_not_reached(apart_runner: Runner) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
