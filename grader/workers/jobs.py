@@ -14,7 +14,6 @@ from grader.runner.student import Task
 from grader.sandbox.isolation import Isolation
 from grader.sandbox.program import Limits, Program
 from grader.scenario.scenario import Scenario
-from groundwork.files import claim_number
 
 if TYPE_CHECKING:
     from grader.checking.run import Run
