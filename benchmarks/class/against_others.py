@@ -34,7 +34,7 @@ from variants import reworded
 from grader.exercise import load
 from grader.grading import Options, grading_of
 from grader.workers import WorkerPool
-from grader.workers.pool import PROFILE
+from spinbook.kernel.environment import LOOPBACK_PROFILE
 
 PINS = (
     "nbgrader==0.9.6",
@@ -134,7 +134,7 @@ def otter(folder: Path, environment: Path, names: list[str], lib: Path, students
 
 
 def _run(command: list[str], folder: Path, environment: Path) -> str:
-    ros = {"FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILE), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT"}
+    ros = {"FASTRTPS_DEFAULT_PROFILES_FILE": str(LOOPBACK_PROFILE), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT"}
     path = f"{environment / 'bin'}{os.pathsep}{os.environ['PATH']}"
     done = subprocess.run(
         command, cwd=folder, env={**_clean(), **ros, "PATH": path}, capture_output=True, text=True, check=False
