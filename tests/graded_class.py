@@ -10,6 +10,7 @@ from datetime import datetime, timedelta, timezone
 from pathlib import Path
 
 import pytest
+from submissions import SUBMISSIONS
 
 from grader.exercise import Exercise, load
 from grader.grading import Grade, Options, grading_of
@@ -21,7 +22,6 @@ from grader.workers import WorkerPool
 ROOT = Path(__file__).parents[1]
 EXERCISE = ROOT / "exercises" / "joint_velocity"
 SOLUTIONS = ROOT / "solutions" / "joint_velocity"
-HOSTILE = ROOT / "tests" / "hostile" / "submissions"
 
 WHEN = datetime(2026, 11, 20, 23, 41, tzinfo=timezone(timedelta(hours=1)))
 
@@ -78,10 +78,13 @@ def _submissions(exercise: Exercise) -> dict[str, Submission]:
     files = [
         SOLUTIONS / "solution.py",
         *(SOLUTIONS / "mistakes" / f"{name}.py" for name in ("fixed_dt", "joints_by_index", "position_for_velocity")),
-        *(HOSTILE / f"{name}.py" for name in ("crashes_at_message_37", "syntax_error", "never_spins")),
     ]
     return {
         **{file.stem: read(str(file), exercise) for file in files},
+        **{
+            name: of_source(f"{name}.py", SUBMISSIONS[name].source.encode(), exercise)
+            for name in ("crashes_at_message_37", "syntax_error", "never_spins")
+        },
         "breaks_pages": of_source("breaks_pages.py", hostile.encode(), exercise),
         "two_mistakes": of_source("two_mistakes.py", two.encode(), exercise),
     }

@@ -17,11 +17,6 @@ from typing import Any
 
 from variants import as_notebook, as_upload, reworded
 
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
-
 ROOT = Path(__file__).parents[2]
 EXERCISE = "joint_velocity"
 FILE = f"{EXERCISE}.py"
@@ -30,6 +25,7 @@ HOSTILE = ROOT / "tests" / "hostile"
 
 sys.path.append(str(HOSTILE))
 from odd_files import ODD_FILES, OddFile  # noqa: E402
+from submissions import SUBMISSIONS, HostileProgram  # noqa: E402
 
 #: Of a class this share hands in mistakes, hostile programs and files that are odd as files; the rest is right.
 MISTAKEN, ATTACKING, ODD = 0.30, 0.12, 0.03
@@ -50,7 +46,7 @@ LAST = (
 @dataclass(frozen=True)
 class Expected:
     """What a grade must be. `fails` are exactly the checks that fail, where that is known; the rest is as in
-    tests/hostile/expected.toml.
+    tests/hostile/submissions.md.
     """
 
     outcomes: tuple[str, ...] = ("graded",)
@@ -121,21 +117,22 @@ def _shuffled(files: list[Any], chance: random.Random) -> list[Any]:
     return chance.sample(files, k=len(files))
 
 
-def _attacks(chance: random.Random) -> list[Path]:
-    return _shuffled(sorted((HOSTILE / "submissions").glob("*.py")), chance)
+def _attacks(chance: random.Random) -> list[HostileProgram]:
+    return _shuffled(list(SUBMISSIONS.values()), chance)
 
 
 def _odd(chance: random.Random) -> list[OddFile]:
     return _shuffled([odd for odd in ODD_FILES if odd.name not in LEFT_OUT], chance)
 
 
-def _handed(student: str, origin: Path | OddFile, chance: random.Random, exercise: str) -> Handed:
+def _handed(student: str, origin: Path | OddFile | HostileProgram, chance: random.Random, exercise: str) -> Handed:
     if isinstance(origin, OddFile):
-        return Handed(student, "odd file", origin.name, Expected(origin.outcome, origin.score), origin.make)
-    if origin.parent.parent == HOSTILE:
-        content = origin.read_bytes()
-        expected = _expected_of(origin.stem)
-        return Handed(student, "hostile", origin.stem, expected, lambda folder: (folder / FILE).write_bytes(content))
+        return Handed(
+            student, "odd file", origin.name, Expected(origin.outcome, origin.score, words=(origin.words,)), origin.make
+        )
+    if isinstance(origin, HostileProgram):
+        expected = Expected(origin.outcome, origin.score, None, origin.words, origin.never)
+        return Handed(student, "hostile", origin.name, expected, lambda f: (f / FILE).write_text(origin.source))
     source = origin.read_text(encoding="utf-8")
     fails = frozenset(_caught_by(source)) if origin.parent.name == "mistakes" else frozenset()
     kind, score = ("mistake", "less") if fails else ("right", "full")
@@ -158,9 +155,3 @@ def _packed(source: str, chance: random.Random, exercise: str) -> tuple[str, byt
 def _caught_by(source: str) -> Iterator[str]:
     """The checks that a mistake's header names."""
     yield from re.findall(r"^- (test_\w+)$", ast.get_docstring(ast.parse(source)) or "", re.MULTILINE)
-
-
-def _expected_of(attack: str) -> Expected:
-    attacked = tomllib.loads((HOSTILE / "expected.toml").read_text(encoding="utf-8"))[attack]
-    words, never = tuple(attacked.get("words", ())), tuple(attacked.get("never", ()))
-    return Expected(tuple(attacked["outcome"]), attacked["score"], None, words, never)

@@ -34,8 +34,11 @@ def test_a_mistake_is_reported_with_when_and_where_drawn_and_recorded(tmp_path: 
     assert (tmp_path / "bags" / "reordered" / "metadata.yaml").exists()
 
 
-def test_where_the_first_scenario_decides_the_others_leave_nothing_among_temporary_files(temporary_files: Path) -> None:
-    never = ROOT / "tests" / "hostile" / "submissions" / "never_creates_a_node.py"
+def test_where_the_first_scenario_decides_the_others_leave_nothing_among_temporary_files(
+    temporary_files: Path, tmp_path: Path
+) -> None:
+    never = tmp_path / "never_creates_a_node.py"
+    never.write_text("print('Hello, world!')\n")
     command = [sys.executable, "-m", "grader", "joint_velocity", str(never)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, check=False)
     assert (done.returncode, done.stderr) == (1, b"")

@@ -1,15 +1,16 @@
-"""Hostile submissions that are odd as files, and so are made when they are needed: links, odd names, far too much."""
+"""Hostile submissions that are odd as files, and so are made when they are needed: links, odd names, odd bytes."""
 
 from __future__ import annotations
 
 import json
 import os
+import random
 import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-RIGHT = Path(__file__).parent / "submissions" / "sets_use_sim_time_itself.py"
+from submissions import HONEST
 
 
 @dataclass(frozen=True)
@@ -19,18 +20,20 @@ class OddFile:
     Attributes:
         name: its name in test reports.
         make: makes it in a folder and returns the path to submit.
-        outcome: see expected.toml; several if more than one is right.
-        score: see expected.toml.
+        outcome: see submissions.md; several if more than one is right.
+        score: see submissions.md.
+        words: what the student must read if it is not graded.
     """
 
     name: str
     make: Callable[[Path], Path]
     outcome: tuple[str, ...] = ("did-not-start",)
     score: str = "zero"
+    words: str = ""
 
 
 def _named(name: str) -> Callable[[Path], Path]:
-    return lambda folder: Path(shutil.copy(RIGHT, folder / name))
+    return lambda folder: Path(shutil.copy(HONEST, folder / name))
 
 
 def _notebook(cells: list[dict[str, object]]) -> str:
@@ -41,7 +44,7 @@ def _million_cells(folder: Path) -> Path:
     """Write a valid notebook in which one of a million cells is the node."""
     path = folder / "million.ipynb"
     cell = '{{"cell_type": "code", "id": "c{}", "metadata": {{}}, "source": "x = {}", "outputs": []}}'
-    node = json.dumps({"cell_type": "code", "id": "node", "metadata": {}, "source": RIGHT.read_text(), "outputs": []})
+    node = json.dumps({"cell_type": "code", "id": "node", "metadata": {}, "source": HONEST.read_text(), "outputs": []})
     with path.open("w") as file:
         file.write('{"cells": [')
         file.writelines(cell.format(n, n) + "," for n in range(999_999))
@@ -91,10 +94,10 @@ def _gigabyte(folder: Path) -> Path:
     return path
 
 
-def _written(name: str, text: str) -> Callable[[Path], Path]:
+def _written(name: str, text: str | bytes) -> Callable[[Path], Path]:
     def make(folder: Path) -> Path:
         path = folder / name
-        path.write_text(text)
+        path.write_bytes(text.encode() if isinstance(text, str) else text)
         return path
 
     return make
@@ -118,6 +121,18 @@ ODD_FILES = (
     OddFile("notebook_without_cells", _written("empty.ipynb", _notebook([]))),
     OddFile("notebook_that_is_none", _written("broken.ipynb", '{"cells": 7')),
     OddFile("notebook_of_another_kind", _written("odd.ipynb", '["cells", null, {"source": 3}]')),
+    OddFile("empty_file", _written("node.py", ""), words="empty"),
+    OddFile("binary_rubbish", _written("node.py", random.Random(0).randbytes(4096))),
+    OddFile("not_utf8", _written("node.py", "print('größer')".encode("latin-1")), words="utf-8"),
+    OddFile("null_bytes", _written("node.py", "print('\0')")),
+    OddFile("deeply_nested", _written("node.py", "value = " + "(" * 5000 + ")" * 5000)),
+    # Some ways to look for the end of a quotation never finish this line.
+    OddFile(
+        "a_line_of_backslashes",
+        _written("node.py", "# it's " + r"\a" * 30_000 + "\n" + HONEST.read_text()),
+        ("graded",),
+        "full",
+    ),
     OddFile("name_with_spaces", _named("my  node (final) v2.py"), ("graded",), "full"),
     OddFile("name_with_line_break", _named("joint\nvelocity.py"), ("graded",), "full"),
     OddFile("name_with_quotes", _named("'; echo $(id) \"#.py"), ("graded",), "full"),

@@ -6,7 +6,6 @@ What the grader makes of them is tested in tests/hostile; this file only tests t
 from __future__ import annotations
 
 import os
-import sys
 import time
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from typing import Any
 import psutil
 import pytest
 from sandbox_runner import Runner
+from submissions import HONEST, SUBMISSIONS
 
 from grader.exercise import load
 from grader.recording.recording import RunOutcome
@@ -27,19 +27,10 @@ from grader.scenario.command_line import arguments
 from grader.scenario.declared import declared
 from grader.workers.pool import STUDENT_ENVIRONMENT
 
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
-
-HOSTILE = Path(__file__).parents[1] / "hostile"
-EXPECTED: dict[str, dict[str, Any]] = tomllib.loads((HOSTILE / "expected.toml").read_text())
-ROOT = HOSTILE.parents[1]
-# Right, and with nothing of its own to hide.
-HONEST = HOSTILE / "submissions" / "sets_use_sim_time_itself.py"
+ROOT = Path(__file__).parents[2]
 LIMITS = Limits(cpu_s=2.0, output_bytes=4 << 20, file_bytes=16 << 20, processes=96, wall_s=90.0)
 # The folders that are watched for files that a student has left.
-WATCHED = (Path("/tmp"), Path("/dev/shm"), Path("/var/tmp"), Path.home(), HOSTILE, ROOT)
+WATCHED = (Path("/tmp"), Path("/dev/shm"), Path("/var/tmp"), Path.home(), HONEST.parent, ROOT)
 # Attacks on the machine are tried at every level; others (on the grading, or on nothing) at the strongest only.
 EVERYWHERE = {
     *("fork_bomb_in_the_callback", "imports_the_grader", "kills_everything", "kills_its_parent", "log_1_gb"),
@@ -101,16 +92,15 @@ def files() -> set[Path]:
 
 def over_limit(name: str) -> bool:
     """Return whether a submission is expected to hit a limit."""
-    expected: bool = EXPECTED[name]["outcome"] == ["over-limit"]
-    return expected
+    return SUBMISSIONS[name].outcome == ("over-limit",)
 
 
 def spin_and_look(runner: Runner, name: str) -> Spun:
     """Run a submission, and check what is true for each of them."""
     before = files()
-    spun: Spun = runner.do(spin, (HOSTILE / "submissions" / f"{name}.py").read_bytes())
+    spun: Spun = runner.do(spin, SUBMISSIONS[name].source.encode())
 
-    for word in EXPECTED[name].get("never", ()):
+    for word in SUBMISSIONS[name].never:
         assert word not in spun.text
     left = [path for path in files() - before if path.name.startswith(("written_by_a", "note-of-an", "results.json"))]
     assert left == []
@@ -120,12 +110,12 @@ def spin_and_look(runner: Runner, name: str) -> Spun:
     return spun
 
 
-@pytest.mark.parametrize("name", size(EXPECTED, ALWAYS))
+@pytest.mark.parametrize("name", size(SUBMISSIONS, ALWAYS))
 def test_a_hostile_submission_is_contained(strongest_runner: Runner, name: str) -> None:
     spun = spin_and_look(strongest_runner, name)
 
     assert spun.outcome == "over-limit" or not over_limit(name), spun.text
-    if EXPECTED[name]["score"] == "full":
+    if SUBMISSIONS[name].score == "full":
         assert spun.answers > 0, spun.text
 
 

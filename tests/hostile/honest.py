@@ -1,4 +1,4 @@
-"""Prints 1 GB."""
+"""A right solution of joint_velocity. The hostile programs in submissions.md are edits of it."""
 
 import math
 
@@ -10,15 +10,13 @@ from sensor_msgs.msg import JointState
 
 class JointVelocity(Node):
     def __init__(self):
-        super().__init__('joint_velocity')
-        self.create_subscription(JointState, '/joint_commands', self.on_joints, 10)
-        self.publisher = self.create_publisher(JointState, '/joint_velocities', 10)
+        super().__init__("joint_velocity")
+        self.create_subscription(JointState, "/joint_commands", self.on_joints, 10)
+        self.publisher = self.create_publisher(JointState, "/joint_velocities", 10)
         self.stamp = None
         self.positions = {}
 
     def on_joints(self, message):
-        for _ in range(10**6):
-            print('x' * 1000)
         stamp = message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
         positions = {n: p for n, p in zip(message.name, message.position) if math.isfinite(p)}
         if self.stamp is not None and stamp > self.stamp:
@@ -43,5 +41,5 @@ def main():
         rclpy.try_shutdown()
 
 
-if __name__ == '__main__':
+if __name__ == "__main__":
     main()

@@ -1,4 +1,0 @@
-"""Never gets to its first import."""
-
-while True:
-    pass

@@ -1,5 +1,0 @@
-"""Imports a name that its module does not have."""
-
-from rclpy.node import Knot
-
-Knot()

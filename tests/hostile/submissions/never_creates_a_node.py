@@ -1,3 +1,0 @@
-"""Does something entirely different."""
-
-print("Hello, world!")

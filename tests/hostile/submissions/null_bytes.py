@@ -1,3 +1,0 @@
-"""Has a NUL in it, as a file that is no text has."""
-
-print('')

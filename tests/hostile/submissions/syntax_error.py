@@ -1,5 +1,0 @@
-"""Python cannot read it."""
-
-
-class JointVelocity(Node:
-    pass
