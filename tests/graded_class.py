@@ -13,9 +13,10 @@ import pytest
 from submissions import SUBMISSIONS
 
 from grader.exercise import Exercise, load
+from grader.exercise.mistakes import mistake_of
 from grader.grading import Grade, Options, grading_of
 from grader.grading.grade import Adjustment, Entry, Student
-from grader.submission import Submission, read
+from grader.submission import Submission
 from grader.submission.reading import of_source
 from grader.workers import WorkerPool
 
@@ -35,6 +36,8 @@ BREAKS_PAGES = """
         self.publisher.publish(answer)
 
     def unused(self, message, positions, dt):"""
+
+MISTAKES = ("fixed_dt", "joints_by_index", "position_for_velocity")
 
 #: Two mistakes at once.
 TWO = ("super().__init__('joint_velocity')", "super().__init__('velocity_node')")
@@ -73,21 +76,17 @@ def _grades(exercise: Exercise, cache: Path) -> dict[str, Grade]:
 def _submissions(exercise: Exercise) -> dict[str, Submission]:
     solution = (SOLUTIONS / "solution.py").read_text(encoding="utf-8")
     hostile = solution.replace("\n    def publish_velocities(self, message, positions, dt):", BREAKS_PAGES)
-    two = (SOLUTIONS / "mistakes" / "fixed_dt.py").read_text(encoding="utf-8").replace(*TWO)
+    mistakes = {name: mistake_of(exercise, name).source for name in MISTAKES}
+    two = mistakes["fixed_dt"].replace(*TWO)
     assert solution != hostile
-    files = [
-        SOLUTIONS / "solution.py",
-        *(SOLUTIONS / "mistakes" / f"{name}.py" for name in ("fixed_dt", "joints_by_index", "position_for_velocity")),
-    ]
-    return {
-        **{file.stem: read(str(file), exercise) for file in files},
-        **{
-            name: of_source(f"{name}.py", SUBMISSIONS[name].source.encode(), exercise)
-            for name in ("crashes_at_message_37", "syntax_error", "never_spins")
-        },
-        "breaks_pages": of_source("breaks_pages.py", hostile.encode(), exercise),
-        "two_mistakes": of_source("two_mistakes.py", two.encode(), exercise),
+    sources = {
+        "solution": solution,
+        **mistakes,
+        **{name: SUBMISSIONS[name].source for name in ("crashes_at_message_37", "syntax_error", "never_spins")},
+        "breaks_pages": hostile,
+        "two_mistakes": two,
     }
+    return {name: of_source(f"{name}.py", source.encode(), exercise) for name, source in sources.items()}
 
 
 def entry(grade: Grade, name: str = "Ada Lovelace", **fields: object) -> Entry:

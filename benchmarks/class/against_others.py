@@ -32,6 +32,7 @@ from students import EXERCISE, FILE, ROOT, SOLUTIONS
 from variants import reworded
 
 from grader.exercise import load
+from grader.exercise.mistakes import mistake_of
 from grader.grading import Options, grading_of
 from grader.workers import WorkerPool
 from spinbook.kernel.environment import LOOPBACK_PROFILE
@@ -84,8 +85,8 @@ def install(environment: Path) -> None:
 def the_students(count: int) -> dict[str, str]:
     """Code by student: the solution and one usual mistake by turns, each in other words."""
     chance = random.Random(1)
-    files = (SOLUTIONS / "solution.py", SOLUTIONS / "mistakes" / "fixed_dt.py")
-    texts = [file.read_text(encoding="utf-8") for file in files]
+    exercise = load(ROOT / "exercises" / EXERCISE)
+    texts = [(SOLUTIONS / "solution.py").read_text(encoding="utf-8"), mistake_of(exercise, "fixed_dt").source]
     return {f"student{n:03}": reworded(texts[n % 2], f"student{n:03}", chance) for n in range(count)}
 
 

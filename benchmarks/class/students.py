@@ -5,17 +5,18 @@ The same size and seed make the same class. With each submission goes what its g
 
 from __future__ import annotations
 
-import ast
 import random
-import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import cycle, islice
 from pathlib import Path
 from typing import Any
 
 from variants import as_notebook, as_upload, reworded
+
+from grader.exercise import load
+from grader.exercise.mistakes import Mistake, mistakes_of
 
 ROOT = Path(__file__).parents[2]
 EXERCISE = "joint_velocity"
@@ -80,7 +81,7 @@ def the_class(count: int, seed: int, hostile: bool = True, exercise: str = EXERC
     origins = [
         *islice(cycle(_attacks(chance)), attacking),
         *islice(cycle(_odd(chance)), odd),
-        *islice(cycle(_shuffled(sorted((solutions / "mistakes").glob("*.py")), chance)), mistaken),
+        *islice(cycle(_shuffled(mistakes_of(load(ROOT / "exercises" / exercise)), chance)), mistaken),
         *islice(cycle([solutions / "solution.py", *sorted((solutions / "right").glob("*.py"))]), count),
     ][:count]
     chance.shuffle(origins)
@@ -113,8 +114,8 @@ def _names(count: int, chance: random.Random) -> list[str]:
     return sorted(chance.sample(every, k=count))
 
 
-def _shuffled(files: list[Any], chance: random.Random) -> list[Any]:
-    return chance.sample(files, k=len(files))
+def _shuffled(origins: Sequence[Any], chance: random.Random) -> list[Any]:
+    return chance.sample(origins, k=len(origins))
 
 
 def _attacks(chance: random.Random) -> list[HostileProgram]:
@@ -125,7 +126,9 @@ def _odd(chance: random.Random) -> list[OddFile]:
     return _shuffled([odd for odd in ODD_FILES if odd.name not in LEFT_OUT], chance)
 
 
-def _handed(student: str, origin: Path | OddFile | HostileProgram, chance: random.Random, exercise: str) -> Handed:
+def _handed(
+    student: str, origin: Path | OddFile | HostileProgram | Mistake, chance: random.Random, exercise: str
+) -> Handed:
     if isinstance(origin, OddFile):
         return Handed(
             student, "odd file", origin.name, Expected(origin.outcome, origin.score, words=(origin.words,)), origin.make
@@ -133,13 +136,18 @@ def _handed(student: str, origin: Path | OddFile | HostileProgram, chance: rando
     if isinstance(origin, HostileProgram):
         expected = Expected(origin.outcome, origin.score, None, origin.words, origin.never)
         return Handed(student, "hostile", origin.name, expected, lambda f: (f / FILE).write_text(origin.source))
-    source = origin.read_text(encoding="utf-8")
-    fails = frozenset(_caught_by(source)) if origin.parent.name == "mistakes" else frozenset()
-    kind, score = ("mistake", "less") if fails else ("right", "full")
-    # A mistake may end its program: what was recorded until then is judged.
-    outcomes = ("graded", "crashed") if fails else ("graded",)
+    if isinstance(origin, Mistake):
+        # A mistake may end its program: what was recorded until then is judged.
+        fails = Expected(("graded", "crashed"), "less", frozenset(origin.caught_by))
+        return Handed(student, "mistake", origin.name, fails, _writer(origin.source, student, chance, exercise))
+    write = _writer(origin.read_text(encoding="utf-8"), student, chance, exercise)
+    return Handed(student, "right", origin.stem, Expected(fails=frozenset()), write)
+
+
+def _writer(source: str, student: str, chance: random.Random, exercise: str) -> Callable[[Path], object]:
+    """Return what writes the program, in the student's own words, into a folder."""
     name, text = _packed(reworded(source, student, chance), chance, exercise)
-    return Handed(student, kind, origin.stem, Expected(outcomes, score, fails), lambda f: (f / name).write_bytes(text))
+    return lambda folder: (folder / name).write_bytes(text)
 
 
 def _packed(source: str, chance: random.Random, exercise: str) -> tuple[str, bytes]:
@@ -150,8 +158,3 @@ def _packed(source: str, chance: random.Random, exercise: str) -> tuple[str, byt
     if kind == "zip":
         return f"{exercise}.zip", as_upload(source, f"{exercise}.py", exercise)
     return f"{exercise}.py", source.encode()
-
-
-def _caught_by(source: str) -> Iterator[str]:
-    """The checks that a mistake's header names."""
-    yield from re.findall(r"^- (test_\w+)$", ast.get_docstring(ast.parse(source)) or "", re.MULTILINE)

@@ -6,7 +6,7 @@
     python benchmarks/determinism/determinism.py --course my-robots
 
 Of each exercise the solution and the right ones with threads are graded in each round; of this course's joint_velocity
-every file in solutions/, and the programs in the folder programs/, which do what makes a grader flaky: they answer from
+every program in solutions/, and those in the folder programs/, which do what makes a grader flaky: they answer from
 threads, timers, processes and asyncio, they sleep, poll, and wait by the clock. Every other round runs next to busy
 loops, four per core. A recording differs if any message in it does, by one bit, or the time at which it came, or the
 order, or a call, goal or parameter; a grade differs if any verdict does.
@@ -23,11 +23,12 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from grader.audit.candidates import mistakes, right_ones
 from grader.exercise import Exercise, load
 from grader.grading import Grade, Options
 from grader.grading.grading import Grading, grading_of
 from grader.recording.recording import to_json
-from grader.submission.reading import read
+from grader.submission.reading import Submission, read
 from grader.workers import WorkerPool
 from groundwork.files import write_if_changed
 from spinbook.course.course import find_course
@@ -39,7 +40,7 @@ COURSE = HERE.parents[1]
 sys.path.append(str(COURSE / "tests"))
 from busy_loops import busy  # noqa: E402
 
-#: Of this one every file is graded.
+#: Of this one every program is graded.
 HARDEST = "joint_velocity"
 
 #: Busy loops for each core in every other round.
@@ -79,17 +80,18 @@ class Counts:
 
 @dataclass(frozen=True)
 class Program:
-    """One file, with what grades it and what was seen of it."""
+    """One program, with what grades it and what was seen of it."""
 
-    file: Path
+    name: str
+    submission: Submission
     grading: Grading
     counts: Counts = field(default_factory=Counts)
 
     def grade(self, keep: Path) -> None:
         """Grade it once more; what differs is written to the folder `keep`."""
         exercise = self.grading.runner.exercise
-        for scenario, texts in self.counts.add(self.grading.grade(read(str(self.file), exercise))).items():
-            name = f"{exercise.name}-{self.file.stem}-{scenario}-{self.counts.grades}"
+        for scenario, texts in self.counts.add(self.grading.grade(self.submission)).items():
+            name = f"{exercise.name}-{Path(self.name).stem}-{scenario}-{self.counts.grades}"
             for which, text in zip(("first", "other"), texts, strict=True):
                 write_if_changed(keep / f"{name}-{which}.json", text)
 
@@ -111,15 +113,16 @@ def main() -> int:
     wanted = [one for one in exercises if not options.exercise or one.name in options.exercise]
     with WorkerPool() as workers:
         programs = [
-            Program(file, grading_of(exercise, Options(parallel=1), workers))
+            Program(name, submission, grading_of(exercise, Options(parallel=1), workers))
             for exercise in wanted
-            for file in _files(exercise, options.only)
+            for name, submission in _submissions(exercise).items()
+            if not options.only or any(text in name for text in options.only)
         ]
         for number in range(options.rounds):
             _round(number, programs, options)
             # After each round, so that what a long run has seen is there if it is stopped.
-            _write(programs, options.course, options.json)
-    return _report(programs, options.course)
+            _write(programs, options.json)
+    return _report(programs)
 
 
 def _options() -> argparse.Namespace:
@@ -129,7 +132,7 @@ def _options() -> argparse.Namespace:
     )
     parser.add_argument("--course", type=_folder, default=COURSE, help="a course's folder  (default: this course)")
     parser.add_argument("--exercise", action="append", help="only this one; may be given several times")
-    parser.add_argument("--only", action="append", help="only programs whose path contains this, or another such text")
+    parser.add_argument("--only", action="append", help="only programs whose name contains this, or another such text")
     parser.add_argument(
         "--parallel",
         type=int,
@@ -151,12 +154,14 @@ def _folder(path: str) -> Path:
     return Path(path).resolve()
 
 
-def _files(exercise: Exercise, only: list[str] | None) -> list[Path]:
-    folder = exercise.folder.parents[1] / "solutions" / exercise.name
-    found = [folder / "solution.py", *sorted(folder.glob("right/*thread*.py"))]
-    if folder == COURSE / "solutions" / HARDEST:
-        found = [*sorted((HERE / "programs").glob("*.py")), *sorted(folder.rglob("*.py"))]
-    return [file for file in found if not only or any(text in str(file) for text in only)]
+def _submissions(exercise: Exercise) -> dict[str, Submission]:
+    """Return what is graded of an exercise, by a name such as `heartbeat/right/two_threads.py`."""
+    candidates = right_ones(exercise)
+    if exercise.folder != COURSE / "exercises" / HARDEST:
+        few = [one for one in candidates if one.kind == "solution" or "thread" in one.name]
+        return {f"{exercise.name}/{one.name}": one.submission for one in few}
+    programs = {f"programs/{file.name}": read(str(file), exercise) for file in sorted((HERE / "programs").glob("*.py"))}
+    return programs | {f"{exercise.name}/{one.name}": one.submission for one in [*candidates, *mistakes(exercise)]}
 
 
 def _round(number: int, programs: list[Program], options: argparse.Namespace) -> None:
@@ -179,26 +184,22 @@ def _total(programs: list[Program]) -> Counts:
     return total
 
 
-def _report(programs: list[Program], course: Path) -> int:
+def _report(programs: list[Program]) -> int:
     print("| program | spins | other recordings | grades | other grades | faults of the machine |")
     print("| --- | --- | --- | --- | --- | --- |")
     for program in programs:
-        _print(_shown(program.file, course), program.counts)
+        _print(program.name, program.counts)
     total = _total(programs)
     _print("**all**", total)
     return 1 if total.other_recordings or total.other_grades or total.host_errors else 0
 
 
-def _write(programs: list[Program], course: Path, file: Path | None) -> None:
+def _write(programs: list[Program], file: Path | None) -> None:
     if not file:
         return
     file.parent.mkdir(parents=True, exist_ok=True)
-    each = {_shown(program.file, course): program.counts.plain for program in programs}
+    each = {program.name: program.counts.plain for program in programs}
     file.write_text(json.dumps({"all": _total(programs).plain, "programs": each}, indent=2) + "\n")
-
-
-def _shown(path: Path, course: Path) -> str:
-    return (path.relative_to(course) if path.is_relative_to(course) else path).as_posix()
 
 
 def _print(name: str, count: Counts) -> None:

@@ -161,7 +161,7 @@ def _of_mistakes(exercise: Exercise, checks: tuple[Listed, ...]) -> Iterator[Exe
             yield from rule_that_the_task_lacks(exercise.task, mistake.breaks, mistake.file, mistake.line, mistake.name)
         for name in mistake.caught_by:
             if name not in known:
-                found = f"it is to be caught by {name}, and there is no such check"
+                found = f"{mistake.name} is to be caught by {name}, and there is no such check"
                 yield ExerciseError(mistake.file, found, "Name a check of this exercise, or remove it.", mistake.line)
         if not mistake.caught_by:
             found, fix = f"{mistake.name} names no check that must catch it", "Write “Caught by:” and the checks."

@@ -9,10 +9,10 @@ import re
 import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 from grader.exercise.exercise import Exercise
+from grader.exercise.mistakes import EDITS, mistakes_of
 from grader.exercise.starter import hidden_blocks, starter
 
 #: A line with this many characters besides spaces is not a coincidence, nor are this many lines with this many in all.
@@ -64,16 +64,13 @@ def secrets(exercise: Exercise, taught: str, others: str = "") -> list[Secret]:
             windows = [secret for secret in _windows(what, place, lines) if secret.text not in elsewhere]
             found += [replace(secret, tells=True) for secret in windows]
     known = bare(message)
-    if exercise.solution_folder:
-        for file in sorted(exercise.solution_folder.rglob("*.py")):
-            if file != exercise.solution_file:
-                place = f"solutions/{exercise.name}/{file.relative_to(exercise.solution_folder).as_posix()}"
-                windows = _windows(f"a part of {place}", place, _lines(file))
-                found += [secret for secret in windows if secret.text not in known]
+    found += [secret for secret in _other_programs(exercise) if secret.text not in known]
     for file in sorted(exercise.folder.glob("*.py")):
         if file != public:
             place = f"exercises/{exercise.name}/{file.name}"
-            found += _pieces(f"a line of {file.name} of {exercise.name}", place, _lines(file), known)
+            found += _pieces(
+                f"a line of {file.name} of {exercise.name}", place, _lines(file.read_text(encoding="utf-8")), known
+            )
     return found + [secret for secret in _hidden_titles(exercise) if secret.text not in elsewhere]
 
 
@@ -147,12 +144,29 @@ def _solved(source: str) -> Iterator[list[Line]]:
         yield [(number, bare(line)) for number, line in block if line.strip()]
 
 
-def _lines(file: Path) -> list[Line]:
-    """Return the lines of a file that contain more than an import, without spaces."""
-    lines = enumerate(file.read_text(encoding="utf-8").splitlines(), start=1)
+def _lines(text: str) -> list[Line]:
+    """Return the lines of a file's text that contain more than an import, without spaces."""
+    lines = enumerate(text.splitlines(), start=1)
     return [
         (number, bare(line)) for number, line in lines if line.strip() and not line.startswith(("import ", "from "))
     ]
+
+
+def _other_programs(exercise: Exercise) -> Iterator[Secret]:
+    """Yield the parts of the other solutions and of the mistakes, and the parts of mistakes.md as it is."""
+    if not (exercise.solution_folder and exercise.solution_file):
+        return
+    edits = exercise.solution_folder / EDITS
+    files = [*sorted(exercise.solution_folder.rglob("*.py")), *([edits] if edits.exists() else [])]
+    for file in files:
+        if file != exercise.solution_file:
+            place = f"solutions/{exercise.name}/{file.relative_to(exercise.solution_folder).as_posix()}"
+            yield from _windows(f"a part of {place}", place, _lines(file.read_text(encoding="utf-8")))
+    solution = "".join(line for _, line in _lines(exercise.solution_file.read_text(encoding="utf-8")))
+    place = f"solutions/{exercise.name}/{EDITS}"
+    for mistake in (mistake for mistake in mistakes_of(exercise) if mistake.file == edits):
+        windows = _windows(f"a part of {place}", place, [(mistake.line, line) for _, line in _lines(mistake.source)])
+        yield from (secret for secret in windows if secret.text not in solution)
 
 
 def _hidden_titles(exercise: Exercise) -> Iterator[Secret]:

@@ -142,21 +142,86 @@ def main():
 if __name__ == '__main__':
     main()
 ''',
-}
+    "solutions/doubler/mistakes.md": """## says_nothing
 
-#: Mistake -> what it changes in the solution, and which checks it names.
-MISTAKES = {
-    "says_nothing": ("Publishes nothing.", "self.publisher.publish(", "(", ["test_publishes"]),
-    "adds_two": ("Adds two.", "2 * message.data", "2 + message.data", ["test_twice_the_number"]),
-    "twice": ("Says it twice.", "        # END",
-              "            self.publisher.publish(Float64(data=2 * message.data))\n        # END", ["test_once"]),
-    "another_name": ("Is called otherwise.", "__init__('doubler')", "__init__('dubler')", ["test_is_called_doubler"]),
-    "no_end": ("Does not catch Ctrl-C.", "KeyboardInterrupt, ", "", ["test_ends_on_ctrl_c"]),
-    "any_number": ("Doubles negative numbers, too.", ">= 0", "> -100", ["test_nothing_below_zero"]),
-    "on_the_input": ("Has a publisher on /numbers.", "        self.create_sub",
-                     "        self.create_publisher(Float64, '/numbers', 10)\n        self.create_sub",
-                     ["test_leaves_other_topics_alone"]),
-}  # fmt: skip
+It publishes nothing.
+
+```diff
+-            self.publisher.publish(Float64(data=2 * message.data))
++            pass
+```
+
+Caught by: test_publishes
+
+## adds_two
+
+It adds two.
+
+```diff
+-            self.publisher.publish(Float64(data=2 * message.data))
++            self.publisher.publish(Float64(data=2 + message.data))
+```
+
+Caught by: test_twice_the_number
+
+## twice
+
+It says it twice.
+
+Breaks: “publishes twice each number on /doubled, once.”
+
+```diff
+             self.publisher.publish(Float64(data=2 * message.data))
++            self.publisher.publish(Float64(data=2 * message.data))
+```
+
+Caught by: test_once
+
+## another_name
+
+The node has another name.
+
+```diff
+-        super().__init__('doubler')
++        super().__init__('dubler')
+```
+
+Caught by: test_is_called_doubler
+
+## no_end
+
+It does not catch Ctrl-C.
+
+```diff
+-    except (KeyboardInterrupt, ExternalShutdownException):
++    except ExternalShutdownException:
+```
+
+Caught by: test_ends_on_ctrl_c
+
+## any_number
+
+It doubles negative numbers, too.
+
+```diff
+-        if message.data >= 0:
++        if message.data > -100:
+```
+
+Caught by: test_nothing_below_zero
+
+## on_the_input
+
+It has a publisher on /numbers.
+
+```diff
+         self.publisher = self.create_publisher(Float64, '/doubled', 10)
++        self.create_publisher(Float64, '/numbers', 10)
+```
+
+Caught by: test_leaves_other_topics_alone
+""",
+}
 
 
 @dataclass(frozen=True)
@@ -184,12 +249,4 @@ def written(course: Path) -> SmallExercise:
         file = course / name
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text, encoding="utf-8")
-    solution = FILES["solutions/doubler/solution.py"]
-    for name, (title, old, new, caught_by) in MISTAKES.items():
-        assert old in solution
-        header = "\n".join([title, "", "Caught by:", *(f"- {check}" for check in caught_by)])
-        file = course / "solutions" / "doubler" / "mistakes" / f"{name}.py"
-        file.parent.mkdir(exist_ok=True)
-        body = solution.replace(old, new).partition('"""\n')[2]
-        file.write_text(f'"""{header}\n"""\n{body}', encoding="utf-8")
     return SmallExercise(course)

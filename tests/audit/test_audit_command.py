@@ -48,7 +48,7 @@ def test_a_change_that_lets_a_mistake_through_ends_with_1_and_says_which(
     done = run("doubler", "--quick", "--mutants", "6", "--html", "audit.html")
     assert done.exit_code == 1
     text = " ".join(done.stdout.split())
-    mistake = "mistakes/any_number (“Doubles negative numbers, too.”)"
+    mistake = "mistakes/any_number (“It doubles negative numbers, too.”)"
     assert f"test_nothing_below_zero lets the mistake {mistake} through" in text
     assert "1 thing to fix" in text
     for width, dark in ((1280, False), (390, True)):

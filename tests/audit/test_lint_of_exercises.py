@@ -38,16 +38,16 @@ def test_an_exercise_without_faults(small: SmallExercise) -> None:
 
 def test_every_fault_is_reported_with_file_and_line(small: SmallExercise) -> None:
     small.change("exercises/doubler/checks.py", "def test_once(", "def test_twice_the_number(")
-    small.change("solutions/doubler/mistakes/adds_two.py", "- test_twice_the_number", "- test_no_such_check")
+    small.change("solutions/doubler/mistakes.md", "Caught by: test_twice_the_number", "Caught by: test_no_such_check")
     small.change("solutions/doubler/solution.py", "        # END SOLUTION\n", "")
     code, output = linted(small)
     assert code == 1
     for fault in (
         "exercises/doubler/checks.py:20: error: there are two checks called test_twice_the_number; the other is in lin",
         "solutions/doubler/solution.py:12: error: BEGIN SOLUTION without an END SOLUTION after it",
-        "adds_two.py:3: error: it is to be caught by test_no_such_check, and there is no such check",
+        "mistakes.md:12: error: adds_two is to be caught by test_no_such_check, and there is no such check",
         "exercises/doubler/exercise.toml:3: error: the checks give 7 points together (checks.py 5, hidden_checks.py 2)",
-        "twice.py:3: error: it is to be caught by test_once",
+        "mistakes.md:23: error: twice is to be caught by test_once",
     ):
         assert fault in output, output
 

@@ -8,6 +8,7 @@ import pytest
 from click.testing import CliRunner, Result
 from small_exercise import SmallExercise
 
+from grader.audit.candidates import IDLE
 from grader.audit.command import audit
 
 
@@ -25,6 +26,16 @@ def test_without_mutants_it_tells_only_of_the_files(small: SmallExercise) -> Non
     done = solutions_only()
     assert done.exit_code == 0, done.stdout
     assert "tried: 1 right solutions, 7 mistakes, 3 that do nothing\nnothing to fix" in done.stdout
+
+
+def test_a_mistake_may_be_a_whole_program_that_names_its_checks_in_its_docstring(small: SmallExercise) -> None:
+    whole = small.course / "solutions" / "doubler" / "mistakes" / "deaf.py"
+    whole.parent.mkdir()
+    whole.write_text(
+        '"""It does nothing.\n\nCaught by:\n- test_publishes\n"""\nimport rclpy\n' + IDLE.format(name="doubler")
+    )
+    done = solutions_only()
+    assert (done.exit_code, "8 mistakes" in done.stdout) == (0, True), done.stdout
 
 
 def test_points_for_a_node_that_does_nothing_end_with_1(small: SmallExercise) -> None:

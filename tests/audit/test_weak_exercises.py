@@ -58,7 +58,7 @@ def test_a_weak_copy_is_reported_check_by_check(small: SmallExercise, audited: A
 def test_a_mistake_that_fails_another_check_too(small: SmallExercise, audited: Auditing) -> None:
     small.change(CHECKS, "    positive.must_answer()", "    positive.must_answer()\n    positive.must_match('data')")
     (found,) = advice(audited(small), "test_once")
-    assert "mistakes/adds_two" in found
+    assert "mistakes/adds_two (" in found
     assert "which it does not name" in found
 
 
@@ -89,8 +89,7 @@ SPOILT = [
     (HIDDEN, "It says nothing to a number below zero, and twice zero to zero.", "if message.data >= 0: it is doubled.",
      "test_nothing_below_zero", "title of test_nothing_below_zero"),
     (CHECKS, 'expected="/doubler", got=positive.nodes', "", "test_is_called_doubler", "not say what was expected"),
-    ("solutions/doubler/mistakes/adds_two.py", "Caught by:\n- test_twice_the_number", "", "mistakes/adds_two",
-     "names no check"),
+    ("solutions/doubler/mistakes.md", "Caught by: test_twice_the_number", "", "mistakes/adds_two", "names no check"),
 ]  # fmt: skip
 
 

@@ -2,8 +2,8 @@
 
     python tests/browser/checks_in_both.py EXERCISE [NAME …]
 
-Prints a JSON object: name of the program -> "same", why a page does not check it, or how the two differ. NAME is a
-file's name without `.py`, or the path of any other program. It is a process of its own, since it uses the course's
+Prints a JSON object: name of the program -> "same", why a page does not check it, or how the two differ. NAME is that
+of a program in `solutions/`, or the path of any other one. It is a process of its own, since it uses the course's
 interfaces.
 """
 
@@ -20,12 +20,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from grader.audit.candidates import mistakes, right_ones
 from grader.exercise import Exercise, load
 from grader.grading.grade import Options
 from grader.grading.grading import Grading, grading_of
 from grader.recording import Recording
 from grader.recording.recording import from_plain
-from grader.submission import read
+from grader.submission import Submission, read
 from grader.workers import WorkerPool
 from spinbook.course.course import find_course
 from spinbook.handout.student_copy import exercise_files
@@ -87,15 +88,17 @@ def comparable(recording: Recording) -> Recording:
     return replace(recording, ending=replace(recording.ending, message=""))
 
 
-def compared(page: InThePage, grading: Grading, exercise: Exercise, file: Path) -> str:
+def compared(page: InThePage, grading: Grading, exercise: Exercise, submission: Submission) -> str:
     """How the page's check of a program differs from the real grader's."""
+    file = exercise.folder.parent / Path(submission.name).name
+    file.write_text(submission.source, encoding="utf-8")
     try:
         here = page.check(file)
     except AssertionError as error:
         return str(error)
     if here["hindrance"]:
         return f"not checked: {here['hindrance']}"
-    grade = grading.grade(read(str(file), exercise))
+    grade = grading.grade(submission)
     statuses = {v.name: [v.status, v.finding.text if v.finding else ""] for v in grade.verdicts}
     return "; ".join(_differences(here, statuses, grade.recordings)) or "same"
 
@@ -121,8 +124,10 @@ def _first(mine: Any, theirs: Any) -> str:
 def main(name: str, only: list[str]) -> int:
     """Compare the programs of an exercise, and print what was found."""
     compile_course(find_course(ROOT))
-    files = sorted(file for file in (ROOT / "solutions" / name).rglob("*.py") if not only or file.stem in only)
-    files += [Path(given) for given in only if given.endswith(".py")]
+    author = load(ROOT / "exercises" / name)
+    programs = {Path(one.name).stem: one.submission for one in [*right_ones(author), *mistakes(author)]}
+    programs = {program: submission for program, submission in programs.items() if not only or program in only}
+    programs |= {Path(file).stem: read(file, author) for file in only if file.endswith(".py")}
     with tempfile.TemporaryDirectory() as place:
         copy = Path(place) / name
         copy.mkdir()
@@ -130,9 +135,9 @@ def main(name: str, only: list[str]) -> int:
         page, found = InThePage(exercise), {}
         with WorkerPool() as workers:
             grading = grading_of(exercise, Options(), workers)
-            for file in files:
-                found[file.stem] = compared(page, grading, exercise, file)
-                print(f"{file.stem}: {found[file.stem]}", file=sys.stderr, flush=True)
+            for program, submission in programs.items():
+                found[program] = compared(page, grading, exercise, submission)
+                print(f"{program}: {found[program]}", file=sys.stderr, flush=True)
         page.close()
     print(json.dumps(found))
     return 0

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from check.conftest import PUBLIC, SOLUTIONS, solution
+from check.conftest import PUBLIC, ROOT, solution
 from grader.exercise import load, starter
+from grader.exercise.mistakes import mistake_of
 from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
 from grader.submission.reading import of_source
@@ -46,7 +47,7 @@ def test_the_starter_gets_no_points_and_is_told_what_to_fix_first(grading: Gradi
 
 
 def test_a_mistake_is_reported_with_what_was_expected_what_came_when_and_which_joint(grading: Grading) -> None:
-    text, html = shown_of(grading, (SOLUTIONS / "mistakes" / "degrees.py").read_text(encoding="utf-8"))
+    text, html = shown_of(grading, mistake_of(load(ROOT / "exercises" / "joint_velocity"), "degrees").source)
 
     assert "Message 2 of 100 (0.10 s after the start" in text
     assert "expected velocity 0.499167 rad/s, got 28.6002 rad/s. Every velocity is in degrees." in text

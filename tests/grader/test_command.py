@@ -21,7 +21,7 @@ def grade(*arguments: str, cwd: Path = ROOT, **environment: str) -> subprocess.C
 
 def test_a_mistake_is_reported_with_when_and_where_drawn_and_recorded(tmp_path: Path) -> None:
     done = grade(
-        "joint_velocity", str(SOLUTIONS / "mistakes" / "joints_by_index.py"),
+        "joint_velocity", "--mistake", "joints_by_index",
         "--plot", str(tmp_path / "out.svg"), "--bag", str(tmp_path / "bags"), "--verbose",
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (1, "")

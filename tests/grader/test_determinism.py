@@ -9,10 +9,11 @@ import pytest
 from busy_loops import busy
 
 from grader.exercise import Exercise
+from grader.exercise.mistakes import mistake_of
 from grader.grading import Grade, Options, grading_of
 from grader.grading.grading import Grading
 from grader.recording.recording import to_json
-from grader.submission import read
+from grader.submission import Submission, read
 from grader.submission.reading import of_source
 from grader.workers import WorkerPool
 
@@ -20,10 +21,17 @@ ROOT = Path(__file__).parents[2]
 SOLUTIONS = ROOT / "solutions" / "joint_velocity"
 
 #: Neither misuses the computer's clock, whose time may differ from one run to the next.
-SUBMISSIONS = ("mistakes/joints_by_index.py", "right/several_threads.py")
+SUBMISSIONS = ("joints_by_index", "several_threads")
 
 #: Never done with its first message, until the hub ends it.
 ANSWERS_ITSELF = ROOT / "benchmarks/determinism/programs/answers_itself.py"
+
+
+def submission_of(name: str, exercise: Exercise) -> Submission:
+    """Return a usual mistake, or the program in a file."""
+    if name == "joints_by_index":
+        return of_source(f"{name}.py", mistake_of(exercise, name).source.encode(), exercise)
+    return read(str(ANSWERS_ITSELF if name == "answers_itself" else SOLUTIONS / "right" / f"{name}.py"), exercise)
 
 
 @pytest.fixture(scope="module")
@@ -45,9 +53,9 @@ def recorded(grade: Grade) -> str:
     )
 
 
-@pytest.mark.parametrize("name", [*SUBMISSIONS, str(ANSWERS_ITSELF)], ids=[*SUBMISSIONS, "answers_itself.py"])
+@pytest.mark.parametrize("name", [*SUBMISSIONS, "answers_itself"])
 def test_beside_busy_loops_the_grade_is_the_same(short: Grading, name: str) -> None:
-    submission = read(str(SOLUTIONS / name), short.runner.exercise)
+    submission = submission_of(name, short.runner.exercise)
     alone = short.grade(submission)
     with busy(4):
         beside = short.grade(submission)
@@ -59,7 +67,7 @@ def test_beside_busy_loops_the_grade_is_the_same(short: Grading, name: str) -> N
 @pytest.mark.timeout(7200)
 @pytest.mark.parametrize("name", SUBMISSIONS)
 def test_graded_two_hundred_times_half_of_them_beside_busy_loops_it_is_the_same(grading: Grading, name: str) -> None:
-    submission = read(str(SOLUTIONS / name), grading.runner.exercise)
+    submission = submission_of(name, grading.runner.exercise)
     first = grading.grade(submission)
     for loops in (0, 8):
         with busy(loops):

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
+from grader.exercise.mistakes import mistake_of
 from grader.grading import Grade
 from grader.grading.grading import Grading
 from grader.submission.reading import of_source
 
-MISTAKE = Path(__file__).parents[2] / "solutions/joint_velocity/mistakes/traceback_on_ctrl_c.py"
 PUBLISHER = "        self.publisher = self.create_publisher(JointState, '/joint_velocities', 10)\n"
 SUBSCRIPTION = (
     "        self.subscription = self.create_subscription(JointState, '/joint_commands', self.on_joints, 10)\n"
@@ -77,7 +75,7 @@ LATE_THREAD = """    rclpy.init()
 
 
 def test_a_second_shutdown_after_ctrl_c_is_found_however_late_rclpys_own_thread_gets_a_cpu(grading: Grading) -> None:
-    source = MISTAKE.read_text(encoding="utf-8")
+    source = mistake_of(grading.runner.exercise, "traceback_on_ctrl_c").source
     late = source.replace("    rclpy.init()\n", LATE_THREAD)
     assert late != source
     grade = grading.grade(of_source("test.py", late.encode(), grading.runner.exercise))

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-import ast
-import re
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
-from grader.exercise import starter
+from grader.exercise import load, starter
+from grader.exercise.mistakes import Mistake, mistakes_of
 from grader.grading.grading import Grading
 from grader.submission import read
 from grader.submission.reading import of_source
 
-SOLUTIONS = Path(__file__).parents[2] / "solutions" / "joint_velocity"
+ROOT = Path(__file__).parents[2]
+SOLUTIONS = ROOT / "solutions" / "joint_velocity"
+MISTAKES = mistakes_of(load(ROOT / "exercises" / "joint_velocity"))
 
 #: The usual mistakes that must exist.
 USUAL = {
@@ -30,15 +32,12 @@ ALWAYS = {
 }
 
 
-def caught_by(file: Path) -> set[str]:
-    """Return the checks that the mistake's header names."""
-    header = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
-    return set(re.findall(r"^- (test_\w+)$", header, re.MULTILINE))
-
-
-def every(folder: str) -> list[object]:
-    files = sorted((SOLUTIONS / folder).glob("*.py"))
-    return [pytest.param(f, id=f.stem, marks=() if f.stem in ALWAYS else pytest.mark.soak) for f in files]
+def few_always(programs: Mapping[str, object]) -> list[object]:
+    """Return a parameter for each program, by name; all but a few are only for `make soak`."""
+    return [
+        pytest.param(program, id=name, marks=() if name in ALWAYS else pytest.mark.soak)
+        for name, program in programs.items()
+    ]
 
 
 def test_the_solution_gets_full_marks(grading: Grading) -> None:
@@ -47,23 +46,23 @@ def test_the_solution_gets_full_marks(grading: Grading) -> None:
     assert grade.score == 100
 
 
-@pytest.mark.parametrize("file", every("right"))
+@pytest.mark.parametrize("file", few_always({file.stem: file for file in sorted((SOLUTIONS / "right").glob("*.py"))}))
 def test_a_right_solution_in_another_style_gets_full_marks(grading: Grading, file: Path) -> None:
     grade = grading.grade(read(str(file), grading.runner.exercise))
     assert grade.full_marks, [v for v in grade.verdicts if v.status != "passed"]
 
 
-@pytest.mark.parametrize("file", every("mistakes"))
-def test_a_mistake_loses_exactly_the_checks_that_it_names(grading: Grading, file: Path) -> None:
-    grade = grading.grade(read(str(file), grading.runner.exercise))
+@pytest.mark.parametrize("mistake", few_always({mistake.name: mistake for mistake in MISTAKES}))
+def test_a_mistake_loses_exactly_the_checks_that_it_names(grading: Grading, mistake: Mistake) -> None:
+    grade = grading.grade(of_source("mistake.py", mistake.source.encode(), grading.runner.exercise))
     assert grade.outcome == "graded"
-    assert {v.name for v in grade.verdicts if v.status == "failed"} == caught_by(file)
+    assert {v.name for v in grade.verdicts if v.status == "failed"} == set(mistake.caught_by)
     failed = [v for v in grade.verdicts if v.status == "failed"]
     assert all(v.finding and v.finding.text and v.hint for v in failed), "a student needs to be told"
 
 
 def test_the_usual_mistakes_are_all_there() -> None:
-    assert {f.stem for f in (SOLUTIONS / "mistakes").glob("*.py")} >= USUAL
+    assert {mistake.name for mistake in MISTAKES} >= USUAL
 
 
 def test_the_starter_runs_and_gets_nothing(grading: Grading) -> None:

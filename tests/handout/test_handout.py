@@ -19,6 +19,7 @@ from course_folder import CourseFolder
 
 import spinbook
 from grader.exercise import load
+from grader.exercise.mistakes import Mistake, mistake_of, mistakes_of
 from handout.conftest import CHAPTER, NOTE, ROOT, HandedOut, append, copy_course
 from interface_compiler.wheel import zipped
 from spinbook.handout.leaks import Secret, hidden_names, leaks, secrets
@@ -58,10 +59,18 @@ def secret_texts() -> set[str]:
             solved = "BEGIN" in line
         elif solved and len(line.strip()) > 45:
             found.add(line.strip())
-    for file in [*SOLUTIONS.glob("mistakes/*.py"), *SOLUTIONS.glob("right/*.py")]:
+    for file in SOLUTIONS.glob("right/*.py"):
         found.add(str(ast.get_docstring(ast.parse(file.read_text(encoding="utf-8")))).split("\n")[0])
+    for mistake in mistakes_of(load(EXERCISE)):
+        found |= {mistake.summary, *(line for line in mistake_lines(mistake) if len(line) > 45)}
     public = (EXERCISE / "checks.py").read_text(encoding="utf-8")
     return {text for text in found if text not in public}
+
+
+def mistake_lines(mistake: Mistake) -> set[str]:
+    """Return the lines of a mistake that the solution does not have."""
+    solution = (SOLUTIONS / "solution.py").read_text(encoding="utf-8")
+    return {line.strip() for line in mistake.source.splitlines() if line not in solution}
 
 
 def test_no_file_has_a_solution_a_hidden_check_or_a_note_in_it(real: HandedOut) -> None:
@@ -292,6 +301,16 @@ def test_one_line_is_found_in_any_file_and_in_archives_in_archives(what: str, kn
         "wheels/x.whl/notes/a.py",
         "more.zip/inner.zip/a.txt",
     }
+
+
+def test_a_part_of_a_mistake_is_found_and_so_is_the_text_that_describes_it(known: list[Secret]) -> None:
+    lines = mistake_of(load(EXERCISE), "averaged_over_two").source.splitlines()
+    begin = next(number for number, line in enumerate(lines) if "velocities_before.get" in line)
+    edits = (SOLUTIONS / "mistakes.md").read_text(encoding="utf-8").splitlines()
+    begun = edits.index("## averaged_over_two")
+    files = {"a.md": "\n".join(lines[begin - 1 : begin + 2]), "b.md": "\n".join(edits[begun : begun + 6])}
+    found = list(leaks({name: text.encode() for name, text in files.items()}, known))
+    assert found == [(name, "a part of solutions/joint_velocity/mistakes.md") for name in files]
 
 
 def test_spinbooks_own_modules_may_share_a_line_with_a_check_and_no_part_of_a_solution(known: list[Secret]) -> None:

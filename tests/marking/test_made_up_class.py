@@ -14,6 +14,9 @@ from typing import Any
 import pytest
 from small_class import ROOT
 
+from grader.exercise import load
+from grader.exercise.mistakes import mistakes_of
+
 sys.path.append(str(ROOT / "benchmarks" / "class"))
 import grades
 import students
@@ -37,7 +40,7 @@ def test_it_is_mostly_right_with_mistakes_and_a_few_attacks() -> None:
     made = students.the_class(200, 1)
     assert len({handed.student for handed in made}) == 200
     assert Counter(handed.kind for handed in made) == {"right": 110, "mistake": 60, "hostile": 24, "odd file": 6}
-    mistakes = {file.stem for file in (students.SOLUTIONS / "mistakes").glob("*.py")}
+    mistakes = {mistake.name for mistake in mistakes_of(load(ROOT / "exercises" / students.EXERCISE))}
     assert {handed.origin for handed in made if handed.kind == "mistake"} == mistakes
 
 

@@ -18,6 +18,7 @@ from recorded_findings import FOLDER, Recorded, as_json
 from unlisted_mistakes import UNLISTED
 
 from grader.exercise import Exercise, load
+from grader.exercise.mistakes import mistakes_of
 from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
 from grader.submission.reading import of_source
@@ -28,13 +29,13 @@ from spinbook.interfaces.compiling import compile_course
 ROOT = Path(__file__).parents[2]
 
 
-def mistakes_of(exercise: Exercise) -> Iterator[tuple[str, str]]:
+def programs(exercise: Exercise) -> Iterator[tuple[str, str]]:
     """Yield name and source: first the mistakes that `solutions/` lists, then the others."""
-    folder = ROOT / "solutions" / exercise.name
-    for file in sorted((folder / "mistakes").glob("*.py")):
-        yield file.stem, file.read_text(encoding="utf-8")
+    assert exercise.solution_file
+    for mistake in mistakes_of(exercise):
+        yield mistake.name, mistake.source
     for name, mistake in UNLISTED[exercise.name].items():
-        source = (folder / "solution.py").read_text(encoding="utf-8")
+        source = exercise.solution_file.read_text(encoding="utf-8")
         for old, new in mistake.replaced:
             if old not in source:
                 raise SystemExit(f"{name} of {exercise.name}: the solution has no {old!r}")
@@ -59,7 +60,7 @@ def main(names: list[str]) -> None:
         exercise = load(ROOT / "exercises" / name)
         with WorkerPool() as workers, ThreadPoolExecutor(2) as pool:
             grading = grading_of(exercise, Options(), workers)
-            found = list(pool.map(partial(recorded, grading), list(mistakes_of(exercise))))
+            found = list(pool.map(partial(recorded, grading), list(programs(exercise))))
         (FOLDER / f"{name}.json").write_text(json.dumps(as_json(found), indent=0, ensure_ascii=False), encoding="utf-8")
         print(name, len(found), flush=True)
 

@@ -14,6 +14,8 @@ from recorded_findings import Recorded, read
 from unlisted_mistakes import UNLISTED
 
 from grader.classroom.misconceptions import Signature, mistakes_in
+from grader.exercise import load
+from grader.exercise.mistakes import mistakes_of
 
 ROOT = Path(__file__).parents[2]
 EXERCISES = sorted(UNLISTED)
@@ -31,9 +33,9 @@ AKIN = {
 
 
 def listed(exercise: str) -> list[Recorded]:
-    """Return the mistakes of `solutions/EXERCISE/mistakes/` that completed and failed checks."""
-    files = {file.stem for file in (ROOT / "solutions" / exercise / "mistakes").glob("*.py")}
-    return [one for one in read(exercise) if one.name in files and one.failures]
+    """Return the exercise's usual mistakes that completed and failed checks."""
+    names = {mistake.name for mistake in mistakes_of(load(ROOT / "exercises" / exercise))}
+    return [one for one in read(exercise) if one.name in names and one.failures]
 
 
 def signatures_of(mistakes: Sequence[Recorded]) -> list[Signature]:

@@ -15,9 +15,11 @@ from playwright.sync_api import Browser, Page, expect
 from small_course import ROOT, served
 
 from grader.exercise import load
+from grader.exercise.mistakes import mistake_of
 from grader.grading import grade_submission
 from grader.submission import read
 
+EXERCISE = ROOT / "exercises" / "joint_velocity"
 SOLUTIONS = ROOT / "solutions" / "joint_velocity"
 MISTAKES = ("wrong_topic", "degrees", "sign_turned_round", "publishes_on_the_first_message", "traceback_on_ctrl_c")
 DEADLINE_MS = 180_000
@@ -105,7 +107,9 @@ def the_exercise(shown: Opened, downloads: Path) -> Path:
     page = shown.page
     press(page, "Edit and check the starter here")
     for name in MISTAKES:
-        check(page, SOLUTIONS / "mistakes" / f"{name}.py")
+        file = downloads / f"{name}.py"
+        file.write_text(f"# {name}\n{mistake_of(load(EXERCISE), name).source}")
+        check(page, file)
         expect(page.locator(".check-failed").first).to_be_visible()
         if name == "degrees":
             clean(shown)
@@ -140,6 +144,6 @@ def test_a_students_hour(real_course: Path, browser: Browser, tmp_path: Path, wi
             the_chapter(shown)
         with opened(browser, f"{address}/exercises/joint_velocity.html", width=width) as shown:
             file = the_exercise(shown, tmp_path)
-    exercise = load(ROOT / "exercises" / "joint_velocity")
+    exercise = load(EXERCISE)
     grade = grade_submission(exercise, read(str(file), exercise))
     assert {verdict.status for verdict in grade.verdicts} == {"passed"}

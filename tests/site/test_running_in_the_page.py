@@ -9,6 +9,8 @@ from browser import Opened, opened
 from playwright.sync_api import Browser, expect
 from small_course import SmallCourse
 
+from grader.exercise import load
+from grader.exercise.mistakes import mistake_of
 from spinbook.browser.files import can_run
 
 pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Pyodide from npm")
@@ -101,7 +103,7 @@ def test_a_course_that_was_run_once_runs_without_a_network(browser: Browser, add
         assert "Words only." in page.inner_text("main")
 
 
-def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str) -> None:
+def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str, tmp_path: Path) -> None:
     solutions = ROOT / "solutions" / "joint_velocity"
     with opened(browser, f"{address}/exercises/joint_velocity.html", width=390) as shown:
         page = shown.page
@@ -114,7 +116,9 @@ def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str) -> N
             page.get_by_role("button", name="Check joint_velocity.py").click()
             expect(total).to_have_text(comes_to, timeout=DEADLINE_MS)
 
-        check(solutions / "mistakes" / "degrees.py", "9 of 11 public checks, 28 of 41 points")
+        wrong = tmp_path / "degrees.py"
+        wrong.write_text(f"# Degrees.\n{mistake_of(load(ROOT / 'exercises' / 'joint_velocity'), 'degrees').source}")
+        check(wrong, "9 of 11 public checks, 28 of 41 points")
         expect(page.locator(".check-failed")).to_contain_text("Every velocity is in degrees.")
         assert shown.violations() == []
         assert not shown.scrolls_sideways()
