@@ -1,12 +1,12 @@
 """Programs that are edits of another: a Markdown file with one section per program, and a diff in each.
 
-    ## fixed_dt
+    ## adds_two
 
-    dt is always 0.1 s.
+    It adds two.
 
     ```diff
-    -            self.publish_velocities(message, positions, (stamp - self.stamp_before) / NANOSECONDS)
-    +            self.publish_velocities(message, positions, 0.1)
+    -        self.publish(2 * message.data)
+    +        self.publish(2 + message.data)
     ```
 
 The diff is a unified one, as `diff -u` and git write it, so editors and GitHub show its colors. A person writes it by

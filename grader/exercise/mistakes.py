@@ -3,11 +3,11 @@
 Each says in its first line what is wrong, quotes the sentence of the task that it breaks, and names the checks that
 catch it. An edit says so in its section of `mistakes.md`, a whole program in its docstring:
 
-    dt is always 0.1 s.
+    It adds two.
 
-    Breaks: “The stamps give dt.”
+    Breaks: “Publish twice each number.”
 
-    Caught by: test_uneven_times, test_late_messages
+    Caught by: test_twice_the_number, test_zero
 """
 
 from __future__ import annotations

@@ -11,9 +11,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from grader.exercise.exercise import Exercise
+from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.mistakes import EDITS, mistakes_of
 from grader.exercise.starter import hidden_blocks, starter
+from spinbook.problem import SpinbookError
 
 #: A line with this many characters besides spaces is not a coincidence, nor are this many lines with this many in all.
 _ONE_LINE = 40
@@ -84,11 +85,17 @@ def hidden_names(exercise: Exercise, others: str = "") -> list[Secret]:
 
 
 def secrets_of_all(exercises: Sequence[Exercise], taught: str) -> tuple[list[Secret], list[Secret]]:
-    """Return what is secret of a course's exercises, and the names of their hidden checks."""
+    """Return what is secret of a course's exercises, and the names of their hidden checks.
+
+    Raises SpinbookError if the mistakes of one can't be read.
+    """
     texts, names = [], []
     for exercise in exercises:
         others = "\n".join(public_code(other) for other in exercises if other is not exercise)
-        texts += secrets(exercise, taught, others)
+        try:
+            texts += secrets(exercise, taught, others)
+        except ExerciseError as error:
+            raise SpinbookError(error.problem) from None
         names += hidden_names(exercise, others)
     return texts, names
 
