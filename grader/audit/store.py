@@ -32,7 +32,7 @@ from groundwork.files import write_if_changed
 
 #: The parts of the grader that decide what a recording contains.
 SPINNING = ("workers", "exercise", "recording", "runner", "sandbox", "scenario", "submission")
-SPINNING_FILES = ("grading/running.py", "loopback.xml")
+SPINNING_FILES = ("grading/running.py",)
 
 #: What decides a trial, besides what decides a recording.
 JUDGING = ("checking", "audit/trial.py", "audit/listing.py")
