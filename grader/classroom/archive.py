@@ -72,25 +72,26 @@ def unpacked(archive: Path, into: Path) -> Iterator[File | Skipped]:
         left = MOST_BYTES_IN_ALL
         for number, entry in enumerate(sorted(entries, key=_name)):
             name = _name(entry)
-            if why := _why_not(entry, name):
-                yield Skipped(name, why)
+            if any(is_noise(part) for part in name.split("/")):
+                yield Skipped(name, WHY_NOISE)
+                continue
+            path = into / f"{number:05}{PurePosixPath(name).suffix[:20]}"
+            if stat.S_ISLNK(entry.external_attr >> 16):
+                path.symlink_to("nowhere")  # what reads it says so to the student
+                yield File(name, path)
                 continue
             try:
                 with opened.open(entry) as packed:
                     content = packed.read(min(MOST_BYTES_OF_ONE, left + 1))
             except BROKEN as error:
-                yield Skipped(name, f"{CANT_BE_READ}: {error}")
+                fault = "it is encrypted" if entry.flag_bits & 1 else f"it can't be read: {error}"
+                yield File(name, path, fault=f"{fault}. Was the download cut off?")
                 continue
             left -= len(content)
             if left < 0:
                 raise SubmissionsError(f"{archive}: unpacked, it is larger than {MOST_BYTES_IN_ALL // 10**9} GB.")
-            path = into / f"{number:05}{PurePosixPath(name).suffix[:20]}"
             path.write_bytes(content)
             yield File(name, path, _entry_date(entry))
-
-
-CANT_BE_READ = "it can't be read"
-ENCRYPTED = "it is encrypted"
 
 
 def _name(entry: zipfile.ZipInfo) -> str:
@@ -106,15 +107,6 @@ def _decoded(entry: zipfile.ZipInfo) -> str:
         return entry.filename.encode("cp437").decode("utf-8")
     except UnicodeError:
         return entry.filename
-
-
-def _why_not(entry: zipfile.ZipInfo, name: str) -> str:
-    """Return why an entry is left out, or an empty text."""
-    if any(is_noise(part) for part in name.split("/")):
-        return WHY_NOISE
-    if stat.S_ISLNK(entry.external_attr >> 16):
-        return "a symbolic link, not a file"
-    return ENCRYPTED if entry.flag_bits & 1 else ""
 
 
 def _entry_date(entry: zipfile.ZipInfo) -> Time:

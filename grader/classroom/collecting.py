@@ -10,14 +10,14 @@ from dataclasses import dataclass, replace
 from datetime import tzinfo
 from pathlib import Path
 
-from grader.classroom.archive import CANT_BE_READ, ENCRYPTED, unpacked, walk
+from grader.classroom.archive import unpacked, walk
 from grader.classroom.class_table import by_row
 from grader.classroom.formats.format import Upload
 from grader.classroom.groups import Attempt, Group, Unit, in_groups
 from grader.classroom.handed_in import File, HandedIn, Question, Submissions, SubmissionsError
 from grader.classroom.names import normal, unique_ids
 from grader.classroom.recognising import PACKAGE, Recogniser, can_be_graded
-from grader.classroom.roster import RosterRow, match, probably_same, with_row
+from grader.classroom.roster import RosterRow, match, signs, with_row
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Skipped, Student
 
@@ -83,12 +83,11 @@ def _found(source: Path, exercise: Exercise, unpack_into: Path, wishes: Wishes) 
     odd = [Skipped(file.name, f"its name is not one of {recognised.form.title}") for _, file in recognised.misfits]
     others = [Skipped(file.name, place) for file, place in recognised.understood if isinstance(place, str) and place]
     others += [Skipped(file.name, f"not in {'/'.join(recognised.inside)}/") for file in recognised.others]
-    unreadable = [one for one in left_out if one.why.startswith((CANT_BE_READ, ENCRYPTED))]
     return Found(
         recognised.form.title + folder,
         uploads,
         [*left_out, *others, *odd],
-        [one for one in (*odd, *unreadable) if can_be_graded(one.file)],
+        [one for one in odd if can_be_graded(one.file)],
         recognised.form.dates,
     )
 
@@ -142,6 +141,8 @@ class Collector:
             file = self._submission(attempt, f"{number}-{nth}", extras)
             if file is None:
                 return [Question(student, tuple(one.name for one, _ in attempt)) for student in unit.students]
+            if file.fault:
+                return [Question(student, (file.name,), fault=file.fault) for student in unit.students]
             files.append(file)
         return [HandedIn(student, files[0], tuple(files[1:])) for student in unit.students]
 
@@ -161,9 +162,9 @@ class Collector:
         """Return the attempt's files in a folder of their own, under the names that the student gave them."""
         folder = self.folder / f"submission-{name}"
         for file, upload in attempt:
-            if file.path.is_symlink():
+            if file.path.is_symlink() or file.fault:
                 continue
-            to = folder.joinpath(*(part.encode()[:200].decode(errors="ignore") for part in upload.inside))
+            to = folder.joinpath(*(os.fsdecode(os.fsencode(part)[:200]) for part in upload.inside))
             to.parent.mkdir(parents=True, exist_ok=True)
             try:
                 os.link(file.path, to)
@@ -171,17 +172,20 @@ class Collector:
                 shutil.copyfile(file.path, to)
         first, upload = attempt[0]
         parts = first.name.split("/")
-        return File("/".join(parts[: len(parts) - len(upload.inside)]) or first.name, folder, upload.time)
+        name = "/".join(parts[: len(parts) - len(upload.inside)]) or first.name
+        return File(name, folder, upload.time, next((file.fault for file, _ in attempt if file.fault), ""))
 
     def _missing(self, students: Sequence[Student], rows: dict[str, RosterRow]) -> list[Student]:
         """Return everybody of the roster and of the groups from whom there is nothing."""
-        there = list(rows.values())
-        missing = [row.student for row in self.wishes.roster if row not in there]
-        for group in self.wishes.groups:
-            for member in group.members:
-                known = [*students, *missing, *(row.student for row in there)]
-                if not any(probably_same(member, student) for student in known):
-                    missing.append(member)
+        there = {id(row) for row in rows.values()}
+        missing = [row.student for row in self.wishes.roster if id(row) not in there]
+        known = {
+            sign
+            for student in (*students, *missing, *(row.student for row in rows.values()))
+            for sign in signs(student)
+        }
+        members = [member for group in self.wishes.groups for member in group.members]
+        missing += [member for member in members if not signs(member) & known]
         return missing
 
     def _strangers(self, chosen: Sequence[HandedIn | Question], rows: dict[str, RosterRow]) -> list[str]:
@@ -190,14 +194,17 @@ class Collector:
 
 
 def _units(uploads: Sequence[tuple[File, Upload]]) -> list[Unit]:
-    units: dict[tuple[str, ...], Unit] = {}
+    """Return what each student, or group, handed in; something aside only if there is nothing else."""
+    by_owner: dict[tuple[str, ...], list[tuple[File, Upload]]] = defaultdict(list)
     for file, upload in uploads:
-        key = tuple(student.id for student in upload.students)
-        unit = units.setdefault(key, Unit(upload.students, {}))
-        units[key] = replace(
-            unit, attempts={**unit.attempts, upload.attempt: [*unit.attempts.get(upload.attempt, ()), (file, upload)]}
-        )
-    return list(units.values())
+        by_owner[tuple(student.id for student in upload.students)].append((file, upload))
+    units = []
+    for theirs in by_owner.values():
+        attempts: dict[str, list[tuple[File, Upload]]] = defaultdict(list)
+        for file, upload in [one for one in theirs if not one[1].aside] or theirs[:1]:
+            attempts[upload.attempt].append((file, upload))
+        units.append(Unit(theirs[0][1].students, attempts))
+    return units
 
 
 def _only(several: list[HandedIn | Question]) -> HandedIn | Question:

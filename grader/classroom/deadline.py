@@ -71,6 +71,8 @@ class Deadline:
     def __str__(self) -> str:
         """Return when work is due, and by which calendar days count."""
         calendar = f"the calendar of {self.zone}" if self.zone else "this machine's calendar"
+        if isinstance(self.zone, timezone) and self.zone is not timezone.utc:
+            calendar += ', whose clocks never change (if they do, write zone = "Europe/Berlin" or the like)'
         return f"due {date_shown(self.due.astimezone(self.zone))}, days by {calendar}"
 
 

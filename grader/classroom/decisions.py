@@ -25,7 +25,8 @@ class Decision:
 def decisions(collected: Submissions, adjusting: Adjusting) -> list[Decision]:
     """Return what is not clear about a class."""
     attempts = [str(question) for question in collected.questions if question.attempts]
-    several = [str(question) for question in collected.questions if not question.attempts]
+    damaged = [str(question) for question in collected.questions if question.fault]
+    several = [str(question) for question in collected.questions if not question.attempts and not question.fault]
     unread = [f"{one.student.id}: {file.time.fault}" for one, file in _faults(collected.handed_in)]
     found = [
         Decision(
@@ -42,6 +43,11 @@ def decisions(collected: Submissions, adjusting: Adjusting) -> list[Decision]:
             f"{counted(len(several), 'student')} handed in several files",
             tuple(several),
             "Keep one of them, or name it in a CSV file.",
+        ),
+        Decision(
+            f"{counted(len(damaged), 'file')} can't be read out of the zip",
+            tuple(damaged),
+            "Download the zip again, or put the files into it without a password.",
         ),
         Decision(
             f"{counted(len(unread), 'time')} of submission can't be read",

@@ -10,7 +10,7 @@ from pathlib import Path
 from grader.classroom.formats.format import Upload
 from grader.classroom.handed_in import File, SubmissionsError
 from grader.classroom.names import comparable, normal
-from grader.classroom.roster import generic_student, probably_same
+from grader.classroom.roster import generic_student, signs
 from grader.classroom.tables import table_rows
 from grader.grading.grade import Student
 
@@ -32,10 +32,6 @@ class Group:
 
     name: str
     members: tuple[Student, ...]
-
-    def has(self, student: Student) -> bool:
-        """Return whether this is one of the members."""
-        return any(probably_same(member, student) for member in self.members)
 
 
 def read_groups(table: Path) -> tuple[Group, ...]:
@@ -61,22 +57,29 @@ def in_groups(units: Sequence[Unit], groups: Sequence[Group]) -> list[Unit]:
 
     If several members handed something in, each keeps their own, and the others have nothing.
     """
-    left = list(units)
+    placed = dict(enumerate(units))
+    called, owned = defaultdict(set), defaultdict(set)
+    for number, unit in placed.items():
+        for student in unit.students:
+            for name in _group_names(student):
+                called[name].add(number)
+            for sign in signs(student):
+                owned[sign].add(number)
     for group in groups:
-        called = [unit for unit in left if any(_is_called(student, group.name) for student in unit.students)]
-        by_member = [unit for unit in left if any(group.has(student) for student in unit.students)]
-        theirs = called or by_member
+        by_member = {number for member in group.members for sign in signs(member) for number in owned[sign]}
+        theirs = called[comparable(group.name)] or by_member
         if len(theirs) == 1:
-            known = [student for unit in by_member for student in unit.students]
-            students = tuple(
-                next((student for student in known if probably_same(member, student)), member)
-                for member in group.members
-            )
-            left[left.index(theirs[0])] = replace(theirs[0], students=students)
-    return left
+            (number,) = theirs
+            known = [student for one in by_member for student in units[one].students]
+            placed[number] = replace(units[number], students=tuple(_known(member, known) for member in group.members))
+    return list(placed.values())
 
 
-def _is_called(student: Student, group: str) -> bool:
-    """Return whether a platform means this group: Moodle writes `Group A_12`, Canvas `groupa_345`."""
-    name = comparable(group)
-    return name in map(comparable, (student.id, student.name, student.lms.get("Group", ""))) and bool(name)
+def _known(member: Student, known: Sequence[Student]) -> Student:
+    """Return the member as the export names them, if it does."""
+    return next((student for student in known if signs(member) & signs(student)), member)
+
+
+def _group_names(student: Student) -> set[str]:
+    """Return what a platform may call a group: Moodle writes `Group A_12`, Canvas `groupa_345`."""
+    return {comparable(name) for name in (student.id, student.name, student.lms.get("Group", ""))} - {""}

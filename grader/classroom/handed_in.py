@@ -16,11 +16,15 @@ class SubmissionsError(Exception):
 
 @dataclass(frozen=True)
 class File:
-    """A submitted file, or a folder of files. `name` is its name in the class's folder or zip, `path` where it is."""
+    """A submitted file, or a folder of files. `name` is its name in the class's folder or zip, `path` where it is.
+
+    `fault` says why it can't be read out of the class's zip.
+    """
 
     name: str
     path: Path
     time: Time = UNKNOWN
+    fault: str = ""
 
     @property
     def submitted(self) -> datetime | None:
@@ -49,15 +53,20 @@ class HandedIn:
 
 @dataclass(frozen=True)
 class Question:
-    """Several files from one student; only the instructor can say which one counts."""
+    """Several files from one student, or one that can't be read; only the instructor can say what counts.
+
+    `attempts` says whether the platform says that they are attempts, `fault` why one can't be read.
+    """
 
     student: Student
     files: tuple[str, ...]
     attempts: bool = False
-    """Whether the platform says that they are attempts, one after another."""
+    fault: str = ""
 
     def __str__(self) -> str:
         """Return the question as text."""
+        if self.fault:
+            return f"{self.student.id} handed in {', '.join(self.files)}: {self.fault}"
         what = "attempts" if self.attempts else "files"
         return f"{self.student.id} handed in {len(self.files)} {what}: {', '.join(self.files)}. Which one counts?"
 

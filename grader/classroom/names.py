@@ -7,6 +7,7 @@ import re
 import unicodedata
 from collections import defaultdict
 from collections.abc import Iterable
+from functools import cache
 
 #: Zero-width (non-)joiners, which Indic and Persian names need between letters (Unicode 15, chapter 23.2).
 JOINERS = "\u200c\u200d"
@@ -52,6 +53,7 @@ def _digest(name: str) -> str:
     return hashlib.sha256(name.encode("utf-8", errors="surrogateescape")).hexdigest()[:6]
 
 
+@cache
 def comparable(name: str) -> str:
     """Return a name with only its letters and digits, small, to compare names that platforms have shortened."""
     return "".join(char for char in normal(name).casefold() if _is_kept(char) and char not in ".@+-_")

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, tzinfo
+from functools import cache
 from pathlib import Path
 
 from grader.classroom.formats.registry import PLATFORMS
@@ -86,26 +88,25 @@ def _time(row: Mapping[str, str], place: str, zone: tzinfo | None) -> Time:
     return time
 
 
-def same_person(one: Student, other: Student) -> bool:
-    """Return whether an id, an address or a number is the same; names alone do not tell."""
-    return bool(_keys(one) & _keys(other) or _ids(one) & _ids(other))
+@cache
+def signs(student: Student) -> frozenset[str]:
+    """Return what tells a student among the members of groups: ids, addresses, numbers and names."""
+    return frozenset(_keys(student) | _ids(student) | _names(student))
 
 
-def probably_same(one: Student, other: Student) -> bool:
-    """Return whether it is the same person, or has the same name: enough among the members of a group."""
-    return same_person(one, other) or bool(_names(one) & _names(other))
-
-
+@cache
 def _keys(student: Student) -> set[str]:
     known = [student.id, student.email, *(value for name, value in student.lms.items() if name in IDENTITY)]
     return {normal(key).strip().casefold() for key in known} - {""}
 
 
+@cache
 def _ids(student: Student) -> set[str]:
     """Return the id as the export writes it, and as the results' folder is called."""
     return {normal(student.id).casefold(), student_id(student.id).casefold()}
 
 
+@cache
 def _names(student: Student) -> set[str]:
     """Return the name as platforms write it: in any order of its words, and without what is between them."""
     words = re.split(r"[\s,_]+", normal(student.name or student.id).casefold())
@@ -120,26 +121,37 @@ def match(rows: Sequence[RosterRow], students: Sequence[Student]) -> dict[str, R
     """
     found: dict[str, RosterRow] = {}
     for keys in (_keys, _ids):
-        used = list(found.values())
-        rows_by_key = {key: row for row in rows if row not in used for key in keys(row.student)}
+        used = {id(row) for row in found.values()}
+        rows_by_key = {key: row for row in rows if id(row) not in used for key in keys(row.student)}
         for student in students:
             row = next((rows_by_key[key] for key in sorted(keys(student)) if key in rows_by_key), None)
             if row and student.id not in found:
                 found[student.id] = row
-    free = [row for row in rows if row not in found.values()]
-    for student in students:
-        if student.id in found:
-            continue
-        same = [row for row in free if _names(row.student) & _names(student)]
-        others = [other for other in students if other.id not in found and _names(other) & _names(student)]
+    used = {id(row) for row in found.values()}
+    free = [row for row in rows if id(row) not in used]
+    nameless = [student for student in students if student.id not in found]
+    rows_by_name = _by_name([row.student for row in free])
+    students_by_name = _by_name(nameless)
+    for student in nameless:
+        same = {number for name in _names(student) for number in rows_by_name[name]}
+        others = {number for name in _names(student) for number in students_by_name[name]}
         if len(same) == 1 and len(others) == 1:
-            found[student.id] = same[0]
+            found[student.id] = free[same.pop()]
         elif same:
             raise SubmissionsError(
                 f"{student.name or student.id}: several students have this name, and the roster does not say who of "
                 "them handed this in. Give it a column that the export has, too, such as student, ID or email."
             )
     return found
+
+
+def _by_name(students: Sequence[Student]) -> dict[str, list[int]]:
+    """Return the numbers of the students by each of their names."""
+    by_name: dict[str, list[int]] = defaultdict(list)
+    for number, student in enumerate(students):
+        for name in _names(student):
+            by_name[name].append(number)
+    return by_name
 
 
 def with_row(student: Student, row: RosterRow | None) -> Student:

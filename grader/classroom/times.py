@@ -44,6 +44,14 @@ _WRITTEN = re.compile(
     r"(?P<day>\d{4}-\d\d-\d\d)(?:[ T]+(?P<time>\d\d:\d\d(?::\d\d)?)(?:[.,]\d+)?)?\s*(?P<zone>\S.*)?",
     re.IGNORECASE,
 )
+#: As `date` and `date -R` write them: "Sun Nov 22 10:00:00 UTC 2026", "Sun, 22 Nov 2026 10:00:00 +0100".
+_MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
+_WORDED = (
+    re.compile(r"[a-z]{3} (?P<month>[a-z]{3}) +(?P<day>\d\d?) (?P<time>[\d:]+) (?P<zone>\S+) (?P<year>\d{4})", re.I),
+    re.compile(
+        r"(?:[a-z]{3}, )?(?P<day>\d\d?) (?P<month>[a-z]{3}) (?P<year>\d{4}) (?P<time>[\d:]+) ?(?P<zone>.*)", re.I
+    ),
+)
 _DIGITS = re.compile(r"(\d{14})\d{0,3}")
 _OFFSET = re.compile(r"(?:UTC|GMT)?([+-])(\d\d?)(?::?([0-5]\d))?")
 
@@ -55,8 +63,8 @@ def read_time(text: str, source: str, zone: tzinfo | None, near: tzinfo | None =
     machine's. What can't be read becomes the `fault`.
     """
     line = next(iter(text.strip("\ufeff \t\r\n\0").splitlines()), "").strip()
-    match, digits = _WRITTEN.fullmatch(line), _DIGITS.fullmatch(line)
     try:
+        match, digits = _WRITTEN.fullmatch(_in_digits(line)), _DIGITS.fullmatch(line)
         if digits:  # Sakai's older form, in UTC
             written = datetime.strptime(digits[1], "%Y%m%d%H%M%S")
             return Time(written.replace(tzinfo=timezone.utc), source)
@@ -69,6 +77,20 @@ def read_time(text: str, source: str, zone: tzinfo | None, near: tzinfo | None =
         why = f": {error}" if "zone" in str(error) else ""
         return Time(source=source, fault=f"{source} says {line[:80]!r}, which is not a time that can be read{why}")
     return Time(at, source, note=note)
+
+
+def month_named(name: str) -> int:
+    """Return the number of a month by its English name or the first letters. Raises ValueError."""
+    return _MONTHS.index(name[:3].lower()) + 1
+
+
+def _in_digits(line: str) -> str:
+    """Return a time that names its month as one in digits; any other text as it is."""
+    for worded in _WORDED:
+        if match := worded.fullmatch(line):
+            day = f"{match['year']}-{month_named(match['month']):02}-{int(match['day']):02}"
+            return f"{day} {match['time']} {match['zone']}"
+    return line
 
 
 def _in_zone(written: datetime, name: str, zone: tzinfo | None, near: tzinfo | None) -> tuple[datetime, str]:

@@ -263,3 +263,22 @@ def test_the_platforms_own_list_is_a_roster(tmp_path: Path, export: Callable[[],
     if export is moodle:
         assert {one.file.submitted for one in found.handed_in} == {FIRST}
         assert {one.file.submitted_from for one in found.handed_in} == {"Moodle's worksheet"}
+
+
+@pytest.mark.parametrize(
+    ("name", "who"),
+    [
+        ("millerzed_77_text.html", "millerzed_77"),
+        ("Zed Zee_77_assignsubmission_onlinetext/onlinetext.html", "Zed_Zee_77"),
+        ("Lab_3_zed_attempt_2026-11-20-22-01-00.txt", "zed"),
+        ("Lab 3/Zee, Zed(zed)/timestamp.txt", "zed"),
+        ("course/submitted/zed/joint_velocity/timestamp.txt", "zed"),
+    ],
+)
+def test_who_handed_in_only_a_text_has_a_row_too(tmp_path: Path, name: str, who: str) -> None:
+    exports = {"millerzed": canvas, "Zed Zee": moodle, "Lab_3_zed": blackboard, "Lab 3": sakai, "course": nbgrader}
+    made = exports[name.partition("/")[0].partition("_77")[0].partition("_attempt")[0]]()
+    found = collected(archive(tmp_path / "class.zip", {**made.files, name: "2026-11-20 22:01 UTC"}), attempts="last")
+    assert len(found.handed_in) == 30
+    assert files(found)[who] == name
+    assert any(note.endswith(f"not one of .py, .ipynb, .zip: {name}") for note in found.notes)

@@ -40,6 +40,8 @@ def read(text: str, near: ZoneInfo | None = None) -> datetime | None:
         ("2026-11-22 10:00:00.123456 %Z", 10),
         ("2026-11-22 10:00:00 ", 10),
         ("20261122100000123", 10),
+        ("Sun Nov 22 10:00:00 CET 2026", 9),
+        ("Sun, 22 Nov 2026 10:00:00 +0100", 9),
     ],
 )
 def test_a_time_is_read_as_it_was_written(text: str, hour: int) -> None:

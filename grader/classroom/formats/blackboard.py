@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 
-from grader.classroom.formats.format import OWN, Export, Format, Parts, Understood, Upload, person
+from grader.classroom.formats.format import Export, Format, Parts, Understood, Upload, person
 from grader.classroom.times import Time, read_time
 from grader.grading.grade import Student
 
@@ -29,15 +29,16 @@ def read(export: Export) -> Callable[[Parts], Understood]:
         match = NAME.fullmatch(parts[-1])
         if not match or len(parts) > 1:
             return None
-        if match["own"]:
-            return OWN
         who = WHO.search(texts.get(match["before"], ""))
         user = match["before"].removeprefix(common)
         if who and match["before"].endswith(f"_{who['user']}"):
             user = who["user"]
         time = _time(match, export)
         student = person(user, who["name"] if who else "", Username=user)
-        return Upload((student,), (match["file"],), f"{match['day']} {match['h']}{match['m']}{match['s']}", time)
+        inside = (match["file"] or parts[-1],)
+        return Upload(
+            (student,), inside, f"{match['day']} {match['h']}{match['m']}{match['s']}", time, aside=bool(match["own"])
+        )
 
     return understand
 

@@ -10,13 +10,12 @@ from collections.abc import Callable, Mapping
 from datetime import datetime
 
 from grader.classroom.formats.format import OWN, Export, Format, Parts, Understood, Upload, person
-from grader.classroom.times import Time, localized, without_zone
+from grader.classroom.times import Time, localized, month_named, without_zone
 from grader.grading.grade import Student
 
 NAME = re.compile(
     r"(?P<user>\d+)-(?P<folder>\d+) ?- ?(?P<name>.+?) ?- ?(?P<time>[^-]*\d{4},? \d{3,4}(?: ?[AP]M)?)", re.I
 )
-MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
 TIME = re.compile(
     r"(?:(?P<month>[A-Za-z]{3,9})\.? (?P<day>\d\d?)|(?P<day2>\d\d?) (?P<month2>[A-Za-z]{3,9})),? "
     r"(?P<year>\d{4}),? (?P<hour>\d\d?)(?P<minute>\d\d)(?: ?(?P<half>[AP]M))?",
@@ -46,7 +45,7 @@ def _time(text: str, export: Export) -> Time:
     try:
         if not match:
             raise ValueError
-        month = MONTHS.index((match["month"] or match["month2"])[:3].lower()) + 1
+        month = month_named(match["month"] or match["month2"])
         hour = int(match["hour"])
         if match["half"] and hour <= 12:  # some sites write 1301 PM
             hour = hour % 12 + 12 * (match["half"].upper() == "PM")

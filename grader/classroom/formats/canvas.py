@@ -39,12 +39,12 @@ def read(export: Export) -> Callable[[Parts], Understood]:
         match = NAME.fullmatch(parts[-1])
         if not match or len(parts) > 1:
             return None
-        if match["page"]:
-            return "a text or a link entered in Canvas, not a file"
         name, user = match["name"] or "", _user(match)
         student = person("_".join(filter(None, (name, user))), name, ID=user)
-        attempt, file = _attempt(match["file"], first[user])
         time = Time(source="Canvas", late=bool(match["late"] or match["anonymous_late"]))
+        if match["page"]:
+            return Upload((student,), parts, time=time, aside=True)
+        attempt, file = _attempt(match["file"], first[user])
         return Upload((student,), (file,), attempt, time)
 
     return understand

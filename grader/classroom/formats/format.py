@@ -21,13 +21,15 @@ class Upload:
     """What a file's place says: whose it is, which attempt, its place in what the student handed in, and when.
 
     A student's `id` is a text that no other student of the export has. `attempt` is empty if there is only one;
-    attempts are in the order of these texts.
+    attempts are in the order of these texts. What is `aside` counts only if there is nothing else of the student: a
+    text that was typed on the platform, or a time stamp.
     """
 
     students: tuple[Student, ...]
     inside: Parts
     attempt: str = ""
     time: Time = UNKNOWN
+    aside: bool = False
 
 
 #: An upload; the reason why a file is not one, if the instructor is to know it; None if a file does not fit.

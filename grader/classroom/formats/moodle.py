@@ -34,12 +34,10 @@ def read(export: Export) -> Callable[[Parts], Understood]:
         match = NAME.fullmatch(parts[0])
         if not match or (len(parts) == 1 and not match["file"]):
             return None
-        if match["kind"] != "file":
-            return "a text written in Moodle, not a file"
         team, _, rest = match["name"].partition("-")
         name = rest if in_teams else match["name"]
         student = _student(name, match["number"] or "", {"Group": team} if in_teams else {})
-        return Upload((student,), parts[1:] or (match["file"],))
+        return Upload((student,), parts[1:] or (match["file"],), aside=match["kind"] != "file")
 
     return understand
 

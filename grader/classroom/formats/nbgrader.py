@@ -10,7 +10,6 @@ from collections.abc import Callable, Sequence
 from datetime import datetime, timezone
 
 from grader.classroom.formats.format import (
-    OWN,
     Export,
     Format,
     Parts,
@@ -43,9 +42,7 @@ def read(export: Export) -> Callable[[Parts], Understood] | None:
             return None
         if parts[1] != wanted:
             return f"another assignment, {parts[1]}"
-        if parts[2:] == (TIMESTAMP,):
-            return OWN
-        return Upload((person(parts[0]),), parts[2:], time=times[parts[0]])
+        return Upload((person(parts[0]),), parts[2:], time=times[parts[0]], aside=parts[2:] == (TIMESTAMP,))
 
     return understand
 

@@ -17,7 +17,7 @@ from grader.grading.grade import Student
 FOLDER = re.compile(r"(?P<name>[^()]*,[^()]*)\((?P<login>[^()]+)\)")
 MEMBER = re.compile(r"\s*(?P<name>[^()]*,[^()]*)\((?P<login>[^()]+)\)\s*")
 TIMESTAMP, MEMBERS = "timestamp.txt", "members.txt"
-SAKAIS = {"comments.txt", "feedbackText.html", TIMESTAMP, MEMBERS}
+SAKAIS = {"comments.txt", "feedbackText.html", MEMBERS}
 OF_ALL = re.compile(r"grades\.(csv|xls|xlsx)|.*\.html")
 
 
@@ -39,9 +39,10 @@ def read(export: Export) -> Callable[[Parts], Understood] | None:
             return OWN if OF_ALL.fullmatch(parts[0]) else None
         if not students[parts[0]]:
             return None
-        if len(parts) == 2 and (parts[1] in SAKAIS or parts[1].endswith("_submissionText.html")):
+        if len(parts) == 2 and parts[1] in SAKAIS:
             return OWN
-        return Upload(students[parts[0]], parts[2:] or parts[1:], time=times[parts[0]])
+        aside = len(parts) == 2 and (parts[1] == TIMESTAMP or parts[1].endswith("_submissionText.html"))
+        return Upload(students[parts[0]], parts[2:] or parts[1:], time=times[parts[0]], aside=aside)
 
     return understand
 
