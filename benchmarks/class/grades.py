@@ -24,23 +24,40 @@ def wrong_with(handed: Handed, results: Path) -> str:
 
 def _wrong(entry: dict[str, Any], expected: Expected) -> str:
     grade = entry["grade"]
-    verdicts: list[dict[str, Any]] = grade["verdicts"]
-    failed = {verdict["name"] for verdict in verdicts if verdict["status"] == "failed"}
     if grade["outcome"] not in expected.outcomes:
         return f"{grade['outcome']}, not {' or '.join(expected.outcomes)}: {grade['message']}"
-    earned = sum(verdict["points"] for verdict in verdicts if verdict["status"] == "passed")
+    return _wrong_points(entry, expected) or _wrong_checks(grade, expected) or _wrong_words(grade, expected)
+
+
+def _wrong_points(entry: dict[str, Any], expected: Expected) -> str:
+    grade = entry["grade"]
+    earned = sum(verdict["points"] for verdict in grade["verdicts"] if verdict["status"] == "passed")
     if not entry["final"] == grade["score"] == earned:
         return f"final {entry['final']}, score {grade['score']}, but the checks that it passes give {earned}"
     full = grade["score"] == grade["points"]
     right = {"zero": grade["score"] == 0, "full": full, "less": not full, "any": True}
-    if not right[expected.score]:
-        return f"{grade['score']:g} of {grade['points']:g} points, not {expected.score}; it fails {sorted(failed)}"
-    if expected.fails is not None:
-        if failed != expected.fails:
-            return f"it fails {sorted(failed)}, not {sorted(expected.fails)}"
-        blocked = {name: set(v["blocked_by"]) for v in verdicts if v["status"] == "blocked" for name in [v["name"]]}
-        if loose := [name for name, by in blocked.items() if not by & (failed | set(blocked))]:
-            return f"blocked by nothing that fails: {loose}"
+    if right[expected.score]:
+        return ""
+    score = f"{grade['score']:g} of {grade['points']:g} points, not {expected.score}"
+    return f"{score}; it fails {sorted(_failed(grade))}"
+
+
+def _failed(grade: dict[str, Any]) -> set[str]:
+    return {verdict["name"] for verdict in grade["verdicts"] if verdict["status"] == "failed"}
+
+
+def _wrong_checks(grade: dict[str, Any], expected: Expected) -> str:
+    if expected.fails is None:
+        return ""
+    failed = _failed(grade)
+    if failed != expected.fails:
+        return f"it fails {sorted(failed)}, not {sorted(expected.fails)}"
+    blocked = {v["name"]: set(v["blocked_by"]) for v in grade["verdicts"] if v["status"] == "blocked"}
+    loose = [name for name, by in blocked.items() if not by & (failed | set(blocked))]
+    return f"blocked by nothing that fails: {loose}" if loose else ""
+
+
+def _wrong_words(grade: dict[str, Any], expected: Expected) -> str:
     message = _message(grade)
     if missing := [words for words in expected.words if not re.search(words, message, re.IGNORECASE)]:
         return f"the feedback lacks {missing}: {message[:200]}"

@@ -30,24 +30,29 @@ def _local_names(tree: ast.Module) -> set[str]:
     local: set[str] = set()
     other = {"self", "cls"}
     for node in ast.walk(tree):
-        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
-            other.add(node.name)
-        elif isinstance(node, (ast.Import, ast.ImportFrom)):
-            other |= {(alias.asname or alias.name).split(".")[0] for alias in node.names}
-        elif isinstance(node, (ast.Global, ast.Nonlocal)):
-            other |= set(node.names)
-        elif isinstance(node, ast.ExceptHandler) and node.name:
-            other.add(node.name)
-        elif isinstance(node, ast.keyword) and node.arg:
-            other.add(node.arg)
-    for node in (*tree.body, *(part for cls in tree.body if isinstance(cls, ast.ClassDef) for part in cls.body)):
-        if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
-            other |= {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
-    for node in ast.walk(tree):
+        other |= _bound_otherwise(node)
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
             local |= {part.arg for part in ast.walk(node) if isinstance(part, ast.arg)}
             local |= {p.id for p in ast.walk(node) if isinstance(p, ast.Name) and isinstance(p.ctx, ast.Store)}
-    return local - other
+    return local - other - _of_statements_outside_functions(tree)
+
+
+def _bound_otherwise(node: ast.AST) -> set[str]:
+    """The names that a definition, an import, a declaration, a handler or a keyword binds or uses."""
+    if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.ExceptHandler)):
+        return {node.name} if node.name else set()
+    if isinstance(node, (ast.Import, ast.ImportFrom)):
+        return {(alias.asname or alias.name).split(".")[0] for alias in node.names}
+    if isinstance(node, (ast.Global, ast.Nonlocal)):
+        return set(node.names)
+    return {node.arg} if isinstance(node, ast.keyword) and node.arg else set()
+
+
+def _of_statements_outside_functions(tree: ast.Module) -> set[str]:
+    bodies = [tree.body, *(cls.body for cls in tree.body if isinstance(cls, ast.ClassDef))]
+    definitions = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+    outside = [node for body in bodies for node in body if not isinstance(node, definitions)]
+    return {part.id for node in outside for part in ast.walk(node) if isinstance(part, ast.Name)}
 
 
 def as_notebook(source: str, stem: str) -> str:

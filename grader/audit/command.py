@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import click
@@ -75,33 +78,31 @@ def audit(
         return
     leave_cpus_to_workers()
     for option, file in (("--json", json_), ("--html", html)):
-        if file and (file.is_dir() or not file.absolute().parent.is_dir()):
-            text = "that is a folder" if file.is_dir() else f"there is no folder {file.parent}"
-            raise click.UsageError(f"{option} {file}: {text}. Name a file in an existing folder.")
+        _must_be_writable(option, file)
     if solutions and (quick or mutants is not None or seeds):
         raise click.UsageError("--solutions tries no mutants and no seeds: leave out --quick, --mutants and --seeds.")
-    if solutions:
-        mutants, seeds = 0, 1
     options = Options(parallel=parallel) if parallel else Options()
-    audits: list[Audit] = []
-    faulty: list[ExerciseError] = []
-    console = Console(highlight=False)
-    try:
+    with _faults_end_it():
         # Workers can import a course's own interfaces only if these are found before the workers start.
         use_near(Path.cwd(), COURSE)
         with WorkerPool() as workers:
-            for folder in [_folder(name) for name in exercises] or _all_here():
-                try:
-                    audits.append(_audited(load(folder), options, workers, console, quick, mutants, seeds))
-                except ExerciseError as error:
-                    faulty.append(error)
-                    click.echo(f"{error}\n    The rest of this exercise was not audited.", err=True)
-        if json_:
-            write_json(audits, [_problem(error) for error in faulty], json_)
-        if html:
-            from grader.audit.report import write_html
+            audits = _Audits(options, workers, quick, 0 if solutions else mutants, 1 if solutions else seeds)
+            audits.run([_folder(name) for name in exercises] or _all_here())
+        audits.write(json_, html)
+    sys.exit(PROVED if audits.nothing_to_fix else TO_FIX)
 
-            write_html(audits, [_problem(error) for error in faulty], html)
+
+def _must_be_writable(option: str, file: Path | None) -> None:
+    if file and (file.is_dir() or not file.absolute().parent.is_dir()):
+        text = "that is a folder" if file.is_dir() else f"there is no folder {file.parent}"
+        raise click.UsageError(f"{option} {file}: {text}. Name a file in an existing folder.")
+
+
+@contextlib.contextmanager
+def _faults_end_it() -> Iterator[None]:
+    """End the command with a message and its exit code if the machine or the grader is at fault, or on Ctrl-C."""
+    try:
+        yield
     except (SandboxUnavailable, HostFault) as error:
         click.echo(f"The machine or the grader is at fault, not the exercise: {error}", err=True)
         sys.exit(OUR_FAULT)
@@ -111,7 +112,58 @@ def audit(
     except KeyboardInterrupt:
         click.echo("Stopped. The results so far are kept. Run the same command to continue.", err=True)
         sys.exit(STOPPED)
-    sys.exit(TO_FIX if faulty or any(result.problems for result in audits) else PROVED)
+
+
+@dataclass
+class _Audits:
+    """Audits exercises one after another, shows each result and keeps it."""
+
+    options: Options
+    workers: WorkerPool
+    quick: bool
+    mutants: int | None
+    seeds: int | None
+    results: list[Audit] = field(default_factory=list)
+    faulty: list[ExerciseError] = field(default_factory=list)
+    console: Console = field(default_factory=lambda: Console(highlight=False))
+
+    @property
+    def nothing_to_fix(self) -> bool:
+        """Whether no exercise has a problem."""
+        return not self.faulty and not any(result.problems for result in self.results)
+
+    def run(self, folders: Sequence[Path]) -> None:
+        """Audit the exercises in these folders."""
+        for folder in folders:
+            try:
+                self._audit(load(folder))
+            except ExerciseError as error:
+                self.faulty.append(error)
+                click.echo(f"{error}\n    The rest of this exercise was not audited.", err=True)
+
+    def write(self, json_: Path | None, html: Path | None) -> None:
+        """Write the reports that were asked for. Raises OSError."""
+        problems = [_problem(error) for error in self.faulty]
+        if json_:
+            write_json(self.results, problems, json_)
+        if html:
+            from grader.audit.report import write_html
+
+            write_html(self.results, problems, html)
+
+    def _audit(self, exercise: Exercise) -> None:
+        try:
+            from grader.audit.audit import SEEDS, audit
+        except ModuleNotFoundError as error:
+            if error.name != "libcst":
+                raise
+            text = "Mutants are made with libcst, which is not installed: pip install 'spinbook[audit]'"
+            raise click.UsageError(text) from None
+        seeds = self.seeds or SEEDS
+        with on(Console(stderr=True)) as progress:
+            result = audit(exercise, self.options, self.workers, progress, self.quick, self.mutants, seeds)
+        show(result, self.console)
+        self.results.append(result)
 
 
 def _show_mistake(exercises: tuple[str, ...], name: str) -> None:
@@ -121,29 +173,6 @@ def _show_mistake(exercises: tuple[str, ...], name: str) -> None:
         click.echo(mistake_of(load(_folder(exercises[0])), name).source, nl=False)
     except (NoMistake, ExerciseError) as error:
         raise click.UsageError(str(error)) from None
-
-
-def _audited(
-    exercise: Exercise,
-    options: Options,
-    workers: WorkerPool,
-    console: Console,
-    quick: bool,
-    mutants: int | None,
-    seeds: int | None,
-) -> Audit:
-    try:
-        from grader.audit.audit import SEEDS
-        from grader.audit.audit import audit as audit_one
-    except ModuleNotFoundError as error:
-        if error.name != "libcst":
-            raise
-        text = "Mutants are made with libcst, which is not installed: pip install 'spinbook[audit]'"
-        raise click.UsageError(text) from None
-    with on(Console(stderr=True)) as progress:
-        result = audit_one(exercise, options, workers, progress, quick, mutants, seeds or SEEDS)
-    show(result, console)
-    return result
 
 
 def _problem(error: ExerciseError) -> AuditProblem:

@@ -6,8 +6,11 @@ import ast
 import contextlib
 import functools
 import importlib.util
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+
+#: rclpy's classes of nodes.
+NODE_CLASSES = frozenset({"Node", "LifecycleNode"})
 
 
 def last_name(expression: ast.expr) -> str:
@@ -53,23 +56,28 @@ def attributes_lacking(
         return {}
     found: dict[str, int] = {}
     for name in names:
-        if any(last_name(base) not in {"Node", "LifecycleNode", "object", "ABC"} for base in classes[name].bases):
-            continue
-        bound = {
-            i.name for i in classes[name].body if isinstance(i, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
-        }
-        bound |= {
-            t.id
-            for i in ast.walk(classes[name])
-            if isinstance(i, ast.Assign | ast.AnnAssign)
-            for t in (i.targets if isinstance(i, ast.Assign) else [i.target])
-            if isinstance(t, ast.Name)
-        }
-        for item in ast.walk(classes[name]):
-            reads = isinstance(item, ast.Attribute) and isinstance(item.value, ast.Name) and item.value.id == "self"
-            if reads and isinstance(item, ast.Attribute) and item.attr not in known | stored | bound:
-                found.setdefault(item.attr, item.lineno)
+        if all(last_name(base) in {*NODE_CLASSES, "object", "ABC"} for base in classes[name].bases):
+            defined = known | stored | _bound(classes[name])
+            for attribute, line in _read_of_self(classes[name]):
+                if attribute not in defined:
+                    found.setdefault(attribute, line)
     return found
+
+
+def _bound(own: ast.ClassDef) -> set[str]:
+    """The names of a class's methods and inner classes, and of all variables in it."""
+    bound = {item.name for item in own.body if isinstance(item, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)}
+    for item in ast.walk(own):
+        if isinstance(item, ast.Assign | ast.AnnAssign):
+            targets = item.targets if isinstance(item, ast.Assign) else [item.target]
+            bound |= {target.id for target in targets if isinstance(target, ast.Name)}
+    return bound
+
+
+def _read_of_self(own: ast.ClassDef) -> Iterator[tuple[str, int]]:
+    for item in ast.walk(own):
+        if isinstance(item, ast.Attribute) and isinstance(item.value, ast.Name) and item.value.id == "self":
+            yield item.attr, item.lineno
 
 
 def used_by_init(lacking: Mapping[str, int], names: list[str], classes: Mapping[str, ast.ClassDef]) -> str:

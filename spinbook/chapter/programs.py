@@ -52,27 +52,24 @@ class Programs:
         if item.fence.has("raises"):
             # It is meant to fail.
             return self._made(number, item, joined)
+        return self._not_run(item, code, joined) or self._made(number, item, joined)
+
+    def _not_run(self, item: Classified, code: PythonCode, joined: Joined) -> Classified | None:
+        """The fence as one that is only shown, with the reason; None if it can run."""
         if joined.missing:
             return self._undefined(item, code, joined.missing)
         if code.never_initialized:
             return self._uninitialized(item, code)
         if code.wants_ros and not _facts(joined, code).initializes:
             return _static(item, "nothing calls `rclpy.init` before it")
-        if not code.is_complete and code.node_classes and not code.calls_main:
-            if code.lacking and not joined.amends:
-                names = ", ".join(f"`self.{name}`" for name in list(code.lacking)[:3])
-                verb = "is" if len(code.lacking) == 1 else "are"
-                return _static(item, f"it is a fragment: {names} {verb} never set in it")
-            nameless = bool(code.nameless) and not joined.amends
-            if ((not code.alone or nameless) and not _is_file(item)) or _needs_arguments(joined):
-                return _static(item, "it is a fragment: nothing makes a node of its class")
+        if reason := _why_fragment(item, code, joined):
+            return _static(item, f"it is a fragment: {reason}")
         if code.lacking and code.is_complete and not joined.amends:
             self._lacking(item, code)
             if code.fails_at_once:
                 return _static(item, f"`self.{code.fails_at_once}` is never set in it")
-        if missing := missing_imports(_facts(joined, code), self.own, self.interfaces):
-            return self._missing(item, missing, joined)
-        return self._made(number, item, joined)
+        missing = missing_imports(_facts(joined, code), self.own, self.interfaces)
+        return self._missing(item, missing, joined) if missing else None
 
     def _made(self, number: int, item: Classified, joined: Joined) -> Classified:
         name, named = self._name(item)
@@ -161,6 +158,19 @@ class Programs:
             name = f"{name}_node"
         self._names[name] = name
         return name, named
+
+
+def _why_fragment(item: Classified, code: PythonCode, joined: Joined) -> str:
+    """What a class without a main lacks to be a program; empty if nothing."""
+    if code.is_complete or not code.node_classes or code.calls_main:
+        return ""
+    if code.lacking and not joined.amends:
+        names = ", ".join(f"`self.{name}`" for name in list(code.lacking)[:3])
+        return f"{names} {'is' if len(code.lacking) == 1 else 'are'} never set in it"
+    is_piece = not code.alone or (bool(code.nameless) and not joined.amends)
+    if (is_piece and not _is_file(item)) or _needs_arguments(joined):
+        return "nothing makes a node of its class"
+    return ""
 
 
 def _facts(joined: Joined, code: PythonCode) -> PythonCode:

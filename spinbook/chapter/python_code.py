@@ -9,9 +9,11 @@ import re
 import symtable
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from spinbook.chapter.class_pieces import methods_alone, names_begun, uses_super_outside
 from spinbook.chapter.node_classes import (
+    NODE_CLASSES,
     attributes_lacking,
     can_stand_alone,
     gives_no_name,
@@ -196,68 +198,31 @@ def _only_inside_function(code: str) -> str | None:
 
 def _facts(tree: ast.Module, code: str) -> PythonCode:
     everything = list(ast.walk(tree))
-    imports: dict[str, int] = {}
-    optional = _optional_imports(everything)
-    interfaces: dict[tuple[str, str], int] = {}
-    node_classes: list[str] = []
-    ros_name: str | None = None
-    spins = setup = launch = guard = False
-    for item in everything:
-        if item in optional:
-            continue
-        if isinstance(item, ast.Import):
-            for alias in item.names:
-                imports.setdefault(alias.name, item.lineno)
-        elif isinstance(item, ast.ImportFrom) and item.module and not item.level:
-            imports.setdefault(item.module, item.lineno)
-            for alias in item.names:
-                interfaces.setdefault((item.module, alias.name), item.lineno)
-        elif isinstance(item, ast.ClassDef):
-            if any(last_name(base) in {"Node", "LifecycleNode"} for base in item.bases):
-                node_classes.append(item.name)
-        elif isinstance(item, ast.Call):
-            name = last_name(item.func)
-            spins = spins or name in _SPINS
-            setup = setup or (name == "setup" and _imports_setuptools(tree))
-            ros_name = ros_name or _node_name(item, name)
-        elif (
-            isinstance(item, ast.Constant)
-            and isinstance(item.value, str)
-            and _ENTRY_POINT.fullmatch(item.value.strip())
-        ):
-            setup = True
-        elif isinstance(item, ast.FunctionDef) and item.name == "generate_launch_description":
-            launch = True
-    for statement in tree.body:
-        if isinstance(statement, ast.If) and "__main__" in ast.dump(statement.test):
-            guard = True
+    calls = [item for item in everything if isinstance(item, ast.Call)]
+    called = {last_name(call.func) for call in calls}
     defines, needs = _names(everything, code)
     classes = {item.name: item for item in everything if isinstance(item, ast.ClassDef)}
-    calls = [item for item in everything if isinstance(item, ast.Call)]
+    node_classes = _node_classes(everything)
     lacking = attributes_lacking(everything, node_classes, classes)
     alone = tuple(name for name in node_classes if can_stand_alone(name, classes, everything))
     return PythonCode(
-        imports=imports,
-        interfaces=interfaces,
+        **_imports(everything),
         node_classes=tuple(node_classes),
-        ros_name=ros_name,
-        spins=spins,
-        has_main=any(isinstance(s, ast.FunctionDef) and s.name == "main" for s in tree.body),
-        has_main_guard=guard,
-        is_setup_script=setup,
-        is_launch_file=launch,
+        ros_name=next(filter(None, map(_node_name, calls)), None),
+        spins=not called.isdisjoint(_SPINS),
+        has_main=any(map(_is_main, tree.body)),
+        has_main_guard=any(map(_is_main_guard, tree.body)),
+        is_setup_script=("setup" in called and _imports_setuptools(tree)) or any(map(_is_entry_point, everything)),
+        is_launch_file=any(map(_is_launch_function, everything)),
         defines=defines,
         needs=needs,
-        relative_imports={
-            "." * i.level + (i.module or ""): i.lineno for i in everything if isinstance(i, ast.ImportFrom) and i.level
-        },
-        calls_main=any(calls_main(statement) for statement in tree.body),
-        starts_ros=any(starts_ros(call) for call in calls),
-        loops=any(loops_forever(statement) for statement in at_top(tree)),
+        calls_main=any(map(calls_main, tree.body)),
+        starts_ros=any(map(starts_ros, calls)),
+        loops=any(map(loops_forever, at_top(tree))),
         programs=programs_started(everything),
         words_read=words_read(everything),
         wants_ros=wants_ros(tree),
-        initializes=any(last_name(call.func) == "init" for call in calls),
+        initializes="init" in called,
         leaves=leaves(tree),
         asks=next((call.lineno for call in calls if isinstance(call.func, ast.Name) and call.func.id == "input"), 0),
         alone=alone,
@@ -266,6 +231,47 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
         fails_at_once=used_by_init(lacking, node_classes, classes),
         never_initialized=never_initialized(node_classes, classes),
     )
+
+
+def _imports(everything: Sequence[ast.AST]) -> dict[str, Any]:
+    """What the code imports, each with its first line: modules, names of modules, relative modules."""
+    optional = _optional_imports(everything)
+    imports: dict[str, int] = {}
+    interfaces: dict[tuple[str, str], int] = {}
+    relative: dict[str, int] = {}
+    for item in everything:
+        if isinstance(item, ast.ImportFrom) and item.level:
+            relative["." * item.level + (item.module or "")] = item.lineno
+        elif isinstance(item, ast.ImportFrom) and item.module and item not in optional:
+            imports.setdefault(item.module, item.lineno)
+            for alias in item.names:
+                interfaces.setdefault((item.module, alias.name), item.lineno)
+        elif isinstance(item, ast.Import) and item not in optional:
+            for alias in item.names:
+                imports.setdefault(alias.name, item.lineno)
+    return {"imports": imports, "interfaces": interfaces, "relative_imports": relative}
+
+
+def _node_classes(everything: Sequence[ast.AST]) -> list[str]:
+    classes = (item for item in everything if isinstance(item, ast.ClassDef))
+    return [item.name for item in classes if any(last_name(base) in NODE_CLASSES for base in item.bases)]
+
+
+def _is_main(statement: ast.stmt) -> bool:
+    return isinstance(statement, ast.FunctionDef) and statement.name == "main"
+
+
+def _is_main_guard(statement: ast.stmt) -> bool:
+    return isinstance(statement, ast.If) and "__main__" in ast.dump(statement.test)
+
+
+def _is_entry_point(item: ast.AST) -> bool:
+    text = item.value if isinstance(item, ast.Constant) else None
+    return isinstance(text, str) and bool(_ENTRY_POINT.fullmatch(text.strip()))
+
+
+def _is_launch_function(item: ast.AST) -> bool:
+    return isinstance(item, ast.FunctionDef) and item.name == "generate_launch_description"
 
 
 def _optional_imports(everything: Sequence[ast.AST]) -> set[ast.AST]:
@@ -290,7 +296,9 @@ def _imports_setuptools(tree: ast.Module) -> bool:
     )
 
 
-def _node_name(call: ast.Call, function: str) -> str | None:
+def _node_name(call: ast.Call) -> str | None:
+    """The name that a call gives a node literally; None if it gives none."""
+    function = last_name(call.func)
     is_super_init = (
         function == "__init__"
         and isinstance(call.func, ast.Attribute)
