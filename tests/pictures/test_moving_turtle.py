@@ -14,7 +14,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from playwright.sync_api import Browser
 
-from ros_in_python.animation import BEFORE_S, thinned
+from ros_in_python.animation import BEFORE_S
+from ros_in_python.thinning import thinned
 from ros_in_python.turtlesim.events import DT, PIXELS_PER_UNIT, SIDE, TICK_NS, Pen
 from ros_in_python.turtlesim.moving import LONGEST_S, LONGEST_WAIT_S, MOST_SAMPLES, moving_svg, timeline
 from ros_in_python.turtlesim.trail import HEADING_TOLERANCE, PLACE_TOLERANCE, Sample, Track

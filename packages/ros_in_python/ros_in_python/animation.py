@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from html import escape
 
@@ -48,27 +48,6 @@ def coord(value: float, digits: int = 1) -> str:
     """A number in as few characters as possible, with this many digits after the point."""
     text = f"{value:.{digits}f}".rstrip("0").rstrip(".") if digits else f"{value:.0f}"
     return "0" if text in ("-0", "") else text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
-
-
-def thinned(points: Sequence[tuple[float, float]], tolerance: float) -> list[tuple[float, float]]:
-    """Some of these (time, value) points, in order of time, between which a steady change passes within `tolerance`.
-
-    The algorithm is Douglas and Peucker's (1973), on the value at the same time.
-    """
-    if len(points) < 3:
-        return list(points)
-    kept = {0, len(points) - 1}
-    pieces = [(0, len(points) - 1)]
-    while pieces:
-        start, end = pieces.pop()
-        (t0, v0), (t1, v1) = points[start], points[end]
-        slope = (v1 - v0) / (t1 - t0) if t1 > t0 else 0.0
-        off = [abs(v0 + slope * (t - t0) - v) for t, v in points[start + 1 : end]]
-        if off and max(off) > tolerance:
-            middle = start + 1 + off.index(max(off))
-            kept.add(middle)
-            pieces += [(start, middle), (middle, end)]
-    return [points[index] for index in sorted(kept)]
 
 
 FONT = "system-ui,-apple-system,'Segoe UI',Roboto,'DejaVu Sans',sans-serif"

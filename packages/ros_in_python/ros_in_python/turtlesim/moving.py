@@ -14,7 +14,8 @@ from matplotlib.patches import Circle, Ellipse, PathPatch, Polygon
 from matplotlib.patches import Patch as Shape
 from matplotlib.path import Path
 
-from ros_in_python.animation import Cycle, coord, on_paper, thinned
+from ros_in_python.animation import Cycle, coord, on_paper
+from ros_in_python.thinning import thinned
 from ros_in_python.turtlesim.events import DT, PIXELS_PER_UNIT, Pen
 from ros_in_python.turtlesim.trail import HEADING_TOLERANCE, PLACE_TOLERANCE, Sample
 from ros_in_python.turtlesim.trail import thinned as thinned_track

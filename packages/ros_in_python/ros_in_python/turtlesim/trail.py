@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
+from ros_in_python.thinning import SwingDoor
 from ros_in_python.turtlesim.events import Pen
 
 Point = tuple[float, float]
@@ -27,57 +28,19 @@ class Stroke:
     turtle: str
     pen: Pen
     points: list[Point]
-    _cone: _Cone | None = field(default=None, repr=False)
+    _length: float = field(default=0.0, repr=False)
+    _door: SwingDoor = field(default_factory=lambda: SwingDoor([TOLERANCE / math.sqrt(2)] * 2), repr=False)
 
     def extend(self, point: Point) -> None:
         """Go on to `point` in a straight line."""
-        if self._cone is not None and self._cone.admits(point):
+        before = self._length
+        self._length += math.dist(self.points[-1], point)
+        if len(self.points) > 1 and self._door.may_end(self._length, point):
             self.points[-1] = point
         else:
-            self._cone = _Cone(self.points[-1])
+            self._door.open(before, self.points[-1])
             self.points.append(point)
-        self._cone.narrow(point)
-
-
-class _Cone:
-    """The directions in which a straight line from `apex` passes within TOLERANCE of every point since.
-
-    The sector-intersection method: C. M. Williams, "An efficient algorithm for the piecewise linear approximation
-    of planar curves", 1978. Angles are in rad, from the direction of the first point that is not at the apex.
-    """
-
-    def __init__(self, apex: Point) -> None:
-        self._apex = apex
-        self._axis: Point | None = None
-        self._low, self._high = -math.pi, math.pi
-        self._reach = 0.0
-
-    def admits(self, point: Point) -> bool:
-        """Whether the line may end at `point` instead; never where the way has turned back."""
-        if self._axis is None:
-            return True
-        offset = self._offset(point)
-        return math.hypot(*offset) >= self._reach and self._low <= self._direction(offset) <= self._high
-
-    def narrow(self, point: Point) -> None:
-        """Leave only the directions that pass near `point` too."""
-        offset = self._offset(point)
-        distance = math.hypot(*offset)
-        if distance <= TOLERANCE:
-            return
-        if self._axis is None:
-            self._axis = offset
-        direction, spread = self._direction(offset), math.asin(TOLERANCE / distance)
-        self._low, self._high = max(self._low, direction - spread), min(self._high, direction + spread)
-        self._reach = max(self._reach, distance)
-
-    def _offset(self, point: Point) -> Point:
-        return (point[0] - self._apex[0], point[1] - self._apex[1])
-
-    def _direction(self, offset: Point) -> float:
-        assert self._axis is not None
-        (ax, ay), (x, y) = self._axis, offset
-        return math.atan2(ax * y - ay * x, ax * x + ay * y)
+        self._door.passes(self._length, point)
 
 
 class Trail:
@@ -137,18 +100,13 @@ class Sample:
 
 
 class Track:
-    """The samples of one turtle, thinned as they come: between two of them everything changes steadily.
-
-    The swing-door method on x, y and theta over time: E. H. Bristol, "Swinging door trending: adaptive trend
-    recording?", 1990.
-    """
+    """The samples of one turtle, thinned as they come: between two of them everything changes steadily."""
 
     def __init__(self, place: float = PLACE_TOLERANCE, heading: float = HEADING_TOLERANCE) -> None:
         self.samples: list[Sample] = []
         #: Whether the oldest part has been forgotten because there was too much.
         self.forgotten = False
-        self._tolerances = (place, place, heading)
-        self._doors = [(-math.inf, math.inf)] * 3
+        self._door = SwingDoor([place, place, heading])
 
     def add(self, tick: int, x: float, y: float, theta: float, pen: Pen | None) -> None:
         """Where the turtle is at `tick`, which is after all before; theta may be off by full turns."""
@@ -156,31 +114,19 @@ class Track:
             before = self.samples[-1].theta
             theta = before + math.remainder(theta - before, 2 * math.pi)
         sample = Sample(tick, x, y, theta, None if pen is None or pen.off else pen)
-        if len(self.samples) < 2 or sample.pen != self.samples[-1].pen or not self._admits(sample):
-            self.samples.append(sample)
-            self._doors = [(-math.inf, math.inf)] * 3
-        else:
+        values = (x, y, theta)
+        if len(self.samples) > 1 and sample.pen == self.samples[-1].pen and self._door.may_end(tick, values):
             self.samples[-1] = sample
+        else:
+            if self.samples:
+                last = self.samples[-1]
+                self._door.open(last.tick, (last.x, last.y, last.theta))
+            self.samples.append(sample)
         if len(self.samples) > 1:
-            self._close_doors(sample)
+            self._door.passes(tick, values)
         if len(self.samples) > MAX_SAMPLES:
             del self.samples[:_TRACK_FORGET]
             self.forgotten = True
-
-    def _admits(self, sample: Sample) -> bool:
-        return all(low <= slope <= high for (low, high), slope in zip(self._doors, self._slopes(sample), strict=True))
-
-    def _close_doors(self, sample: Sample) -> None:
-        ticks = sample.tick - self.samples[-2].tick
-        self._doors = [
-            (max(low, slope - tolerance / ticks), min(high, slope + tolerance / ticks))
-            for (low, high), slope, tolerance in zip(self._doors, self._slopes(sample), self._tolerances, strict=True)
-        ]
-
-    def _slopes(self, sample: Sample) -> list[float]:
-        anchor = self.samples[-2]
-        ticks = sample.tick - anchor.tick
-        return [(getattr(sample, part) - getattr(anchor, part)) / ticks for part in ("x", "y", "theta")]
 
 
 def thinned(samples: Sequence[Sample], place: float, heading: float) -> list[Sample]:
