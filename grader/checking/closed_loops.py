@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from grader.checking.message import field_of
 from grader.checking.recorded_run import RecordedRun, seconds
 from grader.recording.recording import Received, Sent
 from grader.scenario.times import SECOND, START
+from ros_in_python.field_path import field_of
 
 Place = dict[str, float]
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from grader.recording.recording import Received, Recording, Sent
 from grader.scenario.times import SECOND, START
+from ros_in_python.field_path import field_of
 
 
 class Part:
@@ -99,15 +100,3 @@ def _answers(recording: Recording) -> dict[int, list[Message]]:
         by_stamp = index.get(message.stamp_ns, []) if "header" in received.fields else []
         answers.setdefault(by_stamp[0] if len(by_stamp) == 1 else max(received.after - 1, 0), []).append(message)
     return answers
-
-
-def field_of(fields: dict[str, Any], name: str) -> Any:
-    """A field by its full name, such as `header.frame_id`, `twist.linear.x` or `points[0].x`; all fields if it is
-    empty."""
-    value: Any = fields
-    for step in name.replace("[", ".[").split(".") if name else ():
-        try:
-            value = value[int(step[1:-1])] if step.startswith("[") else value[step]
-        except KeyError:
-            raise ValueError(f"there is no field {name!r}: the fields are {', '.join(fields)}.") from None
-    return value

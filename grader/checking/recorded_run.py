@@ -10,12 +10,13 @@ from functools import cached_property
 from typing import Any, NoReturn
 
 from grader.checking.comparator import difference, shown
-from grader.checking.message import Exchange, Message, exchanges, field_of
+from grader.checking.message import Exchange, Message, exchanges
 from grader.checking.patterns import COMPUTER_CLOCK, common
 from grader.checking.verdict import Finding, Wrong
 from grader.exercise.exercise import Endpoint, Exercise, Role, Topic
 from grader.recording.recording import Ending, Received, Recording
 from grader.scenario.times import SECOND, START
+from ros_in_python.field_path import NoSuchField, field_of, steps_of
 
 _WAITS = (
     "Your node sent {what} to {name} at {at:.2f} s, and did nothing from then on. Does a callback wait for the answer, "
@@ -113,7 +114,7 @@ class RecordedRun:
         found = difference(field_of(got, field), field_of(expected, field), tolerance, field)
         if not found:
             return
-        unit = self.unit_of(found.path.split(".")[0].split("[")[0], name)
+        unit = self.unit_of(str(next(iter(steps_of(found.path)), "")), name)
         wanted, came = shown(found.expected, unit), shown(found.got, unit)
         numbers = [(_number(e, found.path), _number(g, found.path)) for e, g in pairs]
         known = [(e, g) for e, g in numbers if e is not None and g is not None]
@@ -192,6 +193,6 @@ def seconds(at: int) -> float:
 def _number(fields: dict[str, Any], path: str) -> float | None:
     try:
         value = field_of(fields, path)
-    except (ValueError, IndexError, TypeError):
+    except (NoSuchField, IndexError):
         return None
     return value if isinstance(value, (int, float)) and not isinstance(value, bool) else None

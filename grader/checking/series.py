@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from typing import Any
 
 from grader.checking.comparator import TOLERANCE, equal, shown
-from grader.checking.message import field_of
 from grader.checking.patterns import COMPUTER_CLOCK, shift
 from grader.checking.recorded_run import RecordedRun, seconds
 from grader.recording.recording import Received
 from grader.scenario.times import SECOND, START
+from ros_in_python.field_path import field_of
 
 #: A stamp that is larger than this (s) can't be simulated time, which begins at 100 s.
 COMPUTER_STAMP = 1_000_000

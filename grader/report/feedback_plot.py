@@ -67,7 +67,7 @@ def curves(grade: Grade, exercise: Exercise, scenario: str, quantity: Quantity) 
                 for message in messages:
                     for element, value in _values(message, quantity).items():
                         lines.setdefault(str(element), []).append((exchange.sent.at, _number(value)))
-    except (KeyError, TypeError):
+    except (LookupError, TypeError):
         return ()
     elements = [*expected, *(element for element in got if element not in expected)][:MOST]
     return tuple(_curve(element, expected.get(element, []), got.get(element, [])) for element in elements)

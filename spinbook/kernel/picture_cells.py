@@ -18,7 +18,7 @@ from spinbook.graph.picture import in_words, node_graph_svg
 from spinbook.kernel.environment import EXECUTING
 from spinbook.kernel.plot.drawing import as_png, draw, moving_plot
 from spinbook.kernel.plot.drawing import in_words as plot_in_words
-from spinbook.kernel.plot.quantity import Recording
+from spinbook.kernel.plot.recording import Recording, RecordingTime
 from spinbook.kernel.process import CellFailed, KeptProcess
 
 #: How long the look may take beyond the counting (s).
@@ -69,9 +69,6 @@ def show_turtle() -> None:
         display(bundle, raw=True, metadata={kind: {"alt": alt} for kind in bundle if kind != "text/plain"})
 
 
-#: How long the recorder may take to start, and a topic's first message to come after that (s).
-_STARTING_S = 30.0
-_APPEAR_S = 7.0
 #: How often a watched plot is redrawn (s).
 _REDRAW_S = 0.5
 
@@ -89,28 +86,8 @@ def show_plot(paths: list[str], seconds: float, title: str) -> None:
     if recording.error:
         raise CellFailed(recording.error)
     if not recording.curves:
-        raise CellFailed(_nothing_received(recording, paths))
+        raise CellFailed(recording.why_empty(paths))
     _show(recording, title, handle)
-
-
-class RecordingTime:
-    """Says when a recording is over: its seconds count from the first sample, or it waited for one in vain.
-
-    The recorder's own start does not count as waiting: on a busy machine it may take longer than the recording.
-    """
-
-    def __init__(self, seconds: float, now: float) -> None:
-        self._seconds = seconds
-        self._ends = now + _STARTING_S
-        self._is_looking = self._has_samples = False
-
-    def is_over(self, recording: Recording, now: float) -> bool:
-        """To be asked again and again; `now` is a monotonic clock's time (s)."""
-        if recording.is_looking and not self._is_looking:
-            self._is_looking, self._ends = True, now + _APPEAR_S
-        if recording.curves and not self._has_samples:
-            self._has_samples, self._ends = True, now + self._seconds
-        return now > self._ends
 
 
 def _record(process: KeptProcess, recording: Recording, seconds: float, title: str) -> Any:
@@ -147,10 +124,3 @@ def _show(recording: Recording, title: str, handle: Any) -> Any:
         return display(bundle, raw=True, metadata=metadata, display_id=True)
     handle.update(bundle, raw=True, metadata=metadata)
     return handle
-
-
-def _nothing_received(recording: Recording, paths: list[str]) -> str:
-    there = ", ".join(recording.published) or "none"
-    if recording.waiting:
-        return f"Nobody publishes {', '.join(recording.waiting)}. Topics with a publisher are: {there}."
-    return f"{', '.join(paths)}: there is a publisher, but no message arrived."

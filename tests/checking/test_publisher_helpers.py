@@ -179,5 +179,5 @@ def test_a_late_subscriber_of_a_volatile_publisher_gets_nothing() -> None:
 
 
 def test_an_author_who_names_a_field_that_is_not_there_is_told_which_there_are() -> None:
-    with pytest.raises(ValueError, match="there is no field 'date': the fields are data"):
+    with pytest.raises(LookupError, match=r"there is no field `date`\. The fields are: data"):
         run(RIGHT).must_match_series("date")

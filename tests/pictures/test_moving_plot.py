@@ -14,9 +14,8 @@ from browser import opened
 from playwright.sync_api import Browser
 
 from ros_in_python.animation import BEFORE_S
-from spinbook.kernel.picture_cells import RecordingTime
 from spinbook.kernel.plot.drawing import MOST_CURVES, Scale, around, moving_plot
-from spinbook.kernel.plot.quantity import Recording
+from spinbook.kernel.plot.recording import Recording, RecordingTime
 
 JOINTS = ["left_elbow", "right_elbow", "<b>&"]
 

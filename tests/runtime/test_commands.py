@@ -133,7 +133,7 @@ def test_a_plot_of_nothing_says_what_there_is(arm: Kernel) -> None:
 def test_a_plot_of_an_unknown_field_names_the_fields(arm: Kernel) -> None:
     error = arm.run("%plot /arm/joints/positon").error
 
-    assert "there is no `positon`. It has: header, name, position, velocity, effort." in error
+    assert "there is no field `positon`. The fields are: header, name, position, velocity, effort." in error
 
 
 def test_colcon_builds_the_package_and_ros2_run_starts_its_executable(new_kernel: Callable[..., Kernel]) -> None:

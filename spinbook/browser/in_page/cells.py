@@ -1,4 +1,4 @@
-"""Cells that are not nodes: plain Python, a terminal's `ros2 …`, and plots. They share one process."""
+"""Cells that are not nodes: plain Python, and a terminal's `ros2 …`. They share one process."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import os
 import shlex
 import signal
 import sys
-import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -89,55 +88,3 @@ def _ros2(words: Sequence[str]) -> None:
     from ros_in_python.ros2.command import ros2
 
     ros2(list(words), prog_name="ros2")
-
-
-def record(topics: Sequence[str], seconds: float) -> list[dict[str, Any]]:
-    """Record the values at these paths (`/joint_commands/position[2]`) for that long: name, times (s), values."""
-    import rclpy
-    from rclpy.executors import SingleThreadedExecutor
-
-    context = rclpy.Context()
-    rclpy.init(context=context, args=[])
-    node = rclpy.create_node("plot", context=context, enable_rosout=False, start_parameter_services=False)
-    executor = SingleThreadedExecutor(context=context)
-    executor.add_node(node)
-    lines = [{"name": topic, "times": [], "values": []} for topic in topics]
-    began = time.monotonic()
-    try:
-        waiting = list(zip(topics, lines, strict=True))
-        while time.monotonic() < began + seconds:
-            waiting = [pair for pair in waiting if not _subscribed(node, *pair, began)]
-            executor.spin_once(timeout_sec=0.05)
-    finally:
-        node.destroy_node()
-        rclpy.shutdown(context=context)
-    return lines
-
-
-def _subscribed(node: Any, path: str, line: dict[str, Any], began: float) -> bool:
-    """Subscribe to the topic that the path begins with. Return whether there is one."""
-    from ros_in_python.ros2.interfaces import message_class
-
-    for topic, kinds in node.get_topic_names_and_types():
-        if path.startswith(topic) and path[len(topic) : len(topic) + 1] in ("/", "[", "."):
-            value = _reader(path[len(topic) :].lstrip("/."))
-
-            def heard(message: Any, value: Any = value) -> None:
-                line["times"].append(time.monotonic() - began)
-                line["values"].append(float(value(message)))
-
-            node.create_subscription(message_class(kinds[0]), topic, heard, 10)
-            return True
-    return False
-
-
-def _reader(path: str) -> Any:
-    """Return a function that reads a field: `position[2]`, `twist.linear.x` or `twist/linear/x`."""
-    steps = path.replace("/", ".").replace("[", ".").replace("]", "").split(".")
-
-    def read(message: Any) -> Any:
-        for step in steps:
-            message = message[int(step)] if step.isdigit() else getattr(message, step)
-        return message
-
-    return read

@@ -1,17 +1,9 @@
 // The graph of the running nodes, drawn as the notebook's %graph; the bar's panel follows it.
 import { button, element } from "./elements.js";
 import { observer } from "./notebook.js";
+import { graph } from "./picture.js";
 
 const LOOK_MS = 1000;
-
-// A figure with a picture for each part of the graph.
-export function graph({ pictures, words }) {
-  const figure = element("figure", { className: "node-graph live-graph" });
-  // Drawn by Spinbook's own code, which escapes names.
-  figure.innerHTML = pictures.join("");
-  figure.dataset.words = words;
-  return figure;
-}
 
 // A button, and a panel that follows the graph while it is open.
 export function follow() {

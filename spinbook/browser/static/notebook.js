@@ -1,16 +1,13 @@
 // Plain cells, terminals and interfaces. They share one process, which starts with the first of them.
-import { graph } from "./graph.js";
 import { runExecutable, showLog, showNodes, showTurtle, stop } from "./nodes.js";
 import { launch } from "./launch.js";
-import { plot } from "./plot.js";
+import { graph, show } from "./picture.js";
 import { Process, environment } from "./processes.js";
 import { timeline } from "./timeline.js";
 import { files, keep } from "./workspace.js";
 
 const LOOK_S = 6;
 const GRAPH_S = 2.5;
-// What is left and right of a plot (px).
-const EDGES = 32;
 const LONGEST_S = 60;
 // How long a command may take to begin.
 const START_S = 4;
@@ -102,19 +99,26 @@ function setVariable(cell, args) {
   cell.print(`env: ${name}=${environment[name]}`);
 }
 
-const option = (args, name, usual) => (args.includes(name) ? Number(args[args.indexOf(name) + 1]) : usual);
-
 async function drawPlot(cell, process, args) {
-  const seconds = option(args, "--seconds", cell.about.seconds ?? LOOK_S);
-  const topics = args.filter((word) => word.startsWith("/"));
+  const { words: paths, seconds = cell.about.seconds ?? LOOK_S, title = "" } = optionsOf(args);
   cell.say(`Recording for ${seconds} s …`);
-  const lines = await process.call("record", { topics, seconds });
+  const drawn = await process.call("plot", { paths, seconds: Number(seconds), title });
   cell.say("");
-  cell.shown?.append(plot(lines ?? [], seconds, cell.shown.clientWidth - EDGES));
+  if (drawn) show(cell, drawn, "live-plot");
+}
+
+// `/a/x --seconds 3` as the words and, by name, the options.
+function optionsOf(args) {
+  const options = { words: [] };
+  for (let at = 0; at < args.length; at += 1) {
+    if (args[at].startsWith("--")) options[args[at].slice(2)] = args[(at += 1)];
+    else options.words.push(args[at]);
+  }
+  return options;
 }
 
 async function drawGraph(cell, process, args) {
-  const seconds = option(args, "--seconds", GRAPH_S);
+  const seconds = Number(optionsOf(args).seconds ?? GRAPH_S);
   cell.say(`Counting messages for ${seconds} s …`);
   const found = await process.call("count", { seconds });
   cell.say("");

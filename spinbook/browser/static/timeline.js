@@ -1,5 +1,5 @@
 // `%timeline`: records services, actions and topics while other cells run, and draws what happened.
-import { element } from "./elements.js";
+import { show } from "./picture.js";
 import { Process } from "./processes.js";
 
 // How long to wait for names, and for what may still be in transit at the end (ms).
@@ -33,30 +33,18 @@ async function begin(cell, names) {
   if (missing.length) cell.print(`Not found yet: ${missing.join(", ")}.`);
 }
 
-function dress(rules) {
-  const sheet = new CSSStyleSheet();
-  sheet.replaceSync(rules);
-  document.adoptedStyleSheets.push(sheet);
-}
-
-async function show(cell, process, title) {
+async function finish(cell, process, title) {
   if (!recording) return cell.fail("Nothing is being recorded. Begin with: %timeline --record /NAME");
   const { names, lines, process: recorder } = recording;
   recording = null;
   await after(LATE_MS);
   recorder.end();
-  const { picture, words, problem } = await process.call("drawn", { names, lines, title });
-  if (problem) return cell.fail(problem);
-  const figure = element("figure", { className: "live-timeline" });
-  // Drawn by Spinbook's own code, which escapes names. Its style is added where the page's policy allows it.
-  figure.innerHTML = picture.replace(/<style>(.*?)<\/style>/gs, (_, rules) => (dress(rules), ""));
-  figure.dataset.words = words;
-  cell.shown?.append(figure);
+  show(cell, await process.call("drawn", { names, lines, title }), "live-timeline");
 }
 
 export async function timeline(cell, process, args) {
   const value = (option) => (args.includes(option) ? args.slice(args.indexOf(option) + 1) : []);
   const until = (words) => words.slice(0, Math.max(0, words.findIndex((word) => word.startsWith("--"))) || undefined);
   if (args.includes("--record")) await begin(cell, until(value("--record")));
-  else await show(cell, process, value("--title")[0] ?? "");
+  else await finish(cell, process, value("--title")[0] ?? "");
 }

@@ -1,6 +1,6 @@
 // Turtlesim's window: its picture four times per second, and the arrow keys.
 import { Process } from "./processes.js";
-import { draw } from "./plot.js";
+import { draw } from "./picture.js";
 
 const PIXELS = 45;
 const KEYS = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, 1], ArrowRight: [0, -1] };

@@ -125,11 +125,10 @@ const does = {
   },
   graph: async () => JSON.parse((await pictures()).now()),
   count: async ({ seconds }) => JSON.parse(await (await pictures()).counted.callPromising(seconds)),
-  record: async ({ topics, seconds }) => {
+  plot: async ({ paths, seconds, title }) => {
     const { py } = await ready;
     await shares(py);
-    const lines = await (await cells()).record.callPromising(py.toPy(topics), seconds);
-    return lines.toJs({ dict_converter: Object.fromEntries });
+    return JSON.parse(await py.pyimport("spinbook.browser.in_page.plot").plot.callPromising(py.toPy(paths), seconds, title));
   },
   turtle: async () => {
     const { py } = await ready;

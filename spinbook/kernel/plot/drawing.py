@@ -11,8 +11,9 @@ from html import escape
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from ros_in_python.animation import Cycle, coord, on_paper, thinned
-from spinbook.kernel.plot.quantity import Curve, Recording
+from ros_in_python.animation import Cycle, coord, on_paper
+from ros_in_python.thinning import thinned
+from spinbook.kernel.plot.recording import Curve, Recording
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -195,23 +196,31 @@ _TOP = 28
 
 def moving_plot(recording: Recording, title: str = "") -> str | None:
     """The picture, or None where nothing can move: no time has passed, or there are too many curves."""
+    return plot_svg(recording, title) if sum(map(len, _shown(recording).values())) <= MOST_CURVES else None
+
+
+def plot_svg(recording: Recording, title: str = "") -> str | None:
+    """The picture, without motion if there are too many curves; None where no time has passed."""
     shown = _shown(recording)
     curves = [curve for by_label in shown.values() for curve in by_label.values()]
     end = max((curve.times[-1] for curve in curves), default=recording.start) - recording.start
-    if end <= 0 or len(curves) > MOST_CURVES:
+    if end <= 0:
         return None
     name = title or ", ".join(dict.fromkeys(curve.quantity.topic for curve in curves))
     words = in_words(recording)
     key = "p" + hashlib.sha256(repr((name, words, [curve.values for curve in curves])).encode()).hexdigest()[:8]
-    faster = max(1, math.ceil(end / LONGEST_S))
     y, drawn = float(_TOP), []
     for kind, by_label in shown.items():
         part, y = panel(kind, by_label, y, Scale(0.0, end, LEFT, WIDTH - RIGHT), recording.start, key)
         drawn.append(part)
     heading = f'<text x="{LEFT}" y="20" font-size="14" font-weight="600">{escape(name)}</text>'
-    content = _moving(Cycle(key, end / faster), y) + f'<g class="{key}i" font-size="12">{heading}{"".join(drawn)}</g>'
-    pace = "as fast as they were recorded" if faster == 1 else f"{faster} times as fast as they were recorded"
-    return on_paper(content, WIDTH, math.ceil(y), key, name, f"{words}\nThe curves are drawn {pace}, again and again.")
+    content = f'<g class="{key}i" font-size="12">{heading}{"".join(drawn)}</g>'
+    if len(curves) <= MOST_CURVES:
+        faster = max(1, math.ceil(end / LONGEST_S))
+        content = _moving(Cycle(key, end / faster), y) + content
+        pace = "as fast as they were recorded" if faster == 1 else f"{faster} times as fast as they were recorded"
+        words = f"{words}\nThe curves are drawn {pace}, again and again."
+    return on_paper(content, WIDTH, math.ceil(y), key, name, words)
 
 
 def _shown(recording: Recording) -> dict[str, dict[str, Curve]]:

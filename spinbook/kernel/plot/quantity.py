@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
-from spinbook.kernel.recorder_lines import read_lines
-
-_STEP = re.compile(r"([A-Za-z]\w*)((?:\[\d+\])*)")
+from ros_in_python.field_path import NoSuchField, Step, fields_in, steps_of, value_at
 
 
 @dataclass(frozen=True)
@@ -18,15 +15,7 @@ class TopicPath:
     """What to draw of a topic: `steps` lead from the message to a value, names and indices in order."""
 
     topic: str
-    steps: tuple[str | int, ...]
-
-    @property
-    def field(self) -> str:
-        """The steps as they are written: `position[0]`, `linear/x`."""
-        text = ""
-        for step in self.steps:
-            text += f"[{step}]" if isinstance(step, int) else f"/{step}"
-        return text.lstrip("/")
+    steps: tuple[Step, ...]
 
 
 def resolve(path: str, topics: Iterable[str]) -> TopicPath | None:
@@ -42,18 +31,7 @@ def resolve(path: str, topics: Iterable[str]) -> TopicPath | None:
     if not fitting:
         return None
     topic = max(fitting, key=len)
-    return TopicPath(topic, _steps(full[len(topic) :].lstrip("/."), path))
-
-
-def _steps(rest: str, path: str) -> tuple[str | int, ...]:
-    steps: list[str | int] = []
-    for part in re.split(r"[/.]", rest) if rest else []:
-        match = _STEP.fullmatch(part)
-        if not match:
-            raise ValueError(f"`{part}` in `{path}` is not a field. Write for example /joint_commands/position[0].")
-        steps.append(match.group(1))
-        steps += [int(index) for index in re.findall(r"\d+", match.group(2))]
-    return tuple(steps)
+    return TopicPath(topic, steps_of(full[len(topic) :].lstrip("/.")))
 
 
 #: (message type, first field) -> unit, from the comments of the interface files (REP 103: SI units).
@@ -97,28 +75,16 @@ def quantities(path: TopicPath, message: Any, type_name: str) -> Iterator[tuple[
 
     `type_name` is "package/Type". Raises LookupError if the message has no such field.
     """
-    value: Any = message
-    names: list[str] = []
-    indices: list[int] = []
-    for step in path.steps:
-        if isinstance(step, int):
-            if step >= len(value):
-                return  # a shorter message than others: nothing to draw from this one
-            value = value[step]
-            indices.append(step)
-        else:
-            value = _field(value, step, path)
-            names.append(step)
-    for below, number in _numbers(value, (*names,), tuple(indices)):
+    try:
+        value = value_at(message, path.steps)
+    except IndexError:
+        return  # a shorter message than others: nothing to draw from this one
+    except NoSuchField as error:
+        raise LookupError(f"{path.topic}: {error}") from None
+    names = tuple(step for step in path.steps if isinstance(step, str))
+    indices = tuple(step for step in path.steps if isinstance(step, int))
+    for below, number in _numbers(value, names, indices):
         yield _describe(path, message, type_name, *below), number
-
-
-def _field(value: Any, step: str, path: TopicPath) -> Any:
-    fields = value.get_fields_and_field_types() if hasattr(value, "get_fields_and_field_types") else {}
-    if step not in fields:
-        there = ", ".join(fields) or "no fields"
-        raise LookupError(f"`{path.field}` of {path.topic}: there is no `{step}`. It has: {there}.")
-    return getattr(value, step)
 
 
 def _numbers(
@@ -126,8 +92,8 @@ def _numbers(
 ) -> Iterator[tuple[tuple[tuple[str, ...], tuple[int, ...]], float]]:
     if isinstance(value, (bool, int, float)):
         yield (names, indices), float(value) if not isinstance(value, bool) else float(int(value))
-    elif hasattr(value, "get_fields_and_field_types"):
-        for name in value.get_fields_and_field_types():
+    elif fields := fields_in(value):
+        for name in fields:
             if name not in {"header", "stamp"}:
                 yield from _numbers(getattr(value, name), (*names, name), indices)
     elif (not isinstance(value, (str, bytes)) and isinstance(value, Sequence)) or hasattr(value, "tolist"):
@@ -166,45 +132,3 @@ def stamp_of(message: Any) -> float | None:
         return None
     seconds = stamp.sec + stamp.nanosec * 1e-9
     return seconds if math.isfinite(seconds) else None
-
-
-@dataclass
-class Curve:
-    """One quantity over time: `times` and `values` have the same length; times in s, on the messages' own clock."""
-
-    quantity: Quantity
-    times: list[float] = field(default_factory=list)
-    values: list[float] = field(default_factory=list)
-
-
-@dataclass
-class Recording:
-    """Curves in the order in which they first appeared, and what is still waited for."""
-
-    curves: dict[Quantity, Curve] = field(default_factory=dict)
-    waiting: list[str] = field(default_factory=list)
-    published: list[str] = field(default_factory=list)
-    error: str | None = None
-    is_looking: bool = False
-    """Whether the recorder takes part in ROS yet."""
-
-    def take(self, lines: Iterable[str]) -> None:
-        """Take in lines that the recorder printed."""
-        for kind, rest in read_lines(lines):
-            if kind == "sample":
-                topic, axis, unit, label, when, value = rest
-                quantity = Quantity(topic, axis, unit, label)
-                curve = self.curves.setdefault(quantity, Curve(quantity))
-                curve.times.append(when)
-                curve.values.append(value)
-            elif kind == "looking":
-                self.is_looking = True
-            elif kind == "waiting":
-                self.waiting, self.published = rest
-            elif kind == "error":
-                self.error = rest[0]
-
-    @property
-    def start(self) -> float:
-        """The time of the first sample (s)."""
-        return min((curve.times[0] for curve in self.curves.values()), default=0.0)

@@ -11,10 +11,12 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
 import rclpy
+from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -28,13 +30,15 @@ _HEARS_ALL = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT, du
 
 
 class Recorder(Node):
-    """Looks for the topics that paths name, and prints every number that comes from them."""
+    """Looks for the topics that paths name, and hands every number that comes from them to `write`, as a line."""
 
-    def __init__(self, paths: list[str]) -> None:
-        super().__init__("spinbook_plot", start_parameter_services=False)
+    def __init__(
+        self, paths: Sequence[str], write: Callable[..., None] = write_line, context: Context | None = None
+    ) -> None:
+        super().__init__("spinbook_plot", context=context, start_parameter_services=False)
         self._missing = list(paths)
-        self._subscribed: set[tuple[str, str]] = set()
-        write_line("looking")
+        self._write = write
+        write("looking")
         self._look()
         self.create_timer(0.05, self._look)
 
@@ -48,7 +52,7 @@ class Recorder(Node):
                 self._missing.remove(path)
                 self._subscribe(found, published[found.topic])
         if self._missing:
-            write_line(
+            self._write(
                 "waiting", self._missing, sorted(t for t in published if t not in {"/rosout", "/parameter_events"})
             )
 
@@ -61,7 +65,7 @@ class Recorder(Node):
     def _on_message(self, path: TopicPath, type_name: str, message: Any) -> None:
         now = stamp_of(message) or time.time()
         for quantity, value in quantities(path, message, type_name):
-            write_line("sample", quantity.topic, quantity.kind, quantity.unit, quantity.label, now, value)
+            self._write("sample", quantity.topic, quantity.kind, quantity.unit, quantity.label, now, value)
 
 
 def main() -> None:

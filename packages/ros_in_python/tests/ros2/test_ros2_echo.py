@@ -51,6 +51,13 @@ def test_a_nested_field(standing: Robot, terminal: Terminal) -> None:
     assert re.fullmatch(r"sec: \d+\nnanosec: \d+\n---\n", out)
 
 
+def test_an_element_of_a_list(standing: Robot, terminal: Terminal) -> None:
+    standing("publisher")
+    assert terminal.ros2("topic", "echo", "--once", "/joint_commands", "--field", "position[1]").out == "0.5\n---\n"
+    missing = terminal.ros2("topic", "echo", "--once", "/joint_commands", "--field", "position[2]")
+    assert (missing.code, "the list has no such element" in missing.err) == (1, True)
+
+
 def test_csv(standing: Robot, terminal: Terminal) -> None:
     standing("publisher")
     out = terminal.ros2("topic", "echo", "--once", "--csv", "/joint_commands").out

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
 import yaml
 
+from ros_in_python.field_path import Step
 from ros_in_python.ros2 import interfaces, qos
 from ros_in_python.ros2.cli import CONTEXT, discovery_options
 from ros_in_python.ros2.opening import open_graph
@@ -25,7 +27,7 @@ LENGTH = 128
 @click.argument("message_type", required=False)
 @click.option("--once", is_flag=True, help="Print the first message and exit.")
 @click.option("--timeout", type=click.FloatRange(min=0, min_open=True), metavar="N", help="Exit after N seconds.")
-@click.option("--field", metavar="FIELD", help="Only this field, as in header.stamp")
+@click.option("--field", metavar="FIELD", help="Only this field, as in header.stamp or position[0]")
 @click.option("--csv", is_flag=True, help="One line per message, values separated by commas.")
 @click.option("--flow-style", is_flag=True, help="Arrays on one line.")
 @click.option("--no-arr", is_flag=True, help="Print only the type and length of arrays.")
@@ -73,7 +75,9 @@ def echo(topic_name: str, message_type: str | None, **options: Any) -> None:
         _listen(graph, name, message, path, qos.suiting(graph, name, asked), options)
 
 
-def _listen(graph: Graph, topic: str, message: Any, path: list[str], profile: Any, options: dict[str, Any]) -> None:
+def _listen(
+    graph: Graph, topic: str, message: Any, path: Sequence[Step], profile: Any, options: dict[str, Any]
+) -> None:
     from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
 
     printed = 0

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from ros_in_python.field_path import NoSuchField, Step, fields_in, steps_of, value_at, written
 from ros_in_python.ros2 import interfaces
 from ros_in_python.ros2.cli import CommandError
 
@@ -49,37 +50,47 @@ filter_option: Callable[[F], F] = click.option(
 )
 
 
-def field_path(text: str | None) -> list[str]:
-    """`--field pose.position` as a list. Raises `CommandError` for one that names nothing."""
+def field_path(text: str | None) -> tuple[Step, ...]:
+    """The steps of `--field pose.position`. Raises `CommandError` for one that names nothing."""
     if text is None:
-        return []
-    path = [part for part in text.split(".") if part]
-    if not path:
-        raise CommandError(f"Invalid field value '{text}'", "Expected names with dots between, as in header.stamp")
-    return path
+        return ()
+    try:
+        steps = steps_of(".".join(filter(None, text.split("."))))
+    except ValueError:
+        steps = ()
+    if not steps:
+        raise CommandError(
+            f"Invalid field value '{text}'", "Expected names with dots between, as in header.stamp or position[0]"
+        )
+    return steps
 
 
-def check_path(message: Any, path: Sequence[str]) -> None:
+def check_path(message: Any, path: Sequence[Step]) -> None:
     """Raise `CommandError` where a message class has no such field, with the fields it has."""
     from ros_in_python.ros2.messages import field_names, is_message, type_name
 
     value = message()
-    for part in path:
-        names = field_names(value) if is_message(value) else "none"
-        if not is_message(value) or part not in value.get_fields_and_field_types():
-            owner = type_name(value) if is_message(value) else type(value).__name__
+    for step in path:
+        if isinstance(step, int):
+            return  # how many elements there are is only known of a message that arrives
+        if step not in fields_in(value):
+            kind = type(value).__name__
+            owner, names = (type_name(value), field_names(value)) if is_message(value) else (kind, "none")
             raise CommandError(
-                f"Invalid field '{'.'.join(path)}': '{type(value).__name__}' object has no attribute '{part}'",
+                f"Invalid field '{written(path)}': '{kind}' object has no attribute '{step}'",
                 f"Fields of {owner}: {names}.",
             )
-        value = getattr(value, part)
+        value = getattr(value, step)
 
 
-def field(message: Any, path: Sequence[str]) -> Any:
-    """The field of a message that `path` leads to."""
-    for part in path:
-        message = getattr(message, part)
-    return message
+def field(message: Any, path: Sequence[Step]) -> Any:
+    """The field of a message that `path` leads to. Raises `CommandError` where it has no such field or element."""
+    try:
+        return value_at(message, path)
+    except IndexError:
+        raise CommandError(f"Invalid field '{written(path)}': the list has no such element in this message") from None
+    except NoSuchField as error:
+        raise CommandError(f"Invalid field '{written(path)}': {error}") from None
 
 
 def type_on_graph(graph: Graph, topic: str) -> Any | None:

@@ -1,0 +1,34 @@
+// Pictures that Spinbook's own code draws as SVG, and elements of SVG.
+import { element } from "./elements.js";
+
+export function draw(tag, attributes) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  return made;
+}
+
+function dress(rules) {
+  const sheet = new CSSStyleSheet();
+  sheet.replaceSync(rules);
+  document.adoptedStyleSheets.push(sheet);
+}
+
+// Show a picture in a cell, or its words if there is nothing to draw, or the problem.
+export function show(cell, { picture, words, problem }, className) {
+  if (problem) return cell.fail(problem);
+  if (!picture) return cell.print(words);
+  const figure = element("figure", { className: `live-picture ${className}` });
+  // Names in it are escaped. Its style is added where the page's policy allows it.
+  figure.innerHTML = picture.replace(/<style>(.*?)<\/style>/gs, (_, rules) => (dress(rules), ""));
+  figure.dataset.words = words;
+  cell.shown?.append(figure);
+}
+
+// A figure with a picture for each part of the graph.
+export function graph({ pictures, words }) {
+  const figure = element("figure", { className: "node-graph live-graph" });
+  // Drawn by Spinbook's own code, which escapes names.
+  figure.innerHTML = pictures.join("");
+  figure.dataset.words = words;
+  return figure;
+}

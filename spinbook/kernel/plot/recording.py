@@ -1,0 +1,88 @@
+"""What the recorder has recorded so far, as curves, and when a recording is over."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from spinbook.kernel.plot.quantity import Quantity
+from spinbook.kernel.recorder_lines import read_lines
+
+
+@dataclass
+class Curve:
+    """One quantity over time: `times` and `values` have the same length; times in s, on the messages' own clock."""
+
+    quantity: Quantity
+    times: list[float] = field(default_factory=list)
+    values: list[float] = field(default_factory=list)
+
+
+@dataclass
+class Recording:
+    """Curves in the order in which they first appeared, and what is still waited for."""
+
+    curves: dict[Quantity, Curve] = field(default_factory=dict)
+    waiting: list[str] = field(default_factory=list)
+    published: list[str] = field(default_factory=list)
+    error: str | None = None
+    is_looking: bool = False
+    """Whether the recorder takes part in ROS yet."""
+
+    def take(self, lines: Iterable[str]) -> None:
+        """Take in lines that the recorder printed."""
+        for kind, values in read_lines(lines):
+            self.note(kind, *values)
+
+    def note(self, kind: str, *values: Any) -> None:
+        """Take in what the recorder says: a line's kind and values."""
+        if kind == "sample":
+            *about, when, value = values
+            quantity = Quantity(*about)
+            curve = self.curves.setdefault(quantity, Curve(quantity))
+            curve.times.append(when)
+            curve.values.append(value)
+        elif kind == "looking":
+            self.is_looking = True
+        elif kind == "waiting":
+            self.waiting, self.published = values
+        elif kind == "error":
+            self.error = values[0]
+
+    def why_empty(self, paths: Sequence[str]) -> str:
+        """Why nothing was recorded of these paths."""
+        if self.waiting:
+            there = ", ".join(self.published) or "none"
+            return f"Nobody publishes {', '.join(self.waiting)}. Topics with a publisher are: {there}."
+        return f"{', '.join(paths)}: there is a publisher, but no message arrived."
+
+    @property
+    def start(self) -> float:
+        """The time of the first sample (s)."""
+        return min((curve.times[0] for curve in self.curves.values()), default=0.0)
+
+
+#: How long the recorder may take to start, and a topic's first message to come after that (s).
+_STARTING_S = 30.0
+_APPEAR_S = 7.0
+
+
+class RecordingTime:
+    """Says when a recording is over: its seconds count from the first sample, or it waited for one in vain.
+
+    The recorder's own start does not count as waiting: on a busy machine it may take longer than the recording.
+    """
+
+    def __init__(self, seconds: float, now: float) -> None:
+        self._seconds = seconds
+        self._ends = now + _STARTING_S
+        self._is_looking = self._has_samples = False
+
+    def is_over(self, recording: Recording, now: float) -> bool:
+        """Ask this again and again; `now` is a monotonic clock's time (s)."""
+        if recording.is_looking and not self._is_looking:
+            self._is_looking, self._ends = True, now + _APPEAR_S
+        if recording.curves and not self._has_samples:
+            self._has_samples, self._ends = True, now + self._seconds
+        return now > self._ends

@@ -1,0 +1,80 @@
+"""`%plot` in a page records and draws what it does in a notebook: in a real Chromium."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from browser import Opened, opened
+from playwright.sync_api import Browser, Locator, expect
+from test_what_a_page_can_not_do import DEADLINE_MS, run
+
+from spinbook.browser.files import can_run
+
+pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Pyodide from npm")
+
+ARM = """\
+import math
+import rclpy
+from sensor_msgs.msg import JointState
+
+rclpy.init()
+node = rclpy.create_node('arm')
+publisher = node.create_publisher(JointState, 'joint_commands', 10)
+angle = 0.0
+
+def move():
+    global angle
+    angle += 0.1
+    publisher.publish(JointState(name=['elbow', 'wrist'], position=[math.sin(angle), 1.0], velocity=[0.5, 0.0]))
+
+node.create_timer(0.05, move)
+print('moves')
+rclpy.spin(node)
+"""
+
+
+@pytest.fixture(scope="module")
+def shown(browser: Browser, address: str) -> Iterator[Opened]:
+    """A page in which an arm moves."""
+    with opened(browser, f"{address}/chapters/01-talk.html") as page:
+        expect(run(page.page.locator(".cell-node").first, ARM)).to_contain_text("moves", timeout=DEADLINE_MS)
+        yield page
+
+
+def plotted(shown: Opened, path: str, title: str) -> Locator:
+    """Plot in a plain cell and return the plot with this title."""
+    cell = shown.page.locator(".cell-snippet").first
+    run(cell, f"%plot {path} --seconds 1 --title '{title}'")
+    plot = cell.locator(".live-plot svg", has_text=title)
+    expect(plot).to_be_visible(timeout=DEADLINE_MS)
+    return plot
+
+
+def test_a_list_is_drawn_with_a_curve_for_each_joint(shown: Opened) -> None:
+    plot = plotted(shown, "/joint_commands/position", "Both joints")
+
+    for text in ("position (rad)", "elbow", "wrist"):
+        expect(plot).to_contain_text(text)
+    assert shown.violations() == []
+    assert shown.faults == []
+
+
+def test_a_whole_message_has_a_panel_for_each_quantity(shown: Opened) -> None:
+    expect(plotted(shown, "/joint_commands", "Everything")).to_contain_text("velocity (rad/s)")
+
+
+def test_an_element_is_one_curve(shown: Opened) -> None:
+    plot = plotted(shown, "joint_commands/position[1]", "The wrist only")
+
+    expect(plot.locator("text", has_text="wrist").last).to_be_visible()
+    assert plot.locator("text", has_text="elbow").count() == 0
+
+
+def test_what_can_not_be_plotted_is_reported_as_in_a_notebook(shown: Opened) -> None:
+    cell = shown.page.locator(".cell-snippet").first
+
+    run(cell, "%plot /joint_commands/positions --seconds 1")
+    expect(cell).to_contain_text("there is no field `positions`. The fields are: header, name", timeout=DEADLINE_MS)
+    run(cell, "%plot /joint_commands/position[ --seconds 1")
+    expect(cell).to_contain_text("is not a field. Write for example position[0]", timeout=DEADLINE_MS)
