@@ -10,9 +10,8 @@ import click
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import NoExercise, find, load
-from grader.sandbox.isolation import Isolation
 from grader.sandbox.middleware import to_be_compiled
-from grader.sandbox.program import SandboxUnavailable
+from grader.sandbox.program import Isolation, SandboxUnavailable
 from grader.submission.reading import NoSubmission, Submission, of_source, read
 from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
 

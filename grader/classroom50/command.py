@@ -9,7 +9,7 @@ import click
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import find, load
 from grader.gradescope.command import author_errors, autograder_files, isolation_option
-from grader.sandbox.isolation import Isolation
+from grader.sandbox.program import Isolation
 
 #: For a repository without Classroom 50: where the folder that this command writes is a private repository.
 WORKFLOW = """\

@@ -21,8 +21,7 @@ from grader.grading.grade import Grade, Options
 from grader.grading.grading import grading_of
 from grader.report.feedback import ShownCheck, shown_checks
 from grader.report.printable import printable
-from grader.sandbox.isolation import Isolation
-from grader.sandbox.program import SandboxUnavailable
+from grader.sandbox.program import Isolation, SandboxUnavailable
 from grader.workers.pool import HostFault, WorkerPool
 from groundwork.files import write_if_changed
 

@@ -17,7 +17,7 @@ import click
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import COURSE, NoExercise, find, load
 from grader.grading.reference import solution_file
-from grader.sandbox.isolation import Isolation
+from grader.sandbox.program import Isolation
 from interface_compiler import activation
 from interface_compiler.building import DEFINITIONS
 from interface_compiler.wheel import record, zipped

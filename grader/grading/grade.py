@@ -11,8 +11,7 @@ from typing import Literal
 from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
 from grader.recording.recording import Ending, Recording
-from grader.sandbox.isolation import Isolation
-from grader.sandbox.program import Limits
+from grader.sandbox.program import Isolation, Limits
 
 #: What happened. `host-error` is not the student's fault: it gives no score and has to be graded again. `missing` is a
 #: student who handed in nothing; `undecided` waits for the instructor to say which submission counts.

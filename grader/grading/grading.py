@@ -12,8 +12,8 @@ from grader.grading.public import PublicPart, public_part
 from grader.grading.reference import reference, solution_file, versions
 from grader.grading.running import ScenarioRunner
 from grader.recording.recording import Ending, Recording
-from grader.sandbox.isolation import Isolation, choose
-from grader.sandbox.program import SandboxUnavailable
+from grader.sandbox.isolation import choose
+from grader.sandbox.program import Isolation, SandboxUnavailable
 from grader.scenario.declared import declared
 from grader.scenario.scenario import Scenario
 from grader.submission.reading import Submission

@@ -17,7 +17,7 @@ from grader.grading.grade import Options
 from grader.grading.reference import reference
 from grader.grading.running import ScenarioRunner
 from grader.recording.recording import Recording, from_plain, plain
-from grader.sandbox.isolation import Isolation
+from grader.sandbox.program import Isolation
 from grader.scenario.declared import declared
 from grader.scenario.scenario import Message, Scenario
 from grader.scenario.store import HIDDEN_FILES, NotForStudents, code_in

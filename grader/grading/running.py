@@ -15,8 +15,7 @@ from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Options
 from grader.recording.recording import Recording, likewise
-from grader.sandbox.isolation import Isolation
-from grader.sandbox.program import Program
+from grader.sandbox.program import Isolation, Program
 from grader.scenario.command_line import ARGUMENTS, arguments
 from grader.scenario.scenario import Companion, Scenario
 from grader.submission.reading import Submission

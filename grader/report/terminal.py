@@ -10,7 +10,7 @@ from grader.checking.verdict import Status, Verdict
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade
 from grader.report.printable import as_students_see_it, printable
-from grader.sandbox.isolation import Isolation
+from grader.sandbox.program import Isolation
 
 
 def points_so_far(grade: Grade) -> str:

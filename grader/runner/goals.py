@@ -11,9 +11,8 @@ from rclpy.serialization import serialize_message
 
 from grader.recording.events import STATES, Cancel, Feedback, Goal, GoalState
 from grader.runner.cdr import deserialized
-from grader.runner.ends import Ends
+from grader.runner.ends import ACCEPT_ANY, Ends
 from grader.runner.message import filled, message_class, to_fields
-from grader.runner.recorder import ACCEPT_ANY
 from grader.scenario.scenario import CancelAll, CancelGoal, Scenario, SendGoal
 from rmw_lockstep.hub import Client, Subscription
 from rmw_lockstep.hub.ends import Moment

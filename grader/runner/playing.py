@@ -6,11 +6,10 @@ from collections.abc import Callable
 from functools import partial
 
 from grader.runner.cdr import deserialized
-from grader.runner.ends import Ends, Schedule, nanoseconds
+from grader.runner.ends import ACCEPT_ANY, Ends, Schedule, nanoseconds
 from grader.runner.message import message_class
 from grader.runner.order import in_canonical_order, unordered_sources
 from grader.runner.publishers import ReferencePublishers
-from grader.runner.recorder import ACCEPT_ANY
 from grader.runner.serving import AuthorFault
 from grader.scenario.scenario import START, Message
 from grader.scenario.values import Invalid, check_fields

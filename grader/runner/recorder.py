@@ -9,18 +9,14 @@ from dataclasses import dataclass
 
 from grader.recording.recording import Received
 from grader.runner.cdr import fields_of
-from grader.runner.ends import Clocks
+from grader.runner.ends import ACCEPT_ANY, Clocks
 from grader.runner.message import message_class
 from grader.runner.order import in_canonical_order, place_of, unordered_sources, without_order
 from grader.runner.student import Stopped, Task
 from rmw_lockstep.hub import Heard, HubNode, Qos, Subscription
-from rmw_lockstep.qos import BEST_EFFORT
 
 #: No exercise needs more than this from a node in one scenario.
 MOST_MESSAGES = 5_000
-
-#: Compatible with whatever a student's publisher offers.
-ACCEPT_ANY = Qos(depth=10_000, reliability=BEST_EFFORT)
 
 
 def recorded_topics(task: Task) -> tuple[tuple[str, str], ...]:

@@ -7,10 +7,10 @@ with server.start(Program("node.py", {"node.py": source}, hub=socket), isolation
 """
 
 from grader.sandbox.fork_server import ForkServer, Student
-from grader.sandbox.isolation import Isolation, available, choose
+from grader.sandbox.isolation import available, choose
 from grader.sandbox.middleware import MiddlewareUnavailable, require_middleware, to_be_compiled
 from grader.sandbox.monitor import Exit, Output
-from grader.sandbox.program import Limits, Program, SandboxError, SandboxUnavailable
+from grader.sandbox.program import Isolation, Limits, Program, SandboxError, SandboxUnavailable
 
 __all__ = [
     "Exit",

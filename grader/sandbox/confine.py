@@ -9,8 +9,7 @@ from pathlib import Path
 
 from grader.sandbox import filesystem, landlock, seccomp, syscalls
 from grader.sandbox.filesystem import USER_ID
-from grader.sandbox.isolation import Isolation
-from grader.sandbox.program import Limits, Paths, Program, apply_limits
+from grader.sandbox.program import Isolation, Limits, Paths, Program, apply_limits
 
 _DESCRIPTORS = 1024
 

@@ -15,10 +15,10 @@ from types import TracebackType
 
 from grader.sandbox import bubblewrap, filesystem, namespaces
 from grader.sandbox.confine import Start
-from grader.sandbox.isolation import Isolation, forget
+from grader.sandbox.isolation import forget
 from grader.sandbox.middleware import variables
 from grader.sandbox.monitor import Exit, Monitor, Output
-from grader.sandbox.program import START_REQUEST, Limits, Program, SandboxError
+from grader.sandbox.program import START_REQUEST, Isolation, Limits, Program, SandboxError
 
 _START_S = 30.0
 _DEATH_S = 30.0

@@ -15,12 +15,11 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
-from enum import Enum
 from functools import cache
 from pathlib import Path
 
 from grader.sandbox import filesystem
-from grader.sandbox.program import SandboxUnavailable
+from grader.sandbox.program import Isolation, SandboxUnavailable
 from groundwork.files import cached, write_if_changed
 
 _TRIAL_S = 30.0
@@ -37,23 +36,6 @@ _FILES = (
 )
 _NAMESPACES = ("user", "mnt", "pid", "net", "ipc")
 _STATUS = ("Uid", "Gid", "CapEff", "CapBnd", "NoNewPrivs", "Seccomp", "Seccomp_filters")
-
-
-class Isolation(str, Enum):
-    """The levels, strongest first. docs/sandbox.md says what each of them keeps apart."""
-
-    BUBBLEWRAP = "bubblewrap"
-    """Namespaces of its own, made by bubblewrap."""
-    NAMESPACES = "namespaces"
-    """The same namespaces, made by our own system calls."""
-    LANDLOCK = "landlock"
-    """No namespaces: the kernel's Landlock for files, seccomp for the network."""
-    NONE = "none"
-    """A plain process of the same user, with limits. For code that you trust."""
-
-    def __str__(self) -> str:
-        """Return the word that is used on the command line and in a grade."""
-        return self.value
 
 
 def available() -> dict[Isolation, str | None]:

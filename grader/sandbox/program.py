@@ -7,6 +7,7 @@ import os
 import resource
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import Enum
 from pathlib import Path, PurePosixPath
 
 SUBMISSION = "/submission"
@@ -22,6 +23,23 @@ class SandboxUnavailable(Exception):
 
 class SandboxError(Exception):
     """Raised when a sandbox could not be made or ended: a fault of ours or the machine's, never of the student."""
+
+
+class Isolation(str, Enum):
+    """The levels, strongest first. docs/sandbox.md says what each of them keeps apart."""
+
+    BUBBLEWRAP = "bubblewrap"
+    """Namespaces of its own, made by bubblewrap."""
+    NAMESPACES = "namespaces"
+    """The same namespaces, made by our own system calls."""
+    LANDLOCK = "landlock"
+    """No namespaces: the kernel's Landlock for files, seccomp for the network."""
+    NONE = "none"
+    """A plain process of the same user, with limits. For code that you trust."""
+
+    def __str__(self) -> str:
+        """Return the word that is used on the command line and in a grade."""
+        return self.value
 
 
 @dataclass(frozen=True)

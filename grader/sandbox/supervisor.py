@@ -14,8 +14,7 @@ from typing import NoReturn
 from grader.sandbox import bubblewrap, filesystem, landlock, namespaces, processes, syscalls
 from grader.sandbox import program as limits
 from grader.sandbox.confine import Start, confine
-from grader.sandbox.isolation import Isolation
-from grader.sandbox.program import HUB, SUBMISSION, Paths, Program
+from grader.sandbox.program import HUB, SUBMISSION, Isolation, Paths, Program
 
 
 @dataclass(frozen=True)

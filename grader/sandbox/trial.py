@@ -9,8 +9,7 @@ import sys
 
 from grader.sandbox import landlock
 from grader.sandbox.fork_server import ForkServer
-from grader.sandbox.isolation import Isolation
-from grader.sandbox.program import Program, SandboxError
+from grader.sandbox.program import Isolation, Program, SandboxError
 
 _WORD = "works"
 _PROGRAM = f"import rclpy.exceptions, sys\nprint({_WORD!r})\n"

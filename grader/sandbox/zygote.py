@@ -25,7 +25,7 @@ from grader.sandbox import middleware as type_support
 from grader.sandbox.middleware import choosable
 from grader.sandbox.program import START_REQUEST, Paths, Program
 from grader.sandbox.supervisor import Request, refuse, supervise
-from rmw_lockstep.library import IDENTIFIER
+from rmw_lockstep import IDENTIFIER
 
 #: The number of cores that a program sees. It runs on one, but rclpy's MultiThreadedExecutor uses this as its number of
 #: threads, and with a single thread a program would hang here that works on every other machine.

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from grader.exercise.exercise import Exercise
 from grader.recording.recording import Recording
 from grader.runner.student import Task
-from grader.sandbox.isolation import Isolation
-from grader.sandbox.program import Limits, Program
+from grader.sandbox.program import Isolation, Limits, Program
 from grader.scenario.scenario import Scenario
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from interface_compiler import prefixes, shipped, store
+from interface_compiler import prefixes, shipped
 from interface_compiler.definition import KINDS
 
 # The info string is the text behind the opening backticks: a language, then attributes such as
@@ -180,4 +180,4 @@ def is_someone_elses(package: str, own: str) -> bool:
     if package in (*shipped.standard(), *shipped.optional()):
         return True
     prefix = prefixes.prefix_of(package, prefixes.installed())
-    return prefix is not None and not store.key_of(package, prefix)
+    return prefix is not None and not prefixes.key_of(package, prefix)

@@ -12,7 +12,8 @@ import threading
 import time
 from pathlib import Path
 
-from rmw_lockstep.library import IDENTIFIER, Library, library
+from rmw_lockstep import IDENTIFIER
+from rmw_lockstep.library import Library, library
 from spinbook.doctor.diagnosis import Finding, missing, ok, warning
 from spinbook.kernel.environment import claim_domain, for_domain, missing_middleware
 

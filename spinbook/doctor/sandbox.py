@@ -18,7 +18,8 @@ _ALLOW = (
 def examine_sandbox(name: str) -> Finding:
     """Ask the grader, which runs a program in each of its sandboxes."""
     try:
-        from grader.sandbox.isolation import Isolation, available
+        from grader.sandbox.isolation import available
+        from grader.sandbox.program import Isolation
     except ImportError as error:
         return missing(name, f"the grader does not load: {error}", "Set the environment up again: make setup")
     levels = available()

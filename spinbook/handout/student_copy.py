@@ -13,8 +13,8 @@ from grader.exercise.starter import starter
 from grader.exercise.writing import to_toml
 from grader.grading.grade import Options
 from grader.grading.public import modules_of, public_part, to_json
-from grader.sandbox.isolation import Isolation, choose
-from grader.sandbox.program import SandboxUnavailable
+from grader.sandbox.isolation import choose
+from grader.sandbox.program import Isolation, SandboxUnavailable
 from grader.workers.pool import WorkerPool
 from spinbook.chapter.comments import without_comments
 from spinbook.chapter.links import linked

@@ -16,7 +16,7 @@ from pathlib import Path
 import spinbook
 from groundwork.files import cached, write_if_changed
 from groundwork.problem import Problem
-from interface_compiler import shipped, store
+from interface_compiler import prefixes, shipped
 from interface_compiler.checks import dependencies
 from interface_compiler.wheel import record, wheel, wheel_platform, zipped
 from spinbook.build.digest import digest, files_digest
@@ -149,7 +149,7 @@ def _packages(course: Course, text: bytes, environment: Path) -> Iterator[tuple[
     needed = {name for names in dependencies(collected.definitions).values() for name in names}
     for package in (*shipped.standard(), *shipped.optional()):
         wanted = package in shipped.standard() or package in needed or package.encode() in text
-        if wanted and store.key_of(package, environment):
+        if wanted and prefixes.key_of(package, environment):
             yield package, environment
     if compiled:
         yield from ((package, compiled.prefix) for package in compiled.packages)

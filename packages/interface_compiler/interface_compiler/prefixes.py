@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 from collections.abc import Iterable
@@ -10,6 +11,9 @@ from pathlib import Path
 RESOURCES = Path("share", "ament_index", "resource_index")
 #: Where a prefix keeps its Python packages.
 PYTHON = Path("lib", f"python{sys.version_info.major}.{sys.version_info.minor}", "site-packages")
+
+#: The file in a package's share folder with the key of what it was compiled from.
+KEY = "compiler-key"
 
 
 def installed() -> list[Path]:
@@ -62,6 +66,13 @@ def definitions_of(package: str, prefix: Path) -> dict[str, str]:
     share = prefix / "share" / package
     files = (file for kind in ("msg", "srv", "action") for file in sorted(share.glob(f"{kind}/*.{kind}")))
     return {file.relative_to(share).as_posix(): file.read_text(encoding="utf-8") for file in files}
+
+
+def key_of(package: str, prefix: Path) -> str:
+    """Return the key of a package that was compiled into a prefix, or of an installed one; empty if CMake made it."""
+    with contextlib.suppress(OSError):
+        return (prefix / "share" / package / KEY).read_text(encoding="utf-8")
+    return ""
 
 
 def _listed(marker: Path) -> frozenset[str]:

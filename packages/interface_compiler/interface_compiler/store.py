@@ -27,7 +27,6 @@ _WHEELS = ("ros-rosidl-adapter", "ros-rosidl-generator-py", "ros-rosidl-typesupp
 _OWN = ("generating.py", "compiling.py", "building.py", "dispatch.cpp.in", "limited_api.h")
 #: Prefixes that a store keeps: notebooks that are open may still use one of an earlier text.
 _KEPT = 8
-_KEY = "compiler-key"
 
 
 @dataclass(frozen=True)
@@ -87,13 +86,6 @@ def digest(*texts: str) -> str:
     return total.hexdigest()[:16]
 
 
-def key_of(package: str, prefix: Path) -> str:
-    """Return the key of a package that was compiled into a prefix, or of an installed one; empty if CMake made it."""
-    with contextlib.suppress(OSError):
-        return (prefix / "share" / package / _KEY).read_text(encoding="utf-8")
-    return ""
-
-
 def _check(definitions: Sequence[Definition]) -> None:
     faults = checks.check(definitions, prefixes.interfaces(prefixes.installed()))
     if faults:
@@ -144,7 +136,7 @@ def _compile(definitions: Sequence[Definition], found: dict[str, str], prefix: P
         file.write_text(definition.text, encoding="utf-8")
     _run_compiler(unfinished, checks.in_order(definitions))
     for package, key in found.items():
-        (unfinished / "share" / package / _KEY).write_text(key, encoding="utf-8")
+        (unfinished / "share" / package / prefixes.KEY).write_text(key, encoding="utf-8")
     unfinished.rename(prefix)
 
 

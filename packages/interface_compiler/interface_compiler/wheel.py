@@ -19,7 +19,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from importlib import metadata
 from pathlib import Path
 
-from interface_compiler import shipped, store
+from interface_compiler import prefixes, shipped, store
 from interface_compiler.checks import dependencies
 from interface_compiler.definition import CompileError
 from interface_compiler.prefixes import PYTHON, RESOURCES
@@ -34,7 +34,7 @@ def wheel(package: str, prefix: Path) -> tuple[str, bytes]:
 
     Its version ends in the package's key, so that pip replaces one that was made from other definitions.
     """
-    version = f"{_VERSION}+{store.key_of(package, prefix)}"
+    version = f"{_VERSION}+{prefixes.key_of(package, prefix)}"
     name = f"{_project(package).replace('-', '_')}-{version}"
     tag = f"{_PYTHONS}-{wheel_platform()}"
     files = dict(_files(package, prefix, f"{name}.data/data"))

@@ -15,10 +15,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from rmw_lockstep import IDENTIFIER
 from rmw_lockstep.ros import Ros, installed_ros
-
-#: What `rclpy.get_rmw_implementation_identifier()` returns if this middleware was loaded.
-IDENTIFIER = "rmw_lockstep_cpp"
 
 #: The folder with the C++ sources.
 SOURCES = Path(__file__).parent
