@@ -24,23 +24,24 @@ def say(console: Console, text: str, style: str = "") -> None:
 
 
 def counted(number: int, what: str) -> str:
-    """Return `1 student` or `2 students`."""
-    return f"{number} {what}{'' if number == 1 else 's'}"
+    """Return `1 student` or `2 students`, `1 entry` or `2 entries`."""
+    plural = f"{what[:-1]}ies" if what.endswith("y") else f"{what}s"
+    return f"{number} {what if number == 1 else plural}"
 
 
 def show_submissions(console: Console, collected: Submissions) -> None:
     """Print how the submissions were read, and what was left out; the first line is the format and the count."""
-    students = len(collected.students) - len(collected.missing)
-    paths = {file.path for one in collected.handed_in for file in one.files}
-    together = students - len(collected.questions) - len({one.file.path for one in collected.handed_in})
-    shared = f", who handed in {counted(len(paths), 'submission')}" if together else ""
+    asked = [question for question in collected.questions if question.unclear != "name"]
+    students = len(collected.handed_in) + len(asked)
+    submissions = len({one.file.path for one in collected.handed_in}) + len(asked)
+    shared = f", with {counted(submissions, 'submission')}" if submissions < students else ""
     say(console, f"{counted(students, 'student')} in {collected.kind}{shared}.")
     if collected.missing:
         names = ", ".join(student.id for student in collected.missing)
         say(console, f"{counted(len(collected.missing), 'student')} handed in nothing: {names}")
     for note in collected.notes:
         say(console, note, "yellow")
-    _list(console, [skip for skip in collected.skipped if skip not in collected.left_out])
+    _list(console, collected.skipped)
 
 
 def _list(console: Console, skipped: Iterable[Skipped]) -> None:

@@ -13,10 +13,11 @@ from pathlib import Path
 from grader.classroom.archive import unpacked, walk
 from grader.classroom.class_table import by_row
 from grader.classroom.formats.format import Upload
+from grader.classroom.formats.per_student import without_suffix
 from grader.classroom.groups import Attempt, Group, Unit, in_groups
 from grader.classroom.handed_in import File, HandedIn, Question, Submissions, SubmissionsError
 from grader.classroom.names import normal, unique_ids
-from grader.classroom.recognising import PACKAGE, Recogniser, can_be_graded
+from grader.classroom.recognising import PACKAGE, Recognised, Recogniser, can_be_graded
 from grader.classroom.roster import RosterRow, match, signs, with_row
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Skipped, Student
@@ -66,7 +67,7 @@ class Found:
     kind: str
     uploads: Sequence[tuple[File, Upload]]
     skipped: Sequence[Skipped]
-    left_out: Sequence[Skipped] = ()
+    odd: Sequence[Question] = ()
     dates: str = ""
 
 
@@ -80,16 +81,26 @@ def _found(source: Path, exercise: Exercise, unpack_into: Path, wishes: Wishes) 
     recognised = Recogniser(files, root, exercise, wishes.zone).recognise(wishes.format)
     folder = f", in {'/'.join(recognised.inside)}/" if recognised.inside else ""
     uploads = [(file, place) for file, place in recognised.understood if isinstance(place, Upload)]
-    odd = [Skipped(file.name, f"its name is not one of {recognised.form.title}") for _, file in recognised.misfits]
     others = [Skipped(file.name, place) for file, place in recognised.understood if isinstance(place, str) and place]
     others += [Skipped(file.name, f"not in {'/'.join(recognised.inside)}/") for file in recognised.others]
+    why = f"its name is not one of {recognised.form.title}"
+    others += [Skipped(file.name, why) for _, file in recognised.misfits if not can_be_graded(file.name)]
     return Found(
         recognised.form.title + folder,
         uploads,
-        [*left_out, *others, *odd],
-        [one for one in odd if can_be_graded(one.file)],
+        [*left_out, *others],
+        _odd(recognised, why),
         recognised.form.dates,
     )
+
+
+def _odd(recognised: Recognised, why: str) -> list[Question]:
+    """Return what could be graded, but is not called as on the platform, each as from a student of that name."""
+    files: dict[str, list[str]] = defaultdict(list)
+    for top, file in recognised.misfits:
+        if can_be_graded(file.name):
+            files[top].append(file.name)
+    return [Question(Student(without_suffix(top)), tuple(names), "name", why) for top, names in files.items()]
 
 
 @dataclass(frozen=True)
@@ -109,6 +120,7 @@ class Collector:
             for one in self._chosen(unit, number, extras):
                 theirs[normal(one.student.id)].append(one)
         chosen = [_only(several) for several in theirs.values()]
+        chosen += [question for question in found.odd if normal(question.student.id) not in theirs]
         rows = match(self.wishes.roster, [one.student for one in chosen])
         missing = self._missing([one.student for one in chosen], rows)
         ids = unique_ids([*(one.student.id for one in chosen), *(student.id for student in missing)])
@@ -120,7 +132,6 @@ class Collector:
             tuple(handed_in),
             tuple(sorted((*found.skipped, *extras), key=lambda one: one.file)),
             tuple(questions),
-            tuple(sorted(found.left_out, key=lambda one: one.file)),
             tuple(replace(student, id=ids[normal(student.id)]) for student in missing),
             (*_notes(handed_in), *_not_gradable(handed_in), *self._strangers(chosen, rows)),
             found.dates,
@@ -131,7 +142,7 @@ class Collector:
         attempts = [unit.attempts[key] for key in sorted(unit.attempts)]
         if len(attempts) > 1 and not self.wishes.attempts:
             names = tuple(attempt[0][0].name for attempt in attempts)
-            return [Question(student, names, attempts=True) for student in unit.students]
+            return [Question(student, names, "attempts") for student in unit.students]
         if self.wishes.attempts == "first":
             attempts = attempts[:1]
         elif self.wishes.attempts == "last":
@@ -142,7 +153,7 @@ class Collector:
             if file is None:
                 return [Question(student, tuple(one.name for one, _ in attempt)) for student in unit.students]
             if file.fault:
-                return [Question(student, (file.name,), fault=file.fault) for student in unit.students]
+                return [Question(student, (file.name,), "damaged", file.fault) for student in unit.students]
             files.append(file)
         return [HandedIn(student, files[0], tuple(files[1:])) for student in unit.students]
 

@@ -10,7 +10,7 @@ from rich.console import Console
 
 from grader.classroom.class_display import counted, say
 from grader.classroom.deadline import Adjusting
-from grader.classroom.handed_in import File, HandedIn, Submissions
+from grader.classroom.handed_in import File, HandedIn, Submissions, Unclear
 
 
 @dataclass(frozen=True)
@@ -22,33 +22,38 @@ class Decision:
     remedy: str
 
 
+#: What is unclear, and what to do.
+ASKED: dict[Unclear, tuple[str, str, str]] = {
+    "name": (
+        "{} could be graded, but nothing says whose: the name is not as the others'",
+        "entry",
+        "Rename or remove them, name them in a CSV file, or say with --format how to read the class.",
+    ),
+    "attempts": (
+        "{} handed in several times",
+        "student",
+        "Say which attempt counts, for everybody: --attempts last, first or best.",
+    ),
+    "files": ("{} handed in several files", "student", "Keep one of them, or name it in a CSV file."),
+    "damaged": (
+        "{} can't be read out of the zip",
+        "file",
+        "Download the zip again, or put the files into it without a password.",
+    ),
+}
+
+
 def decisions(collected: Submissions, adjusting: Adjusting) -> list[Decision]:
     """Return what is not clear about a class."""
-    attempts = [str(question) for question in collected.questions if question.attempts]
-    damaged = [str(question) for question in collected.questions if question.fault]
-    several = [str(question) for question in collected.questions if not question.attempts and not question.fault]
     unread = [f"{one.student.id}: {file.time.fault}" for one, file in _faults(collected.handed_in)]
+    questions: dict[Unclear, list[str]] = {"name": [], "attempts": [], "files": [], "damaged": []}
+    for question in collected.questions:
+        questions[question.unclear].append(str(question))
     found = [
-        Decision(
-            f"{counted(len(collected.left_out), 'file')} could be graded, but it is not clear whose",
-            tuple(f"{one.file}: {one.why}" for one in collected.left_out),
-            "Rename or remove them, name them in a CSV file, or say with --format how to read the class.",
-        ),
-        Decision(
-            f"{counted(len(attempts), 'student')} handed in several times",
-            tuple(attempts),
-            "Say which attempt counts, for everybody: --attempts last, first or best.",
-        ),
-        Decision(
-            f"{counted(len(several), 'student')} handed in several files",
-            tuple(several),
-            "Keep one of them, or name it in a CSV file.",
-        ),
-        Decision(
-            f"{counted(len(damaged), 'file')} can't be read out of the zip",
-            tuple(damaged),
-            "Download the zip again, or put the files into it without a password.",
-        ),
+        Decision(what.format(counted(len(texts), of)), tuple(texts), remedy)
+        for texts, (what, of, remedy) in ((texts, ASKED[unclear]) for unclear, texts in questions.items())
+    ]
+    found += [
         Decision(
             f"{counted(len(unread), 'time')} of submission can't be read",
             tuple(unread),

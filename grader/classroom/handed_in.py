@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
+from typing import Literal
 
 from grader.classroom.times import UNKNOWN, Time
 from grader.grading.grade import Skipped, Student
@@ -51,40 +52,42 @@ class HandedIn:
         return (self.file, *self.others)
 
 
+#: Several files at once; several attempts, one after another; a file that can't be read out of the zip; a file whose
+#: name is none that the platform gives.
+Unclear = Literal["files", "attempts", "damaged", "name"]
+
+
 @dataclass(frozen=True)
 class Question:
-    """Several files from one student, or one that can't be read; only the instructor can say what counts.
-
-    `attempts` says whether the platform says that they are attempts, `fault` why one can't be read.
-    """
+    """What only the instructor can say: which of a student's files counts, or whose they are. `why` adds the reason."""
 
     student: Student
     files: tuple[str, ...]
-    attempts: bool = False
-    fault: str = ""
+    unclear: Unclear = "files"
+    why: str = ""
 
     def __str__(self) -> str:
         """Return the question as text."""
-        if self.fault:
-            return f"{self.student.id} handed in {', '.join(self.files)}: {self.fault}"
-        what = "attempts" if self.attempts else "files"
-        return f"{self.student.id} handed in {len(self.files)} {what}: {', '.join(self.files)}. Which one counts?"
+        names = ", ".join(self.files)
+        if self.unclear == "name":
+            return f"{names}: {self.why}"
+        if self.unclear == "damaged":
+            return f"{self.student.id} handed in {names}: {self.why}"
+        return f"{self.student.id} handed in {len(self.files)} {self.unclear}: {names}. Which one counts?"
 
 
 @dataclass(frozen=True)
 class Submissions:
     """What a class submitted, sorted by student; what was left out, and why; and the questions to ask.
 
-    `kind` says in words how it was read, such as "a download from Moodle". `left_out` could be graded, but nothing says
-    whose it is. `missing` are students of the roster from whom there is nothing. `notes` say how something unclear was
-    read, `dates` what the platform says of dates.
+    `kind` says in words how it was read, such as "a download from Moodle". `missing` are students of the roster from
+    whom there is nothing. `notes` say how something unclear was read, `dates` what the platform says of dates.
     """
 
     kind: str
     handed_in: tuple[HandedIn, ...]
     skipped: tuple[Skipped, ...]
     questions: tuple[Question, ...]
-    left_out: tuple[Skipped, ...] = ()
     missing: tuple[Student, ...] = ()
     notes: tuple[str, ...] = ()
     dates: str = ""

@@ -8,6 +8,7 @@ import gzip
 import hashlib
 import json
 import os
+import tempfile
 import zlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
@@ -135,6 +136,8 @@ class Results:
     def __enter__(self) -> Results:
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryFile(dir=self.folder):  # a lock can be taken in a folder that is read-only
+                pass
             lock = try_lock(self.folder / ".lock")
         except FileExistsError as error:
             raise NotWritable(self.folder, NotADirectoryError(errno.ENOTDIR, "Not a folder", error.filename)) from None
@@ -325,9 +328,12 @@ class ClassGrading:
     def record(self, student: Student, grade: Grade) -> Entry:
         """Store the entry of a student from whom nothing is graded."""
         entry = Entry(student, "", grade)
-        entry = replace(entry, adjustments=self.adjust(entry))
-        self.entries[student.id] = entry
-        self.results.write(entry, "", feedback_page(entry, self.exercise, None), None)
+        self.entries[student.id] = entry = replace(entry, adjustments=self.adjust(entry))
+        try:
+            self.results.write(entry, "", feedback_page(entry, self.exercise, None), None)
+        except Exception as error:
+            stop_if_no_room(self.results.folder, error)
+            return self.give_up(entry, not_written(error))
         return entry
 
     def give_up(self, entry: Entry, what: str) -> Entry:

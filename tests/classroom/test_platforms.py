@@ -131,7 +131,6 @@ def test_an_export_is_recognised_and_everybody_in_it_has_one_submission(
     assert made.form in last.kind.lower()
     assert len(last.handed_in) == (30 if export is gradescope else 29)
     assert not last.questions
-    assert not last.left_out
     assert len({one.student.id.casefold() for one in last.handed_in}) == len(last.handed_in)
     contents = {one.file.path.read_text(encoding="utf-8").split()[0] for one in last.handed_in}
     assert len(contents) == 29
@@ -142,7 +141,7 @@ def test_an_export_is_recognised_and_everybody_in_it_has_one_submission(
             assert one.file.submitted is None, "the date of a download is not that of a submission"
     if made.attempts:
         asked = collected(source, zone=UTC)
-        assert [question.attempts for question in asked.questions] == [True]
+        assert [question.unclear for question in asked.questions] == ["attempts"]
         assert len(asked.handed_in) == 28
         first = collected(source, attempts="first", zone=UTC)
         who = asked.questions[0].student.id
@@ -175,7 +174,7 @@ def test_one_odd_file_changes_nothing_for_the_others_and_is_never_left_out_in_si
     odd = {f"{top}zed.py": "# zed", f"{top}notes.txt": "mine"}
     odded = collected(archive(tmp_path / "odd.zip", {**made.files, **odd}), attempts="last", zone=UTC)
     assert files(odded) == files(whole)
-    assert [one.file for one in odded.left_out] == [f"{top}zed.py"]
+    assert [(one.student.id, one.files, one.unclear) for one in odded.questions] == [("zed", (f"{top}zed.py",), "name")]
 
 
 def test_canvas_says_who_is_late_and_never_when(tmp_path: Path) -> None:

@@ -74,7 +74,7 @@ def test_what_is_half_a_platforms_is_asked_and_every_name_listed(tmp_path: Path)
     assert len(collected(source, format="folder").handed_in) == 11
     forced = collected(source, format="canvas")
     assert len(forced.handed_in) == 6
-    assert [one.file for one in forced.left_out] == others
+    assert [name for question in forced.questions for name in question.files] == others
 
 
 def test_a_format_that_nothing_fits_is_refused(tmp_path: Path) -> None:

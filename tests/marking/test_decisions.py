@@ -51,7 +51,7 @@ def test_nothing_is_graded_before_everything_is_decided(several: SmallClass) -> 
     code, printed = several.grade(*OPTIONS)
     assert code == 1, printed
     lines = printed.splitlines()
-    assert lines[0] == "5 students in a download from Blackboard, who handed in 1 submission."
+    assert lines[0] == "5 students in a download from Blackboard, with 4 submissions."
     assert "1 student handed in nothing: zoe" in printed
     assert "not on the roster: carl, dora, emil" in printed
     assert "Deadline: due 2026-11-20 12:00 +0100, days by the calendar of Europe/Berlin." in printed
@@ -123,6 +123,8 @@ mount -t tmpfs -o size=120k tmpfs results || exit 99
 {python} -m grader speed_limit submissions --out results --isolation none; echo "code $?"
 mount -o remount,size=20m results
 {python} -m grader speed_limit submissions --out results --isolation none; echo "code $?"
+mount -o remount,ro results
+{python} -m grader speed_limit submissions --out results --isolation none; echo "code $?"
 """
 
 
@@ -139,14 +141,16 @@ def test_a_full_disk_stops_the_class_and_keeps_what_was_graded(small_class: Smal
         text=True,
         timeout=240,
     )
-    first, second = done.stdout.split("code 3")
+    first, second, _ = done.stdout.split("code 3")
+    second, third = second.split("code 0")
     assert "results: the results can't be written: No space left on device." in first
     assert "What was graded is kept." in first
     kept = first.count(" of 20 points")
     assert 0 < kept < 6
     assert f"{kept} unchanged since they were graded." in second or f"{kept - 1} unchanged" in second
     assert "6 grades: median 17 of 20 points, 2 with full marks." in second
-    assert second.rstrip().endswith("code 0")
+    assert third.count("\n") == 2, "the first line, and nothing graded"
+    assert "results can't be written: Read-only file system" in done.stderr
     assert "Traceback" not in done.stdout + done.stderr
 
 

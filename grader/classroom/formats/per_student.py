@@ -21,12 +21,17 @@ def read(export: Export) -> Callable[[Parts], Understood]:
     def understand(parts: Parts) -> Understood:
         if len(parts) == 1 and parts[0].lower().endswith(NOT_WORK):
             return "a table, a note or a page, not a submission"
-        name = normal(parts[0] if len(parts) > 1 else SUFFIX.sub("", parts[0]) or parts[0])
+        name = normal(parts[0]) if len(parts) > 1 else without_suffix(parts[0])
         file = export.files.get(parts)
         student = person(name, name if name != student_id(name) else "")
         return Upload((student,), parts[1:] or parts, time=file.time if file else UNKNOWN)
 
     return understand
+
+
+def without_suffix(name: str) -> str:
+    """Return the student's name in that of a file."""
+    return normal(SUFFIX.sub("", name) or name)
 
 
 FORMAT = Format("folder", "a folder with one file (or one folder) per student", read)
