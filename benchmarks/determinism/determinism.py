@@ -25,10 +25,11 @@ from pathlib import Path
 
 from grader.audit.candidates import mistakes, right_ones
 from grader.exercise import Exercise, load
+from grader.exercise.edits import read_edits
 from grader.grading import Grade, Options
 from grader.grading.grading import Grading, grading_of
 from grader.recording.recording import to_json
-from grader.submission.reading import Submission, read
+from grader.submission.reading import Submission, of_source, read
 from grader.workers import WorkerPool
 from groundwork.files import write_if_changed
 from spinbook.course.course import find_course
@@ -36,6 +37,7 @@ from spinbook.interfaces.compiling import compile_course
 
 HERE = Path(__file__).parent
 COURSE = HERE.parents[1]
+PROGRAMS = HERE / "programs"
 
 sys.path.append(str(COURSE / "tests"))
 from busy_loops import busy  # noqa: E402
@@ -160,7 +162,10 @@ def _submissions(exercise: Exercise) -> dict[str, Submission]:
     if exercise.folder != COURSE / "exercises" / HARDEST:
         few = [one for one in candidates if one.kind == "solution" or "thread" in one.name]
         return {f"{exercise.name}/{one.name}": one.submission for one in few}
-    programs = {f"programs/{file.name}": read(str(file), exercise) for file in sorted((HERE / "programs").glob("*.py"))}
+    programs = {f"programs/{file.name}": read(str(file), exercise) for file in sorted(PROGRAMS.glob("*.py"))}
+    for edit in read_edits(PROGRAMS / "edits.md"):
+        source = edit.applied_to(PROGRAMS / "relay.py")
+        programs[f"programs/{edit.name}"] = of_source(f"{edit.name}.py", source.encode(), exercise)
     return programs | {f"{exercise.name}/{one.name}": one.submission for one in [*candidates, *mistakes(exercise)]}
 
 

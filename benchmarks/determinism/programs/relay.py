@@ -1,4 +1,4 @@
-"""The program asks again and again whether there is anything to do."""
+"""Publish each message's joints again, with their positions as velocities."""
 
 import rclpy
 from rclpy.node import Node
@@ -6,8 +6,6 @@ from sensor_msgs.msg import JointState
 
 
 class Relay(Node):
-    """Publishes each message's joints again, with their positions as velocities."""
-
     def __init__(self):
         super().__init__('joint_velocity')
         self.publisher = self.create_publisher(JointState, '/joint_velocities', 10)
@@ -23,5 +21,4 @@ class Relay(Node):
 
 rclpy.init()
 node = Relay()
-while rclpy.ok():
-    rclpy.spin_once(node, timeout_sec=0)
+rclpy.spin(node)
