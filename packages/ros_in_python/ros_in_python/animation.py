@@ -25,7 +25,7 @@ class Cycle:
         return BEFORE_S + self.moving_s + AFTER_S
 
     def keyframes(self, name: str, frames: Iterable[tuple[float, str]]) -> str:
-        """CSS that lets the class `key` + `name` go through declarations at times (s of the motion), in order.
+        """Return CSS that animates the class `key` + `name`; `frames` are times (s of the motion) and declarations.
 
         Between two of them CSS moves steadily; before the first and after the last it pauses.
         """
@@ -40,12 +40,12 @@ class Cycle:
         return coord(100 * (BEFORE_S + seconds) / self.whole_s, 2)
 
     def style(self, *rules: str) -> str:
-        """A style element whose rules apply only on a screen, and not for readers who prefer no motion."""
+        """Return a style element whose rules apply only on a screen, and not for readers who prefer no motion."""
         return f"<style>@media screen and (prefers-reduced-motion:no-preference){{{''.join(rules)}}}</style>"
 
 
 def coord(value: float, digits: int = 1) -> str:
-    """A number in as few characters as possible, with this many digits after the point."""
+    """Return a number in as few characters as possible, with this many digits after the point."""
     text = f"{value:.{digits}f}".rstrip("0").rstrip(".") if digits else f"{value:.0f}"
     return "0" if text in ("-0", "") else text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
 
@@ -58,7 +58,7 @@ _COLOURS = (
 
 
 def on_paper(content: str, width: int, height: int, key: str, title: str, words: str) -> str:
-    """An SVG document, `width` by `height` px. Elements with the class `key` + "i" have the text colour; `words`
+    """Return an SVG document, `width` by `height` px. Elements with the class `key` + "i" have the text colour; `words`
     describe the picture."""
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" '

@@ -30,16 +30,16 @@ PERIOD_S = 1.0
 
 @dataclass(frozen=True)
 class Language:
-    """What the nodes of one package do differently from the other's."""
+    """How the nodes of one package differ from the other's."""
 
     first: int
     """The number in the talker's first message."""
     quote: str
-    """What stands around a message in the talker's log."""
+    """The quotation mark around a message in the talker's log."""
     depth: int
-    """The talker's queue."""
+    """The depth of the talker's queue."""
     logs_waiting: bool
-    """Whether the client logs that it waits; otherwise it prints that."""
+    """Whether the client logs that it is waiting; otherwise it prints that."""
 
 
 LANGUAGES = {
@@ -49,7 +49,7 @@ LANGUAGES = {
 
 
 def talker(language: Language) -> Node:
-    """The node that publishes a numbered greeting on `chatter` every second."""
+    """Make the node that publishes a numbered greeting on `chatter` every second."""
     node = Node("talker")
     publisher = node.create_publisher(String, "chatter", language.depth)
     numbers = itertools.count(language.first)
@@ -64,7 +64,7 @@ def talker(language: Language) -> Node:
 
 
 def listener(language: Language) -> Node:
-    """The node that logs what it hears on `chatter`, the same in both packages."""
+    """Make the node that logs what it hears on `chatter`, the same in both packages."""
     node = Node("listener")
 
     def hear(message: Any) -> None:
@@ -75,7 +75,7 @@ def listener(language: Language) -> Node:
 
 
 def add_two_ints_server(language: Language) -> Node:
-    """The node that offers the service `add_two_ints`, the same in both packages."""
+    """Make the node that offers the service `add_two_ints`, the same in both packages."""
     node = Node("add_two_ints_server")
 
     def add(request: Any, response: Any) -> Any:
@@ -127,7 +127,7 @@ def _add_two_ints() -> Any:
     return service
 
 
-#: Executable -> what makes its node, which is spun until the process is stopped.
+#: Executable -> the function that makes its node, which is spun until the process is stopped.
 NODES: dict[str, Callable[[Language], Node]] = {
     "add_two_ints_server": add_two_ints_server,
     "listener": listener,
@@ -136,7 +136,7 @@ NODES: dict[str, Callable[[Language], Node]] = {
 
 
 def main(words: Sequence[str]) -> int:
-    """Run an executable, named by its package's language and its name; return the exit code."""
+    """Run an executable, given by its package's language and its name; return the exit code."""
     language, executable = LANGUAGES[words[0]], words[1]
     if executable == "add_two_ints_client":
         return add_two_ints_client(language)

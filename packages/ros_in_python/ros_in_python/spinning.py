@@ -1,4 +1,4 @@
-"""Spins a node as a program of its own, until the process is stopped."""
+"""A node as a program of its own, which runs until the process is stopped."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-#: A signal is noticed within this long even where no timer runs, in s.
+#: The most time between a signal and its effect if no timer runs, in s.
 NOTICE_S = 0.1
 
 

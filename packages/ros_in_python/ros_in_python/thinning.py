@@ -53,7 +53,7 @@ class SwingDoor:
 
 
 def thinned(points: Sequence[tuple[float, float]], tolerance: float) -> list[tuple[float, float]]:
-    """Some of these (time, value) points, in order of time, between which a steady change passes within `tolerance`."""
+    """Return those (time, value) points that keep the curve between them within `tolerance`; `points` are in order."""
     kept = list(points[:1])
     door = SwingDoor([tolerance])
     for at, value in points[1:]:

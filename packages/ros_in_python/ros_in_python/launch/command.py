@@ -53,18 +53,18 @@ def launch(show_args: bool, package_or_file: str, words: tuple[str, ...]) -> Non
 
 
 def read(file: Path) -> LaunchDescription:
-    """What a launch file describes. Raises `CommandError`."""
+    """Return what a launch file describes. Raises `CommandError`."""
     return python_file.read(file) if file.suffix == ".py" else markup_file.read(file)
 
 
 def _source(cwd: Path) -> None:
-    """Know the packages of the workspace here, as after `source install/setup.bash`."""
+    """Use the packages of the workspace here, as after `source install/setup.bash`."""
     for near in executables.workspaces_near(cwd)[:1]:
         near.extend(os.environ)
 
 
 def _find(first: str, words: Sequence[str], cwd: Path) -> tuple[Path, list[str]]:
-    """(the launch file, the words behind it)."""
+    """Return the launch file and the words after it."""
     if not words or ":=" in words[0]:
         file = Path(first)
         if not file.is_file():
@@ -114,7 +114,7 @@ def _refuse_unknown(given: dict[str, str], declared: Sequence[DeclareLaunchArgum
 
 
 def _show(declared: Sequence[DeclareLaunchArgument]) -> None:
-    """As the real command shows them."""
+    """Print them as the real command does."""
     click.echo("Arguments (pass arguments as '<name>:=<value>'):")
     if not declared:
         click.echo("\n  No arguments.")

@@ -26,7 +26,7 @@ class Substitution:
     """A text that is known only when the launch file runs."""
 
     def perform(self, context: Context) -> str:
-        """The text. Raises `CommandError` if it can't be known."""
+        """Return the text. Raises `CommandError` if it can't be known."""
         raise NotImplementedError
 
 
@@ -35,7 +35,7 @@ Text = Any
 
 
 def text_of(value: Text, context: Context) -> str:
-    """The text that a value stands for; a list of texts and substitutions is joined."""
+    """Return the text that a value stands for; a list of texts and substitutions is joined."""
     if isinstance(value, Substitution):
         return value.perform(context)
     if isinstance(value, list | tuple):
@@ -50,7 +50,7 @@ class TextSubstitution(Substitution):
         self.text = text
 
     def perform(self, context: Context) -> str:
-        """The text itself."""
+        """Return the text itself."""
         return self.text
 
 
@@ -61,7 +61,7 @@ class LaunchConfiguration(Substitution):
         self.name, self.default = variable_name, default
 
     def perform(self, context: Context) -> str:
-        """The argument's value, or the default given here. Raises `CommandError` if there is neither."""
+        """Return the argument's value, or the default. Raises `CommandError` if there is neither."""
         if self.name in context.values:
             return context.values[self.name]
         if self.default is None:
@@ -80,7 +80,7 @@ class EnvironmentVariable(Substitution):
         self.name, self.default = name, default_value
 
     def perform(self, context: Context) -> str:
-        """The variable's value, or the default. Raises `CommandError` if there is neither."""
+        """Return the variable's value, or the default. Raises `CommandError` if there is neither."""
         name = text_of(self.name, context)
         if name in os.environ:
             return os.environ[name]
@@ -96,7 +96,7 @@ class PathJoinSubstitution(Substitution):
         self.parts = list(substitutions)
 
     def perform(self, context: Context) -> str:
-        """The path."""
+        """Return the path."""
         return os.fspath(Path(*(text_of(part, context) for part in self.parts)))
 
 
@@ -107,12 +107,12 @@ class FindPackageShare(Substitution):
         self.package = package
 
     def perform(self, context: Context) -> str:
-        """The folder's path. Raises `CommandError` if the package is not installed."""
+        """Return the folder's path. Raises `CommandError` if the package is not installed."""
         return os.fspath(share_of(text_of(self.package, context)))
 
 
 def share_of(package: str) -> Path:
-    """The share folder of a package in the prefixes of this environment. Raises `CommandError`."""
+    """Return the share folder of a package in this environment's prefixes. Raises `CommandError`."""
     prefix = prefixes.prefix_of(package, prefixes.installed())
     if prefix is None:
         raise CommandError(f"package '{package}' not found", "Build its workspace, and launch from there.")
@@ -128,7 +128,7 @@ class IfCondition:
         self.expression = predicate_expression
 
     def holds(self, context: Context) -> bool:
-        """Whether it holds now. Raises `CommandError` for a text that is neither true nor false."""
+        """Return whether it holds. Raises `CommandError` for a text that is neither true nor false."""
         text = text_of(self.expression, context)
         if text.strip().lower() not in {"true", "1", "false", "0"}:
             raise CommandError(f"a condition must be true, false, 1 or 0, and not '{text}'")
@@ -148,7 +148,7 @@ class ParameterValue:
         self.value, self.value_type = value, value_type
 
     def evaluate(self, context: Context) -> Any:
-        """The value, converted to its type if one is given. Raises `CommandError` if it can't be."""
+        """Return the value, converted to its type if one is given. Raises `CommandError` if it can't be."""
         if self.value_type is None:
             return parameter_of(self.value, context)
         read = yaml.safe_load(text_of(self.value, context)) if self.value_type is not str else None
@@ -166,7 +166,7 @@ class ParameterValue:
 
 
 def parameter_of(value: Any, context: Context) -> Any:
-    """A parameter's value as a parameter file has it; what comes from a substitution is read as YAML, as in ROS 2."""
+    """Return a parameter's value as in a parameter file; the text of a substitution is read as YAML, as in ROS 2."""
     if isinstance(value, ParameterValue):
         return value.evaluate(context)
     if isinstance(value, Substitution) or (
@@ -239,9 +239,9 @@ class LaunchDescription:
         self.entities: list[Any] = list(initial_entities or ())
 
     def add_action(self, action: Any) -> None:
-        """Append one."""
+        """Append an action."""
         self.entities.append(action)
 
     def add_entity(self, entity: Any) -> None:
-        """Append one: the same under its older name."""
+        """Append an action: the older name of `add_action`."""
         self.entities.append(entity)

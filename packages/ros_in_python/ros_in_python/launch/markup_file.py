@@ -39,7 +39,7 @@ class Element:
 
 
 def read(file: Path) -> LaunchDescription:
-    """What a YAML or XML launch file describes. Raises `CommandError` with what is wrong and where."""
+    """Return what a YAML or XML launch file describes. Raises `CommandError` with what is wrong and where."""
     try:
         text = file.read_text(encoding="utf-8")
         elements = list(_from_xml(text) if file.suffix == ".xml" else _from_yaml(text))
@@ -158,7 +158,7 @@ def _condition(attributes: Mapping[str, Any]) -> known.IfCondition | None:
 
 
 def _text(value: Any) -> Any:
-    """A text with `$(var gain)` and its like as substitutions."""
+    """Return a text with `$(var gain)` and the like as substitutions."""
     if not isinstance(value, str) or "$(" not in value:
         return str(value).lower() if isinstance(value, bool) else str(value)
     parts: list[Any] = []

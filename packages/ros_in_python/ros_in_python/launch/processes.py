@@ -36,11 +36,11 @@ class Plan:
 
     @classmethod
     def into(cls, folder: Path, cwd: Path) -> Plan:
-        """A plan whose parameter files go into `folder`; packages are looked up from `cwd`."""
+        """Make a plan whose parameter files go into `folder`; packages are looked up from `cwd`."""
         return cls(folder, cwd, itertools.count(1))
 
     def steps(self, entities: Sequence[Any], context: Context) -> Iterator[ProcessToStart | str]:
-        """Processes to start, and lines to log, in order. Raises `CommandError`."""
+        """Yield the processes to start and the lines to log, in order. Raises `CommandError`."""
         for entity in entities:
             condition = getattr(entity, "condition", None)
             if condition is not None and not condition.holds(context):
@@ -106,7 +106,7 @@ def _declare(argument: known.DeclareLaunchArgument, context: Context) -> None:
 
 
 def arguments_of(entities: Sequence[Any]) -> Iterator[known.DeclareLaunchArgument]:
-    """The arguments that a description declares, in groups as well."""
+    """Yield the arguments that a description declares, in groups as well."""
     for entity in entities:
         if isinstance(entity, known.DeclareLaunchArgument):
             yield entity

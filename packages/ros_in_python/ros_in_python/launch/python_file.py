@@ -48,7 +48,7 @@ class _Module(ModuleType):
 
 
 def read(file: Path) -> LaunchDescription:
-    """What `generate_launch_description()` of a file returns. Raises `CommandError` with the file's line."""
+    """Return what a file's `generate_launch_description()` returns. Raises `CommandError` with the file's line."""
     variables: dict[str, Any] = {"__name__": "launch_file", "__file__": str(file)}
     with _modules():
         try:
@@ -73,7 +73,7 @@ def read(file: Path) -> LaunchDescription:
 
 @contextmanager
 def _modules() -> Iterator[None]:
-    """Let `import launch` and the others find ours for a while."""
+    """Let `import launch` and `import launch_ros` find our modules inside the block."""
     before = {name: sys.modules.get(name) for name in MODULES}
     made = {name: _Module(name) for name in MODULES}
     for name, module in made.items():

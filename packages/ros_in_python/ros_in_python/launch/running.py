@@ -42,7 +42,7 @@ class Launched:
         self._print_lock = threading.Lock()
 
     def run(self, steps: Sequence[ProcessToStart | str]) -> int:
-        """Start all, wait until all have ended; 1 if one had died before and nobody interrupted, otherwise 0."""
+        """Start all and wait until all have ended. Return 1 if one died by itself, 0 otherwise and after Ctrl-C."""
         with self._listening():
             try:
                 for step in _numbered(steps):
@@ -141,7 +141,7 @@ class Launched:
 
 
 def _numbered(steps: Sequence[ProcessToStart | str]) -> Iterator[ProcessToStart | str]:
-    """The steps, with each process numbered in the order in which they start."""
+    """Yield the steps, with the processes numbered in the order in which they start."""
     count = 0
     for step in steps:
         if isinstance(step, str):

@@ -174,7 +174,7 @@ class _News:
         self._held: list[Any] | None = []
 
     def on_feedback(self, message: Any) -> None:
-        """Called with each feedback message of the action's, on whatever goal."""
+        """Handle a feedback message of the action, of any goal."""
         if message.goal_id != self.goal_id:
             return
         if self._held is None:
@@ -183,7 +183,7 @@ class _News:
             self._held.append(message)
 
     def print_from_now_on(self) -> None:
-        """To be called once the acceptance has been printed."""
+        """Print feedback from now on, and what has arrived before: the acceptance has been printed."""
         held, self._held = self._held or [], None
         for message in held:
             _print_feedback(message)
@@ -196,7 +196,7 @@ def _print_feedback(message: Any) -> None:
 
 
 def _wait_for_server(graph: Graph, client: Any, name: str, wanted: str) -> None:
-    """Wait without end for the server. Raises `CommandError` when it turns out to be of another type."""
+    """Wait for the server, without a limit. Raises `CommandError` if it has another type."""
     from rclpy.action import get_action_server_names_and_types_by_node
 
     def ready_or_never() -> bool:
@@ -220,7 +220,7 @@ def _done(graph: Graph, future: Any, doing: str) -> Any:
 
 
 def _cancel(graph: Graph, sent: Any) -> None:
-    """Cancel the goal that was sent, whose acceptance may be still to come."""
+    """Cancel the goal that was sent, even if it has not been accepted yet."""
     if not graph.spin_until(sent.done, CANCELLING) or not sent.result().accepted:
         return
     print("Canceling goal...", flush=True)
@@ -247,7 +247,7 @@ def _actions(graph: Graph) -> list[Named]:
 
 
 def _nodes_with(graph: Graph, action_name: str, ask: Any) -> list[tuple[str, list[str]]]:
-    """The nodes that have an end of an action, with their types, as `ask` tells."""
+    """Return the nodes that have an end of an action, with its types, as `ask` finds them."""
     found = [
         (node.full_name, types)
         for node in graph.nodes()

@@ -140,7 +140,7 @@ def _setup_py(manifest: Manifest, executables: Sequence[tuple[str, str]], folder
 
 
 def _literal(key: str, text: str) -> str:
-    """A text as Python source; one that is too long for its line in pieces."""
+    """Return a text as Python source, in pieces if it is too long for its line."""
     if len(f"    {key}={text!r},") <= LONGEST_LINE:
         return repr(text)
     pieces, rest = [], text

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 SECOND = 1_000_000_000
 
-#: How often it is looked for topics that have come up (s).
+#: Seconds between two looks for new topics.
 LOOK_AGAIN = 0.5
 
 bag = Menu(
@@ -76,7 +76,7 @@ def record(topics: tuple[str, ...], all_topics: bool, output: Path | None, stora
 
 
 class _Recording:
-    """Subscribes to topics as they come up, and writes their messages as the bytes that came."""
+    """Subscribes to topics as they come up, and writes their messages as the bytes that arrived."""
 
     def __init__(self, graph: Graph, writer: Any, wanted: set[str]) -> None:
         self._graph, self._writer, self._wanted = graph, writer, wanted
@@ -85,7 +85,7 @@ class _Recording:
         self.count = 0
 
     def look(self) -> None:
-        """Subscribe to what is wanted and not heard yet."""
+        """Subscribe to the chosen topics that have come up since the last look."""
         for topic in self._graph.topics():
             is_wanted = topic.name in self._wanted if self._wanted else "/_" not in topic.name
             if is_wanted and topic.name not in self._subscribed and len(topic.types) == 1:
@@ -216,7 +216,7 @@ def _types() -> Any:
 
 
 def _know(types: Any, kind: str) -> None:
-    """Let the library know a type that does not come with ROS 2 itself, and those that its fields have."""
+    """Register a type that does not come with ROS 2 itself, and the types of its fields, with the library."""
     from rosbags.typesys import get_types_from_msg
 
     if kind in types.types:
@@ -231,7 +231,7 @@ def _know(types: Any, kind: str) -> None:
 
 
 def _named(found: Any) -> list[str]:
-    """The types of messages that these definitions' fields have."""
+    """Return the message types of these definitions' fields."""
     names: list[str] = []
     take: Callable[[Any], None] = lambda part: names.append(part[1]) if part[0].name == "NAME" else None  # noqa: E731
     for _, fields in found.values():

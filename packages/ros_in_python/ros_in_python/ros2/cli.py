@@ -73,7 +73,7 @@ class Menu(click.Group):
 
 
 def discovery_options(command: F) -> F:
-    """The options of the real command that concern discovery: `spin_time` and `use_sim_time` reach the function."""
+    """Add the real command's options for discovery: the function gets `spin_time` and `use_sim_time`."""
     for option in (
         click.option("-s", "--use-sim-time", is_flag=True, help="Take the time from /clock."),
         click.option("--no-daemon", is_flag=True, expose_value=False, help="Always so here: there is no daemon."),
@@ -132,7 +132,7 @@ def listen() -> None:
 
 @contextmanager
 def held_back() -> Iterator[None]:
-    """Let the first signal that comes meanwhile raise `Stopped` only at the end of the block; a second ends it at once.
+    """Hold back the first signal until the end of the block, which then raises `Stopped`; a second raises at once.
 
     For work inside rclpy: raised while its C++ makes a message, an exception comes out as a TypeError or not at all.
     """

@@ -14,7 +14,7 @@ LARGEST_DOMAIN = 232
 
 
 def domain_id() -> int:
-    """ROS_DOMAIN_ID as a number. Raises `CommandError` if it is none or out of range."""
+    """Return ROS_DOMAIN_ID as a number. Raises `CommandError` if it is not one, or out of range."""
     text = os.environ.get("ROS_DOMAIN_ID") or "0"
     if not text.isdecimal() or int(text) > LARGEST_DOMAIN:
         raise CommandError(
@@ -29,14 +29,14 @@ def domain_id() -> int:
 _FIRST_PORT = 7400
 _PORTS_A_DOMAIN = 250
 _FIRST_UNICAST = 10
-#: How often the table of sockets is read again, at most, when it changes meanwhile.
+#: The most readings of the table of sockets, if it keeps changing.
 _READINGS = 5
 
 
 def participants(domain: int) -> int | None:
-    """The number of participants on this host, this process's own among them; None where it can't be told.
+    """Return the number of participants on this host, including this process's own; None if the kernel does not say.
 
-    Discovery is over when as many have been heard of. Another user's count too: they hold ports like anybody.
+    Discovery is over when as many have been found. Another user's count, too: they also hold ports.
     """
     try:
         return len(_discovery_sockets(domain)) or None
@@ -45,7 +45,7 @@ def participants(domain: int) -> int | None:
 
 
 def participates(domain: int, processes: Iterable[int]) -> bool:
-    """Whether one of these processes, by their ids, takes part in a ROS domain. False where it can't be told."""
+    """Return whether one of these processes (ids) takes part in a ROS domain; False if the kernel does not say."""
     try:
         wanted = {f"socket:[{inode}]" for inode in _discovery_sockets(domain).values()}
     except OSError:
@@ -63,10 +63,10 @@ def _open_files(process: int) -> set[str]:
 
 
 def _discovery_sockets(domain: int) -> dict[int, str]:
-    """The inode of each bound discovery port of a domain.
+    """Return discovery port -> inode of its socket, for each port of a domain that is bound.
 
-    The kernel hands the table over piece by piece, and leaves rows out when sockets are closed meanwhile: it holds
-    only when it has been read twice alike.
+    The kernel returns the table in pieces, and omits rows when sockets are closed meanwhile: it is complete only
+    when two readings are equal.
     """
     before = None
     for _ in range(_READINGS):
@@ -86,7 +86,7 @@ def _read_discovery_sockets(domain: int) -> dict[int, str]:
 
 
 def hears_other_hosts() -> bool:
-    """Whether nodes on other hosts may be in this domain, which no port on this one tells of."""
+    """Return whether this domain may have nodes on other hosts, which local ports do not show."""
     if os.environ.get("ROS_LOCALHOST_ONLY") == "1":
         return False
     if os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper() in ("LOCALHOST", "OFF"):

@@ -28,7 +28,7 @@ GUARD = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
 
 
 def without_bootstrap(environment: Mapping[str, str]) -> dict[str, str]:
-    """A copy of `environment` as it was before this Python's wheels changed it."""
+    """Return a copy of `environment` as it was before this Python's wheels changed it."""
     clean = dict(environment)
     if clean.pop(GUARD, None) is None:
         return clean
@@ -49,13 +49,13 @@ _LAYOUT = ".colcon_install_layout"
 
 @dataclass(frozen=True)
 class Workspace:
-    """A built colcon workspace: its `install` folder and the prefixes in it (one, or one a package)."""
+    """A built colcon workspace: its `install` folder and the prefixes in it (one, or one per package)."""
 
     install: Path
     prefixes: tuple[Path, ...]
 
     def extend(self, environment: MutableMapping[str, str]) -> None:
-        """Change `environment` as sourcing `install/setup.bash` would, as far as packages say it in .dsv files."""
+        """Change `environment` as sourcing `install/setup.bash` would, as far as its packages' .dsv files say it."""
         for prefix in reversed(self.prefixes):
             _prepend(environment, "AMENT_PREFIX_PATH", str(prefix))
             for package in sorted((prefix / "share").glob("*/package.dsv")):
@@ -117,7 +117,7 @@ def _operations(file: Path) -> Iterator[tuple[str, list[str]]]:
 
 
 def _existing(operation: str, values: list[str], prefix: Path) -> list[str]:
-    """The values as paths, relative ones below the prefix; only those that exist where the operation says so."""
+    """Return the values as paths, relative ones below the prefix; only existing ones if the operation says so."""
     paths = [prefix / value if value else prefix for value in values or [""]]
     return [str(path) for path in paths if path.exists() or not operation.endswith("-if-exists")]
 
@@ -134,8 +134,8 @@ def _append(environment: MutableMapping[str, str], name: str, value: str) -> Non
 
 
 _DEMOS = ("add_two_ints_client", "add_two_ints_server", "listener", "talker")
-#: Package -> executable -> the module that is it, with the words that it gets. Used where the package has no
-#: executables: of turtlesim, set-up compiles the messages alone, and of the demo nodes, PyPI has nothing.
+#: Package -> executable -> its module and the arguments of that. Used if the installed package has no executables:
+#: of turtlesim, only the messages are compiled, and of the demo nodes, PyPI has nothing.
 BUILT_IN = {
     "demo_nodes_cpp": {name: f"ros_in_python.demo_nodes cpp {name}" for name in _DEMOS},
     "demo_nodes_py": {name: f"ros_in_python.demo_nodes py {name}" for name in _DEMOS},
@@ -149,7 +149,7 @@ BUILT_IN = {
 
 
 def interfaces_used(package: str, executable: str) -> str:
-    """The package of interfaces without which an executable of ours does not run; "" for none."""
+    """Return the package of interfaces that an executable of ours needs; "" if it needs none."""
     if package not in BUILT_IN:
         return ""
     return "turtlesim" if package == "turtlesim" else "example_interfaces" if "two_ints" in executable else ""
@@ -164,11 +164,11 @@ class Launch:
 
 
 def find(package: str, executable: str, cwd: Path) -> Launch:
-    """How to start a package's executable from the folder `cwd`.
+    """Return how to start a package's executable from the folder `cwd`.
 
-    Searched are, in this order, the prefixes of AMENT_PREFIX_PATH and of this Python, the colcon workspaces of `cwd`
-    and its parents, and what this package brings. A workspace's environment is made as its setup scripts would make it,
-    so it need not be sourced. Raises `CommandError` with what is there if the package or the executable is not.
+    This searches the prefixes of AMENT_PREFIX_PATH and of this Python, the colcon workspaces of `cwd` and its parents,
+    and our own executables, in this order. A workspace need not be sourced: the environment is the one that its setup
+    scripts would make. Raises `CommandError`, with what there is, if the package or the executable does not exist.
     """
     environment = without_bootstrap(os.environ)
     prefix = prefixes.prefix_of(package, prefixes.installed())
@@ -195,12 +195,12 @@ def find(package: str, executable: str, cwd: Path) -> Launch:
 
 
 def is_built_in(package: str, prefix: Path | None) -> bool:
-    """Return whether our own executables of a package are used: those of its prefix come first."""
+    """Return whether our own executables of a package are used, because its prefix has none."""
     return package in BUILT_IN and (prefix is None or not in_prefix(prefix, package))
 
 
 def in_prefix(prefix: Path, package: str) -> list[Path]:
-    """The executables that a package installed in a prefix, in its folder below `lib`, sorted by path."""
+    """Return the executables that a package has installed in a prefix, in its folder below `lib`, sorted by path."""
     found = []
     for folder, folders, files in os.walk(prefix / "lib" / package):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
@@ -209,13 +209,13 @@ def in_prefix(prefix: Path, package: str) -> list[Path]:
 
 
 def everywhere(cwd: Path) -> dict[str, Path]:
-    """Package -> prefix of all packages that `find` would search, without those that we bring."""
+    """Return package -> prefix of all packages that `find` would search, without our own."""
     places = [*prefixes.installed(), *(prefix for near in workspaces_near(cwd) for prefix in near.prefixes)]
     return dict(sorted(prefixes.packages(places).items()))
 
 
 def runnable(cwd: Path) -> list[str]:
-    """The packages of near workspaces that have an executable, and those that we bring, sorted."""
+    """Return the packages of near workspaces that have an executable, and our own, sorted."""
     built = prefixes.packages(prefix for near in workspaces_near(cwd) for prefix in near.prefixes)
     return sorted({package for package, prefix in built.items() if in_prefix(prefix, package)} | set(BUILT_IN))
 
@@ -244,10 +244,10 @@ def _where(cwd: Path) -> str:
     )
 
 
-#: What the script of this command has in it, in whichever environment it is installed.
+#: The text by which the script of this command is recognized, in any environment.
 OURS = b"ros_in_python.ros2"
 
-#: Runs the `ros2` of this very environment where its script is not: conda's, over which pip has written ours.
+#: Runs this environment's real `ros2` if its script is gone: conda's, which pip has overwritten with ours.
 AS_MODULE = "import sys; from ros2cli.cli import main; sys.argv[0] = 'ros2'; sys.exit(main())"
 
 #: `own` here keeps this package's command even where the real one is installed.
@@ -255,7 +255,7 @@ CHOICE = "ROS_IN_PYTHON"
 
 
 def real_ros2(arguments: Sequence[str], environment: Mapping[str, str]) -> list[str] | None:
-    """Return the command that should answer `arguments` instead of this package, without them, or None."""
+    """Return the command that should answer `arguments` instead of ours, without them, or None."""
     if environment.get(CHOICE) == "own" or _ours_all_the_same(arguments):
         return None
     for folder in environment.get("PATH", os.defpath).split(os.pathsep):
@@ -266,7 +266,7 @@ def real_ros2(arguments: Sequence[str], environment: Mapping[str, str]) -> list[
 
 
 def _is_ours(script: Path) -> bool:
-    """Tell whether this `ros2` is the one that installing this package writes."""
+    """Return whether this `ros2` is the script of this package."""
     try:
         with script.open("rb") as file:
             return OURS in file.read(2000)
@@ -281,12 +281,12 @@ def hand_over(arguments: Sequence[str]) -> None:
         return
     sys.stdout.flush()
     sys.stderr.flush()
-    # Should that `ros2` be a wrapper around this command, it must not come here a second time.
+    # If that `ros2` is a wrapper around this command, it must not hand over again.
     os.execve(command[0], [*command, *arguments], without_bootstrap(os.environ) | {CHOICE: "own"})
 
 
 def _ours_all_the_same(arguments: Sequence[str]) -> bool:
-    """Whether this runs a package that is not installed and of which we have the nodes: turtlesim, the demo nodes."""
+    """Return whether this runs a node of ours, of turtlesim or the demo nodes, because the real one is missing."""
     if not arguments or arguments[0] != "run":
         return False
     rest = list(arguments[1:])
@@ -320,7 +320,7 @@ def _become(program: str, command: list[str], environment: dict[str, str]) -> No
     """Replace this process, so that signals and the exit status are the node's own."""
     sys.stdout.flush()
     sys.stderr.flush()
-    # Python ignores these two for itself; what it starts should not inherit that.
+    # Python ignores these two signals; the node must not inherit that.
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
     try:

@@ -24,28 +24,28 @@ from rclpy.validate_full_topic_name import validate_full_topic_name
 from ros_in_python.ros2.cli import CommandError, held_back
 from ros_in_python.ros2.domain import domain_id, hears_other_hosts, participants
 
-# Each call of the command starts its own node, so each has to let discovery finish before it answers. The graph, not
-# the clock, decides when it is finished: see `Graph.settle`.
+# Each call of the command starts its own node, so discovery has to finish before it answers. The graph, not the clock,
+# decides when that is: see `Graph.settle`.
 
 
-#: Seconds between two looks at the graph, and at most between a signal and its being noticed.
+#: Seconds between two looks at the graph; and the most between a signal and its effect.
 LOOK, NAP = 0.02, 0.1
 #: Seconds without a change after which the graph counts as known.
 QUIET = 0.25
 #: Seconds to discover nodes on other hosts, the same as the real command's.
 OTHER_HOSTS = 0.5
-#: Seconds until the answer "there is no such thing" is believed.
+#: Seconds until the answer may be "there is no such thing".
 ABSENT = 1.0
 #: Seconds after which an answer is given in any case.
 DEADLINE = 4.0
 
-#: Seconds between two questions to a node whether it knows us, and until that is given up (it may have no
-#: parameter services, or be busy in a callback).
+#: Seconds between two questions to a node whether it knows us, and until we give up: it may have no parameter services,
+#: or be busy in a callback.
 ASK_AGAIN, KNOWN = 0.2, 3.0
 
-# Each ROS participant writes this DDS topic, to tell which node owns which end point (package rmw_dds_common).
+# On this DDS topic, each ROS participant says which node owns which endpoint (package rmw_dds_common).
 _PARTICIPANTS = "ros_discovery_info"
-# What rmw_dds_common answers for the owner of an end point until then.
+# The owner of an endpoint according to rmw_dds_common, until then.
 _NAMELESS = "_NODE_NAME_UNKNOWN_"
 _GID_PREFIX = 12
 
@@ -60,7 +60,7 @@ class NodeName:
 
     @property
     def hidden(self) -> bool:
-        """Whether the node asked not to be listed, by an underscore before its name or in its namespace."""
+        """Whether the node is not to be listed: its name, or a part of its namespace, begins with an underscore."""
         return topic_or_service_is_hidden(self.full_name)
 
 
@@ -117,7 +117,7 @@ class Graph:
     # What is there
 
     def nodes(self) -> list[NodeName]:
-        """Every node but ours, by full name; two of one name are listed twice."""
+        """Return every node except ours, by full name; two with the same name are listed twice."""
         own = self.node.get_name()
         return sorted(
             NodeName(f"{namespace.rstrip('/')}/{name}", name, namespace)
@@ -126,7 +126,7 @@ class Graph:
         )
 
     def topics(self) -> list[Named]:
-        """Every topic that has an end which is not ours, hidden ones too."""
+        """Return every topic that another node publishes or subscribes to, including hidden ones."""
         return [
             Named(name, tuple(types))
             for name, types in self.node.get_topic_names_and_types()
@@ -134,19 +134,19 @@ class Graph:
         ]
 
     def topic_types(self, name: str) -> tuple[str, ...]:
-        """The types of a topic by its full name; none if there is no such topic."""
+        """Return the types of a topic by its full name; none if there is no such topic."""
         return next((topic.types for topic in self.topics() if topic.name == name), ())
 
     def publishers(self, topic: str) -> list[TopicEndpointInfo]:
-        """The publishers on a topic, but for ours."""
+        """Return the publishers on a topic, except ours."""
         return self._others(self.node.get_publishers_info_by_topic(topic))
 
     def subscriptions(self, topic: str) -> list[TopicEndpointInfo]:
-        """The subscriptions on a topic, but for ours."""
+        """Return the subscriptions on a topic, except ours."""
         return self._others(self.node.get_subscriptions_info_by_topic(topic))
 
     def services(self) -> list[Named]:
-        """Every service, hidden ones too."""
+        """Return every service, including hidden ones."""
         return [Named(name, tuple(types)) for name, types in self.node.get_service_names_and_types()]
 
     def _others(self, ends: Iterable[TopicEndpointInfo]) -> list[TopicEndpointInfo]:
@@ -156,10 +156,10 @@ class Graph:
     # Waiting
 
     def settle(self, wanted: Callable[[], bool] | None = None) -> None:
-        """Return when the graph is known: every participant of this host has been heard of, every end point has
-        a node, and nothing has changed for a while.
+        """Return when the graph is known: every participant on this host has been found, every endpoint has a node, and
+        nothing has changed for a while.
 
-        With `wanted`, that which was asked for is waited for too, longer than the graph's coming to rest.
+        With `wanted`, wait until that holds, too, or until `ABSENT` seconds have passed.
         """
         deadline = self._born + (self._spin_time or DEADLINE)
         seen, changed = self._look(), time.monotonic()
@@ -187,7 +187,7 @@ class Graph:
         return topics, ends, node.get_service_names_and_types(), self.nodes()
 
     def _complete(self) -> bool:
-        """Whether no participant is missing and none is without a node."""
+        """Return whether no participant is missing and none is without a node."""
         heard = self._heard()
         here = participants(domain_id())
         if here is not None and len(heard) < here:
@@ -204,25 +204,25 @@ class Graph:
         return heard <= with_node and all(end.node_name != _NAMELESS for end in ends)
 
     def _heard(self) -> set[bytes]:
-        """The participants that have been heard of, this one among them, until they say that they leave."""
+        """Return the participants that have been found, including ours, until they say that they leave."""
         writers = self.node.get_publishers_info_by_topic(_PARTICIPANTS, no_mangle=True)
         return {bytes(end.endpoint_gid[:_GID_PREFIX]) for end in writers}
 
     # Working
 
     def spin_once(self) -> None:
-        """Handle what has arrived, waiting a moment for it. A signal is raised when that has been done: see cli.py."""
+        """Handle what has arrived, or wait a moment for it. A signal is raised after that: see cli.py."""
         with held_back():
             self.executor.spin_once(timeout_sec=NAP)
 
     def spin_arrived(self) -> None:
-        """Handle all that has arrived already, and wait for nothing."""
+        """Handle everything that has arrived, without waiting."""
         with held_back():
             while self._handle_ready():
                 pass
 
     def _handle_ready(self) -> bool:
-        """Handle one message of each end point that has some; whether there were any."""
+        """Handle one message of each endpoint that has any; return whether there were any."""
         some = False
         while True:
             try:
@@ -235,7 +235,7 @@ class Graph:
                 raise handler.exception()
 
     def wait_until_known(self, node_name: str) -> None:
-        """Return when a node has heard of every client that was created here before; or after a while.
+        """Return when a node has discovered every client that was created here so far, or after `KNOWN` seconds.
 
         A server drops the answer to a client that it has not discovered, and a client can see that it has found
         its server but not the reverse. End points are announced in the order of their creation, so the answer to a
@@ -255,7 +255,7 @@ class Graph:
         self.node.destroy_client(client)
 
     def spin_until(self, done: Callable[[], bool], deadline: float | None = None) -> bool:
-        """Handle what arrives until `done()`, at most `deadline` seconds; whether it is done."""
+        """Handle what arrives until `done()`, at most `deadline` seconds; return whether it is done."""
         end = None if deadline is None else time.monotonic() + deadline
         while not done():
             if end is not None and time.monotonic() >= end:
@@ -265,12 +265,12 @@ class Graph:
 
 
 def absolute(name: str, what: str = "topic") -> str:
-    """The full name of a topic, service or action: `chatter` -> `/chatter`. Raises `CommandError` for no valid name."""
+    """Return the full name of a topic, service or action: `/chatter`. Raises `CommandError` if it is not valid."""
     try:
         full: str = expand_topic_name(name, "ros2", "/")
         validate_full_topic_name(full)
     except (InvalidTopicNameException, InvalidServiceNameException, ValueError) as error:
-        # The rest tells where in the C source of rcl it was noticed.
+        # The rest is a place in the C source of rcl.
         reason = str(error).split("\n")[0].partition(", at /")[0]
         raise CommandError(
             f"'{name}' is not a valid name for a {what}: {reason}",
@@ -280,11 +280,11 @@ def absolute(name: str, what: str = "topic") -> str:
 
 
 def absolute_node(name: str) -> str:
-    """The full name of a node: `joint_monitor` -> `/joint_monitor`."""
+    """Return the full name of a node: `joint_monitor` -> `/joint_monitor`."""
     return name if name.startswith("/") else f"/{name}"
 
 
 def seen(what: str, names: Iterable[str]) -> str:
-    """A line that says what of a kind is there instead: `Topics seen: /a, /b`."""
+    """Return a line that says which names there are instead: `Topics seen: /a, /b`."""
     listed = ", ".join(sorted(set(names)))
     return f"{what} seen: {listed or 'none'}. ROS_DOMAIN_ID must be the same in every terminal and notebook."

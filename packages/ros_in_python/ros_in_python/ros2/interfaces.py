@@ -23,19 +23,19 @@ _SEPARATOR = "---"
 
 
 def installed_interfaces() -> dict[str, list[str]]:
-    """Package -> its interfaces as `msg/String`, sorted; every installed package that has any."""
+    """Return package -> its interfaces as `msg/String`, sorted, for every installed package that has any."""
     markers = prefixes.resources("rosidl_interfaces", prefixes.installed())
     return {package: _read(marker) for package, marker in sorted(markers.items())}
 
 
 def interfaces_of(package: str) -> list[str] | None:
-    """One package's interfaces as `msg/String`, sorted; None if it has none or is not installed."""
+    """Return one package's interfaces as `msg/String`, sorted; None if it has none or is not installed."""
     marker = prefixes.resources("rosidl_interfaces", prefixes.installed()).get(package)
     return None if marker is None else _read(marker)
 
 
 def folder_of(package: str) -> Path:
-    """The folder of an installed package's shared files."""
+    """Return the folder of an installed package's shared files."""
     prefix = prefixes.prefix_of(package, prefixes.installed())
     assert prefix is not None
     return prefix / "share" / package
@@ -53,8 +53,8 @@ def _read(marker: Path) -> list[str]:
 
 
 def unfold(interface: str, *, comments: bool, nested_comments: bool, depth: int = 0) -> Iterator[str]:
-    """The lines of an interface's file, each field of a message type followed by that type's lines, indented by
-    a tab for each level.
+    """Yield the lines of an interface's file, each field of a message type followed by that type's lines, indented by a
+    tab per level.
 
     Comments and blank lines are those of the file itself, of nested files only with `nested_comments`.
     `interface` is `PACKAGE/KIND/NAME` of an installed type.
@@ -72,7 +72,7 @@ def unfold(interface: str, *, comments: bool, nested_comments: bool, depth: int 
 
 
 def _nested_type(line: str, package: str) -> str | None:
-    """The message type of the field in this line, in full; None if it is another type's or no field."""
+    """Return the message type of the field in this line, in full; None if it is a primitive or there is no field."""
     words = _without_comment(line).split()
     if len(words) < 2 or line == _SEPARATOR:
         return None
@@ -84,7 +84,7 @@ def _nested_type(line: str, package: str) -> str | None:
 
 
 def _without_comment(line: str) -> str:
-    """The line up to its comment; a '#' in a quoted default is none."""
+    """Return the line up to its comment; a '#' in a quoted default does not begin one."""
     quote = None
     for place, letter in enumerate(line):
         if quote:
@@ -98,14 +98,14 @@ def _without_comment(line: str) -> str:
 
 Kind = Literal["msg", "srv", "action"]
 
-#: How the type of an action's feedback topic ends.
+#: The end of the name of a feedback topic's type.
 _FEEDBACK = "_FeedbackMessage"
 
 KINDS: dict[Kind, str] = {"msg": "message", "srv": "service", "action": "action"}
 
 
 def message_class(name: str) -> Any:
-    """The class of a message type. Raises `CommandError` for a name that is not a type installed here.
+    """Return the class of a message type. Raises `CommandError` if no such type is installed here.
 
     An action's feedback topic has a type of its own, such as `turtlesim/action/RotateAbsolute_FeedbackMessage`.
     """
@@ -114,17 +114,17 @@ def message_class(name: str) -> Any:
 
 
 def service_class(name: str) -> Any:
-    """The class of a service type, with `Request` and `Response`. Raises as `message_class` does."""
+    """Return the class of a service type, with `Request` and `Response`. Raises as `message_class` does."""
     return _load(name, "srv")
 
 
 def action_class(name: str) -> Any:
-    """The class of an action type, with `Goal`, `Result` and `Feedback`. Raises as `message_class` does."""
+    """Return the class of an action type, with `Goal`, `Result` and `Feedback`. Raises as `message_class` does."""
     return _load(name, "action")
 
 
 def interface_class(name: str) -> Any:
-    """The class of a message, service or action type, by its name with the middle part."""
+    """Return the class of a message, service or action type, by its name with the middle part."""
     parts = name.split("/")
     if len(parts) != 3 or parts[1] not in KINDS:
         raise CommandError(
@@ -148,7 +148,7 @@ def _load(name: str, kind: Kind) -> Any:
 
 
 def full_name(name: str, kind: Kind) -> str:
-    """`std_msgs/String` -> `std_msgs/msg/String`. Raises `CommandError` for what can't be a type's name."""
+    """Return `std_msgs/msg/String` for `std_msgs/String`. Raises `CommandError` for what can't be a type's name."""
     parts = name.split("/")
     if len(parts) == 2:
         parts.insert(1, kind)
@@ -161,7 +161,7 @@ def full_name(name: str, kind: Kind) -> str:
 
 
 def check_installed(full: str) -> None:
-    """Raise `CommandError` where the type `PACKAGE/KIND/NAME` is not installed: how to get it, or what is like it."""
+    """Raise `CommandError` if the type `PACKAGE/KIND/NAME` is not installed, with how to get it or similar names."""
     package, kind, short = full.split("/")
     known = interfaces_of(package)
     if known is not None and f"{kind}/{short}" in known:
@@ -308,7 +308,7 @@ def proto(type_name: str, no_quotes: bool) -> None:
 
 
 def _full(type_name: str) -> str:
-    """The full name of an installed type. Raises `CommandError` for any other."""
+    """Return the full name of an installed type. Raises `CommandError` for any other."""
     parts = type_name.split("/")
     if len(parts) != 3 or parts[1] not in _TITLES or not all(parts):
         raise CommandError(

@@ -45,7 +45,7 @@ _Dumper.add_representer(dict, _mapping)
 
 
 def to_yaml(message: Any, brevity: Brevity = WHOLE, *, flow_style: bool = False) -> str:
-    """A message as YAML, with a line end. `flow_style` puts arrays on one line."""
+    """Return a message as YAML, with a line end. `flow_style` puts arrays on one line."""
     text: str = yaml.dump(
         _fields(message, brevity), Dumper=_Dumper, allow_unicode=True, width=sys.maxsize, default_flow_style=flow_style
     )
@@ -53,7 +53,7 @@ def to_yaml(message: Any, brevity: Brevity = WHOLE, *, flow_style: bool = False)
 
 
 def to_csv(message: Any, brevity: Brevity = WHOLE) -> str:
-    """A message's values, nested ones too, divided by commas."""
+    """Return a message's values, including nested ones, separated by commas."""
     types = message.get_fields_and_field_types()
     return _join(
         _csv(getattr(message, name), slot, brevity) for name, slot in zip(types, message.SLOT_TYPES, strict=True)
@@ -61,7 +61,7 @@ def to_csv(message: Any, brevity: Brevity = WHOLE) -> str:
 
 
 def _join(parts: Iterable[str]) -> str:
-    """Commas between the parts, but as in the real command none before the first that is not empty."""
+    """Join the parts with commas; like the real command, without one before the first that is not empty."""
     text = ""
     for part in parts:
         text += f",{part}" if text else part
@@ -69,7 +69,7 @@ def _join(parts: Iterable[str]) -> str:
 
 
 def is_message(value: Any) -> bool:
-    """Whether this is a message, and not a number, a text or an array."""
+    """Return whether this is a message, and not a number, a text or an array."""
     return hasattr(value, "get_fields_and_field_types")
 
 
@@ -82,7 +82,7 @@ def _fields(message: Any, brevity: Brevity) -> dict[str, Any]:
 
 
 def _plain(value: Any, slot: Any, brevity: Brevity) -> Any:
-    """What YAML has for a field's value."""
+    """Return a field's value as plain data for YAML."""
     if isinstance(value, bytes):
         return _shorten("".join(map(chr, value)), brevity)
     if isinstance(value, str):
@@ -125,7 +125,7 @@ def _shorten(text: str, brevity: Brevity) -> str:
 
 
 def _abbreviation(values: Any, slot: Any) -> str:
-    """What `--no-arr` prints in an array's place."""
+    """Return what `--no-arr` prints instead of an array."""
     element = _type_name(slot.value_type)
     if isinstance(slot, definition.Array):
         return f"<array type: {element}[{slot.size}]>"
@@ -153,7 +153,7 @@ _LISTED = 12
 
 
 def read_values(text: str, what: str) -> dict[str, Any]:
-    """YAML text -> a mapping. Raises `CommandError` where it is not YAML, or no mapping."""
+    """Read YAML text as a mapping. Raises `CommandError` if it is not YAML, or not a mapping."""
     try:
         values = yaml.safe_load(text)
     except yaml.YAMLError as error:
@@ -242,7 +242,7 @@ def _check_length(slot: Any, value: list[Any], path: str) -> None:
 
 
 def _scalar(slot: Any, value: Any, path: str) -> Any:
-    """A number, text or truth value in the type of its field, converted where nothing is lost."""
+    """Return a number, text or truth value in the type of its field, converted if nothing is lost."""
     if isinstance(slot, (definition.AbstractString, definition.AbstractWString)):
         return _text(slot, value, path)
     name = slot.typename
@@ -270,7 +270,7 @@ def _text(slot: Any, value: Any, path: str) -> str:
     return text
 
 
-# The wheels' messages check nothing themselves, and would send a number too large as another one.
+# The wheels' messages check nothing, and would send another number for one that is too large.
 _INTEGERS = {
     **{f"int{bits}": (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) for bits in (8, 16, 32, 64)},
     **{f"uint{bits}": (0, 2**bits - 1) for bits in (8, 16, 32, 64)},
@@ -319,14 +319,14 @@ def _unknown(message: Any, name: Any, path: str) -> CommandError:
 
 
 def type_name(message: Any) -> str:
-    """`geometry_msgs/msg/Twist` of a message or its class."""
+    """Return the type of a message or its class, such as `geometry_msgs/msg/Twist`."""
     kind = message if isinstance(message, type) else type(message)
     package, interface = kind.__module__.split(".")[:2]
     return f"{package}/{interface}/{kind.__name__}"
 
 
 def field_names(message: Any) -> str:
-    """The fields of a message or its class with their types, for a line of text."""
+    """Return the fields of a message or its class with their types, for a line of text."""
     fields = [f"{name} ({kind})" for name, kind in message.get_fields_and_field_types().items()]
     more = f" and {len(fields) - _LISTED} more" if len(fields) > _LISTED else ""
     return ", ".join(fields[:_LISTED]) + more if fields else "none"

@@ -1,6 +1,6 @@
-"""Opens a view of the ROS graph, once the environment is known to be one that rclpy can work in.
+"""A view of the ROS graph, opened only if rclpy can work in this environment.
 
-What is wrong with it must be known before rclpy is imported, which would end the process without a word about it.
+That has to be checked before rclpy is imported, which would end the process without a message.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def prepare() -> None:
 
 
 def check_installed() -> None:
-    """Raise `CommandError` where there is no rclpy."""
+    """Raise `CommandError` if there is no rclpy."""
     import importlib.util
 
     if importlib.util.find_spec("rclpy") is None:
@@ -63,8 +63,8 @@ def _check_rmw() -> None:
 
 
 def _give_log_folder() -> None:
-    """Set HOME and ROS_LOG_DIR where rclpy could not find or write the folder of its logs, which is below HOME."""
-    # Without HOME rclpy fails even where ROS_LOG_DIR is set.
+    """Set HOME and ROS_LOG_DIR if rclpy could not find or write the folder of its logs, which is below HOME."""
+    # Without HOME, rclpy fails even if ROS_LOG_DIR is set.
     home = os.environ.setdefault("HOME", os.path.expanduser("~"))  # noqa: PTH111 (Path.home raises where there is none)
     if os.environ.get("ROS_LOG_DIR") or os.environ.get("ROS_HOME"):
         return

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ros_in_python.ros2.graph import Graph
 
 
-#: Seconds that a node's parameter services get to appear, and then to answer.
+#: Time limit for a node's parameter services to appear, and then to answer, in seconds.
 READY, ANSWER = 5.0, 10.0
 
 # By rcl_interfaces/msg/ParameterType.
@@ -34,7 +34,7 @@ _VALUE_FIELDS = (
 
 
 def find_node(graph: Graph, node_name: str, include_hidden: bool) -> str:
-    """The full name of a running node. Raises `CommandError` with those that run if it does not."""
+    """Return the full name of a running node. Raises `CommandError`, with those that run, if it does not run."""
     from ros_in_python.ros2.graph import absolute_node, seen
 
     full = absolute_node(node_name)
@@ -49,7 +49,7 @@ def find_node(graph: Graph, node_name: str, include_hidden: bool) -> str:
 
 
 def client_of(graph: Graph, name: str) -> Any:
-    """A client of a node's parameter services that the node knows. Raises `CommandError` if it has none."""
+    """Return a client of a node's parameter services that the node knows. Raises `CommandError` if it has none."""
     from rclpy.parameter_client import AsyncParameterClient
 
     client = AsyncParameterClient(graph.node, name)
@@ -63,7 +63,7 @@ def client_of(graph: Graph, name: str) -> Any:
 
 
 def answer(graph: Graph, name: str, future: Any) -> Any:
-    """What a node replied. Raises `CommandError` if it is silent."""
+    """Return a node's reply. Raises `CommandError` if there is none."""
     if not graph.spin_until(future.done, ANSWER):
         raise CommandError(
             f"The node {name} did not answer within {ANSWER:.0f} s.",
@@ -75,7 +75,7 @@ def answer(graph: Graph, name: str, future: Any) -> Any:
 
 
 def parameter_value(text: str) -> Any:
-    """What was typed as a rcl_interfaces/msg/ParameterValue, of the type that YAML gives it."""
+    """Return what was typed as a rcl_interfaces/msg/ParameterValue, of the type that YAML gives it."""
     from rclpy.parameter import get_parameter_value
 
     try:
@@ -88,7 +88,7 @@ def parameter_value(text: str) -> Any:
 
 
 def parameters_of_file(file: Path, node: str, *, use_wildcard: bool) -> list[Any]:
-    """What a parameter file says for a node (full name), as rcl_interfaces/msg/Parameter. Raises `CommandError`."""
+    """Return a node's (full name) parameters in a file, as rcl_interfaces/msg/Parameter. Raises `CommandError`."""
     from rclpy.parameter import parameter_dict_from_yaml_file
 
     try:
@@ -106,7 +106,7 @@ def parameters_of_file(file: Path, node: str, *, use_wildcard: bool) -> list[Any
 
 
 def value_of(value: Any) -> Any:
-    """The value of a rcl_interfaces/msg/ParameterValue as the message has it; None if it is not set."""
+    """Return the value of a rcl_interfaces/msg/ParameterValue; None if it is not set."""
     return getattr(value, _VALUE_FIELDS[value.type]) if 0 < value.type < len(_VALUE_FIELDS) else None
 
 

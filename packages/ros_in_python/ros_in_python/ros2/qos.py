@@ -33,12 +33,12 @@ class Asked:
 
     @property
     def anything(self) -> bool:
-        """Whether a policy was asked for, so that nothing is to be chosen."""
+        """Whether a policy was given, so that none is chosen automatically."""
         return any(value is not None for name, value in vars(self).items() if name != "profile")
 
 
 def qos_options(default_profile: str) -> Callable[[F], F]:
-    """The seven `--qos-…` options. The function gets each by name; `asked` collects them."""
+    """Add the seven `--qos-…` options. The function gets each by name; `asked` collects them."""
 
     def add(command: F) -> F:
         options = [
@@ -64,7 +64,7 @@ def asked(options: dict[str, Any]) -> Asked:
 
 
 def profile(asked: Asked) -> QoSProfile:
-    """The profile with the policies asked for. Raises `CommandError` for a name that is none."""
+    """Return the profile with the chosen policies. Raises `CommandError` for an unknown name."""
     from rclpy.duration import Duration
     from rclpy.qos import (
         DurabilityPolicy,
@@ -95,7 +95,7 @@ def profile(asked: Asked) -> QoSProfile:
 
 
 def suiting(graph: Graph, topic: str, asked: Asked) -> QoSProfile:
-    """The profile for a subscription that hears every publisher on `topic`.
+    """Return the profile for a subscription that matches every publisher on `topic`.
 
     Reliable and transient local if all publishers are; otherwise what connects to all, which is then said. What was
     asked for is taken as it is.

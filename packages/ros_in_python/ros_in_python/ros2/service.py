@@ -143,7 +143,7 @@ def call(
 
 
 def _ask(graph: Graph, client: Any, request: Any, period: float | None) -> None:
-    """Make one request and print the answer; with a `period` in s, return when the next is due."""
+    """Make one request and print the answer; with a `period` (s), return when the next one is due."""
     print(f"requester: making request: {request!r}\n", flush=True)
     start = time.monotonic()
     future = client.call_async(request)
@@ -156,7 +156,7 @@ def _ask(graph: Graph, client: Any, request: Any, period: float | None) -> None:
 
 
 def _wait_until_ready(graph: Graph, client: Any, name: str, wanted: str) -> None:
-    """Wait without end for the service. Raises `CommandError` when it turns out to be of another type."""
+    """Wait for the service, without a limit. Raises `CommandError` if it has another type."""
     if not client.service_is_ready():
         print("waiting for service to become available...", flush=True)
         graph.settle(client.service_is_ready)
@@ -181,7 +181,7 @@ def _wait_until_ready(graph: Graph, client: Any, name: str, wanted: str) -> None
 
 
 def _alike(graph: Graph, name: str) -> str:
-    """The services whose names look like `name`, with 'or'; empty if there are none."""
+    """Return the services whose names are similar to `name`, joined by 'or'; empty if there are none."""
     names = [found.name for found in graph.services() if found.name != name]
     return " or ".join(difflib.get_close_matches(name, names, n=2, cutoff=0.75))
 
@@ -193,7 +193,7 @@ def _visible(graph: Graph, include_hidden: bool) -> list[Named]:
 
 
 def _wanted(graph: Graph, service_name: str) -> Named:
-    """The service of a name. Raises `CommandError` with those that are there if it is not."""
+    """Return the service of this name. Raises `CommandError`, with those that there are, if it does not exist."""
     from ros_in_python.ros2.graph import absolute, seen
 
     name = absolute(service_name, "service")

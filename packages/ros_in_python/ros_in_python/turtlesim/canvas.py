@@ -12,7 +12,7 @@ Point = tuple[float, float]
 
 
 class Canvas:
-    """500 by 500 pixels of 45 a unit; x to the right and y down from the upper left corner.
+    """500 by 500 pixels, 45 per unit; x to the right and y down from the upper left corner.
 
     Unpainted pixels read white, as they do in turtlesim, whose canvas is transparent white over the background.
     A pixel's centre is at whole numbers, so that a turtle is always on the pixel nearest to it.
@@ -26,7 +26,7 @@ class Canvas:
         self._pixels.fill(255)
 
     def color(self, point: Point) -> tuple[int, int, int]:
-        """Red, green and blue (0..255) of the pixel at `point` (units, y down)."""
+        """Return red, green and blue (0..255) of the pixel at `point` (units, y down)."""
         column, row = (math.floor(part * PIXELS_PER_UNIT + 0.5) for part in point)
         if not (0 <= column < WINDOW_PX and 0 <= row < WINDOW_PX):
             return (0, 0, 0)
@@ -54,7 +54,7 @@ class Canvas:
 
 
 def _pixel_range(low: float, high: float) -> slice:
-    """The pixels from `low` to `high` that are on the canvas; perhaps none."""
+    """Return the pixels from `low` to `high` that are on the canvas; there may be none."""
     start = math.floor(min(max(low, 0), WINDOW_PX))
     stop = math.ceil(min(max(high + 1, 0), WINDOW_PX))
     return slice(start, max(start, stop))

@@ -39,7 +39,7 @@ class Goal:
     theta: float
 
     def reached(self, x: float, y: float, theta: float) -> bool:
-        """Whether a pose is near enough."""
+        """Return whether a pose is near enough."""
         return abs(x - self.x) < NEAR and abs(y - self.y) < NEAR and abs(normalized(theta - self.theta)) < NEAR_ANGLE
 
 
@@ -100,7 +100,7 @@ class DrawSquare:
 
 
 def _ahead(pose: Pose) -> tuple[float, float]:
-    """The end of a side that begins at `pose`."""
+    """Return the end of a side that begins at `pose`."""
     return (pose.x + math.cos(pose.theta) * SIDE, pose.y + math.sin(pose.theta) * SIDE)
 
 

@@ -23,7 +23,7 @@ _PI = 3.14159265
 
 
 def single(value: float) -> float:
-    """`value` as a float32 holds it; what is too large for one becomes infinite."""
+    """Return `value` rounded to a float32; what is too large for one becomes infinite."""
     try:
         rounded: float = struct.unpack("f", struct.pack("f", value))[0]
     except OverflowError:
@@ -38,7 +38,7 @@ CENTRE = single(SIDE / 2)
 
 
 def normalized(angle: float) -> float:
-    """The same angle (rad) within [-pi, pi)."""
+    """Return the same angle (rad) within [-pi, pi)."""
     return angle - 2 * _PI * math.floor((angle + _PI) / (2 * _PI))
 
 
@@ -138,7 +138,7 @@ class Pen:
     off: bool = False
 
     def changed(self, r: int, g: int, b: int, width: int, off: int) -> Pen:
-        """The pen after a set_pen request: lifting keeps the colour, and a width of 0 means 1."""
+        """Return the pen after a set_pen request: lifting keeps the colour, and a width of 0 means 1."""
         if off:
             return replace(self, off=True)
         return Pen(r, g, b, width or 1)

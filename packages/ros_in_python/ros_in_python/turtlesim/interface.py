@@ -52,22 +52,22 @@ def fill_color(message: Message, color: ColorReport) -> Message:
 
 
 def spawn(world: World, request: Any) -> list[Event]:
-    """Do what x, y, theta and name, as in turtlesim/srv/Spawn, ask for."""
+    """Spawn a turtle; `request` has the fields of turtlesim/srv/Spawn."""
     return world.spawn(request.x, request.y, request.theta, request.name)
 
 
 def set_pen(world: World, turtle: str, request: Any) -> list[Event]:
-    """Do what r, g, b, width and off, as in turtlesim/srv/SetPen, ask for."""
+    """Set a pen; `request` has the fields of turtlesim/srv/SetPen."""
     return world.set_pen(turtle, request.r, request.g, request.b, request.width, request.off)
 
 
 def teleport_absolute(world: World, turtle: str, request: Any) -> list[Event]:
-    """Do what x, y and theta, as in turtlesim/srv/TeleportAbsolute, ask for."""
+    """Teleport a turtle; `request` has the fields of turtlesim/srv/TeleportAbsolute."""
     return world.teleport_absolute(turtle, request.x, request.y, request.theta)
 
 
 def teleport_relative(world: World, turtle: str, request: Any) -> list[Event]:
-    """Do what linear and angular, as in turtlesim/srv/TeleportRelative, ask for."""
+    """Teleport a turtle; `request` has the fields of turtlesim/srv/TeleportRelative."""
     return world.teleport_relative(turtle, request.linear, request.angular)
 
 
@@ -155,7 +155,7 @@ class Interface:
         return response
 
     def _begin(self, turtle: str, goal: Any) -> None:
-        """A goal has been accepted: from the next tick on the world turns the turtle."""
+        """Begin an accepted goal: from the next tick on, the world turns the turtle."""
         self._accepted += 1
         ended = Future()
         self._goals[self._accepted] = (goal, ended)

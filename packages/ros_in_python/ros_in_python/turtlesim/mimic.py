@@ -15,7 +15,7 @@ from ros_in_python.turtlesim.messages import Pose
 
 
 def make() -> Node:
-    """The node: each pose it hears becomes a command with the same velocities."""
+    """Make the node: each pose that it gets becomes a command with the same velocities."""
     node = Node("turtle_mimic")
     twists = node.create_publisher(Twist, "output/cmd_vel", 1)
 

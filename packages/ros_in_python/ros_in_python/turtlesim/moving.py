@@ -41,7 +41,7 @@ class Timeline:
         return self.shown(self.spans[-1][1])
 
     def shown(self, tick: int) -> float:
-        """When a tick is shown (s from the beginning)."""
+        """Return when a tick is shown (s from the beginning)."""
         time = 0.0
         for (first, last), start in zip(self.spans, self.starts, strict=True):
             if tick < first:
@@ -51,7 +51,7 @@ class Timeline:
 
 
 def timeline(tracks: Sequence[Sequence[Sample]]) -> Timeline:
-    """The timeline of these tracks, of which at least one moves."""
+    """Return the timeline of these tracks, of which at least one moves."""
     spans = _joined(sorted(span for track in tracks for span in _moving(track)))
     starts, time = [], 0.0
     for index, (first, last) in enumerate(spans):
@@ -96,7 +96,7 @@ _LONG, _BROAD = 0.34, 0.29
 
 
 def turtle_shapes(coat: int) -> Iterator[Shape]:
-    """The shapes from the lowest to the topmost; `coat` chooses the colours, round and round."""
+    """Return the shapes from the lowest to the topmost; `coat` chooses the colours, which repeat."""
     shell, plate, skin = COATS[coat % len(COATS)]
     yield from _limbs(skin)
     yield from _head(skin)
@@ -114,7 +114,7 @@ def _limbs(skin: str) -> Iterator[Shape]:
 
 
 def _flipper(corners: list[tuple[float, float]], side: int, look: dict[str, Any]) -> Shape:
-    """A leaf from the first corner to the last, bent towards the two between."""
+    """Return a leaf from the first corner to the last, bent towards the two between."""
     (a, b, c, d) = [(x, side * y) for x, y in corners]
     path = Path([a, b, c, d, a], [Path.MOVETO, Path.CURVE4, Path.CURVE4, Path.CURVE4, Path.CLOSEPOLY])
     return PathPatch(path, **look)
@@ -128,7 +128,7 @@ def _head(skin: str) -> Iterator[Shape]:
 
 
 def _plates(plate: str) -> Iterator[Shape]:
-    """A hexagon in the middle of the shell and a plate beyond each of its sides."""
+    """Return a hexagon in the middle of the shell and a plate beyond each of its sides."""
     look: dict[str, Any] = {"facecolor": plate, "linewidth": 0}
     yield Polygon(_ring(0.40, 6, 0.0), joinstyle="round", **look)
     for n in range(6):
@@ -143,7 +143,7 @@ def _ring(radius: float, corners: int, first: float) -> list[tuple[float, float]
 
 
 def _at(radius: float, angle: float) -> tuple[float, float]:
-    """A place on the shell: 0 is its centre, 1 its rim."""
+    """Return a place on the shell: 0 is its centre, 1 its rim."""
     return (_LONG * radius * math.cos(angle), _BROAD * radius * math.sin(angle))
 
 
@@ -160,7 +160,7 @@ _LINE = "#16301f"
 
 
 def moving_svg(world: WorldPicture) -> str | None:
-    """The picture, or None if no turtle has moved. The same for the same world."""
+    """Return the picture, the same for the same world, or None if no turtle has moved."""
     tracks, error = _few(world.tracks)
     if not tracks:
         return None
@@ -191,7 +191,7 @@ def moving_svg(world: WorldPicture) -> str | None:
 
 
 def _few(tracks: Sequence[TrackPicture]) -> tuple[list[TrackPicture], float]:
-    """The tracks with few samples, and how far (units) what is shown may be from what was."""
+    """Return the tracks with few samples, and how far (units) they may be from what was."""
     times, few = 0, list(tracks)
     while sum(len(track.samples) for track in few) > MOST_SAMPLES and times < 12:
         times += 1
@@ -203,7 +203,7 @@ def _few(tracks: Sequence[TrackPicture]) -> tuple[list[TrackPicture], float]:
 
 
 def _drawn(samples: Sequence[Sample]) -> list[list[Sample]]:
-    """The pieces of a track that one pen drew in one go."""
+    """Yield the pieces of a track that one pen drew in one go."""
     runs = []
     for pen, pairs in groupby(pairwise(samples), key=lambda pair: pair[1].pen):
         ways = list(pairs)
@@ -219,7 +219,7 @@ def _pen(samples: Sequence[Sample]) -> Pen:
 
 
 def _lengths(samples: Sequence[Sample]) -> list[float]:
-    """How much of a trail is drawn (px) at each sample."""
+    """Return how much of a trail is drawn (px) at each sample."""
     lengths = [0.0]
     for before, after in pairwise(samples):
         lengths.append(lengths[-1] + PIXELS_PER_UNIT * math.dist((before.x, before.y), (after.x, after.y)))

@@ -33,7 +33,7 @@ class Pacing:
         self._last_ns: int | None = None
 
     def due(self, now_ns: int, simulated: bool) -> list[int]:
-        """The times (ns) of the ticks that are due now."""
+        """Yield the times (ns) of the ticks that are due now."""
         if not simulated:
             self._last_ns = None
             return [now_ns]

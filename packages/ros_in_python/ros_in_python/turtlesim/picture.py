@@ -40,7 +40,7 @@ _POINTS_PER_INCH = 72
 
 
 def draw(world: WorldPicture) -> Figure:
-    """The world as a figure: background, trails in their colours and widths, turtles; axes in units."""
+    """Draw the world as a figure: background, trails in their colours and widths, turtles; axes in units."""
     width, height = _LEFT + _SIDE_IN + _RIGHT, _BOTTOM + _SIDE_IN + _TOP
     figure = Figure(figsize=(width, height), facecolor="white")
     FigureCanvasAgg(figure)
@@ -74,7 +74,7 @@ def save(world: WorldPicture, file: Path) -> None:
     kind = file.suffix.lower().removeprefix(".")
     if kind not in ("png", "svg"):
         raise ValueError(f"{file}: a picture's name must end in .png or .svg")
-    # Neither dates nor versions nor random ids, or no two pictures would be alike.
+    # Without dates, versions and random ids, the same world gives the same bytes.
     metadata = {"Date": None, "Creator": None} if kind == "svg" else {"Software": None}
     picture = io.BytesIO()
     with mpl.rc_context({"svg.hashsalt": "turtlesim"}):
@@ -138,7 +138,7 @@ POSE = "turtlesim/msg/Pose"
 
 
 class Heard:
-    """Listens to `topic`, one turtle's poses, from the first `look` that finds it; `node` must be spun meanwhile."""
+    """Listens to one turtle's poses on `topic`, from the first `look` that finds it; `node` must be spun meanwhile."""
 
     def __init__(self, node: Node, topic: str) -> None:
         self.topic = topic
@@ -165,12 +165,12 @@ class Heard:
         if here != before:
             self._trail.line(self._turtle, Pen(), before, here)
         self._last = pose
-        # Poses do not tell their time; two that come together are a tick apart.
+        # Poses do not say their time; two that arrive together are a tick apart.
         self._last_tick = max(self._last_tick + 1, round(time.monotonic() / DT))
         self._track.add(self._last_tick, pose.x, pose.y, pose.theta, Pen())
 
     def picture(self, incomplete: str) -> WorldPicture | None:
-        """The path heard so far in turtlesim's usual colours, which poses don't tell; None if nothing came."""
+        """Return the path so far, in turtlesim's usual colours, which poses don't say; None if there was no pose."""
         if self._last is None:
             return None
         turtle = TurtlePicture(self._turtle, self._last.x, self._last.y, self._last.theta, Pen())
@@ -178,24 +178,24 @@ class Heard:
         return WorldPicture(SIDE, BLUE, (turtle,), trails, incomplete, moved)
 
     def unreadable_types(self) -> list[str]:
-        """What is published on the topic and is not a turtle's pose."""
+        """Return the types that are published on the topic and are not a turtle's pose."""
         return [found for found in self._published_types() if found != POSE]
 
 
-#: The node's full name where nobody has put it elsewhere.
+#: The node's full name, unless it was remapped.
 NODE = "/turtlesim"
-#: How long to look for a turtlesim node, and how long to listen where it has no picture to give, in s.
+#: How long to look for a turtlesim node, and how long to listen to one that has no picture, in s.
 TIMEOUT_S, LISTEN_S = 5.0, 7.0
 # The node has been found and is answering: a big picture on a busy machine may take long.
 _ANSWER_S = 30.0
 
 
 class NoPictureError(Exception):
-    """There is no picture to be had; the message says why and what to do."""
+    """There is no picture; the message says why and what to do."""
 
 
 def fetch(timeout_s: float = TIMEOUT_S, listen_s: float = LISTEN_S, node: str = NODE) -> WorldPicture:
-    """The world as the turtlesim node `node` reports it.
+    """Return the world as the turtlesim node `node` reports it.
 
     Our own node is asked for its picture, for `timeout_s` s at most until it is found. Where none answers to that,
     as with the turtlesim of a ROS installation, the picture is the path of turtle1 as heard on its pose topic within
@@ -227,7 +227,7 @@ def fetch(timeout_s: float = TIMEOUT_S, listen_s: float = LISTEN_S, node: str = 
 
 @contextmanager
 def _spinning() -> Iterator[tuple[SingleThreadedExecutor, Node]]:
-    """A node that nobody else in this process has to do with."""
+    """Make a node with a context of its own."""
     context = Context()
     rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
     try:

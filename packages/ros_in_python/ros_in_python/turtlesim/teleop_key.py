@@ -45,7 +45,7 @@ class Teleop:
         self._asked: Any = None
 
     def press(self, key: bytes) -> None:
-        """Do what a key stands for; others do nothing."""
+        """Do what a key stands for, if anything."""
         if key in ARROWS:
             self._drive(*ARROWS[key])
         elif key.lower() in HEADINGS:
@@ -71,7 +71,7 @@ def _cancel(asked: Any) -> None:
 
 @contextlib.contextmanager
 def single_keys(terminal: int) -> Iterator[None]:
-    """Let a terminal hand over each key at once and show none of them."""
+    """Let a terminal pass on each key at once, without showing it."""
     before = termios.tcgetattr(terminal)
     now = termios.tcgetattr(terminal)
     now[3] &= ~(termios.ICANON | termios.ECHO)
@@ -83,7 +83,7 @@ def single_keys(terminal: int) -> Iterator[None]:
 
 
 def keys(terminal: int) -> Iterator[bytes]:
-    """The keys as they are pressed, until Q or the terminal's end; of an arrow only its last byte."""
+    """Yield the keys as they are pressed, until Q or the terminal's end; of an arrow key only its last byte."""
     escape = b""
     while (byte := os.read(terminal, 1)) not in (b"", b"q", b"Q"):
         escape = (escape + byte)[-3:]

@@ -11,7 +11,7 @@ from ros_in_python.turtlesim.events import Pen
 
 Point = tuple[float, float]
 
-#: A point is left out where the line without it passes this near (units): a fifth of a pixel.
+#: A point is left out if the line without it passes this near (units): a fifth of a pixel.
 TOLERANCE = 0.004
 #: Beyond this many points the oldest are forgotten, so that a turtle may drive forever.
 MAX_POINTS = 30_000
@@ -32,7 +32,7 @@ class Stroke:
     _door: SwingDoor = field(default_factory=lambda: SwingDoor([TOLERANCE / math.sqrt(2)] * 2), repr=False)
 
     def extend(self, point: Point) -> None:
-        """Go on to `point` in a straight line."""
+        """Continue to `point` in a straight line."""
         before = self._length
         self._length += math.dist(self.points[-1], point)
         if len(self.points) > 1 and self._door.may_end(self._length, point):
@@ -54,7 +54,7 @@ class Trail:
         self._size = 0
 
     def line(self, turtle: str, pen: Pen, start: Point, end: Point) -> None:
-        """`turtle` draws from `start` to `end`: its last stroke continues, or a new one begins."""
+        """Draw from `start` to `end` as `turtle`: continue its last stroke, or begin a new one."""
         stroke = self._latest.get(turtle)
         if stroke is None or stroke.pen != pen or stroke.points[-1] != start:
             stroke = self._latest[turtle] = Stroke(turtle, pen, [start])
@@ -109,7 +109,7 @@ class Track:
         self._door = SwingDoor([place, place, heading])
 
     def add(self, tick: int, x: float, y: float, theta: float, pen: Pen | None) -> None:
-        """Where the turtle is at `tick`, which is after all before; theta may be off by full turns."""
+        """Add where the turtle is at `tick`, which is later than all before; theta may be off by full turns."""
         if self.samples:
             before = self.samples[-1].theta
             theta = before + math.remainder(theta - before, 2 * math.pi)
@@ -130,7 +130,7 @@ class Track:
 
 
 def thinned(samples: Sequence[Sample], place: float, heading: float) -> list[Sample]:
-    """Fewer samples. As in a track, everything between two of them is within these tolerances (units, rad)."""
+    """Return fewer samples: between two of them, the track is within these tolerances (units, rad)."""
     track = Track(place, heading)
     for sample in samples:
         track.add(sample.tick, sample.x, sample.y, sample.theta, sample.pen)
@@ -138,5 +138,5 @@ def thinned(samples: Sequence[Sample], place: float, heading: float) -> list[Sam
 
 
 def moves(samples: Iterable[Sample]) -> bool:
-    """Whether there is anything to see: two samples that differ."""
+    """Return whether two samples differ."""
     return len({(sample.x, sample.y, sample.theta) for sample in samples}) > 1

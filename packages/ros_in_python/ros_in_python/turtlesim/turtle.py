@@ -73,7 +73,7 @@ class Turtle:
 
     @property
     def y(self) -> float:
-        """Upwards from the lower edge, in units."""
+        """The distance from the lower edge, in units."""
         return SIDE - self.y_down
 
     def command(self, forward: float, left: float | None, turn: float, now_ns: int) -> list[Event]:
@@ -156,7 +156,7 @@ class Turtle:
         self._forward = self._left = self._turn = 0.0
 
     def _move(self) -> Iterator[Event]:
-        """The heading first, then the place along the new heading, then the walls."""
+        """Change the heading first, then the place along the new heading, then apply the walls."""
         self.theta = normalized(self.theta + self._turn * DT)
         cos, sin = math.cos(self.theta), math.sin(self.theta)
         self.x += cos * self._forward * DT - sin * self._left * DT

@@ -37,7 +37,7 @@ class World:
         return self.spawn(CENTRE, CENTRE, 0.0)
 
     def spawn(self, x: float, y: float, theta: float, name: str = "") -> list[Event]:
-        """A new turtle; without a name it gets the next free one of turtle1, turtle2 …."""
+        """Add a turtle; without a name it gets the next free one of turtle1, turtle2 …."""
         x, y, theta = single(x), single(y), single(theta)
         if refusal := _refusal("spawn", x, y, theta):
             return refusal
@@ -60,7 +60,7 @@ class World:
                 return name
 
     def kill(self, name: str) -> list[Event]:
-        """Take a turtle away; what it drew stays."""
+        """Remove a turtle; what it drew stays."""
         if name not in self.turtles:
             there = ", ".join(sorted(self.turtles)) or "none"
             text = f"Tried to kill turtle [{name}], which does not exist. Turtles that do: {there}."
@@ -89,13 +89,13 @@ class World:
         self.tracks = {}
 
     def command(self, turtle: str, forward: float, left: float | None, turn: float, now_ns: int) -> list[Event]:
-        """A turtle's velocities (units/s, rad/s) from now on; a `left` of None leaves the old one as it was."""
+        """Set a turtle's velocities (units/s, rad/s); a `left` of None keeps the old one."""
         if refusal := _refusal(f"{turtle}/cmd_vel", forward, left or 0.0, turn):
             return refusal
         return self.turtles[turtle].command(forward, left, turn, now_ns)
 
     def set_pen(self, turtle: str, r: int, g: int, b: int, width: int, off: int) -> list[Event]:
-        """The pen a turtle draws with from now on: colour and width in 0..255; `off` unless 0 lifts it."""
+        """Set the pen with which a turtle draws: colour and width in 0..255; `off`, unless it is 0, lifts it."""
         self.turtles[turtle].pen = self.turtles[turtle].pen.changed(r, g, b, width, off)
         return []
 
@@ -122,7 +122,7 @@ class World:
         return self.turtles[turtle].rotate(goal, single(theta))
 
     def cancel_rotation(self, turtle: str, goal: int | None = None) -> bool:
-        """Ask for the end of a rotation at the next tick; of any, without a `goal`. Whether there is one."""
+        """End a rotation at the next tick, any one without a `goal`; return whether there is one."""
         rotation = self.turtles[turtle].rotation if turtle in self.turtles else None
         if rotation is None or goal not in (None, rotation.goal):
             return False
@@ -130,7 +130,7 @@ class World:
         return True
 
     def tick(self, now_ns: int) -> list[Event]:
-        """16 ms of every turtle's life, in the order of their names. The very first tick only begins the count."""
+        """Move every turtle on by 16 ms, in the order of their names. The very first tick only begins the count."""
         if not self._ticking:
             self._ticking = True
             return []
@@ -150,7 +150,7 @@ class World:
 
 
 def _outside(turtle: str, x: float, y: float) -> list[Event]:
-    """A warning if a turtle's new place is not in the window, otherwise nothing."""
+    """Return a warning if a turtle's new place is not in the window, otherwise nothing."""
     if 0 <= x <= SIDE and 0 <= y <= SIDE:
         return []
     text = f"[{turtle}] stops at the edge: x={x:g}, y={y:g} is outside. Choose both between 0 and {SIDE:.2f}."
@@ -158,7 +158,7 @@ def _outside(turtle: str, x: float, y: float) -> list[Event]:
 
 
 def _refusal(what: str, *numbers: float) -> list[Event]:
-    """A warning if a number is infinite or NaN, otherwise nothing."""
+    """Return a warning if a number is infinite or NaN, otherwise nothing."""
     if all(math.isfinite(number) for number in numbers):
         return []
     text = ", ".join(f"{number:f}" for number in numbers)

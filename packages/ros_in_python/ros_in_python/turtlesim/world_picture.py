@@ -14,11 +14,11 @@ from ros_in_python.turtlesim.world import World
 
 Color = tuple[int, int, int]
 
-#: The window's colour where no parameter says otherwise.
+#: The window's colour, unless parameters change it.
 BLUE: Color = (69, 86, 255)
 #: More turtles than this are not described one by one.
 _MOST_DESCRIBED = 2
-#: Digits after the point in what the node tells: 1/200 of a pixel.
+#: Digits after the point in what the node reports: 1/200 of a pixel.
 _DIGITS = 4
 #: In tracks: half a tenth of a pixel.
 _TRACK_DIGITS = 3
@@ -37,7 +37,7 @@ class TurtlePicture:
 
 @dataclass(frozen=True)
 class StrokePicture:
-    """A polyline in units (y up), drawn by `turtle` in a colour (0..255) and width (pixels, 45 a unit)."""
+    """A polyline in units (y up), drawn by `turtle` in a colour (0..255) and width (pixels, 45 per unit)."""
 
     turtle: str
     color: Color
@@ -70,7 +70,7 @@ class WorldPicture:
     tracks: tuple[TrackPicture, ...] = ()
 
     def to_json(self) -> str:
-        """As JSON in one line; the same for the same world."""
+        """Return JSON in one line, the same for the same world."""
         text = {
             "size": round(self.size, 6),
             "background": self.background,
@@ -120,7 +120,7 @@ class WorldPicture:
 
 
 def picture_of(world: World, background: Color) -> WorldPicture:
-    """The world as it is now."""
+    """Return the world as it is now."""
     turtles = sorted(world.turtles.values(), key=lambda turtle: turtle.name)
     return WorldPicture(
         size=SIDE,
@@ -133,7 +133,7 @@ def picture_of(world: World, background: Color) -> WorldPicture:
 
 
 def tracks(by_turtle: Mapping[str, Track]) -> tuple[TrackPicture, ...]:
-    """The tracks of those that have moved, as a picture shows them."""
+    """Return the tracks of the turtles that have moved, as a picture shows them."""
     return tuple(
         TrackPicture(name, tuple(track.samples), not track.forgotten)
         for name, track in sorted(by_turtle.items())
@@ -142,7 +142,7 @@ def tracks(by_turtle: Mapping[str, Track]) -> tuple[TrackPicture, ...]:
 
 
 def caption(world: WorldPicture) -> str:
-    """Where the turtles are, in words; and what the picture lacks."""
+    """Return where the turtles are, in words, and what the picture lacks."""
     if not world.turtles:
         text = "no turtle"
     elif len(world.turtles) > _MOST_DESCRIBED:
@@ -157,7 +157,7 @@ def _describe(turtle: TurtlePicture) -> str:
 
 
 def strokes(drawn: Iterable[Stroke]) -> tuple[StrokePicture, ...]:
-    """The strokes of a trail as a picture shows them."""
+    """Return the strokes of a trail as a picture shows them."""
     return tuple(
         StrokePicture(each.turtle, (each.pen.r, each.pen.g, each.pen.b), each.pen.width, tuple(each.points))
         for each in drawn
@@ -175,7 +175,7 @@ def _stroke(text: dict[str, Any]) -> StrokePicture:
 
 
 def _track_as_json(track: TrackPicture) -> dict[str, Any]:
-    """A track as plain data; its pens stand by themselves, and samples name them by number."""
+    """Return a track as plain data; samples refer to its pens by number."""
     pens = list(dict.fromkeys(sample.pen for sample in track.samples if sample.pen is not None))
     samples = [
         [

@@ -134,7 +134,7 @@ def _printer(options: dict[str, Any]) -> Any:
 
 
 def _lost(status: Any) -> None:
-    """Report lost messages, line ends as the real command's."""
+    """Report lost messages, with the real command's line ends."""
     print(
         f"A message was lost!!!\n\ttotal count change:{status.total_count_change}\n\ttotal count: {status.total_count}",
         end="---\n",

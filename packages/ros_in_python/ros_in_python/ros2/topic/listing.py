@@ -134,7 +134,7 @@ def type_(topic_name: str, spin_time: float | None, use_sim_time: bool) -> None:
 
 
 def _types(graph: Graph, name: str, written: str) -> tuple[str, ...]:
-    """The types of the topic `name`, once it is there. Raises `CommandError`, in which it is called as `written`."""
+    """Return the types of the topic `name`, once it exists. Raises `CommandError`, which calls it `written`."""
     from ros_in_python.ros2.graph import seen
 
     graph.settle(lambda: bool(graph.topic_types(name)))

@@ -28,7 +28,7 @@ class Spread:
 
 
 def spread(values: deque[int]) -> Spread:
-    """The spread of at least one value; the deviation is divided by n, not by n - 1."""
+    """Return the spread of one or more values; the standard deviation is divided by n, not by n - 1."""
     count = len(values)
     mean = sum(values) / count
     deviation = math.sqrt(sum((value - mean) ** 2 for value in values) / count)
@@ -44,7 +44,7 @@ class Rate:
         self._reported = 0
 
     def arrived(self, now: int) -> None:
-        """A message came at `now`; a clock that went back starts over."""
+        """Count a message that arrived at `now`; start over if the clock went back."""
         if self._latest is None or now < self._latest:
             self._intervals.clear()
         else:
@@ -52,13 +52,13 @@ class Rate:
         self._latest = now
 
     def reset(self) -> bool:
-        """Forget the intervals, as when a simulation starts over; whether there were any."""
+        """Forget the intervals, as when a simulation starts over; return whether there were any."""
         had = bool(self._intervals)
         self._intervals.clear()
         return had
 
     def report(self) -> str | None:
-        """The two lines to print, at most once per second of arrivals; None if none are due."""
+        """Return the two lines to print, at most once per second of arrivals; None if none are due."""
         if not self._intervals or self._latest is None:
             return None
         if self._reported == 0 or self._latest < self._reported:
@@ -81,7 +81,7 @@ class Delay:
         self._reported: int | None = None
 
     def arrived(self, now: int, stamp: int) -> None:
-        """A message with the header stamp `stamp` came at `now`. The first is left out, as the real one does."""
+        """Count a message with the header stamp `stamp` that arrived at `now`; like the real command, not the first."""
         if self._latest is None or now < self._latest:
             self._delays.clear()
         else:
@@ -89,7 +89,7 @@ class Delay:
         self._latest = now
 
     def report(self) -> str | None:
-        """The lines to print this second; None before there is anything."""
+        """Return the lines to print this second; None before the first message."""
         if not self._delays:
             return None
         if self._latest == self._reported:
@@ -107,12 +107,12 @@ class Bandwidth:
         self._times: deque[float] = deque(maxlen=window)
 
     def arrived(self, now: float, size: int) -> None:
-        """A message of `size` bytes came at `now`."""
+        """Count a message of `size` bytes that arrived at `now`."""
         self._times.append(now)
         self._sizes.append(size)
 
     def report(self, now: float) -> str | None:
-        """The two lines to print at `now`; None before there are two messages."""
+        """Return the two lines to print at `now`; None before there are two messages."""
         if len(self._times) < 2 or now <= self._times[0]:
             return None
         total, count = sum(self._sizes), len(self._sizes)
@@ -130,7 +130,7 @@ def _seconds(result: Spread) -> str:
 
 
 def _unit(rate: float) -> Callable[[float], str]:
-    """The unit that suits a rate in bytes per second; all other figures in the report use the same one."""
+    """Return the unit for a rate in bytes per second; the whole report uses it."""
     if rate < 1000:
         return lambda size: f"{size:.0f} B"
     if rate < 1_000_000:
@@ -144,7 +144,7 @@ BANDWIDTH_WINDOW = 100
 
 
 def _window_option(messages: int) -> Callable[[F], F]:
-    """The option `--window`; by default this many messages."""
+    """Make the option `--window`, with this default number of messages."""
     return click.option(
         "-w",
         "--window",

@@ -78,7 +78,7 @@ def pub(topic_name: str, message_type: str, values: str, **options: Any) -> None
         wait_for = options["wait_matching_subscriptions"]
         if wait_for is None:
             wait_for = 1 if times else 0
-        # Who is there already shall get the first message.
+        # Existing subscribers must get the first message.
         graph.settle(lambda: len(graph.subscriptions(topic)) >= wait_for)
         publisher = graph.node.create_publisher(kind, topic, qos.profile(profile))
         _wait_for_subscriptions(graph, publisher, wait_for, options["max_wait_time_secs"])

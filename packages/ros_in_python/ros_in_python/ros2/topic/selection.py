@@ -51,7 +51,7 @@ filter_option: Callable[[F], F] = click.option(
 
 
 def field_path(text: str | None) -> tuple[Step, ...]:
-    """The steps of `--field pose.position`. Raises `CommandError` for one that names nothing."""
+    """Return the steps of `--field pose.position`. Raises `CommandError` if it has no name in it."""
     if text is None:
         return ()
     try:
@@ -66,7 +66,7 @@ def field_path(text: str | None) -> tuple[Step, ...]:
 
 
 def check_path(message: Any, path: Sequence[Step]) -> None:
-    """Raise `CommandError` where a message class has no such field, with the fields it has."""
+    """Raise `CommandError` if a message class has no such field, with the fields that it has."""
     from ros_in_python.ros2.messages import field_names, is_message, type_name
 
     value = message()
@@ -84,7 +84,7 @@ def check_path(message: Any, path: Sequence[Step]) -> None:
 
 
 def field(message: Any, path: Sequence[Step]) -> Any:
-    """The field of a message that `path` leads to. Raises `CommandError` where it has no such field or element."""
+    """Return the field of a message that `path` leads to. Raises `CommandError` if there is no such field."""
     try:
         return value_at(message, path)
     except IndexError:
@@ -94,7 +94,7 @@ def field(message: Any, path: Sequence[Step]) -> Any:
 
 
 def type_on_graph(graph: Graph, topic: str) -> Any | None:
-    """The class of a topic's messages as the graph has it now, None if nobody has the topic.
+    """Return the class of a topic's messages as the graph has it now, None if there is no such topic.
 
     Raises `CommandError` if its ends disagree about the type, or where the type is not installed.
     """
@@ -108,7 +108,7 @@ def type_on_graph(graph: Graph, topic: str) -> Any | None:
 
 
 def wait_for_type(graph: Graph, topic: str) -> Any:
-    """The class of a topic's messages; waits without end, after a warning, for a topic that nobody has."""
+    """Return the class of a topic's messages; if there is no such topic, warn and wait for it, without a limit."""
     graph.settle(lambda: bool(graph.topic_types(topic)))
 
     message = type_on_graph(graph, topic)
@@ -121,7 +121,7 @@ def wait_for_type(graph: Graph, topic: str) -> Any:
 
 
 def type_or_refusal(graph: Graph, topic: str) -> Any:
-    """The class of a topic's messages. Raises `CommandError` after the real command's two lines if nobody has it."""
+    """Return the class of a topic's messages. Raises `CommandError`, after the real one's warning, if there is none."""
     from ros_in_python.ros2.graph import seen
 
     message = type_on_graph(graph, topic)
