@@ -31,7 +31,7 @@ from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
 from ros_in_python.ros2.cli import CommandError
 from ros_in_python.ros2.domain import domain_id, hears_other_hosts, participants
-from ros_in_python.ros2.graph import LOOK, Graph
+from ros_in_python.ros2.graph import LOOK, GraphView
 from ros_in_python.ros2.interfaces import message_class
 from ros_in_python.ros2.opening import prepare
 from spinbook.graph.model import End, NodeGraph, SeenNode, Topic
@@ -107,7 +107,7 @@ _COUNTING_S = 2.5
 _HEARS_ALL = QoSProfile(depth=50, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE)
 
 
-class GraphWatcher(Graph):
+class GraphWatcher(GraphView):
     """Sees nodes, topics and ends. Its name begins with an underscore, as ros2's own nodes' do, so it is not listed.
 
     It subscribes only while `count` is called again and again, and only to what is not yet counted.

@@ -18,7 +18,7 @@ from ros_in_python.animation import BEFORE_S
 from ros_in_python.thinning import thinned
 from ros_in_python.turtlesim.events import DT, PIXELS_PER_UNIT, SIDE, TICK_NS, Pen
 from ros_in_python.turtlesim.moving import LONGEST_S, LONGEST_WAIT_S, MOST_SAMPLES, moving_svg, timeline
-from ros_in_python.turtlesim.trail import HEADING_TOLERANCE, PLACE_TOLERANCE, Sample, Track
+from ros_in_python.turtlesim.trail import HEADING_TOLERANCE, PLACE_TOLERANCE, Track, TrackSample
 from ros_in_python.turtlesim.world import World
 from ros_in_python.turtlesim.world_picture import BLUE, WorldPicture, picture_of
 
@@ -106,7 +106,7 @@ def test_the_pace_is_real_and_waits_are_cut_short() -> None:
 
 
 def test_a_long_way_is_shown_faster_and_says_so() -> None:
-    samples = tuple(Sample(tick, tick % 11, 0.0, 0.0, Pen()) for tick in range(0, 7_000, 100))
+    samples = tuple(TrackSample(tick, tick % 11, 0.0, 0.0, Pen()) for tick in range(0, 7_000, 100))
     times = timeline([samples])
 
     assert times.faster == 4

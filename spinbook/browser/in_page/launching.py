@@ -15,7 +15,7 @@ _planned: list[dict[str, Any]] = []
 
 
 class _Planned:
-    """Replaces `Launched`: notes what is to be started."""
+    """Replaces `ProcessGroup`: notes what is to be started."""
 
     def run(self, steps: Sequence[ProcessToStart | str]) -> int:
         """Note the steps, with their parameter files, which are removed afterwards."""
@@ -41,7 +41,7 @@ def plan(line: str) -> str:
     from spinbook.browser.in_page.cells import run_command
 
     # Processes of the page replace those of the system.
-    setattr(command, "Launched", _Planned)  # noqa: B010 - for the type checker, it is another module's import
+    setattr(command, "ProcessGroup", _Planned)  # noqa: B010 - for the type checker, it is another module's import
     setattr(processes, "find", _as_it_is)  # noqa: B010
     _planned.clear()
     status = run_command(line)

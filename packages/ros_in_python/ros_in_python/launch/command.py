@@ -12,8 +12,8 @@ import click
 from interface_compiler import prefixes
 from ros_in_python.launch import markup_file, python_file
 from ros_in_python.launch.description import Context, DeclareLaunchArgument, LaunchDescription, text_of
-from ros_in_python.launch.processes import Plan, arguments_of
-from ros_in_python.launch.running import Launched
+from ros_in_python.launch.processes import LaunchPlan, arguments_of
+from ros_in_python.launch.running import ProcessGroup
 from ros_in_python.ros2 import executables
 from ros_in_python.ros2.cli import CONTEXT, CommandError
 
@@ -48,8 +48,8 @@ def launch(show_args: bool, package_or_file: str, words: tuple[str, ...]) -> Non
         return
     _refuse_unknown(given, declared)
     with tempfile.TemporaryDirectory(prefix="launch_params_") as folder:
-        steps = list(Plan.into(Path(folder), cwd).steps(description.entities, Context(given)))
-        raise click.exceptions.Exit(Launched().run(steps))
+        steps = list(LaunchPlan.into(Path(folder), cwd).steps(description.entities, Context(given)))
+        raise click.exceptions.Exit(ProcessGroup().run(steps))
 
 
 def read(file: Path) -> LaunchDescription:

@@ -27,7 +27,7 @@ class ProcessToStart:
 
 
 @dataclass
-class Plan:
+class LaunchPlan:
     """Carries out a description: what it logs and which processes it starts. Parameter files go into `folder`."""
 
     folder: Path
@@ -35,7 +35,7 @@ class Plan:
     _files: itertools.count[int]
 
     @classmethod
-    def into(cls, folder: Path, cwd: Path) -> Plan:
+    def into(cls, folder: Path, cwd: Path) -> LaunchPlan:
         """Make a plan whose parameter files go into `folder`; packages are looked up from `cwd`."""
         return cls(folder, cwd, itertools.count(1))
 

@@ -30,7 +30,7 @@ class _Running:
     reader: threading.Thread
 
 
-class Launched:
+class ProcessGroup:
     """The running processes of one launch."""
 
     def __init__(self) -> None:

@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ros_in_python.ros2 import interfaces
-from ros_in_python.ros2.cli import CONTEXT, CommandError, Entry, Menu, Stopped, discovery_options, held_back
+from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry, StopSignal, discovery_options, held_back
 from ros_in_python.ros2.opening import open_graph
 
 if TYPE_CHECKING:
-    from ros_in_python.ros2.graph import Graph, Named
+    from ros_in_python.ros2.graph import GraphView, TypedName
 
 action = Menu(
     name="action",
     entries={
-        "info": Entry("ros_in_python.ros2.action:info", "The clients and servers of an action."),
-        "list": Entry("ros_in_python.ros2.action:list_", "All actions."),
-        "send_goal": Entry("ros_in_python.ros2.action:send_goal", "Send a goal and print its result."),
-        "type": Entry("ros_in_python.ros2.action:type_", "The type of an action."),
+        "info": MenuEntry("ros_in_python.ros2.action:info", "The clients and servers of an action."),
+        "list": MenuEntry("ros_in_python.ros2.action:list_", "All actions."),
+        "send_goal": MenuEntry("ros_in_python.ros2.action:send_goal", "Send a goal and print its result."),
+        "type": MenuEntry("ros_in_python.ros2.action:type_", "The type of an action."),
     },
     help="""List actions, send a goal to one.
 
@@ -154,7 +154,7 @@ def send_goal(
                 result = handle.get_result_async()
             answer = _done(graph, result, "getting result")
             graph.spin_arrived()
-        except Stopped:
+        except StopSignal:
             _cancel(graph, sent)
             raise
         print(f"Result:\n    {to_yaml(answer.result)}", flush=True)
@@ -195,7 +195,7 @@ def _print_feedback(message: Any) -> None:
     print(f"Feedback:\n    {to_yaml(message.feedback)}", flush=True)
 
 
-def _wait_for_server(graph: Graph, client: Any, name: str, wanted: str) -> None:
+def _wait_for_server(graph: GraphView, client: Any, name: str, wanted: str) -> None:
     """Wait for the server, without a limit. Raises `CommandError` if it has another type."""
     from rclpy.action import get_action_server_names_and_types_by_node
 
@@ -212,14 +212,14 @@ def _wait_for_server(graph: Graph, client: Any, name: str, wanted: str) -> None:
         graph.wait_until_known(server)
 
 
-def _done(graph: Graph, future: Any, doing: str) -> Any:
+def _done(graph: GraphView, future: Any, doing: str) -> Any:
     graph.spin_until(future.done)
     if future.exception() is not None:
         raise CommandError(f"Exception while {doing}: {future.exception()!r}")
     return future.result()
 
 
-def _cancel(graph: Graph, sent: Any) -> None:
+def _cancel(graph: GraphView, sent: Any) -> None:
     """Cancel the goal that was sent, even if it has not been accepted yet."""
     if not graph.spin_until(sent.done, CANCELLING) or not sent.result().accepted:
         return
@@ -238,15 +238,15 @@ def _status(number: int) -> str:
     return next((name for name in names if getattr(GoalStatus, f"STATUS_{name}") == number), "UNKNOWN")
 
 
-def _actions(graph: Graph) -> list[Named]:
+def _actions(graph: GraphView) -> list[TypedName]:
     from rclpy.action import get_action_names_and_types
 
-    from ros_in_python.ros2.graph import Named
+    from ros_in_python.ros2.graph import TypedName
 
-    return [Named(name, tuple(types)) for name, types in get_action_names_and_types(graph.node)]
+    return [TypedName(name, tuple(types)) for name, types in get_action_names_and_types(graph.node)]
 
 
-def _nodes_with(graph: Graph, action_name: str, ask: Any) -> list[tuple[str, list[str]]]:
+def _nodes_with(graph: GraphView, action_name: str, ask: Any) -> list[tuple[str, list[str]]]:
     """Return the nodes that have an end of an action, with its types, as `ask` finds them."""
     found = [
         (node.full_name, types)

@@ -13,13 +13,13 @@ import click
 
 from ros_in_python.ros2 import cli, interfaces
 from ros_in_python.ros2 import interfaces as interface_files
-from ros_in_python.ros2.cli import CONTEXT, CommandError, Entry, Menu
+from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry
 from ros_in_python.ros2.opening import open_graph
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ros_in_python.ros2.graph import Graph
+    from ros_in_python.ros2.graph import GraphView
 
 SECOND = 1_000_000_000
 
@@ -29,9 +29,9 @@ LOOK_AGAIN = 0.5
 bag = Menu(
     name="bag",
     entries={
-        "info": Entry("ros_in_python.ros2.bag:info", "What is in a bag."),
-        "play": Entry("ros_in_python.ros2.bag:play", "Publish what a bag holds."),
-        "record": Entry("ros_in_python.ros2.bag:record", "Write messages into a bag until Ctrl-C."),
+        "info": MenuEntry("ros_in_python.ros2.bag:info", "What is in a bag."),
+        "play": MenuEntry("ros_in_python.ros2.bag:play", "Publish what a bag holds."),
+        "record": MenuEntry("ros_in_python.ros2.bag:record", "Write messages into a bag until Ctrl-C."),
     },
     help="""Record topics into a file, and play them again.
 
@@ -70,7 +70,7 @@ def record(topics: tuple[str, ...], all_topics: bool, output: Path | None, stora
             while True:
                 recording.look()
                 graph.spin_until(lambda: False, LOOK_AGAIN)
-        except cli.Stopped:
+        except cli.StopSignal:
             click.echo(f"{recording.count} messages in {folder}")
             raise
 
@@ -78,7 +78,7 @@ def record(topics: tuple[str, ...], all_topics: bool, output: Path | None, stora
 class _Recording:
     """Subscribes to topics as they come up, and writes their messages as the bytes that arrived."""
 
-    def __init__(self, graph: Graph, writer: Any, wanted: set[str]) -> None:
+    def __init__(self, graph: GraphView, writer: Any, wanted: set[str]) -> None:
         self._graph, self._writer, self._wanted = graph, writer, wanted
         self._types = _types()
         self._subscribed: set[str] = set()
@@ -98,7 +98,7 @@ class _Recording:
         message = interfaces.message_class(kind)
         _know(self._types, kind)
         connection = self._writer.add_connection(topic, kind, typestore=self._types)
-        profile = qos.suiting(self._graph, topic, qos.Asked("sensor_data"))
+        profile = qos.suiting(self._graph, topic, qos.QosOptions("sensor_data"))
 
         def arrived(data: bytes) -> None:
             self._writer.write(connection, self._graph.node.get_clock().now().nanoseconds, bytes(data))

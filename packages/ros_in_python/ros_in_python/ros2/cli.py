@@ -21,7 +21,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 @dataclass(frozen=True)
-class Entry:
+class MenuEntry:
     """A noun or a verb: where its click command is (`module:name`), and its line in the help."""
 
     place: str
@@ -31,7 +31,7 @@ class Entry:
 class Menu(click.Group):
     """A group whose help lists its entries without importing any, and whose errors say what there is."""
 
-    def __init__(self, *, entries: Mapping[str, Entry], **attributes: Any) -> None:
+    def __init__(self, *, entries: Mapping[str, MenuEntry], **attributes: Any) -> None:
         super().__init__(context_settings=CONTEXT, **attributes)
         self.entries = entries
 
@@ -108,7 +108,7 @@ class CommandError(click.ClickException):
 EXIT_AFTER_SIGINT = int(signal.SIGINT)
 
 
-class Stopped(KeyboardInterrupt):
+class StopSignal(KeyboardInterrupt):
     """Raised in the main thread when SIGINT or SIGTERM came."""
 
     def __init__(self, number: int) -> None:
@@ -118,7 +118,7 @@ class Stopped(KeyboardInterrupt):
 
 
 def listen() -> None:
-    """Make SIGINT and SIGTERM raise `Stopped`, for the rest of this process's life.
+    """Make SIGINT and SIGTERM raise `StopSignal`, for the rest of this process's life.
 
     SIGINT is set even where it was ignored (a shell ignores it for what it starts in the background), because a
     notebook stops its commands with it. Only the first signal is raised: cleaning up is not interrupted by the
@@ -132,7 +132,7 @@ def listen() -> None:
 
 @contextmanager
 def held_back() -> Iterator[None]:
-    """Hold back the first signal until the end of the block, which then raises `Stopped`; a second raises at once.
+    """Hold back the first signal until the end of the block, which then raises `StopSignal`; a second raises at once.
 
     For work inside rclpy: raised while its C++ makes a message, an exception comes out as a TypeError or not at all.
     """
@@ -159,4 +159,4 @@ def _stop(number: int, frame: FrameType | None) -> None:
 def _raise(number: int) -> NoReturn:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    raise Stopped(number)
+    raise StopSignal(number)

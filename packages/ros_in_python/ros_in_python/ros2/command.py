@@ -9,21 +9,23 @@ import click
 
 from interface_compiler.near import use_near
 from ros_in_python.ros2 import cli
-from ros_in_python.ros2.cli import CONTEXT, Entry, Menu
+from ros_in_python.ros2.cli import CONTEXT, Menu, MenuEntry
 from ros_in_python.ros2.executables import hand_over
 
 NOUNS = {
-    "action": Entry("ros_in_python.ros2.action:action", "List actions, send a goal to one."),
-    "bag": Entry("ros_in_python.ros2.bag:bag", "Record topics into a file, play them again."),
-    "daemon": Entry("ros_in_python.ros2.command:daemon", "Say that there is no daemon."),
-    "interface": Entry("ros_in_python.ros2.interfaces:interface", "Show the fields of messages, services and actions."),
-    "launch": Entry("ros_in_python.launch.command:launch", "Start the nodes of a launch file."),
-    "node": Entry("ros_in_python.ros2.node:node", "List running nodes, show what one offers."),
-    "param": Entry("ros_in_python.ros2.param:param", "Read and change parameters of running nodes."),
-    "pkg": Entry("ros_in_python.ros2.pkg:pkg", "List packages and their executables, make a package."),
-    "run": Entry("ros_in_python.ros2.executables:run", "Start an executable of a package."),
-    "service": Entry("ros_in_python.ros2.service:service", "List services, call one."),
-    "topic": Entry("ros_in_python.ros2.topic:topic", "Watch, measure and publish topics."),
+    "action": MenuEntry("ros_in_python.ros2.action:action", "List actions, send a goal to one."),
+    "bag": MenuEntry("ros_in_python.ros2.bag:bag", "Record topics into a file, play them again."),
+    "daemon": MenuEntry("ros_in_python.ros2.command:daemon", "Say that there is no daemon."),
+    "interface": MenuEntry(
+        "ros_in_python.ros2.interfaces:interface", "Show what messages, services and actions contain."
+    ),
+    "launch": MenuEntry("ros_in_python.launch.command:launch", "Start the nodes of a launch file."),
+    "node": MenuEntry("ros_in_python.ros2.node:node", "List running nodes, show what one offers."),
+    "param": MenuEntry("ros_in_python.ros2.param:param", "Read and change parameters of running nodes."),
+    "pkg": MenuEntry("ros_in_python.ros2.pkg:pkg", "List packages and their executables, make a package."),
+    "run": MenuEntry("ros_in_python.ros2.executables:run", "Start an executable of a package."),
+    "service": MenuEntry("ros_in_python.ros2.service:service", "List services, call one."),
+    "topic": MenuEntry("ros_in_python.ros2.topic:topic", "Watch, measure and publish topics."),
 }
 
 
@@ -43,7 +45,7 @@ class Ros2(Menu):
         cli.listen()
         try:
             return super().invoke(ctx)
-        except cli.Stopped as stopped:
+        except cli.StopSignal as stopped:
             raise click.exceptions.Exit(stopped.exit_code) from None
 
 
@@ -51,11 +53,11 @@ class Ros2(Menu):
 GROUP = "ros_in_python.nouns"
 
 
-def _nouns_of_others() -> dict[str, Entry]:
+def _nouns_of_others() -> dict[str, MenuEntry]:
     from importlib.metadata import entry_points  # takes long, and only other nouns than ours need it
 
     found = entry_points(group=GROUP)
-    return {entry.name: Entry(entry.value, entry.load().get_short_help_str(100)) for entry in found}
+    return {entry.name: MenuEntry(entry.value, entry.load().get_short_help_str(100)) for entry in found}
 
 
 ros2 = Ros2(
@@ -80,9 +82,9 @@ ros2 = Ros2(
 daemon = Menu(
     name="daemon",
     entries={
-        "start": Entry("ros_in_python.ros2.command:start", "Say that none is needed."),
-        "status": Entry("ros_in_python.ros2.command:status", "Say that none is running."),
-        "stop": Entry("ros_in_python.ros2.command:stop", "Say that none is running."),
+        "start": MenuEntry("ros_in_python.ros2.command:start", "Say that none is needed."),
+        "status": MenuEntry("ros_in_python.ros2.command:status", "Say that none is running."),
+        "stop": MenuEntry("ros_in_python.ros2.command:stop", "Say that none is running."),
     },
     help="""The ROS 2 installation's ros2 keeps a daemon that remembers the graph. Here each call looks for itself.
 

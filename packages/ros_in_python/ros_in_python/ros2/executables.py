@@ -156,14 +156,14 @@ def interfaces_used(package: str, executable: str) -> str:
 
 
 @dataclass(frozen=True)
-class Launch:
+class Invocation:
     """How to start an executable: the command (append the arguments for the node) and its whole environment."""
 
     argv: list[str]
     env: dict[str, str]
 
 
-def find(package: str, executable: str, cwd: Path) -> Launch:
+def find(package: str, executable: str, cwd: Path) -> Invocation:
     """Return how to start a package's executable from the folder `cwd`.
 
     This searches the prefixes of AMENT_PREFIX_PATH and of this Python, the colcon workspaces of `cwd` and its parents,
@@ -180,7 +180,7 @@ def find(package: str, executable: str, cwd: Path) -> Launch:
                 break
     there = in_prefix(prefix, package) if prefix is not None else []
     if there or (prefix is not None and package not in BUILT_IN):
-        return Launch([str(_only(there, package, executable))], environment)
+        return Invocation([str(_only(there, package, executable))], environment)
     modules = BUILT_IN.get(package)
     if modules is None:
         raise CommandError(
@@ -191,7 +191,7 @@ def find(package: str, executable: str, cwd: Path) -> Launch:
     if executable not in modules:
         raise CommandError("No executable found", f"Executables of {package}: {', '.join(sorted(modules))}.")
     check_installed()
-    return Launch([sys.executable, "-m", *modules[executable].split()], environment)
+    return Invocation([sys.executable, "-m", *modules[executable].split()], environment)
 
 
 def is_built_in(package: str, prefix: Path | None) -> bool:

@@ -25,7 +25,7 @@ from ros_in_python.ros2.cli import CommandError, held_back
 from ros_in_python.ros2.domain import domain_id, hears_other_hosts, participants
 
 # Each call of the command starts its own node, so discovery has to finish before it answers. The graph, not the clock,
-# decides when that is: see `Graph.settle`.
+# decides when that is: see `GraphView.settle`.
 
 
 #: Seconds between two looks at the graph; and the most between a signal and its effect.
@@ -65,7 +65,7 @@ class NodeName:
 
 
 @dataclass(frozen=True, order=True)
-class Named:
+class TypedName:
     """A topic, service or action, and its types (more than one where its ends disagree)."""
 
     name: str
@@ -75,7 +75,7 @@ class Named:
         return f"{self.name} [{', '.join(self.types)}]"
 
 
-class Graph:
+class GraphView:
     """A hidden node with a context and an executor of its own; a context manager.
 
     `spin_time` is how long discovery may take, in seconds, whatever it has found by then.
@@ -104,7 +104,7 @@ class Graph:
         self._born = time.monotonic()
         self._spin_time = spin_time
 
-    def __enter__(self) -> Graph:
+    def __enter__(self) -> GraphView:
         return self
 
     def __exit__(
@@ -125,10 +125,10 @@ class Graph:
             if name != own
         )
 
-    def topics(self) -> list[Named]:
+    def topics(self) -> list[TypedName]:
         """Return every topic that another node publishes or subscribes to, including hidden ones."""
         return [
-            Named(name, tuple(types))
+            TypedName(name, tuple(types))
             for name, types in self.node.get_topic_names_and_types()
             if self.publishers(name) or self.subscriptions(name)
         ]
@@ -145,9 +145,9 @@ class Graph:
         """Return the subscriptions on a topic, except ours."""
         return self._others(self.node.get_subscriptions_info_by_topic(topic))
 
-    def services(self) -> list[Named]:
+    def services(self) -> list[TypedName]:
         """Return every service, including hidden ones."""
-        return [Named(name, tuple(types)) for name, types in self.node.get_service_names_and_types()]
+        return [TypedName(name, tuple(types)) for name, types in self.node.get_service_names_and_types()]
 
     def _others(self, ends: Iterable[TopicEndpointInfo]) -> list[TopicEndpointInfo]:
         own = self.node.get_name()

@@ -13,7 +13,7 @@ from typing import Any, Literal
 import click
 
 from interface_compiler import prefixes, shipped
-from ros_in_python.ros2.cli import CONTEXT, CommandError, Entry, Menu
+from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry
 
 DEFINITION_KINDS = ("msg", "srv", "action")
 
@@ -185,11 +185,11 @@ def _alike(full: str) -> str:
 interface = Menu(
     name="interface",
     entries={
-        "list": Entry("ros_in_python.ros2.interfaces:list_", "Every type installed here."),
-        "package": Entry("ros_in_python.ros2.interfaces:package", "The types of one package."),
-        "packages": Entry("ros_in_python.ros2.interfaces:packages", "The packages that have types."),
-        "proto": Entry("ros_in_python.ros2.interfaces:proto", "A type's fields with their defaults, to copy into pub."),
-        "show": Entry("ros_in_python.ros2.interfaces:show", "The definition of a type."),
+        "list": MenuEntry("ros_in_python.ros2.interfaces:list_", "Every type installed here."),
+        "package": MenuEntry("ros_in_python.ros2.interfaces:package", "The types of one package."),
+        "packages": MenuEntry("ros_in_python.ros2.interfaces:packages", "The packages that have types."),
+        "proto": MenuEntry("ros_in_python.ros2.interfaces:proto", "A type's fields with defaults, to copy into pub."),
+        "show": MenuEntry("ros_in_python.ros2.interfaces:show", "The definition of a type."),
     },
     help="""Show the fields of message, service and action types.
 

@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ros_in_python.ros2.cli import CONTEXT, CommandError, Entry, Menu, discovery_options
+from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry, discovery_options
 from ros_in_python.ros2.opening import open_graph
 
 if TYPE_CHECKING:
-    from ros_in_python.ros2.graph import Graph
+    from ros_in_python.ros2.graph import GraphView
 
 node = Menu(
     name="node",
     entries={
-        "info": Entry("ros_in_python.ros2.node:info", "The topics, services and actions of a node."),
-        "list": Entry("ros_in_python.ros2.node:list_", "The nodes that run."),
+        "info": MenuEntry("ros_in_python.ros2.node:info", "The topics, services and actions of a node."),
+        "list": MenuEntry("ros_in_python.ros2.node:list_", "The nodes that run."),
     },
     help="""List running nodes, show what one offers.
 
@@ -92,7 +92,7 @@ def info(node_name: str, include_hidden: bool, spin_time: float | None, use_sim_
         click.echo("\n".join(f"    {name}: {', '.join(types)}" for name, types in entries))
 
 
-def _sections(graph: Graph, name: str, namespace: str, include_hidden: bool) -> list[tuple[str, list[Any]]]:
+def _sections(graph: GraphView, name: str, namespace: str, include_hidden: bool) -> list[tuple[str, list[Any]]]:
     from rclpy.action import get_action_client_names_and_types_by_node, get_action_server_names_and_types_by_node
     from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 

@@ -15,18 +15,20 @@ from ros_in_python.ros2.cli import CommandError
 from ros_in_python.ros2.domain import domain_id
 
 if TYPE_CHECKING:
-    from ros_in_python.ros2.graph import Graph
+    from ros_in_python.ros2.graph import GraphView
 
 
-def open_graph(*, node_name: str | None = None, spin_time: float | None = None, use_sim_time: bool = False) -> Graph:
+def open_graph(
+    *, node_name: str | None = None, spin_time: float | None = None, use_sim_time: bool = False
+) -> GraphView:
     """Check the environment, then create a node of ours that looks at the graph (a context manager).
 
     `spin_time` bounds discovery, in seconds. Raises `CommandError` for an environment that rclpy can't work in.
     """
     prepare()
-    from ros_in_python.ros2.graph import Graph
+    from ros_in_python.ros2.graph import GraphView
 
-    return Graph(node_name=node_name, spin_time=spin_time, use_sim_time=use_sim_time)
+    return GraphView(node_name=node_name, spin_time=spin_time, use_sim_time=use_sim_time)
 
 
 def prepare() -> None:

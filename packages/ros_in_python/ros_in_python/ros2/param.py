@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import click
 import yaml
 
-from ros_in_python.ros2.cli import CONTEXT, CommandError, Entry, Menu, discovery_options
+from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry, discovery_options
 from ros_in_python.ros2.opening import open_graph
 
 if TYPE_CHECKING:
-    from ros_in_python.ros2.graph import Graph
+    from ros_in_python.ros2.graph import GraphView
 
 
 #: Time limit for a node's parameter services to appear, and then to answer, in seconds.
@@ -33,7 +33,7 @@ _VALUE_FIELDS = (
 )
 
 
-def find_node(graph: Graph, node_name: str, include_hidden: bool) -> str:
+def find_node(graph: GraphView, node_name: str, include_hidden: bool) -> str:
     """Return the full name of a running node. Raises `CommandError`, with those that run, if it does not run."""
     from ros_in_python.ros2.graph import absolute_node, seen
 
@@ -48,7 +48,7 @@ def find_node(graph: Graph, node_name: str, include_hidden: bool) -> str:
     return full
 
 
-def client_of(graph: Graph, name: str) -> Any:
+def client_of(graph: GraphView, name: str) -> Any:
     """Return a client of a node's parameter services that the node knows. Raises `CommandError` if it has none."""
     from rclpy.parameter_client import AsyncParameterClient
 
@@ -62,7 +62,7 @@ def client_of(graph: Graph, name: str) -> Any:
     return client
 
 
-def answer(graph: Graph, name: str, future: Any) -> Any:
+def answer(graph: GraphView, name: str, future: Any) -> Any:
     """Return a node's reply. Raises `CommandError` if there is none."""
     if not graph.spin_until(future.done, ANSWER):
         raise CommandError(
@@ -113,13 +113,13 @@ def value_of(value: Any) -> Any:
 param = Menu(
     name="param",
     entries={
-        "delete": Entry("ros_in_python.ros2.param:delete", "Delete a parameter of a node."),
-        "describe": Entry("ros_in_python.ros2.param:describe", "Describe a parameter: type, range."),
-        "dump": Entry("ros_in_python.ros2.param:dump", "All parameters of a node, in a parameter file's YAML."),
-        "get": Entry("ros_in_python.ros2.param:get", "The value of a parameter."),
-        "list": Entry("ros_in_python.ros2.param:list_", "The parameters of one node or of all."),
-        "load": Entry("ros_in_python.ros2.param:load", "Set a node's parameters from a parameter file."),
-        "set": Entry("ros_in_python.ros2.param:set_", "Set a parameter."),
+        "delete": MenuEntry("ros_in_python.ros2.param:delete", "Delete a parameter of a node."),
+        "describe": MenuEntry("ros_in_python.ros2.param:describe", "Describe a parameter: type, range."),
+        "dump": MenuEntry("ros_in_python.ros2.param:dump", "All parameters of a node, in a parameter file's YAML."),
+        "get": MenuEntry("ros_in_python.ros2.param:get", "The value of a parameter."),
+        "list": MenuEntry("ros_in_python.ros2.param:list_", "The parameters of one node or of all."),
+        "load": MenuEntry("ros_in_python.ros2.param:load", "Set a node's parameters from a parameter file."),
+        "set": MenuEntry("ros_in_python.ros2.param:set_", "Set a parameter."),
     },
     help="""Read and change parameters of running nodes.
 
@@ -360,12 +360,12 @@ def load(
         raise CommandError(*refused)
 
 
-def _parameters_of(graph: Graph, name: str, client: Any) -> str:
+def _parameters_of(graph: GraphView, name: str, client: Any) -> str:
     names = sorted(answer(graph, name, client.list_parameters()).result.names)
     return f"Parameters of {name}: {', '.join(names)}."
 
 
-def _described(graph: Graph, name: str, client: Any, params: list[str]) -> dict[str, str]:
+def _described(graph: GraphView, name: str, client: Any, params: list[str]) -> dict[str, str]:
     descriptors = answer(graph, name, client.describe_parameters(params)).descriptors
     return {descriptor.name: _TYPES[descriptor.type][0] for descriptor in descriptors}
 

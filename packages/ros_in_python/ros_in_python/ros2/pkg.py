@@ -9,16 +9,16 @@ from pathlib import Path
 import click
 
 from ros_in_python.ros2 import executables as search
-from ros_in_python.ros2.cli import CONTEXT, CommandError, Entry, Menu
+from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry
 
 pkg = Menu(
     name="pkg",
     entries={
-        "create": Entry("ros_in_python.ros2.create:create", "Make a new package of Python."),
-        "executables": Entry("ros_in_python.ros2.pkg:executables", "What `ros2 run` can start."),
-        "list": Entry("ros_in_python.ros2.pkg:list_", "All packages."),
-        "prefix": Entry("ros_in_python.ros2.pkg:prefix", "Where a package is installed."),
-        "xml": Entry("ros_in_python.ros2.pkg:xml", "A package's package.xml, or one tag of it."),
+        "create": MenuEntry("ros_in_python.ros2.create:create", "Make a new package of Python."),
+        "executables": MenuEntry("ros_in_python.ros2.pkg:executables", "What `ros2 run` can start."),
+        "list": MenuEntry("ros_in_python.ros2.pkg:list_", "All packages."),
+        "prefix": MenuEntry("ros_in_python.ros2.pkg:prefix", "Where a package is installed."),
+        "xml": MenuEntry("ros_in_python.ros2.pkg:xml", "A package's package.xml, or one tag of it."),
     },
     help="""List packages and their executables; a built colcon workspace here counts.
 

@@ -14,13 +14,13 @@ from ros_in_python.ros2.cli import CommandError
 if TYPE_CHECKING:
     from rclpy.qos import QoSProfile
 
-    from ros_in_python.ros2.graph import Graph
+    from ros_in_python.ros2.graph import GraphView
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 
 @dataclass(frozen=True)
-class Asked:
+class QosOptions:
     """The QoS options of one call, as typed; None where they were not."""
 
     profile: str
@@ -57,13 +57,13 @@ def qos_options(default_profile: str) -> Callable[[F], F]:
     return add
 
 
-def asked(options: dict[str, Any]) -> Asked:
+def asked(options: dict[str, Any]) -> QosOptions:
     """Take the `qos_…` entries out of a function's options."""
     mine = {name: options.pop(name) for name in list(options) if name.startswith("qos_")}
-    return Asked(**{name.removeprefix("qos_"): value for name, value in mine.items()})
+    return QosOptions(**{name.removeprefix("qos_"): value for name, value in mine.items()})
 
 
-def profile(asked: Asked) -> QoSProfile:
+def profile(asked: QosOptions) -> QoSProfile:
     """Return the profile with the chosen policies. Raises `CommandError` for an unknown name."""
     from rclpy.duration import Duration
     from rclpy.qos import (
@@ -94,7 +94,7 @@ def profile(asked: Asked) -> QoSProfile:
     return chosen
 
 
-def suiting(graph: Graph, topic: str, asked: Asked) -> QoSProfile:
+def suiting(graph: GraphView, topic: str, asked: QosOptions) -> QoSProfile:
     """Return the profile for a subscription that matches every publisher on `topic`.
 
     Reliable and transient local if all publishers are; otherwise what connects to all, which is then said. What was

@@ -10,20 +10,20 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ros_in_python.ros2 import interfaces
-from ros_in_python.ros2.cli import CONTEXT, CommandError, Entry, Menu, discovery_options
+from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry, discovery_options
 from ros_in_python.ros2.opening import open_graph
 
 if TYPE_CHECKING:
-    from ros_in_python.ros2.graph import Graph, Named
+    from ros_in_python.ros2.graph import GraphView, TypedName
 
 service = Menu(
     name="service",
     entries={
-        "call": Entry("ros_in_python.ros2.service:call", "Call a service and print its answer."),
-        "find": Entry("ros_in_python.ros2.service:find", "The services of a type."),
-        "info": Entry("ros_in_python.ros2.service:info", "How many clients and servers a service has."),
-        "list": Entry("ros_in_python.ros2.service:list_", "All services."),
-        "type": Entry("ros_in_python.ros2.service:type_", "The type of a service."),
+        "call": MenuEntry("ros_in_python.ros2.service:call", "Call a service and print its answer."),
+        "find": MenuEntry("ros_in_python.ros2.service:find", "The services of a type."),
+        "info": MenuEntry("ros_in_python.ros2.service:info", "How many clients and servers a service has."),
+        "list": MenuEntry("ros_in_python.ros2.service:list_", "All services."),
+        "type": MenuEntry("ros_in_python.ros2.service:type_", "The type of a service."),
     },
     help="""List services, call one.
 
@@ -142,7 +142,7 @@ def call(
                 return
 
 
-def _ask(graph: Graph, client: Any, request: Any, period: float | None) -> None:
+def _ask(graph: GraphView, client: Any, request: Any, period: float | None) -> None:
     """Make one request and print the answer; with a `period` (s), return when the next one is due."""
     print(f"requester: making request: {request!r}\n", flush=True)
     start = time.monotonic()
@@ -155,7 +155,7 @@ def _ask(graph: Graph, client: Any, request: Any, period: float | None) -> None:
         graph.spin_until(lambda: False, max(0.0, start + period - time.monotonic()))
 
 
-def _wait_until_ready(graph: Graph, client: Any, name: str, wanted: str) -> None:
+def _wait_until_ready(graph: GraphView, client: Any, name: str, wanted: str) -> None:
     """Wait for the service, without a limit. Raises `CommandError` if it has another type."""
     if not client.service_is_ready():
         print("waiting for service to become available...", flush=True)
@@ -180,19 +180,19 @@ def _wait_until_ready(graph: Graph, client: Any, name: str, wanted: str) -> None
             graph.wait_until_known(node.full_name)
 
 
-def _alike(graph: Graph, name: str) -> str:
+def _alike(graph: GraphView, name: str) -> str:
     """Return the services whose names are similar to `name`, joined by 'or'; empty if there are none."""
     names = [found.name for found in graph.services() if found.name != name]
     return " or ".join(difflib.get_close_matches(name, names, n=2, cutoff=0.75))
 
 
-def _visible(graph: Graph, include_hidden: bool) -> list[Named]:
+def _visible(graph: GraphView, include_hidden: bool) -> list[TypedName]:
     from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
     return [found for found in graph.services() if include_hidden or not topic_or_service_is_hidden(found.name)]
 
 
-def _wanted(graph: Graph, service_name: str) -> Named:
+def _wanted(graph: GraphView, service_name: str) -> TypedName:
     """Return the service of this name. Raises `CommandError`, with those that there are, if it does not exist."""
     from ros_in_python.ros2.graph import absolute, seen
 

@@ -31,7 +31,7 @@ class Phase(Enum):
 
 
 @dataclass(frozen=True)
-class Goal:
+class Corner:
     """Where to be (units) and how to head (rad) at the end of a side or a corner."""
 
     x: float
@@ -49,7 +49,7 @@ class DrawSquare:
     def __init__(self) -> None:
         self.node = Node("draw_square")
         self._phase = Phase.FORWARD
-        self._goal: Goal | None = None
+        self._goal: Corner | None = None
         self._pose: Pose | None = None
         self._resting = False
         self._twists = self.node.create_publisher(Twist, "turtle1/cmd_vel", 1)
@@ -73,7 +73,7 @@ class DrawSquare:
     def _drive(self, pose: Pose) -> None:
         goal = self._goal
         if goal is None:
-            self._begin(Phase.FORWARD, Goal(*_ahead(pose), pose.theta))
+            self._begin(Phase.FORWARD, Corner(*_ahead(pose), pose.theta))
         elif self._phase in (Phase.FORWARD, Phase.TURN):
             if goal.reached(pose.x, pose.y, pose.theta):
                 self._phase = Phase.STOP_FORWARD if self._phase is Phase.FORWARD else Phase.STOP_TURN
@@ -85,11 +85,11 @@ class DrawSquare:
         else:
             self.node.get_logger().info("Reached goal")
             if self._phase is Phase.STOP_FORWARD:
-                self._begin(Phase.TURN, Goal(pose.x, pose.y, normalized(pose.theta + math.pi / 2)))
+                self._begin(Phase.TURN, Corner(pose.x, pose.y, normalized(pose.theta + math.pi / 2)))
             else:
-                self._begin(Phase.FORWARD, Goal(*_ahead(pose), pose.theta))
+                self._begin(Phase.FORWARD, Corner(*_ahead(pose), pose.theta))
 
-    def _begin(self, phase: Phase, goal: Goal) -> None:
+    def _begin(self, phase: Phase, goal: Corner) -> None:
         self._phase, self._goal = phase, goal
         self.node.get_logger().info(f"New goal [{goal.x:f} {goal.y:f}, {goal.theta:f}]")
 

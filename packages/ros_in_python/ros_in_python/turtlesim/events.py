@@ -42,7 +42,7 @@ def normalized(angle: float) -> float:
     return angle - 2 * _PI * math.floor((angle + _PI) / (2 * _PI))
 
 
-class Severity(Enum):
+class LogLevel(Enum):
     """How a log line is marked."""
 
     INFO = "info"
@@ -54,19 +54,19 @@ class Severity(Enum):
 class LogLine:
     """A line that turtlesim writes into its log."""
 
-    severity: Severity
+    severity: LogLevel
     text: str
 
 
 @dataclass(frozen=True)
-class Spawned:
+class TurtleSpawned:
     """A turtle has come into the world."""
 
     turtle: str
 
 
 @dataclass(frozen=True)
-class Killed:
+class TurtleKilled:
     """A turtle has left the world."""
 
     turtle: str
@@ -124,7 +124,7 @@ class RotationEnded:
     delta: float
 
 
-Event = LogLine | Spawned | Killed | PoseReport | ColorReport | RotationFeedback | RotationEnded
+Event = LogLine | TurtleSpawned | TurtleKilled | PoseReport | ColorReport | RotationFeedback | RotationEnded
 
 
 @dataclass(frozen=True)

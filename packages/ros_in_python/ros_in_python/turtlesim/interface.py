@@ -18,7 +18,7 @@ from ros_in_python.turtlesim.events import (
     PoseReport,
     RotationEnded,
     RotationFeedback,
-    Spawned,
+    TurtleSpawned,
 )
 from ros_in_python.turtlesim.messages import (
     Color,
@@ -143,7 +143,7 @@ class Interface:
     def _spawn(self, request: Spawn.Request, response: Spawn.Response) -> Spawn.Response:
         events = spawn(self._world, request)
         self._perform(events)
-        response.name = next((event.turtle for event in events if isinstance(event, Spawned)), "")
+        response.name = next((event.turtle for event in events if isinstance(event, TurtleSpawned)), "")
         return response
 
     def _kill(self, request: Kill.Request, response: Kill.Response) -> Kill.Response:

@@ -17,7 +17,7 @@ from matplotlib.path import Path
 from ros_in_python.animation import Cycle, coord, on_paper
 from ros_in_python.thinning import thinned
 from ros_in_python.turtlesim.events import DT, PIXELS_PER_UNIT, Pen
-from ros_in_python.turtlesim.trail import HEADING_TOLERANCE, PLACE_TOLERANCE, Sample
+from ros_in_python.turtlesim.trail import HEADING_TOLERANCE, PLACE_TOLERANCE, TrackSample
 from ros_in_python.turtlesim.trail import thinned as thinned_track
 from ros_in_python.turtlesim.world_picture import Color, TrackPicture, TurtlePicture, WorldPicture, caption
 
@@ -28,7 +28,7 @@ LONGEST_S = 30.0
 
 
 @dataclass(frozen=True)
-class Timeline:
+class Schedule:
     """Spans of ticks in which something moves, and when (s) each is shown; `faster` times as fast as it was."""
 
     spans: tuple[tuple[int, int], ...]
@@ -50,7 +50,7 @@ class Timeline:
         return time / self.faster
 
 
-def timeline(tracks: Sequence[Sequence[Sample]]) -> Timeline:
+def timeline(tracks: Sequence[Sequence[TrackSample]]) -> Schedule:
     """Return the timeline of these tracks, of which at least one moves."""
     spans = _joined(sorted(span for track in tracks for span in _moving(track)))
     starts, time = [], 0.0
@@ -59,14 +59,14 @@ def timeline(tracks: Sequence[Sequence[Sample]]) -> Timeline:
             time += min(LONGEST_WAIT_S, (first - spans[index - 1][1]) * DT)
         starts.append(time)
         time += (last - first) * DT
-    return Timeline(tuple(spans), tuple(starts), max(1, math.ceil(time / LONGEST_S)))
+    return Schedule(tuple(spans), tuple(starts), max(1, math.ceil(time / LONGEST_S)))
 
 
-def _moving(track: Sequence[Sample]) -> list[tuple[int, int]]:
+def _moving(track: Sequence[TrackSample]) -> list[tuple[int, int]]:
     return [(before.tick, after.tick) for before, after in pairwise(track) if not _still(before, after)]
 
 
-def _still(before: Sample, after: Sample) -> bool:
+def _still(before: TrackSample, after: TrackSample) -> bool:
     way = max(abs(after.x - before.x), abs(after.y - before.y))
     return way <= PLACE_TOLERANCE and abs(after.theta - before.theta) <= HEADING_TOLERANCE
 
@@ -202,7 +202,7 @@ def _few(tracks: Sequence[TrackPicture]) -> tuple[list[TrackPicture], float]:
     return few, PLACE_TOLERANCE * (1 + (2**times / 2 if times else 0))
 
 
-def _drawn(samples: Sequence[Sample]) -> list[list[Sample]]:
+def _drawn(samples: Sequence[TrackSample]) -> list[list[TrackSample]]:
     """Yield the pieces of a track that one pen drew in one go."""
     runs = []
     for pen, pairs in groupby(pairwise(samples), key=lambda pair: pair[1].pen):
@@ -212,13 +212,13 @@ def _drawn(samples: Sequence[Sample]) -> list[list[Sample]]:
     return runs
 
 
-def _pen(samples: Sequence[Sample]) -> Pen:
+def _pen(samples: Sequence[TrackSample]) -> Pen:
     pen = samples[-1].pen
     assert pen is not None
     return pen
 
 
-def _lengths(samples: Sequence[Sample]) -> list[float]:
+def _lengths(samples: Sequence[TrackSample]) -> list[float]:
     """Return how much of a trail is drawn (px) at each sample."""
     lengths = [0.0]
     for before, after in pairwise(samples):
@@ -226,14 +226,14 @@ def _lengths(samples: Sequence[Sample]) -> list[float]:
     return lengths
 
 
-def _drawing(samples: Sequence[Sample], times: Timeline) -> list[tuple[float, str]]:
+def _drawing(samples: Sequence[TrackSample], times: Schedule) -> list[tuple[float, str]]:
     """A dash as long as the trail, pushed along it."""
     whole = math.ceil(_lengths(samples)[-1]) + _pen(samples).width
     drawn = list(zip((times.shown(sample.tick) for sample in samples), _lengths(samples), strict=True))
     return [(time, f"stroke-dashoffset:{coord(whole - done)}") for time, done in thinned(drawn, 1.0)]
 
 
-def _driving(samples: Sequence[Sample], times: Timeline, size: float) -> list[tuple[float, str]]:
+def _driving(samples: Sequence[TrackSample], times: Schedule, size: float) -> list[tuple[float, str]]:
     frames = []
     for sample in samples:
         x, y = _position(sample.x, sample.y, size)
@@ -247,7 +247,7 @@ def _position(x: float, y: float, size: float) -> tuple[float, float]:
     return x * PIXELS_PER_UNIT, (size - y) * PIXELS_PER_UNIT
 
 
-def _trail(samples: Sequence[Sample], name: str, size: float) -> str:
+def _trail(samples: Sequence[TrackSample], name: str, size: float) -> str:
     pen = _pen(samples)
     dash = (
         f' class="{name}" stroke-dasharray="{coord(math.ceil(_lengths(samples)[-1]) + pen.width, 0)}"' if name else ""
@@ -312,7 +312,7 @@ def _axes(world: WorldPicture, key: str) -> str:
     return f'<g class="{key}i" font-size="14">{"".join(texts)}<text x="{_LEFT}" y="20" font-size="15">{text}</text></g>'
 
 
-def _words(world: WorldPicture, times: Timeline, error: float) -> str:
+def _words(world: WorldPicture, times: Schedule, error: float) -> str:
     pace = "at the original speed" if times.faster == 1 else f"{times.faster} times the original speed"
     return (
         f"{caption(world)}. The way is shown within {coord(error, 2)} units, {pace}, "

@@ -13,7 +13,7 @@ from rclpy.subscription import Subscription
 from std_srvs.srv import Empty, Trigger
 
 from ros_in_python.spinning import spin_until_stopped
-from ros_in_python.turtlesim.events import TICK_NS, Event, Killed, LogLine, Severity, Spawned
+from ros_in_python.turtlesim.events import TICK_NS, Event, LogLevel, LogLine, TurtleKilled, TurtleSpawned
 from ros_in_python.turtlesim.interface import DEPTH, Interface
 from ros_in_python.turtlesim.world import World
 from ros_in_python.turtlesim.world_picture import BLUE, picture_of
@@ -80,9 +80,9 @@ class Turtlesim:
         for event in events:
             if isinstance(event, LogLine):
                 self._log(event)
-            elif isinstance(event, Spawned):
+            elif isinstance(event, TurtleSpawned):
                 self._add(event.turtle)
-            elif isinstance(event, Killed):
+            elif isinstance(event, TurtleKilled):
                 self.node.destroy_subscription(self._commands.pop(event.turtle))
                 self._interface.remove(event.turtle)
             else:
@@ -90,9 +90,9 @@ class Turtlesim:
 
     def _log(self, line: LogLine) -> None:
         # rclpy wants a source line of its own for each severity.
-        if line.severity is Severity.INFO:
+        if line.severity is LogLevel.INFO:
             self.node.get_logger().info(line.text)
-        elif line.severity is Severity.WARN:
+        elif line.severity is LogLevel.WARN:
             self.node.get_logger().warning(line.text)
         else:
             self.node.get_logger().error(line.text)

@@ -137,7 +137,7 @@ def _shade(color: Color) -> tuple[float, float, float]:
 POSE = "turtlesim/msg/Pose"
 
 
-class Heard:
+class PoseListener:
     """Listens to one turtle's poses on `topic`, from the first `look` that finds it; `node` must be spun meanwhile."""
 
     def __init__(self, node: Node, topic: str) -> None:
@@ -206,7 +206,7 @@ def fetch(timeout_s: float = TIMEOUT_S, listen_s: float = LISTEN_S, node: str = 
     """
     namespace = node.rpartition("/")[0]
     with _spinning() as (executor, ears):
-        heard = Heard(ears, f"{namespace}/turtle1/pose")
+        heard = PoseListener(ears, f"{namespace}/turtle1/pose")
         try:
             client = ears.create_client(Trigger, f"{node}/picture")
         except InvalidServiceNameException as error:
@@ -258,7 +258,7 @@ def _read(node: str, answer: Trigger.Response | None) -> WorldPicture:
         raise NoPictureError(f"{node}/picture answered with something else: {error}") from error
 
 
-def _heard(heard: Heard, node: str, seconds: float) -> WorldPicture:
+def _heard(heard: PoseListener, node: str, seconds: float) -> WorldPicture:
     picture = heard.picture(f"only what was heard in {seconds:.0f} s")
     if picture is not None:
         return picture

@@ -86,7 +86,7 @@ MAX_SAMPLES, _TRACK_FORGET = 3_000, 500
 
 
 @dataclass(frozen=True)
-class Sample:
+class TrackSample:
     """A turtle at a tick (16 ms each): x and y in units, y up; theta in rad, counted on beyond a full turn.
 
     `pen` is what it drew with on its way from the sample before, None if it drew nothing.
@@ -103,7 +103,7 @@ class Track:
     """The samples of one turtle, thinned as they come: between two of them everything changes steadily."""
 
     def __init__(self, place: float = PLACE_TOLERANCE, heading: float = HEADING_TOLERANCE) -> None:
-        self.samples: list[Sample] = []
+        self.samples: list[TrackSample] = []
         #: Whether the oldest part has been forgotten because there was too much.
         self.forgotten = False
         self._door = SwingDoor([place, place, heading])
@@ -113,7 +113,7 @@ class Track:
         if self.samples:
             before = self.samples[-1].theta
             theta = before + math.remainder(theta - before, 2 * math.pi)
-        sample = Sample(tick, x, y, theta, None if pen is None or pen.off else pen)
+        sample = TrackSample(tick, x, y, theta, None if pen is None or pen.off else pen)
         values = (x, y, theta)
         if len(self.samples) > 1 and sample.pen == self.samples[-1].pen and self._door.may_end(tick, values):
             self.samples[-1] = sample
@@ -129,7 +129,7 @@ class Track:
             self.forgotten = True
 
 
-def thinned(samples: Sequence[Sample], place: float, heading: float) -> list[Sample]:
+def thinned(samples: Sequence[TrackSample], place: float, heading: float) -> list[TrackSample]:
     """Return fewer samples: between two of them, the track is within these tolerances (units, rad)."""
     track = Track(place, heading)
     for sample in samples:
@@ -137,6 +137,6 @@ def thinned(samples: Sequence[Sample], place: float, heading: float) -> list[Sam
     return track.samples
 
 
-def moves(samples: Iterable[Sample]) -> bool:
+def moves(samples: Iterable[TrackSample]) -> bool:
     """Return whether two samples differ."""
     return len({(sample.x, sample.y, sample.theta) for sample in samples}) > 1

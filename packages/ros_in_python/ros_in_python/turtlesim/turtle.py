@@ -13,13 +13,13 @@ from ros_in_python.turtlesim.events import (
     SIDE,
     ColorReport,
     Event,
+    LogLevel,
     LogLine,
     Outcome,
     Pen,
     PoseReport,
     RotationEnded,
     RotationFeedback,
-    Severity,
     normalized,
     single,
 )
@@ -98,7 +98,7 @@ class Turtle:
         """End the rotation that is under way, if any, and warn."""
         if self.rotation is None:
             return []
-        return [LogLine(Severity.WARN, why), self._end_rotation(self.rotation, Outcome.ABORTED)]
+        return [LogLine(LogLevel.WARN, why), self._end_rotation(self.rotation, Outcome.ABORTED)]
 
     def tick(self, now_ns: int, canvas: Canvas, trail: Trail) -> Iterator[Event]:
         """Move on by DT. `now_ns` gives the age of the last command."""
@@ -132,7 +132,7 @@ class Turtle:
         if rotation is None:
             return
         if rotation.cancel_requested:
-            yield LogLine(Severity.INFO, "Rotation goal canceled")
+            yield LogLine(LogLevel.INFO, "Rotation goal canceled")
             yield self._end_rotation(rotation, Outcome.CANCELED)
             self._stop()
             return
@@ -140,7 +140,7 @@ class Turtle:
         rotation.delta = single(normalized(single(rotation.start - self.theta)))
         yield RotationFeedback(self.name, rotation.goal, single(remaining))
         if abs(remaining) < _ROTATION_TOLERANCE:
-            yield LogLine(Severity.INFO, "Rotation goal completed successfully")
+            yield LogLine(LogLevel.INFO, "Rotation goal completed successfully")
             yield self._end_rotation(rotation, Outcome.SUCCEEDED)
             self._stop()
             return
@@ -163,7 +163,7 @@ class Turtle:
         self.y_down -= (cos * self._left + sin * self._forward) * DT
         if not (0 <= self.x <= SIDE and 0 <= self.y_down <= SIDE):
             wall = f"Oh no! I hit the wall! (Clamping from [x={self.x:f}, y={self.y_down:f}])"
-            yield LogLine(Severity.WARN, wall)
+            yield LogLine(LogLevel.WARN, wall)
         self.x = min(max(self.x, 0.0), SIDE)
         self.y_down = min(max(self.y_down, 0.0), SIDE)
 

@@ -6,7 +6,7 @@ import math
 import re
 
 from ros_in_python.turtlesim.canvas import Canvas
-from ros_in_python.turtlesim.events import CENTRE, SIDE, Event, Killed, LogLine, Severity, Spawned, single
+from ros_in_python.turtlesim.events import CENTRE, SIDE, Event, LogLevel, LogLine, TurtleKilled, TurtleSpawned, single
 from ros_in_python.turtlesim.trail import Track, Trail
 from ros_in_python.turtlesim.turtle import AbsoluteTeleport, RelativeTeleport, Turtle
 
@@ -43,15 +43,15 @@ class World:
             return refusal
         if name and not _NAME.fullmatch(name):
             text = f"[{name}] can't be the name of a turtle: topics begin with it. "
-            return [LogLine(Severity.ERROR, text + "Begin with a letter, and use letters, digits and _ only.")]
+            return [LogLine(LogLevel.ERROR, text + "Begin with a letter, and use letters, digits and _ only.")]
         if name in self.turtles:
             text = f"A turtle named [{name}] already exists. Choose another name, or call /kill with this one first."
-            return [LogLine(Severity.ERROR, text)]
+            return [LogLine(LogLevel.ERROR, text)]
         name = name or self._free_name()
         self.turtles[name] = Turtle(name, x, y, theta)
         self.tracks.pop(name, None)
         text = f"Spawning turtle [{name}] at x=[{x:f}], y=[{y:f}], theta=[{theta:f}]"
-        return [Spawned(name), LogLine(Severity.INFO, text), *_outside(name, x, y)]
+        return [TurtleSpawned(name), LogLine(LogLevel.INFO, text), *_outside(name, x, y)]
 
     def _free_name(self) -> str:
         while True:
@@ -64,19 +64,19 @@ class World:
         if name not in self.turtles:
             there = ", ".join(sorted(self.turtles)) or "none"
             text = f"Tried to kill turtle [{name}], which does not exist. Turtles that do: {there}."
-            return [LogLine(Severity.ERROR, text)]
+            return [LogLine(LogLevel.ERROR, text)]
         events = self.turtles[name].abort_rotation(f"Turtle [{name}] is gone. Aborting its rotation goal")
         del self.turtles[name]
-        return [*events, Killed(name)]
+        return [*events, TurtleKilled(name)]
 
     def clear(self) -> list[Event]:
         """Wipe what was drawn; the turtles stay as they are."""
         self._wipe()
-        return [LogLine(Severity.INFO, "Clearing turtlesim.")]
+        return [LogLine(LogLevel.INFO, "Clearing turtlesim.")]
 
     def reset(self) -> list[Event]:
         """Begin again with turtle1 alone."""
-        events: list[Event] = [LogLine(Severity.INFO, "Resetting turtlesim.")]
+        events: list[Event] = [LogLine(LogLevel.INFO, "Resetting turtlesim.")]
         for name in sorted(self.turtles):
             events += self.kill(name)
         self._spawned = 0
@@ -154,7 +154,7 @@ def _outside(turtle: str, x: float, y: float) -> list[Event]:
     if 0 <= x <= SIDE and 0 <= y <= SIDE:
         return []
     text = f"[{turtle}] stops at the edge: x={x:g}, y={y:g} is outside. Choose both between 0 and {SIDE:.2f}."
-    return [LogLine(Severity.WARN, text)]
+    return [LogLine(LogLevel.WARN, text)]
 
 
 def _refusal(what: str, *numbers: float) -> list[Event]:
@@ -164,7 +164,7 @@ def _refusal(what: str, *numbers: float) -> list[Event]:
     text = ", ".join(f"{number:f}" for number in numbers)
     return [
         LogLine(
-            Severity.WARN,
+            LogLevel.WARN,
             f"Ignoring a request for {what} with numbers that are not finite: {text}. Pass finite numbers.",
         )
     ]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ros_in_python.turtlesim.events import SIDE, Pen
-from ros_in_python.turtlesim.trail import Point, Sample, Stroke, Track, moves
+from ros_in_python.turtlesim.trail import Point, Stroke, Track, TrackSample, moves
 from ros_in_python.turtlesim.world import World
 
 Color = tuple[int, int, int]
@@ -50,7 +50,7 @@ class TrackPicture:
     """The path of `turtle` over time. `whole` is False if its oldest part was dropped."""
 
     turtle: str
-    samples: tuple[Sample, ...]
+    samples: tuple[TrackSample, ...]
     whole: bool
 
 
@@ -199,7 +199,7 @@ def _track(text: dict[str, Any]) -> TrackPicture:
                 f"not a picture of a turtles' world: {[tick, x, y, theta, pen]!r} is not a sample of a track"
             )
         drawn = None if pen is None else pens[pen]
-        samples.append(Sample(tick, _number(x), _number(y), _number(theta), drawn))
+        samples.append(TrackSample(tick, _number(x), _number(y), _number(theta), drawn))
     return TrackPicture(str(text["turtle"]), tuple(samples), bool(text["whole"]))
 
 

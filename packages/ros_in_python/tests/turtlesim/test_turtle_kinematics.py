@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from turtle_oracle import OracleTurtle, W, apart, circle
 
-from ros_in_python.turtlesim.events import Event, LogLine, PoseReport, Severity
+from ros_in_python.turtlesim.events import Event, LogLevel, LogLine, PoseReport
 from ros_in_python.turtlesim.world import World
 
 TICK_MS = 16
@@ -49,7 +49,7 @@ def pose_of(events: list[Event], turtle: str = "turtle1") -> PoseReport:
 
 
 def warnings(events: list[Event]) -> list[str]:
-    return [each.text for each in events if isinstance(each, LogLine) and each.severity is Severity.WARN]
+    return [each.text for each in events if isinstance(each, LogLine) and each.severity is LogLevel.WARN]
 
 
 # What happens, and at which tick: commands (forward, turn), sideways ones (forward, left, turn), jumps, rotations.

@@ -9,14 +9,14 @@ import pytest
 from ros_in_python.turtlesim.events import (
     TICK_NS,
     Event,
-    Killed,
     LogLine,
     Outcome,
     Pen,
     PoseReport,
     RotationEnded,
     RotationFeedback,
-    Spawned,
+    TurtleKilled,
+    TurtleSpawned,
 )
 from ros_in_python.turtlesim.world import World
 
@@ -51,26 +51,26 @@ def tick_until_rotated(world: World, ticks: int = 500) -> tuple[RotationEnded, l
 def test_the_start_tells_where_turtle1_is() -> None:
     events = World().start()
     message = "Spawning turtle [turtle1] at x=[5.544445], y=[5.544445], theta=[0.000000]"
-    assert Spawned("turtle1") in events
+    assert TurtleSpawned("turtle1") in events
     assert lines(events) == [("info", message)]
 
 
 def test_turtles_without_a_name_are_numbered_and_names_in_use_are_skipped(world: World) -> None:
     world.spawn(1, 1, 0, "turtle3")
-    named = [event.turtle for _ in range(3) for event in world.spawn(1, 1, 0) if isinstance(event, Spawned)]
+    named = [event.turtle for _ in range(3) for event in world.spawn(1, 1, 0) if isinstance(event, TurtleSpawned)]
     assert named == ["turtle2", "turtle4", "turtle5"]
 
 
 def test_the_number_of_a_killed_turtle_is_not_used_again(world: World) -> None:
     world.spawn(1, 1, 0)
-    assert world.kill("turtle2") == [Killed("turtle2")]
-    assert Spawned("turtle3") in world.spawn(1, 1, 0)
+    assert world.kill("turtle2") == [TurtleKilled("turtle2")]
+    assert TurtleSpawned("turtle3") in world.spawn(1, 1, 0)
 
 
 def test_a_name_in_use_is_an_error_and_spawns_nothing(world: World) -> None:
     message = "A turtle named [turtle1] already exists. Choose another name, or call /kill with this one first."
     assert lines(world.spawn(1, 1, 0, "turtle1")) == [("error", message)]
-    assert not any(isinstance(event, Spawned) for event in world.spawn(1, 1, 0, "turtle1"))
+    assert not any(isinstance(event, TurtleSpawned) for event in world.spawn(1, 1, 0, "turtle1"))
 
 
 @pytest.mark.parametrize("name", ["two words", "9lives", "a//b", "a/", "ü", "x" * 200, "$x$", "a\n"])
@@ -115,11 +115,12 @@ def test_reset_begins_again_with_turtle1_alone_and_numbers_anew(world: World) ->
     assert world.trail.strokes
     events = world.reset()
     assert lines(events)[0] == ("info", "Resetting turtlesim.")
-    assert [event for event in events if isinstance(event, Killed)] == [Killed("turtle1"), Killed("turtle2")]
-    assert Spawned("turtle1") in events
+    killed = [event for event in events if isinstance(event, TurtleKilled)]
+    assert killed == [TurtleKilled("turtle1"), TurtleKilled("turtle2")]
+    assert TurtleSpawned("turtle1") in events
     assert world.turtles["turtle1"].pen == Pen(179, 184, 255, 3)
     assert world.trail.strokes == []
-    assert Spawned("turtle2") in world.spawn(1, 1, 0)
+    assert TurtleSpawned("turtle2") in world.spawn(1, 1, 0)
 
 
 def test_clear_wipes_the_trail_and_leaves_the_turtles(world: World) -> None:
@@ -213,4 +214,4 @@ def test_killing_a_turtle_ends_its_rotation(world: World) -> None:
     world.rotate("turtle1", 1, 3.0)
     events = world.kill("turtle1")
     assert [end.outcome for end in ends(events)] == [Outcome.ABORTED]
-    assert events[-1] == Killed("turtle1")
+    assert events[-1] == TurtleKilled("turtle1")

@@ -17,7 +17,7 @@ from ros_in_python.ros2.opening import open_graph
 from ros_in_python.ros2.topic.selection import check_path, field, field_path, filter_option
 
 if TYPE_CHECKING:
-    from ros_in_python.ros2.graph import Graph
+    from ros_in_python.ros2.graph import GraphView
 
 LENGTH = 128
 
@@ -76,7 +76,7 @@ def echo(topic_name: str, message_type: str | None, **options: Any) -> None:
 
 
 def _listen(
-    graph: Graph, topic: str, message: Any, path: Sequence[Step], profile: Any, options: dict[str, Any]
+    graph: GraphView, topic: str, message: Any, path: Sequence[Step], profile: Any, options: dict[str, Any]
 ) -> None:
     from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
 

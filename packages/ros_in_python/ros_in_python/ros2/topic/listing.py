@@ -11,7 +11,7 @@ from ros_in_python.ros2.cli import CONTEXT, CommandError, discovery_options
 from ros_in_python.ros2.opening import open_graph
 
 if TYPE_CHECKING:
-    from ros_in_python.ros2.graph import Graph
+    from ros_in_python.ros2.graph import GraphView
 
 
 @click.command(name="list", context_settings=CONTEXT)
@@ -133,7 +133,7 @@ def type_(topic_name: str, spin_time: float | None, use_sim_time: bool) -> None:
         click.echo(kind)
 
 
-def _types(graph: Graph, name: str, written: str) -> tuple[str, ...]:
+def _types(graph: GraphView, name: str, written: str) -> tuple[str, ...]:
     """Return the types of the topic `name`, once it exists. Raises `CommandError`, which calls it `written`."""
     from ros_in_python.ros2.graph import seen
 

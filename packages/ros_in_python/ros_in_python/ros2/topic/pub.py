@@ -12,7 +12,7 @@ from ros_in_python.ros2.cli import CONTEXT, CommandError, discovery_options
 from ros_in_python.ros2.opening import open_graph
 
 if TYPE_CHECKING:
-    from ros_in_python.ros2.graph import Graph
+    from ros_in_python.ros2.graph import GraphView
 
 #: Seconds between two lines that say what the command is waiting for.
 REPORT_EVERY_S = 1.0
@@ -85,7 +85,7 @@ def pub(topic_name: str, message_type: str, values: str, **options: Any) -> None
         _publish(graph, publisher, message, setters, times, options)
 
 
-def _wait_for_subscriptions(graph: Graph, publisher: Any, count: int, most: float | None) -> None:
+def _wait_for_subscriptions(graph: GraphView, publisher: Any, count: int, most: float | None) -> None:
     start = time.monotonic()
     while publisher.get_subscription_count() < count:
         print(f"Waiting for at least {count} matching subscription(s)...", flush=True)
@@ -102,7 +102,7 @@ def _wait_for_subscriptions(graph: Graph, publisher: Any, count: int, most: floa
 
 
 def _publish(
-    graph: Graph, publisher: Any, message: Any, setters: list[Any], times: int, options: dict[str, Any]
+    graph: GraphView, publisher: Any, message: Any, setters: list[Any], times: int, options: dict[str, Any]
 ) -> None:
     from rclpy.duration import Duration
 

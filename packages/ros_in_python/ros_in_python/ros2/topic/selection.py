@@ -12,7 +12,7 @@ from ros_in_python.ros2 import interfaces
 from ros_in_python.ros2.cli import CommandError
 
 if TYPE_CHECKING:
-    from ros_in_python.ros2.graph import Graph
+    from ros_in_python.ros2.graph import GraphView
 
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -93,7 +93,7 @@ def field(message: Any, path: Sequence[Step]) -> Any:
         raise CommandError(f"Invalid field '{written(path)}': {error}") from None
 
 
-def type_on_graph(graph: Graph, topic: str) -> Any | None:
+def type_on_graph(graph: GraphView, topic: str) -> Any | None:
     """Return the class of a topic's messages as the graph has it now, None if there is no such topic.
 
     Raises `CommandError` if its ends disagree about the type, or where the type is not installed.
@@ -107,7 +107,7 @@ def type_on_graph(graph: Graph, topic: str) -> Any | None:
     return interfaces.message_class(types[0]) if types else None
 
 
-def wait_for_type(graph: Graph, topic: str) -> Any:
+def wait_for_type(graph: GraphView, topic: str) -> Any:
     """Return the class of a topic's messages; if there is no such topic, warn and wait for it, without a limit."""
     graph.settle(lambda: bool(graph.topic_types(topic)))
 
@@ -120,7 +120,7 @@ def wait_for_type(graph: Graph, topic: str) -> Any:
     return message
 
 
-def type_or_refusal(graph: Graph, topic: str) -> Any:
+def type_or_refusal(graph: GraphView, topic: str) -> Any:
     """Return the class of a topic's messages. Raises `CommandError`, after the real one's warning, if there is none."""
     from ros_in_python.ros2.graph import seen
 
