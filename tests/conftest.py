@@ -18,6 +18,7 @@ from fixtures import ros_domain as ros_domain
 from hypothesis import settings
 from playwright.sync_api import Browser
 from process_mark import ProcessMark
+from tree import PYTHONPATH, ROOT
 from workers import ByPiece
 from xdist.remote import Producer
 
@@ -25,8 +26,6 @@ from grader.exercise import load
 from grader.workers import WorkerPool
 from spinbook.course.course import find_course
 from spinbook.interfaces.compiling import compile_course
-
-ROOT = Path(__file__).parents[1]
 
 # What is collected and imported stays to the end: looking for garbage in it would be a fifth of the time for it, in
 # each of pytest-xdist's processes.
@@ -39,6 +38,8 @@ def pytest_collection_finish() -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    if PYTHONPATH:
+        os.environ["PYTHONPATH"] = PYTHONPATH
     # Started in a shell's background, tests would make every program that they start ignore Ctrl-C.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     # numpy, which ROS's message classes import, starts a thread per CPU, which computes for 0.1 s before it waits: in

@@ -26,6 +26,8 @@ from functools import cache
 from pathlib import Path
 from typing import IO, Any
 
+from tree import PYTHONPATH
+
 _GRADING = ("grader.classroom.class_run", "grader.grading.grading", "grader.report.terminal")
 #: What commands import only when they are under way, by their verb or module.
 LATER = {
@@ -107,6 +109,7 @@ class PreparedPython:
         self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         # What one test has in its environment is not for the others.
         env = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHONPATH", "SPINBOOK_"))}
+        env["PYTHONPATH"] = PYTHONPATH
         env["OPENBLAS_NUM_THREADS"] = "1"  # numpy would start a thread
         with theirs:
             argv = [sys.executable, __file__, str(theirs.fileno())]
