@@ -69,6 +69,8 @@ def show_result(console: Console, entries: Sequence[Entry], unscored: Sequence[E
             "that you downloaded from it, or give its grading worksheet with --roster.",
             "dim",
         )
+    for entry in (entry for entry in unscored if entry.grade.outcome == "undecided"):
+        say(console, f"needs your decision: {entry.student.id}: {entry.grade.message}", "yellow")
     faults = [entry for entry in unscored if entry.grade.outcome != "undecided"]
     for entry in faults:
         say(

@@ -175,7 +175,9 @@ def _finish(marking: ClassGrading, grading: Grading, collected: Submissions, con
     if published:
         say(console, f"One zip per student: {published}")
     say(console, f"Open {folder / 'index.html'}.")
-    return FAULTS if any(entry.grade.outcome == "host-error" for entry in unscored) else DONE
+    if any(entry.grade.outcome == "host-error" for entry in unscored):
+        return FAULTS
+    return QUESTIONS if unscored else DONE
 
 
 def _read(collected: Submissions, exercise: Exercise) -> tuple[dict[str, Tries], list[tuple[HandedIn, str]]]:

@@ -258,7 +258,7 @@ def _failures(mistake: Mistake, grading: Grading) -> dict[str, Failure]:
         pass
     grade = grading.grade(of_source(f"{mistake.name}.py", code, exercise))
     failures = failures_of(grade)
-    if grade.outcome != "host-error":
+    if grade.has_score:
         with contextlib.suppress(OSError):  # if nothing can be stored, it is graded again each time
             write_if_changed(
                 kept,

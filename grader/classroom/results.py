@@ -381,7 +381,9 @@ class ClassGrading:
         return entry
 
     def _key(self, tries: Tries) -> str:
-        return submission_key(self.markers.key, " ".join(sorted(f"{one.digest} {one.warning}" for one in tries)))
+        return submission_key(
+            self.markers.key, " ".join(sorted(f"{one.digest} {one.warning} {one.notes}" for one in tries))
+        )
 
 
 def _of_file(of: Entry, handed_in: HandedIn) -> Entry:

@@ -34,7 +34,7 @@ def main(folder: Path, repository: Path, isolation: str = "") -> int:
         grade = _grade(exercise, repository, isolation)
     except (ExerciseError, SandboxUnavailable, HostFault) as error:
         return _fault(str(error))
-    if grade.outcome == "host-error":
+    if not grade.has_score:
         return _fault(grade.message)
     text = summary(grade, exercise.title)
     write_if_changed(

@@ -72,7 +72,7 @@ def _entry(exercise: Exercise, root: Path, isolation: str) -> Entry:
     with WorkerPool() as workers:
         options = Options(Isolation(isolation) if isolation else None)
         grade = grading_of(exercise, options, workers).grade(handed_in)
-    if grade.outcome == "host-error":
+    if not grade.has_score:
         print(grade.message)
     student, submitted = _metadata(root / "submission_metadata.json")
     return Entry(student, Path(handed_in.name).name, grade, submitted, submitted_from="Gradescope")

@@ -12,6 +12,7 @@ from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
 from grader.recording.recording import Ending, Recording
 from grader.sandbox.program import Isolation, Limits
+from grader.submission.python_version import newer_name
 
 #: What happened. `host-error` is not the student's fault: it gives no score and has to be graded again. `missing` is a
 #: student who handed in nothing; `undecided` waits for the instructor to say which submission counts.
@@ -113,6 +114,8 @@ def message_of(ending: Ending, exercise: Exercise) -> str:
     for exception, advice in exercise.advice.items():
         if re.search(rf"\b{re.escape(exception)}\b", message):
             return f"{message} {advice}"
+    if newer := newer_name(message):
+        return f"{message} {newer}"
     if missing := MISSING.search(message):
         return (
             f"{message} The module {missing[1]} is not available here. Available are Python's own modules, {AVAILABLE}."

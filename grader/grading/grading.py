@@ -32,6 +32,8 @@ class Grading:
     def grade(self, submission: Submission) -> Grade:
         """Return the grade of one submission; a fault of the machine or ours becomes a `host-error`, never a score."""
         began = time.monotonic()
+        if submission.question:
+            return self._grade(submission, {}, (), "undecided", submission.question, began)
         try:
             recordings = self._recordings(submission)
         except HostFault as fault:
@@ -75,15 +77,19 @@ class Grading:
         began: float,
     ) -> Grade:
         first = recordings.get(self.runner.scenarios[0].name)
-        host = outcome == "host-error"
+        none = outcome in ("host-error", "undecided")
+        score = 0.0 if none else sum(verdict.earned for verdict in verdicts)
+        points = sum(verdict.points for verdict in verdicts) or self.runner.exercise.points
+        # A newer Python is worth a word only if something is wrong.
+        newer = "" if outcome == "graded" and score == points else submission.newer_python
         return Grade(
             exercise=self.runner.exercise.name,
             submission=submission.name,
             digest=submission.digest,
             outcome=outcome,
-            message=" ".join(filter(None, (submission.warning, message))),
-            score=0.0 if host else sum(verdict.earned for verdict in verdicts),
-            points=sum(verdict.points for verdict in verdicts) or self.runner.exercise.points,
+            message=" ".join(filter(None, (submission.warning, message, *submission.notes, newer))),
+            score=score,
+            points=points,
             verdicts=verdicts,
             isolation=str(self.runner.isolation),
             seed=self.runner.options.seed,

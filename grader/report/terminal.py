@@ -57,7 +57,7 @@ def show(grade: Grade, exercise: Exercise, console: Console, verbose: bool = Fal
         console.print(Text(printable(f"{grade.outcome}: {grade.message}"), style="red"), soft_wrap=True)
     for verdict in grade.verdicts:
         _show_verdict(verdict, grade, console)
-    if grade.outcome != "host-error":
+    if grade.has_score:
         style = "bold green" if grade.full_marks else "bold"
         if grade.self_check:
             first, *rest = self_check_lines(grade)

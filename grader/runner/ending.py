@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import re
+from collections.abc import Mapping
 
 from grader.recording.recording import Ending
 from grader.runner.budget import Allowance, Budget, Gone
@@ -56,14 +57,14 @@ def _of_signal(signal: int, log: str) -> str:
     return f"it was killed by signal {signal}."
 
 
-def of_exit(exit_: Exit, log: str, file_name: str, source: str) -> tuple[str, int | None]:
+def of_exit(exit_: Exit, log: str, sources: Mapping[str, str]) -> tuple[str, int | None]:
     """Return why a program ended, as a clause that follows "Your program ended: ", and the line to blame."""
     if exit_.limit:
         return f"{LIMITS.get(exit_.limit, exit_.limit)}.", None
-    last = last_error(log, file_name, source)
+    last = last_error(log, sources)
     if last and last.error:
         advice = _advice(last)
-        place = f" in line {last.line}" if last.line else ""
+        place = f" in {last.place}" if last.place else ""
         text = f": {last.text}" if last.text else ""
         return f"{last.error}{place}{text}{advice}", last.line
     if exit_.signal:
@@ -77,11 +78,11 @@ def of_exit(exit_: Exit, log: str, file_name: str, source: str) -> tuple[str, in
 MAY_TAKE_S = 2.0
 
 
-def cut_short(student: Student, file_name: str, source: str, met: bool, when: str) -> Ending:
+def cut_short(student: Student, sources: Mapping[str, str], met: bool, when: str) -> Ending:
     """Return the ending of a program that ended by itself, `when`; `met` is whether it had become ready."""
     exit_ = student.poll() or student.kill()
     log = student.output().text
-    why, line = of_exit(exit_, log, file_name, source)
+    why, line = of_exit(exit_, log, sources)
     if exit_.limit:
         return Ending("over-limit", f"Your program was ended: {why}", line)
     if not met:
@@ -94,7 +95,7 @@ def cut_short(student: Student, file_name: str, source: str, met: bool, when: st
 _ALLOWANCE = Allowance("", "", MAY_TAKE_S, MAY_TAKE_S)
 
 
-def interrupted(hub: Hub, budget: Budget, student: Student, file_name: str, source: str) -> Ending:
+def interrupted(hub: Hub, budget: Budget, student: Student, sources: Mapping[str, str]) -> Ending:
     """Return how the program ends. It has 2 s, of CPU time and blocked time together.
 
     The signal wakes the program in ways that the hub does not see. So the computer's clock goes on only while none of
@@ -106,7 +107,7 @@ def interrupted(hub: Hub, budget: Budget, student: Student, file_name: str, sour
     budget.begin(_ALLOWANCE)
     if not _ends(hub, budget):
         return Ending("completed", interrupted=True, ended_in_time=False)
-    error = error_on_interrupt(before, student.output().text, file_name, source)
+    error = error_on_interrupt(before, student.output().text, sources)
     return Ending("completed", interrupted=True, traceback=error)
 
 

@@ -159,7 +159,7 @@ class Run:
         }
 
     def _ending(self) -> Ending:
-        task, program = self._task, (self._task.file_name, self._task.source)
+        task, sources = self._task, self._task.sources
         try:
             self._begin()
             began = time.monotonic()
@@ -169,7 +169,7 @@ class Run:
                 self._lockstep()
             self._lockstep_seconds = time.monotonic() - began
             if task.scenario.interrupt:
-                return interrupted(self._hub, self._budget, self._student, *program)
+                return interrupted(self._hub, self._budget, self._student, sources)
             return Ending("completed")
         except Stopped as stopped:
             return Ending(stopped.outcome, stopped.message)
@@ -177,9 +177,7 @@ class Run:
             return Ending("over-limit", message_of_violation(violation))
         except Gone:
             self._check_that_it_was_the_program()
-            if self._team and self._team.ended:
-                program = (self._team.ended, task.source)
-            return cut_short(self._student, *program, self._is_up, self._when() if self._is_up else "before the start")
+            return cut_short(self._student, sources, self._is_up, self._when() if self._is_up else "before the start")
 
     def _when(self) -> str:
         """Return the current moment, in words."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from grader.exercise.exercise import Exercise
@@ -50,8 +50,8 @@ class Student(Protocol):
 class Task:
     """One program, to be run through one scenario.
 
-    `file_name` and `source` are the student's, to name lines in messages. `pace` is 1.0 for real time, and None for as
-    fast as possible.
+    `file_name` and `source` are the student's, and `files` all files of several, to name lines in messages. `pace` is
+    1.0 for real time, and None for as fast as possible.
     """
 
     exercise: Exercise
@@ -59,6 +59,12 @@ class Task:
     file_name: str
     source: str
     pace: float | None = None
+    files: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def sources(self) -> Mapping[str, str]:
+        """The student's files: path -> text."""
+        return self.files or {self.file_name: self.source}
 
 
 class Stopped(Exception):

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+
+from grader.submission.places import place_of
 
 HEADER = "Traceback (most recent call last):"
 
@@ -13,6 +15,9 @@ _ERROR = re.compile(r"[A-Za-z_][\w.]*(:|$)")
 
 #: An error's last line is as long as the student likes; more of it than this helps nobody.
 _LONGEST_ERROR = 500
+
+#: In how many folders inside each other a student's file can be, for its lines to be named.
+_DEEPEST = 20
 
 #: How the traceback of an exception begins that nothing has caught in the main thread: in the module itself.
 _OF_THE_PROGRAM = re.compile(re.escape(HEADER) + r'\n[ \t]*File "[^"]+", line \d{1,9}, in <module>\n')
@@ -24,9 +29,11 @@ _OF_A_SYNTAX_ERROR = '  File "'
 @dataclass(frozen=True)
 class LastError:
     """The error that ended a program: its last line, such as `ZeroDivisionError: float division by zero`, and the line
-    of the student's file that raised it, or from which it was called, if there is one.
+    of the student's `file` that raised it, or from which it was called, if there is one.
 
-    `raised_there` is whether this line itself raised it, and `traceback` is the whole text, up to the error.
+    `place` is both in words: "line 5", with the file if there are several, and with the notebook's cell if the program
+    has several. `raised_there` is whether this line itself raised it, and `traceback` is the whole text, up to the
+    error.
     """
 
     error: str
@@ -34,10 +41,12 @@ class LastError:
     text: str = ""
     raised_there: bool = False
     traceback: str = ""
+    file: str = ""
+    place: str = ""
 
 
-def last_error(log: str, file_name: str, source: str = "") -> LastError | None:
-    """Return the last error in `log`, or None if there is none.
+def last_error(log: str, sources: Mapping[str, str]) -> LastError | None:
+    """Return the last error in `log`, or None if there is none. `sources` are the student's files: path -> text.
 
     An error of the program itself comes before one that another thread printed after it, as rclpy does for the goal
     that was under way.
@@ -48,9 +57,26 @@ def last_error(log: str, file_name: str, source: str = "") -> LastError | None:
     rows = list(_traceback(log[start:]))
     error = _shortened(rows[-1].strip()) if _ERROR.match(rows[-1]) else ""
     block = "\n".join(rows)
-    frames = [(m["file"].rpartition("/")[2] == file_name, int(m["line"])) for m in _FRAME.finditer(block)]
-    *_, line = (None, *(number for of_student, number in frames if of_student))
-    return LastError(error, line, _row(source, line), frames[-1:] == [(True, line)], block)
+    frames = [(_own(m["file"], sources), int(m["line"])) for m in _FRAME.finditer(block)]
+    own = [frame for frame in frames if frame[0]]
+    if not own:
+        return LastError(error, None, traceback=block)
+    file, line = own[-1]
+    row = _row(sources[file], line)
+    return LastError(error, line, row, frames[-1:] == [(file, line)], block, file, _place(file, line, sources))
+
+
+def _own(path: str, sources: Mapping[str, str]) -> str:
+    """Return which of the student's files this is; "" if it is none of them."""
+    parts = path.rsplit("/", _DEEPEST)
+    return next((file for i in range(len(parts)) if (file := "/".join(parts[i:])) in sources), "")
+
+
+def _place(file: str, line: int, sources: Mapping[str, str]) -> str:
+    cell, own_line = place_of(sources[file], line)
+    if cell:
+        return f"line {own_line} of code cell {cell}"
+    return f"line {line} of {file}" if len(sources) > 1 else f"line {line}"
 
 
 def _beginning(log: str) -> int:
@@ -74,20 +100,20 @@ def _shortened(error: str) -> str:
     return error if len(error) <= _LONGEST_ERROR else f"{error[:_LONGEST_ERROR]}…"
 
 
-def _row(source: str, line: int | None) -> str:
+def _row(source: str, line: int) -> str:
     rows = source.splitlines()
-    return rows[line - 1].strip() if line and line <= len(rows) else ""
+    return rows[line - 1].strip() if 0 < line <= len(rows) else ""
 
 
-def error_on_interrupt(before: str, log: str, file_name: str, source: str) -> str:
+def error_on_interrupt(before: str, log: str, sources: Mapping[str, str]) -> str:
     """Return the last line of the error that a program printed after it was interrupted; "" if it printed none.
 
     `before` is what it had printed until then, and `log` is everything.
     """
     if log.count(HEADER) <= before.count(HEADER):
         return ""
-    last = last_error(log.removeprefix(before), file_name)
-    return "" if last is None or _is_rclpys_own(last, source) else last.error
+    last = last_error(log.removeprefix(before), sources)
+    return "" if last is None or _is_rclpys_own(last, sources.get(last.file, "")) else last.error
 
 
 def _is_rclpys_own(last: LastError, source: str) -> bool:

@@ -136,6 +136,16 @@ class _MountPlan:
         self.steps.append(Mount(action, path, content, size))
 
 
+def write_file(folder: Path, name: str, content: bytes) -> None:
+    """Write a submission's file, which everybody may read, and the folders that it is in."""
+    path = folder / name
+    for parent in reversed(list(path.relative_to(folder).parents)[:-1]):
+        (folder / parent).mkdir(exist_ok=True)
+        (folder / parent).chmod(0o755)
+    path.write_bytes(content)
+    path.chmod(0o444)
+
+
 def environment(program: Program, paths: Paths) -> dict[str, str]:
     """Return a program's whole environment: what Python and ROS 2 need, its private folders, and what it was given."""
     needed = {name: os.environ[name] for name in (*RUNTIME_VARIABLES, "LD_PRELOAD") if name in os.environ}

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from grader.sandbox import seccomp, syscalls
-from grader.sandbox.filesystem import USER_ID, Mount, dedicated_user
+from grader.sandbox.filesystem import USER_ID, Mount, dedicated_user, write_file
 from grader.sandbox.program import SUBMISSION
 
 
@@ -69,12 +69,10 @@ class Namespaces:
 
 def write_files(files: Mapping[str, bytes]) -> None:
     """Write the submission's files into a read-only tmpfs at /submission. Called in the sandbox's mount namespace."""
-    size = sum(len(content) // 4096 + 1 for content in files.values()) * 4096 + 65536
+    size = sum(len(content) // 4096 + 3 for content in files.values()) * 4096 + 65536
     syscalls.mount("tmpfs", SUBMISSION, "tmpfs", syscalls.MS_NOSUID | syscalls.MS_NODEV, f"mode=0755,size={size}")
     for name, content in files.items():
-        path = Path(SUBMISSION, name)
-        path.write_bytes(content)
-        path.chmod(0o444)
+        write_file(Path(SUBMISSION), name, content)
     syscalls.make_read_only(SUBMISSION)
 
 

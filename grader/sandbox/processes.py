@@ -18,6 +18,7 @@ from pathlib import Path
 
 import psutil
 
+from grader.sandbox.filesystem import write_file
 from grader.sandbox.program import Paths
 
 # Source: proc(5). Processes that end during the look count nothing.
@@ -154,6 +155,5 @@ def make_paths(files: Mapping[str, bytes], owner: int | None, hub: Path | None) 
         if owner is not None and folder is not submission:
             os.chown(folder, owner, owner)
     for name, content in files.items():
-        (submission / name).write_bytes(content)
-        (submission / name).chmod(0o444)
+        write_file(submission, name, content)
     return Paths(str(submission), str(home), str(temporary), str(hub) if hub else None)

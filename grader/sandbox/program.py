@@ -74,11 +74,11 @@ class Program:
         """Refuse what could leave the submission's folder or does not exist in it.
 
         Raises:
-            ValueError: for a file name with a folder or a NUL in it, or a main file that does not exist.
+            ValueError: for a path that could lead outside or has a NUL in it, or a main file that does not exist.
         """
         for name in self.files:
-            if name in ("", ".", "..") or "/" in name or "\0" in name:
-                raise ValueError(f"{name!r} is not a plain file name")
+            if any(part in ("", ".", "..") for part in name.split("/")) or "\0" in name:
+                raise ValueError(f"{name!r} is not a path inside the submission")
         absolute = PurePosixPath(self.main).is_absolute()
         if not absolute and self.main not in self.files:
             raise ValueError(f"the main file {self.main!r} is not among the files: {', '.join(self.files) or 'none'}")

@@ -1,11 +1,10 @@
-"""Several programs in one text: how a submission of several files is stored, shown and numbered by lines."""
+"""Several programs in one text: each begins with a line `# file: NAME.py`."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping
 
-#: Several programs in one file: each begins with such a line.
 _BEGIN = re.compile(r"# file: (?P<name>[a-z_][a-z0-9_]*\.py)\s*")
 
 #: Each is as long as the whole, by its empty lines.

@@ -11,41 +11,36 @@ import io
 import json
 import stat
 import zipfile
-import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import PurePosixPath
 from typing import Any
+
+from grader.submission.archive import Contents, unpacked
 
 FORMAT = "spinbook-submission 1"
 RECORD = "submission.json"
 
-#: The limits of an upload. A zip's own figures are not trusted: reading ends when these limits are reached.
-MOST_FILES = 50
-MOST_BYTES = 4_000_000
-
 #: The same content gives the same bytes: every entry has this date, the earliest that a zip can name.
 _DATE = (1980, 1, 1, 0, 0, 0)
-
-
-ADVICE = "Hand in the file that `spinbook submit` writes."
-
-
-class NoUpload(Exception):
-    """Raised when a file is not a readable zip, or contains what no upload contains; tells the student why."""
 
 
 @dataclass(frozen=True)
 class Upload:
     """An upload, read. `faults` says what in it has changed since it was written, and is empty if everything matches.
 
-    `files` are the contents by name, without the record; what could not be read is left out. `record` is empty if there
-    is none.
+    `contents` are its files without the record. `record` is empty if it can't be read, or if there is none: then it was
+    packed by hand, and not by `spinbook submit`.
     """
 
     record: dict[str, Any]
-    files: dict[str, bytes]
+    contents: Contents
     faults: tuple[str, ...]
+    has_record: bool = True
+
+    @property
+    def files(self) -> dict[str, bytes]:
+        """The contents by name; what could not be read is left out."""
+        return self.contents.files
 
 
 def pack(record: Mapping[str, Any], files: Mapping[str, bytes]) -> bytes:
@@ -65,71 +60,25 @@ def pack(record: Mapping[str, Any], files: Mapping[str, bytes]) -> bytes:
 
 
 def unpack(content: bytes) -> Upload:
-    """What is in an upload. Nothing is written to disk. Raises `NoUpload`."""
-    files, damaged = _entries(content)
-    faults = [f"{name} is damaged" for name in damaged]
-    record: dict[str, Any] = {}
-    if RECORD in files:
-        record = _record(files.pop(RECORD))
-        faults += _differences(record, files, damaged)
-    elif RECORD not in damaged:
-        faults.append(f"{RECORD} is missing: `spinbook submit` has not written this file")
-    return Upload(record, files, tuple(faults))
+    """What is in an upload. Nothing is written to disk. Raises `Unreadable`."""
+    contents = unpacked(content)
+    # Some platforms put a folder around what was handed in.
+    place = min((name for name in contents.files if name.rpartition("/")[2] == RECORD), key=len, default="")
+    folder = place[: -len(RECORD)]
+    packed = contents.files.pop(place, None)
+    contents.files = {name.removeprefix(folder): data for name, data in contents.files.items()}
+    contents.damaged = [name.removeprefix(folder) for name in contents.damaged]
+    faults = [f"{name} is damaged" for name in contents.damaged]
+    if packed is None:
+        return Upload({}, contents, tuple(faults), False)
+    record = _record(packed)
+    return Upload(record, contents, (*faults, *_differences(record, contents.files, contents.damaged)))
 
 
 def record_digest(record: Mapping[str, Any]) -> str:
     """SHA-256 of a record without its `digest`. With the digests of the files in it, it covers everything."""
     kept = {key: value for key, value in record.items() if key != "digest"}
     return _sha256(json.dumps(kept, sort_keys=True, separators=(",", ":")).encode())
-
-
-def _entries(content: bytes) -> tuple[dict[str, bytes], list[str]]:
-    """The files, and the names of those that can't be read."""
-    files: dict[str, bytes] = {}
-    damaged: list[str] = []
-    left = MOST_BYTES
-    try:
-        archive = zipfile.ZipFile(io.BytesIO(content))
-    except (zipfile.BadZipFile, ValueError, OSError, NotImplementedError) as error:
-        raise NoUpload(f"It is not a valid zip file: {error}. Was the upload cut off? Hand it in again.") from None
-    with archive:
-        entries = [entry for entry in archive.infolist() if _is_meant(entry)]
-        if len(entries) > MOST_FILES:
-            raise NoUpload(f"It holds {len(entries)} files. {ADVICE}")
-        for entry in entries:
-            # Where the file lay does not matter: some platforms put a folder around what was handed in.
-            name = PurePosixPath(entry.filename.replace("\\", "/")).name
-            if name in (*files, *damaged):
-                raise NoUpload(f"It holds two files called {name}. {ADVICE}")
-            data = _content(archive, entry, left)
-            if data is None:
-                damaged.append(name)
-            else:
-                files[name] = data
-                left -= len(data)
-    return files, damaged
-
-
-def _is_meant(entry: zipfile.ZipInfo) -> bool:
-    """Whether this is more than what file managers add by themselves."""
-    parts = PurePosixPath(entry.filename).parts
-    return not entry.is_dir() and "__MACOSX" not in parts and bool(parts) and not parts[-1].startswith("._")
-
-
-def _content(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, most: int) -> bytes | None:
-    """The content of one entry, or None if it can't be read."""
-    if stat.S_ISLNK(entry.external_attr >> 16):
-        raise NoUpload(f"{entry.filename} in it is a symbolic link. Hand in the file itself.")
-    if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-        return None
-    try:
-        with archive.open(entry) as file:
-            data = file.read(most + 1)
-    except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError, OSError, ValueError):
-        return None
-    if len(data) > most:
-        raise NoUpload(f"It holds more than {MOST_BYTES // 1_000_000} MB. {ADVICE}")
-    return data
 
 
 def _record(content: bytes) -> dict[str, Any]:

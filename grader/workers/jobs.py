@@ -13,6 +13,7 @@ from grader.recording.recording import Recording
 from grader.runner.student import Task
 from grader.sandbox.program import Isolation, Limits, Program
 from grader.scenario.scenario import Scenario
+from grader.submission.places import is_launcher
 
 if TYPE_CHECKING:
     from grader.checking.run import Run
@@ -49,6 +50,12 @@ class RunJob:
     companions: tuple[Program, ...] = ()
     """The author's own programs."""
 
+    @property
+    def _task(self) -> Task:
+        texts = {name: data.decode(errors="replace") for name, data in self.program.files.items()}
+        files = {name: text for name, text in texts.items() if name.endswith(".py") and not is_launcher(text)}
+        return Task(self.exercise, self.scenario, self.file_name, self.source, self.pace, files)
+
     def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Recording:
         """Return the recording of the run."""
         from grader.runner.run import run
@@ -59,7 +66,7 @@ class RunJob:
 
         ready()
         return run(
-            Task(self.exercise, self.scenario, self.file_name, self.source, self.pace),
+            self._task,
             partial(start, self.program),
             HubLimits(data_bytes=self.data_bytes),
             {program.main: partial(start, program) for program in self.programs},

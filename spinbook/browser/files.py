@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from grader.exercise.exercise import Exercise
+from grader.submission.code import STARTER
 from grader.workers.pool import WorkerPool
 from spinbook.browser.archives import check_archive, ros_archive, share_archive
 from spinbook.build.digest import digest
@@ -86,6 +87,8 @@ def public_parts(exercises: Iterable[Exercise]) -> dict[str, bytes]:
             copy = exercise_files(exercise, workers)
             needed = [name for name in copy if name in _NEEDED or _is_code(name, exercise)]
             files |= {f"exercises/{exercise.name}/{name}": copy[name] for name in needed}
+            # A copy of it does not count beside a student's work.
+            files[f"exercises/{exercise.name}/{STARTER}"] = copy[exercise.file_name]
     return files
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -16,19 +17,23 @@ from IPython.display import display
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import NoExercise, find, load
-from grader.submission.reading import NoCell, cell_of
+from grader.submission.choosing import digest_of
+from grader.submission.code import Code, as_text, code_of_notebook
+from grader.submission.notebook import RECORD, Cell, Notebook, read_notebook
+from grader.submission.problems import Undecided, Unreadable
+from grader.submission.python_code import definitions
 from spinbook.kernel.process import CellFailed, KeptProcess
 from spinbook.kernel.session import Session
 from spinbook.kernel.showing import Bound
 
 
 @dataclass(frozen=True)
-class Code:
-    """The exercise's code, with its lines numbered as in the cell, and its origin. `origin` completes "Checked: …".
-    `warning` says that the cell's text has changed; it is empty if that is not known.
+class Checked:
+    """The exercise's code, and its origin, which completes "Checked: …". `warning` says that the cell's text has
+    changed; it is empty if that is not known.
     """
 
-    text: str
+    code: Code
     origin: str
     warning: str = ""
 
@@ -39,22 +44,54 @@ class Code:
         return f"{text}\nWARNING: {self.warning.format(command=command)}" if self.warning else text
 
 
-def code_of(exercise: Exercise, session: Session, notebook: Path | None) -> Code:
-    """The code of the exercise's cell, as the session ran it last.
+def code_of(exercise: Exercise, session: Session, shell: Any, notebook: Path | None) -> Checked:
+    """The exercise's code, as the session ran it last: its cell, and what that needs of the others.
 
     Raises CellFailed, with what to do, if the cell has not been run and the notebook's file is not known.
     """
     node = exercise.file_name.removesuffix(".py")
     saved = _saved(exercise, notebook)
-    if node in session.ran:
-        # The line with %%node is the cell's first.
-        text = "\n" + session.ran[node]
-        edited = saved and saved.strip() != text.strip() and _saved_after(notebook, session.ran_at[node])
-        return Code(text, _as_run(node, session.ran_at[node]), _edited(node) if edited else "")
-    if saved and notebook:
-        not_run = f"it has not been run since the kernel started, so this is how it was last saved in {notebook.name}"
-        return Code(saved, f"the cell %%node {node}; {not_run}")
+    try:
+        if node in session.ran:
+            code = code_of_notebook(Notebook(cells_as_run(session, shell)), exercise)
+            edited = saved and digest_of(saved.source) != digest_of(code.source)
+            edited = edited and _saved_after(notebook, session.ran_at[node])
+            return Checked(code, _as_run(node, session.ran_at[node]), _edited(node) if edited else "")
+        if saved and notebook:
+            not_run = (
+                f"it has not been run since the kernel started, so this is how it was last saved in {notebook.name}"
+            )
+            return Checked(saved, f"the cell %%node {node}; {not_run}")
+        with contextlib.suppress(Unreadable):
+            code = code_of_notebook(Notebook(cells_as_run(session, shell)), exercise)
+            return Checked(code, "the cells as you ran them last, without any change that you made after that")
+    except (Unreadable, Undecided) as error:
+        raise CellFailed(str(error)) from None
     raise CellFailed(f"Run the cell that begins with %%node {node} first. Then run this one again.")
+
+
+def cells_as_run(session: Session, shell: Any) -> tuple[Cell, ...]:
+    """The cells that the kernel has run, each as it ran last: one that a later one replaces in full is left out."""
+    history = enumerate(shell.history_manager.input_hist_raw)
+    cells = [Cell(number, source) for number, source in history if source.strip()]
+    ran = {cell.name: cell for cell in cells if cell.name}
+    # What another way than a cell has run, a test or an extension, is not in the history.
+    cells += [
+        Cell(len(cells) + 1, f"%%node {name}\n{code}")
+        for name, code in session.ran.items()
+        if name not in ran or ran[name].magic.code.strip() != code.strip()
+    ]
+    return tuple(reversed(list(_not_replaced(cells))))
+
+
+def _not_replaced(cells: Sequence[Cell]) -> Iterator[Cell]:
+    names, defined = set[str](), set[str]()
+    for cell in reversed(cells):
+        own = definitions(cell.code) if cell.is_plain else set()
+        if cell.name not in names and not (own and own <= defined):
+            yield cell
+        names |= {cell.name} - {""}
+        defined |= own
 
 
 def _as_run(node: str, moment: float) -> str:
@@ -77,11 +114,11 @@ def _saved_after(notebook: Path | None, moment: float) -> bool:
         return False
 
 
-def _saved(exercise: Exercise, notebook: Path | None) -> str:
+def _saved(exercise: Exercise, notebook: Path | None) -> Code | None:
     try:
-        return cell_of(notebook.read_bytes(), exercise) if notebook else ""
-    except (OSError, NoCell):
-        return ""
+        return code_of_notebook(read_notebook(notebook.read_bytes()), exercise) if notebook else None
+    except (OSError, Unreadable, Undecided):
+        return None
 
 
 #: Set in the kernel's environment by Jupyter's server: the notebook's path.
@@ -102,7 +139,7 @@ def notebook_file(variables: Mapping[str, Any], environment: Mapping[str, str]) 
 _GRACE = (0.5, 0.5)
 
 
-def checked(exercise: Path, code: str, seconds: float) -> dict[str, str]:
+def checked(exercise: Path, code: Code, seconds: float) -> dict[str, str]:
     """The result for `code`, by media type: text/html and text/plain.
 
     Raises CellFailed when there is none: after `seconds`, when interrupted, or by a fault that is not the student's.
@@ -111,7 +148,7 @@ def checked(exercise: Path, code: str, seconds: float) -> dict[str, str]:
     with tempfile.TemporaryDirectory(prefix="spinbook-", ignore_cleanup_errors=True) as temporary:
         folder = Path(temporary)
         folder.chmod(0o711)
-        (folder / "code").write_text(code, encoding="utf-8", errors="replace")
+        (folder / "code").write_text(as_text(code), encoding="utf-8", errors="replace")
         argv = [sys.executable, "-m", "spinbook.submit.program", os.fspath(exercise), "code", "result"]
         process = KeptProcess(argv, {**os.environ, "TMPDIR": temporary}, folder)
         try:
@@ -150,9 +187,11 @@ def check_cell(session: Session, shell: Any, name: str, course: str, seconds: fl
     """
     notebook = notebook_file(shell.user_ns, os.environ)
     exercise = exercise_of(name, course, notebook)
-    code = code_of(exercise, session, notebook)
-    print(code.note("Checked", f"%check {exercise.name}"))
-    display(checked(exercise.folder, code.text, seconds), raw=True)
+    found = code_of(exercise, session, shell, notebook)
+    print(found.note("Checked", f"%check {exercise.name}"))
+    # Saved with the notebook: it says which of several cells counts.
+    record = {RECORD: {"exercise": exercise.name, "code": digest_of(found.code.source)}}
+    display(checked(exercise.folder, found.code, seconds), metadata=record, raw=True)
 
 
 def exercise_of(name: str, course: str, notebook: Path | None) -> Exercise:
@@ -177,13 +216,16 @@ def submit_cell(session: Session, shell: Any, name: str, course: str, student: s
     """Write the upload for the exercise `name`. Raises CellFailed if there is nothing to hand in, or if it fails."""
     notebook = notebook_file(shell.user_ns, os.environ)
     exercise = exercise_of(name, course, notebook)
-    code = code_of(exercise, session, notebook)
-    print(code.note("Handed in", f"%submit {exercise.name}"))
+    found = code_of(exercise, session, shell, notebook)
+    print(found.note("Handed in", f"%submit {exercise.name}"))
     with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder, exercise.file_name)
-        file.write_text(code.text, encoding="utf-8")
+        for inside, content in found.code.files.items():
+            file = Path(folder, exercise.name, inside)
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(content)
+        one = len(found.code.files) == 1
         command = [sys.executable, "-u", "-m", "spinbook", "submit", os.fspath(exercise.folder)]
         command += [os.fspath(notebook)] if notebook else []
-        command += ["--code", os.fspath(file)]
+        command += ["--code", os.fspath(file if one else Path(folder, exercise.name))]
         command += ["--student", student] if student is not None else []
         session.run_command(command, {}, Path.cwd(), Bound(seconds), f"%submit {name}")

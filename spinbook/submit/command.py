@@ -23,7 +23,6 @@ from spinbook.submit.hand_in import (
     Candidate,
     HandIn,
     SelfCheck,
-    cells_that_differ,
     default_target,
     exercise_named,
     found,
@@ -74,9 +73,8 @@ def submit(
             Problem(target, None, f"it can't be written: {error.strerror}.", "Name another place: --output FILE")
         ) from None
     console.print(f"Your code is from {chosen.origin}.", markup=False)
-    if not code and (count := cells_that_differ(chosen, wanted)) > 1:
-        text = f"{count} cells there hold {wanted.name}, and they differ: this is the last of them. Delete the others."
-        console.print(text, style="bold yellow", markup=False)
+    for note in () if checked.grade else chosen.submission.notes:
+        console.print(note, style="bold yellow", markup=False, soft_wrap=True)
     if is_starter(chosen, wanted):
         console.print("It is still the starter, as it was handed out. Was your work saved?", style="bold yellow")
     if not name:

@@ -18,7 +18,8 @@ from grader.exercise.starter import starter
 from grader.grading.grade import Grade
 from grader.grading.grading import grade_submission
 from grader.grading.reference import versions
-from grader.submission.reading import NoCell, NoSubmission, Submission, cells_of, read
+from grader.submission.file_kinds import can_be_read, kind_of
+from grader.submission.reading import NoSubmission, Submission, read
 from grader.submission.upload import pack
 from groundwork.files import write_if_changed
 from groundwork.problem import Problem
@@ -40,31 +41,30 @@ class Candidate:
 
 
 def candidates(exercise: Exercise, folder: Path) -> list[Candidate]:
-    """The files that hold the exercise: notebooks in `folder`, and the .py of its name there or in the exercise's own.
+    """The files that hold the exercise: notebooks and ROS 2 packages in `folder`, and the .py of its name, there or in
+    the exercise's own folder. One whose program is a question has a submission without one.
 
     Where there are several, those with the untouched starter don't count beside one with more in it, and two with the
     same code count once.
     """
-    files = [folder / exercise.file_name, *sorted(folder.glob("*.ipynb")), exercise.folder / exercise.file_name]
-    found = [Candidate(file, read(str(file), exercise), _name(file, folder)) for file in files if file.is_file()]
-    found = [candidate for candidate in found if candidate.submission.program]
+    files = [folder / exercise.file_name, *sorted(folder.glob("*.ipynb")), *_packages(folder)]
+    files.append(exercise.folder / exercise.file_name)
+    found = [Candidate(file, read(str(file), exercise), _name(file, folder)) for file in files if file.exists()]
+    found = [one for one in found if one.submission.program or one.submission.question]
     begun = [candidate for candidate in found if not is_starter(candidate, exercise)]
     by_code = {_bare(candidate.submission.source): candidate for candidate in reversed(begun or found)}
     return [candidate for candidate in found if candidate in by_code.values()]
 
 
+def _packages(folder: Path) -> list[Path]:
+    """The ROS 2 packages in a folder, or in a workspace in it."""
+    patterns = ("package.xml", "*/package.xml", "src/*/package.xml", "*/src/*/package.xml")
+    return sorted({manifest.parent for pattern in patterns for manifest in folder.glob(pattern)})
+
+
 def is_starter(candidate: Candidate, exercise: Exercise) -> bool:
     """Whether this is still the unchanged starter."""
     return _bare(candidate.submission.source) in _starters(exercise)
-
-
-def cells_that_differ(candidate: Candidate, exercise: Exercise) -> int:
-    """How many different cells the candidate's notebook has for the exercise; 1 where the code is from elsewhere."""
-    if candidate.file is None or candidate.file.suffix != ".ipynb":
-        return 1
-    with contextlib.suppress(OSError, NoCell):
-        return len({_bare(code) for code in cells_of(candidate.file.read_bytes(), exercise)})
-    return 1
 
 
 def _name(file: Path, folder: Path) -> str:
@@ -119,7 +119,7 @@ def self_check(exercise: Exercise, submission: Submission) -> SelfCheck:
         return SelfCheck(None, f"The checks can't run here: {error.problem.problem} ({error.problem.file.name}).")
     except Exception as error:
         return SelfCheck(None, f"{type(error).__name__}: {error}")
-    if grade.outcome == "host-error":
+    if not grade.has_score:
         return SelfCheck(None, grade.message)
     return SelfCheck(replace(grade, submission=Path(grade.submission).name))
 
@@ -142,8 +142,8 @@ def write_upload(hand_in: HandIn, target: Path) -> None:
     """Write the upload to `target`, whole or not at all. Raises `OSError`."""
     exercise, file, program = hand_in.exercise, hand_in.work.file, hand_in.work.submission.program
     assert program
-    files = {exercise.file_name: program.files[exercise.file_name]}
-    if file is not None and file.suffix == ".ipynb" and file.stat().st_size <= LARGEST_NOTEBOOK:
+    files = dict(program.files)
+    if file is not None and kind_of(file.name) == "notebook" and file.stat().st_size <= LARGEST_NOTEBOOK:
         files[file.name] = file.read_bytes()
     record = {
         "exercise": exercise.name,
@@ -204,15 +204,21 @@ def exercise_named(name: str) -> Exercise:
 
 def given(file: Path, exercise: Exercise) -> Candidate:
     """Return the code in the file that the student named. Raises `UsageError` and `SpinbookError`."""
-    if file.suffix not in (".py", ".ipynb"):
-        raise click.UsageError(f"{file}: give a notebook (.ipynb) or a Python file (.py).")
+    if not os.path.lexists(file) and not can_be_read(file.name):
+        raise click.UsageError(f"{file}: give a notebook (.ipynb), a Python file (.py), an archive or a folder.")
     try:
         submission = read(str(file), exercise)
     except NoSubmission as error:
         raise click.UsageError(str(error)) from None
     if submission.program is None:
-        raise SpinbookError(Problem(file, None, submission.problem, "There is no code for the exercise in it yet."))
+        raise SpinbookError(_no_program(file, submission))
     return Candidate(file, submission, file.name)
+
+
+def _no_program(file: Path, submission: Submission) -> Problem:
+    if submission.question:
+        return Problem(file, None, submission.question, "Nothing is handed in until only one of them is left.")
+    return Problem(file, None, submission.problem, "There is no code for the exercise in it yet.")
 
 
 def found(exercise: Exercise, folder: Path, command: str, question: str) -> Candidate:
@@ -231,6 +237,8 @@ def found(exercise: Exercise, folder: Path, command: str, question: str) -> Cand
             )
         )
     if len(there) == 1:
+        if there[0].submission.program is None:
+            raise SpinbookError(_no_program(there[0].file or folder, there[0].submission))
         return there[0]
     listed = [candidate.origin for candidate in there]
     if not sys.stdin.isatty():

@@ -14,7 +14,8 @@ from grader.exercise.exercise import ExerciseError
 from grader.exercise.loading import load
 from grader.grading.grade import Grade
 from grader.grading.grading import grade_submission
-from grader.submission.reading import of_source
+from grader.submission.code import from_text
+from grader.submission.reading import of_code
 from grader.workers.pool import HostFault
 from groundwork.files import write_if_changed
 
@@ -24,13 +25,13 @@ def main() -> None:
     folder, code, result = Path(sys.argv[1]), Path(sys.argv[2]), Path(sys.argv[3])
     # What draws the result takes its time to load: it does so while the node is being spun.
     threading.Thread(target=_load_drawing, daemon=True).start()
-    write_if_changed(result, json.dumps(_checked(folder, code.read_bytes())))
+    write_if_changed(result, json.dumps(_checked(folder, code.read_text(encoding="utf-8"))))
 
 
-def _checked(folder: Path, code: bytes) -> dict[str, str]:
+def _checked(folder: Path, code: str) -> dict[str, str]:
     try:
         exercise = load(folder).public()
-        grade: Grade = grade_submission(exercise, of_source("your cell", code, exercise))
+        grade: Grade = grade_submission(exercise, of_code("your cell", from_text(code), exercise))
     except ExerciseError as error:
         return {"problem": f"The exercise is at fault, not your code.\n{error}"}
     except HostFault as error:

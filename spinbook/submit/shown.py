@@ -61,6 +61,8 @@ def next_step(grade: Grade, exercise: Exercise) -> str:
         return f"hand in. Type %submit {exercise.name} into a new cell and run it."
     if grade.outcome == "host-error":
         return "run this cell again."
+    if grade.outcome == "undecided":
+        return "keep only one of them, run its cell, then this one again."
     node = exercise.file_name.removesuffix(".py")
     what = "fix the first ✗" if grade.outcome == "graded" else "fix that"
     return f"{what}, run the cell that begins with %%node {node}, then this one again."

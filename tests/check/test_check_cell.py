@@ -20,6 +20,7 @@ from small_class import wait_until
 
 from check.conftest import PUBLIC, node_cell, solution
 from grader.exercise import load
+from grader.submission.code import Code
 from spinbook.kernel import check_cell
 from spinbook.kernel.process import CellFailed, KeptProcess, Status
 
@@ -153,8 +154,9 @@ def test_a_check_that_has_no_time_to_end_leaves_no_temporary_file(
     monkeypatch.setattr(KeptProcess, "wait", until_it_runs)
     monkeypatch.setattr(check_cell, "_GRACE", (0.0, 0.0))
     endless = solution().replace("answer = JointState()", "while True: pass")
+    code = Code({"joint_velocity.py": endless.encode()}, "joint_velocity.py", endless)
     with pytest.raises(CellFailed, match="did not finish within 1 s"):
-        check_cell.checked(handed_out / "exercises" / "joint_velocity", endless, 1)
+        check_cell.checked(handed_out / "exercises" / "joint_velocity", code, 1)
     assert list(temporary_files.iterdir()) == []
 
 

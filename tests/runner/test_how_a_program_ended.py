@@ -63,7 +63,7 @@ NO_RESULT = (
     ],
 )
 def test_an_end_far_from_its_cause_says_what_to_do(log: str, exit_: Exit, message: str) -> None:
-    assert message in of_exit(exit_, log, "turnstile.py", SOURCE)[0]
+    assert message in of_exit(exit_, log, {"turnstile.py": SOURCE})[0]
 
 
 #: As rclpy 7.1.6 wrote them, shortened: an execute callback that returns nothing, and one that raises.
@@ -90,7 +90,7 @@ RuntimeError: stuck
 
 def test_the_advice_to_return_a_result_is_not_for_an_error_of_the_students_own() -> None:
     returned, raised = (
-        of_exit(Exit(1, None, None), log, "turnstile.py", SOURCE)[0] for log in (NOTHING_RETURNED, GOAL_RAISES)
+        of_exit(Exit(1, None, None), log, {"turnstile.py": SOURCE})[0] for log in (NOTHING_RETURNED, GOAL_RAISES)
     )
 
     assert "has to return a Result" in returned
@@ -119,10 +119,10 @@ HEADER, FIRST, *OTHERS = OF_A_GOAL.splitlines(keepends=True)
     ids=["before", "after", "around", "the rest after"],
 )
 def test_an_error_that_another_thread_prints_is_not_the_one_that_ended_the_program(log: str) -> None:
-    expected = of_exit(Exit(1, None, None), RAISES, "turnstile.py", SOURCE + "raise ValueError('no coins')")
+    expected = of_exit(Exit(1, None, None), RAISES, {"turnstile.py": SOURCE + "raise ValueError('no coins')"})
 
     assert expected[1] == 3
-    assert of_exit(Exit(1, None, None), log, "turnstile.py", SOURCE + "raise ValueError('no coins')") == expected
+    assert of_exit(Exit(1, None, None), log, {"turnstile.py": SOURCE + "raise ValueError('no coins')"}) == expected
 
 
 FORGED = "Traceback (most recent call last):\n"
@@ -139,13 +139,13 @@ FORGED = "Traceback (most recent call last):\n"
     ids=["blank lines", "names without an end", "a line number without an end", "no errors"],
 )
 def test_a_forged_traceback_is_read_and_changes_nothing(log: str) -> None:
-    assert of_exit(Exit(1, None, None), log, "turnstile.py", SOURCE)[0] == "it gave up with exit code 1."
+    assert of_exit(Exit(1, None, None), log, {"turnstile.py": SOURCE})[0] == "it gave up with exit code 1."
 
 
 def test_of_an_error_as_long_as_a_book_the_beginning_is_told() -> None:
     log = RAISES.replace("no coins", "1" * 60_000)
 
-    text, line = of_exit(Exit(1, None, None), log, "turnstile.py", SOURCE)
+    text, line = of_exit(Exit(1, None, None), log, {"turnstile.py": SOURCE})
 
     assert line == 3
     assert text.startswith("ValueError: 11111")

@@ -33,6 +33,8 @@ class Shown:
     error: str = ""
     pictures: list[dict[str, Any]] = field(default_factory=list)
     updates: int = 0
+    metadata: list[dict[str, Any]] = field(default_factory=list)
+    """What is saved with each picture."""
 
 
 class Kernel:
@@ -63,6 +65,7 @@ class Kernel:
                 shown.error = "\n".join(content["traceback"])
             elif kind == "display_data":
                 shown.pictures.append(content["data"])
+                shown.metadata.append(content["metadata"])
             elif kind == "update_display_data":
                 shown.updates += 1
                 shown.pictures[-1] = content["data"]

@@ -131,9 +131,9 @@ def test_odd_file_names_are_run(either_runner: Runner, name: str) -> None:
     assert run.text == "ran\n"
 
 
-@pytest.mark.parametrize("name", ["../x.py", "/etc/x.py", "", "..", "a/b.py", "x\0.py"])
+@pytest.mark.parametrize("name", ["../x.py", "/etc/x.py", "", "..", "a/../../x.py", "a//b.py", "x\0.py"])
 def test_a_file_name_that_leaves_the_folder_is_refused(name: str) -> None:
-    with pytest.raises(ValueError, match="not a plain file name"):
+    with pytest.raises(ValueError, match="not a path inside the submission"):
         Program("main.py", {"main.py": b"", name: b""})
 
 

@@ -73,15 +73,27 @@ def test_a_notebook_is_handed_in_with_its_cell_and_as_a_whole(folder: Path) -> N
     assert upload().record["from"] == "week3.ipynb"
 
 
-def test_of_several_cells_the_last_is_handed_in_and_that_is_reported(folder: Path) -> None:
+def test_of_several_cells_none_is_handed_in_by_guess(folder: Path) -> None:
     write_notebook("week3.ipynb", "first = 1")
     notebook = json.loads(Path("week3.ipynb").read_text())
     for line in ("%%node joint_velocity --seconds 20", "%%node joint_velocity.py"):
         notebook["cells"].append({**notebook["cells"][0], "source": f"{line}\nsecond = 2"})
     Path("week3.ipynb").write_text(json.dumps(notebook))
     done = submitted("--no-check")
-    assert upload().files["joint_velocity.py"].decode() == "\nsecond = 2"
-    assert "2 cells there hold joint_velocity, and they differ: this is the last of them." in done.output
+    assert done.exit_code == 1
+    assert isinstance(done.exception, SpinbookError)
+    assert "3 cells of the notebook can be joint_velocity.py, they differ" in str(done.exception)
+    assert not Path(UPLOAD).exists()
+
+
+def test_a_choice_among_cells_is_reported(folder: Path) -> None:
+    write_notebook("week3.ipynb", SOLUTION)
+    notebook = json.loads(Path("week3.ipynb").read_text())
+    notebook["cells"].append({**notebook["cells"][0], "source": "%%node joint_velocity\n# notes"})
+    Path("week3.ipynb").write_text(json.dumps(notebook))
+    done = submitted("--no-check")
+    assert upload().files["joint_velocity.py"].decode() == f"\n{SOLUTION}"
+    assert 'Taken: code cell 1 ("%%node joint_velocity"), because the other one holds no' in done.output
 
 
 def test_a_huge_notebook_stays_at_home(folder: Path) -> None:

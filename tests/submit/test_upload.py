@@ -15,8 +15,9 @@ from hypothesis import strategies as st
 
 from grader.exercise import Exercise, load
 from grader.submission import read
+from grader.submission.problems import Unreadable
 from grader.submission.reading import of_upload
-from grader.submission.upload import RECORD, NoUpload, pack, unpack
+from grader.submission.upload import RECORD, pack, unpack
 
 CODE = b"class JointVelocity:\n    pass\n"
 NOTEBOOK = json.dumps(
@@ -75,7 +76,6 @@ def test_the_same_content_gives_the_same_bytes() -> None:
     [
         (changed(joint_velocity__py=b"x = 1\n"), "joint_velocity.py has been changed"),
         (changed(week3__ipynb=None), "week3.ipynb is missing"),
-        (changed(submission__json=None), "submission.json is missing"),
         (changed(submission__json=b"{"), "submission.json can't be read"),
         (changed(submission__json=b'{"a": "\\ud800"}'), "submission.json can't be read"),
         (changed(submission__json=entries(UPLOAD)[RECORD].replace(b"Ada", b"Eve")), "submission.json has been changed"),
@@ -89,6 +89,13 @@ def test_an_edited_upload_says_which_part_and_is_graded_all_the_same(
     submission = of_upload("upload.zip", upload, exercise)
     assert fault in submission.warning
     assert submission.program
+
+
+def test_a_zip_that_was_packed_by_hand_is_graded_and_that_is_said(exercise: Exercise) -> None:
+    submission = of_upload("upload.zip", changed(submission__json=None), exercise)
+    assert "submission.json is missing" in submission.warning
+    assert submission.source == CODE.decode()
+    assert submission.notes == ("Taken: joint_velocity.py.",)
 
 
 def test_damaged_code_is_taken_from_the_notebook_beside_it(exercise: Exercise) -> None:
@@ -121,7 +128,7 @@ def link() -> bytes:
 
 
 #: Each is packed when its test runs: the bombs take a tenth of a second.
-NO_UPLOADS: dict[str, tuple[Callable[[], bytes], str]] = {
+NOT_UPLOADS: dict[str, tuple[Callable[[], bytes], str]] = {
     "empty": (bytes, "not a valid zip file"),
     "cut off": (lambda: UPLOAD[: len(UPLOAD) // 2], "cut off"),
     "link": (link, "symbolic link"),
@@ -131,15 +138,15 @@ NO_UPLOADS: dict[str, tuple[Callable[[], bytes], str]] = {
         "more than 4 MB",
     ),
     "many files": (lambda: zipped({f"{i}.py": b"" for i in range(1000)}), "1000 files"),
-    "two of one name": (lambda: zipped({"a/x.py": b"", "b/x.py": b""}), "two files called x.py"),
+    "two of one name": (lambda: zipped({"a/x.py": b"", "a//x.py": b""}), "two files called a/x.py"),
 }
 
 
-@pytest.mark.parametrize("name", NO_UPLOADS)
+@pytest.mark.parametrize("name", NOT_UPLOADS)
 def test_what_is_no_upload_is_reported_and_does_no_harm(name: str, exercise: Exercise) -> None:
-    packed, why = NO_UPLOADS[name]
+    packed, why = NOT_UPLOADS[name]
     content = packed()
-    with pytest.raises(NoUpload, match=why):
+    with pytest.raises(Unreadable, match=why):
         unpack(content)
     submission = of_upload("upload.zip", content, exercise)
     assert submission.program is None
@@ -161,6 +168,6 @@ def test_no_damage_goes_unnoticed_or_breaks_the_reader(at: int, rubbish: bytes) 
     damaged = UPLOAD[:at] + rubbish + UPLOAD[at + len(rubbish) :]
     try:
         upload = unpack(damaged)
-    except NoUpload:
+    except Unreadable:
         return
     assert upload.faults or upload.files == FILES

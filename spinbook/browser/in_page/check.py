@@ -27,6 +27,7 @@ _CANNOT = {
     "asyncio": "Your program uses asyncio, which needs the browser for itself. Check it in the notebook.",
     "multiprocessing": "Your program starts processes, which a web page can't. Check it in the notebook.",
 }
+_SEVERAL_FILES = "A web page can't check a program of several files. Check it with `spinbook check`."
 _SEVERAL = "This exercise has several programs, which a web page can't check together. Check it in the notebook."
 
 
@@ -41,6 +42,20 @@ def check(name: str, source: str) -> str:
         return json.dumps({"problem": _SEVERAL})
     recordings = record(exercise, scenarios, Program(exercise.file_name, source))
     return json.dumps(shown(verdicts(exercise, scenarios, recordings, references), recordings, hidden))
+
+
+def read(name: str, file: str, content: memoryview) -> str:
+    """Return the program in a file, for the editor, as JSON: `source` and `notes`, or `problem` alone."""
+    from grader.submission.code import code_of, uses_other_files
+    from grader.submission.problems import Undecided, Unreadable
+
+    try:
+        code = code_of(file, bytes(content), load(_unpacked(name)))
+    except (Unreadable, Undecided) as error:
+        return json.dumps({"problem": str(error)})
+    if uses_other_files(code):
+        return json.dumps({"problem": f"{_SEVERAL_FILES} {' '.join(code.notes)}".strip()})
+    return json.dumps({"source": code.source.lstrip("\n"), "notes": code.notes})
 
 
 def hindrance_of(source: str) -> str:

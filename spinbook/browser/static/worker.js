@@ -135,13 +135,21 @@ const does = {
     return py.pyimport("spinbook.browser.in_page.turtle").show.callPromising(page);
   },
   check: async ({ exercise, source }) => {
-    const { py, process } = await ready;
-    py.checks ??= archive(py, "check.zip", "checks").then(() => process.find_grader_in("/check.zip"));
-    await Promise.all([py.checks, shares(py)]);
-    const result = await py.pyimport("spinbook.browser.in_page.check").check.callPromising(exercise, source);
+    const result = await (await checks()).check.callPromising(exercise, source);
     return JSON.parse(result);
   },
+  read: async ({ exercise, file, content }) => {
+    const read = (await checks()).read;
+    return JSON.parse(read(exercise, file, (await ready).py.toPy(content)));
+  },
 };
+
+async function checks() {
+  const { py, process } = await ready;
+  py.checks ??= archive(py, "check.zip", "checks").then(() => process.find_grader_in("/check.zip"));
+  await Promise.all([py.checks, shares(py)]);
+  return py.pyimport("spinbook.browser.in_page.check");
+}
 
 async function cells() {
   const { py } = await ready;

@@ -1,0 +1,254 @@
+"""Reads a folder or an archive as students pack it: what programs made by themselves is left out.
+
+Nothing is written to disk, nothing outside is named, and no figure of an archive is trusted: reading ends when the
+limits are reached.
+"""
+
+from __future__ import annotations
+
+import bz2
+import contextlib
+import errno
+import gzip
+import io
+import os
+import re
+import stat
+import tarfile
+import zipfile
+import zlib
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path, PurePosixPath
+
+from grader.submission.file_kinds import kind_of
+from grader.submission.problems import Unreadable
+
+#: The limits of all files together that can matter. What a build left behind does not count.
+MOST_FILES = 400
+MOST_BYTES = 4_000_000
+#: The limit of entries, of whatever kind.
+MOST_ENTRIES = 50_000
+#: The limit of a tar archive once it is decompressed (bytes), and of archives inside archives.
+MOST_TAR_BYTES = 60_000_000
+DEEPEST = 3
+
+ADVICE = "Hand in your code only, without what was built from it."
+
+#: Folders that no student writes: of version control, of Python, of colcon, of editors and of operating systems.
+_NOISE = re.compile(
+    r"__MACOSX|__pycache__|\..*|.*\.egg-info|node_modules|venv|env|site-packages|dist-packages|backups", re.IGNORECASE
+)
+_BUILT = ("build", "install", "log")
+_FILES = re.compile(
+    r"\..*|Thumbs\.db|desktop\.ini|Icon\r?|.*~|.*\.(?:py[cod]|so|o|a|pdf|png|jpe?g|gif|svg|mp4|mov|avi|mkv|webm|mcap|db3"
+    r"|bag|docx?|pptx?|stl|dae|obj)",
+    re.IGNORECASE,
+)
+
+_BROKEN = (zipfile.BadZipFile, tarfile.TarError, zlib.error, EOFError, RuntimeError, NotImplementedError, OSError)
+
+
+@dataclass
+class Contents:
+    """What is in a folder or an archive: contents by path, and the names of what could not be read."""
+
+    files: dict[str, bytes] = field(default_factory=dict)
+    damaged: list[str] = field(default_factory=list)
+    links: list[str] = field(default_factory=list)
+    left: int = MOST_BYTES
+
+    def add(self, name: str, data: bytes) -> None:
+        """Keep a file. Raises `Unreadable` when it is too much."""
+        self.left -= len(data)
+        if self.left < 0:
+            raise Unreadable(f"It holds more than {MOST_BYTES // 1_000_000} MB. {ADVICE}")
+        if len(self.files) >= MOST_FILES:
+            raise Unreadable(f"It holds more than {MOST_FILES} files. {ADVICE}")
+        if name in self.files:
+            raise Unreadable(f"It holds two files called {name}. {ADVICE}")
+        if _can_be_written(name, self.files):
+            self.files[name] = data
+        else:
+            self.damaged.append(name)
+
+
+def _can_be_written(name: str, files: Collection[str]) -> bool:
+    """Return whether a file system can hold this path beside those of the others."""
+    parts = name.split("/")
+    sizes = [len(part.encode("utf-8", errors="replace")) for part in parts]
+    above = ["/".join(parts[:count]) for count in range(1, len(parts))]
+    is_text = name.encode("utf-8", errors="replace").decode() == name
+    is_folder = any(other.startswith(f"{name}/") for other in files)
+    return (
+        is_text
+        and max(sizes) <= 255
+        and sum(sizes) <= 2000
+        and not is_folder
+        and not any(one in files for one in above)
+    )
+
+
+#: A path, and what reads it up to a little more than the given number of bytes; None if it can't be read.
+_Entry = tuple[str, Callable[[int], "bytes | None"]]
+
+
+def unpacked(content: bytes) -> Contents:
+    """Return what is in an archive, and in archives inside it. Raises `Unreadable`."""
+    contents = Contents()
+    _unpack(content, "", contents, 0)
+    if contents.links and not contents.files:
+        raise Unreadable(f"{contents.links[0]} in it is a symbolic link. Hand in the file itself.")
+    return contents
+
+
+def folder_contents(folder: Path) -> Contents:
+    """Return what is in a folder. Links are not followed. Raises `Unreadable`."""
+    contents, entries = Contents(), list[_Entry]()
+    for place, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if not _NOISE.fullmatch(name))
+        for path in (Path(place, name) for name in sorted(names)):
+            inside = path.relative_to(folder).as_posix()
+            if path.is_symlink():
+                contents.links.append(inside)
+            else:
+                entries.append((inside, partial(_file, path)))
+        if len(entries) > MOST_ENTRIES:
+            raise Unreadable(f"It holds more than {MOST_ENTRIES:,} files. {ADVICE}")
+    _keep(entries, "", contents, 0)
+    return contents
+
+
+def _file(path: Path, most: int) -> bytes | None:
+    try:
+        return content_of(path, most + 1)
+    except Unreadable:
+        return None
+
+
+def _keep(entries: Sequence[_Entry], prefix: str, contents: Contents, depth: int) -> None:
+    """Read those entries that a student can have written."""
+    meant = [(name, load) for name, load in entries if _is_meant(name)]
+    own = [(name, load) for name, load in meant if not set(name.split("/")[:-1]) & set(_BUILT)]
+    # What colcon built matters only if the code that it was built from is not there.
+    meant = own if any(kind_of(name) in ("python", "notebook", "c++") for name, _ in own) else meant
+    if len(meant) > MOST_FILES:
+        raise Unreadable(f"It holds {len(meant)} files. {ADVICE}")
+    for name, load in meant:
+        _add(f"{prefix}{name}", load(contents.left), contents, depth)
+
+
+def content_of(path: Path, most: int) -> bytes:
+    """Return the content of a file itself, without following links. Raises `Unreadable`."""
+    try:
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+    except OSError as error:
+        if error.errno == errno.ELOOP:
+            raise Unreadable("It is a symbolic link. Hand in the file itself.") from None
+        raise Unreadable(f"It can't be read: {error.strerror}.") from None
+    try:
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            raise Unreadable("It is not a regular file. Hand in a file.")
+        with os.fdopen(descriptor, "rb", closefd=False) as file:
+            content = file.read(most + 1)
+    finally:
+        os.close(descriptor)
+    if len(content) > most:
+        raise Unreadable(f"It is larger than {most // 1_000_000} MB. Hand in your code only, with outputs cleared.")
+    return content
+
+
+def _unpack(content: bytes, prefix: str, contents: Contents, depth: int) -> None:
+    is_tar = content.startswith((b"\x1f\x8b", b"BZh", b"\xfd7zXZ\x00")) or content[257:262] == b"ustar"
+    try:
+        if is_tar:
+            with tarfile.open(fileobj=io.BytesIO(_decompressed(content)), mode="r:") as tar:
+                _keep(list(_of_tar(tar, contents)), prefix, contents, depth)
+        else:
+            with zipfile.ZipFile(io.BytesIO(content)) as archive:
+                _keep(list(_of_zip(archive, contents)), prefix, contents, depth)
+    except (*_BROKEN, ValueError) as error:
+        kind = "archive" if is_tar else "zip file"
+        raise Unreadable(f"It is not a valid {kind}: {error}. Was the upload cut off? Hand it in again.") from None
+
+
+def _add(name: str, data: bytes | None, contents: Contents, depth: int) -> None:
+    if data is None:
+        contents.damaged.append(name)
+    elif kind_of(name) == "archive" and depth < DEEPEST:
+        folder = f"{name.partition('.')[0]}/" if "/" not in name else f"{name.rpartition('/')[0]}/"
+        try:
+            _unpack(data, folder if depth or "/" in name else "", contents, depth + 1)
+        except Unreadable as error:
+            if "valid" not in str(error):
+                raise
+            contents.damaged.append(name)
+    else:
+        contents.add(name, data)
+
+
+def _of_zip(archive: zipfile.ZipFile, contents: Contents) -> Iterator[_Entry]:
+    entries = archive.infolist()
+    if len(entries) > MOST_ENTRIES:
+        raise Unreadable(f"It holds {len(entries)} files. {ADVICE}")
+    for entry in entries:
+        if stat.S_ISLNK(entry.external_attr >> 16):
+            contents.links.append(_path(entry.filename))
+        elif not entry.is_dir():
+            yield _path(entry.filename), partial(_of_entry, archive, entry)
+
+
+def _of_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, most: int) -> bytes | None:
+    if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        return None
+    with contextlib.suppress(*_BROKEN, ValueError), archive.open(entry) as file:
+        return file.read(most + 1)
+    return None
+
+
+def _of_tar(archive: tarfile.TarFile, contents: Contents) -> Iterator[_Entry]:
+    for number, entry in enumerate(archive):
+        if number >= MOST_ENTRIES:
+            raise Unreadable(f"It holds more than {MOST_ENTRIES:,} files. {ADVICE}")
+        if entry.issym() or entry.islnk():
+            contents.links.append(_path(entry.name))
+        elif entry.isfile():
+            yield _path(entry.name), partial(_of_member, archive, entry)
+
+
+def _of_member(archive: tarfile.TarFile, entry: tarfile.TarInfo, most: int) -> bytes | None:
+    file = archive.extractfile(entry)
+    return file.read(most + 1) if file else None
+
+
+def _decompressed(content: bytes) -> bytes:
+    stream = io.BytesIO(content)
+    try:
+        if content.startswith(b"\x1f\x8b"):
+            data = gzip.GzipFile(fileobj=stream).read(MOST_TAR_BYTES + 1)
+        elif content.startswith(b"BZh"):
+            data = bz2.BZ2File(stream).read(MOST_TAR_BYTES + 1)
+        elif content.startswith(b"\xfd7zXZ\x00"):
+            import lzma  # not in every Python
+
+            data = lzma.LZMADecompressor(memlimit=200_000_000).decompress(content, MOST_TAR_BYTES + 1)
+        else:
+            data = content
+    except (*_BROKEN, ImportError, ValueError) as error:
+        raise Unreadable(f"It is not a valid archive: {error}. Was the upload cut off? Hand it in again.") from None
+    if len(data) > MOST_TAR_BYTES:
+        raise Unreadable(f"It holds more than {MOST_TAR_BYTES // 1_000_000} MB. {ADVICE}")
+    return data
+
+
+def _path(name: str) -> str:
+    """Return a name as a path inside the archive: it leads nowhere else."""
+    parts = PurePosixPath(name.replace("\\", "/").replace("\0", "")).parts
+    return "/".join(part for part in parts if part not in ("/", "..") and not part.endswith(":"))
+
+
+def _is_meant(name: str) -> bool:
+    """Return whether this is more than what file managers, editors and Python add by themselves."""
+    *folders, file = name.split("/")
+    return bool(file) and not any(map(_NOISE.fullmatch, folders)) and not _FILES.fullmatch(file)

@@ -1,0 +1,153 @@
+"""Chooses, of a notebook's cells, the program that a student means; or says that nobody can know."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from grader.exercise.exercise import Exercise, ProgramFile
+from grader.submission import python_code
+from grader.submission.assembling import Assembled, assemble
+from grader.submission.notebook import Cell, Notebook
+from grader.submission.places import without_marks
+from grader.submission.problems import Undecided, Unreadable
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The program in a notebook, and what to tell about the way it was chosen."""
+
+    code: str
+    cells: tuple[int, ...]
+    notes: tuple[str, ...] = ()
+
+
+def digest_of(code: str) -> str:
+    """Return SHA-256 of a program as it counts for a comparison: the one in the record that `%check` leaves."""
+    return hashlib.sha256(python_code.bare(without_marks(code)).encode(errors="replace")).hexdigest()
+
+
+def choose(notebook: Notebook, exercise: Exercise, target: ProgramFile, starters: frozenset[str]) -> Choice:
+    """Return the program `target` in a notebook. `starters` are digests of what was handed out.
+
+    Raises `Unreadable` if no cell can be it, and `Undecided` if several can.
+    """
+    candidates = _candidates(notebook.cells, exercise, target)
+    begun = [one for one in candidates if not python_code.is_empty(one.code)]
+    if not begun:
+        if candidates:
+            raise Unreadable(f"Your program is empty: there is no code in {candidates[-1].title} of the notebook.")
+        raise Unreadable(_no_cell(notebook, target))
+    # A piece that an editor split from the cell keeps the cell's metadata.
+    numbers = {one.number for one in begun if one.name or _is_it(one.code, target)}
+    programs = [(one, assemble(one, notebook.cells, exercise, numbers - {one.number})) for one in begun]
+    chosen, why = _decided(programs, notebook, exercise, target, starters)
+    cell, program = chosen
+    return Choice(program.code, program.cells, tuple(_notes(cell, program, candidates, why)))
+
+
+def _candidates(cells: Sequence[Cell], exercise: Exercise, target: ProgramFile) -> list[Cell]:
+    """Return the cells that can be the program, by the first rule that any of them fits."""
+    stem = target.file.removesuffix(".py")
+    named = [one for one in cells if one.name == stem and one.magic.name != "part"]
+    own = [one for one in cells if one.exercise == exercise.name and one.name in ("", stem) and not exercise.programs]
+    by_name = [one for one in cells if one in named or one in own]
+    others = [one for one in cells if one.is_python and one.magic.name != "part"]
+    parts = [one for one in cells if one.is_python]
+    for tier in (
+        by_name,
+        [one for one in cells if one.exercise == exercise.name],
+        [one for one in others if python_code.defines(one.code, target.class_name)],
+        [one for one in others if python_code.creates(one.code, target.node)],
+        [one for one in parts if python_code.defines(one.code, target.class_name)],
+    ):
+        if any(one.code.strip() for one in tier):
+            return tier
+    return by_name
+
+
+def _decided(
+    programs: Sequence[tuple[Cell, Assembled]],
+    notebook: Notebook,
+    exercise: Exercise,
+    target: ProgramFile,
+    starters: frozenset[str],
+) -> tuple[tuple[Cell, Assembled], str]:
+    """Return the cell that counts with its program, and why."""
+    if len({digest_of(program.code) for _, program in programs}) == 1:
+        return programs[-1], ""
+    if checked := _checked(programs, notebook, exercise, target):
+        return checked, "it is the one that %check judged last"
+    rules: tuple[tuple[str, Callable[[Cell, Assembled], bool]], ...] = (
+        ("the others are still the starter", lambda cell, program: digest_of(program.code) not in starters),
+        (f"only it has the program {target.node}", lambda cell, program: _is_it(program.code, target)),
+        ("it is the whole of which the others are parts", lambda cell, program: not _is_inside(cell, programs)),
+    )
+    for why, fits in rules:
+        left = [one for one in programs if fits(*one)]
+        if left:
+            programs = left
+        if len({digest_of(program.code) for _, program in programs}) == 1:
+            return programs[-1], why
+    titles = ", ".join(cell.title for cell, _ in programs)
+    raise Undecided(
+        f"{len(programs)} cells of the notebook can be {target.file}, they differ, and no saved %check says which one "
+        f"counts: {titles}. Delete or empty the others, or run %check and save the notebook."
+    )
+
+
+def _is_it(code: str, target: ProgramFile) -> bool:
+    return python_code.defines(code, target.class_name) or python_code.creates(code, target.node)
+
+
+def _is_inside(cell: Cell, programs: Sequence[tuple[Cell, Assembled]]) -> bool:
+    return any(cell.number in program.cells for other, program in programs if other != cell)
+
+
+def _checked(
+    programs: Sequence[tuple[Cell, Assembled]], notebook: Notebook, exercise: Exercise, target: ProgramFile
+) -> tuple[Cell, Assembled] | None:
+    """Return what `%check` judged last, by the record in its saved output; None if it does not say so."""
+    stem = target.file.removesuffix(".py")
+    checks = [one for one in notebook.cells if one.checked and {exercise.name, stem} & one.checked.keys()]
+    if not checks:
+        return None
+    last = max(checks, key=lambda one: (one.ran or 0, one.number))
+    digest = (last.checked or {}).get(exercise.name) or (last.checked or {}).get(stem) or ""
+    if digest:
+        return next((one for one in reversed(programs) if digest_of(one[1].code) == digest), None)
+    # An older Spinbook: it judged the cell with %%node that had been run last.
+    node = [one for one in programs if one[0].name == stem]
+    if len({digest_of(program.code) for _, program in node}) == 1:
+        return node[-1]
+    ran = [one for one in node if last.ran and one[0].ran and one[0].ran < last.ran]
+    return max(ran, key=lambda one: one[0].ran or 0) if ran else None
+
+
+def _notes(cell: Cell, program: Assembled, candidates: Sequence[Cell], why: str) -> list[str]:
+    notes = []
+    others = [one for one in candidates if one.number not in program.cells and one.code.strip() != cell.code.strip()]
+    if others:
+        reason = why or ("the others hold no program" if len(others) > 1 else "the other one holds no program")
+        text = f"{len(others) + 1} cells of the notebook are for this exercise."
+        notes.append(f"{text} Taken: {cell.title}, because {reason}.")
+    if len(program.cells) > 1:
+        numbers = ", ".join(map(str, program.cells))
+        notes.append(f"The program is put together from the code cells {numbers} of the notebook.")
+    return notes
+
+
+def _no_cell(notebook: Notebook, target: ProgramFile) -> str:
+    what = f"class {target.class_name}" if target.class_name else f"node {target.node}"
+    stem = target.file.removesuffix(".py")
+    conflict = next((one for one in notebook.cells if re.search(r"^<{7}( .*)?$", one.source, re.MULTILINE)), None)
+    if conflict:
+        return (
+            f"{conflict.title} holds the marks of a merge conflict from git. Choose one version, and delete the marks."
+        )
+    return (
+        f"None of the notebook's {len(notebook.cells)} code cells is the exercise's. Write the {what} in the cell that "
+        f"the chapter gives for it; it begins with %%node {stem}."
+    )

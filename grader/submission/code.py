@@ -1,0 +1,399 @@
+"""The one reader: from the bytes that were handed in to the program that runs, the same for everybody who asks.
+
+`%check`, `spinbook check`, `submit`, the page and `grade` all read with it. It knows no disk, no sandbox and no ROS, so
+that it also runs in a web page. Nothing of a submission is run or imported.
+"""
+
+from __future__ import annotations
+
+import json
+import posixpath
+import re
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+
+from grader.exercise.exercise import Exercise, ProgramFile
+from grader.exercise.starter import MarkerError, starter
+from grader.submission import packages, python_code
+from grader.submission.archive import Contents, unpacked
+from grader.submission.choosing import Choice, choose, digest_of
+from grader.submission.file_kinds import kind_of, kind_of_content
+from grader.submission.notebook import Cell, Notebook, read_notebook
+from grader.submission.problems import Undecided, Unreadable, merge_conflict
+from grader.submission.python_version import newer_syntax
+from grader.submission.several_files import MOST_FILES, files_in, joined, parts
+from grader.submission.unreadable import not_python
+
+#: The starter's file in a web page's copy of an exercise.
+STARTER = "starter.py"
+
+NO_CPP = "C++ is not graded yet: hand in Python."
+
+
+@dataclass(frozen=True)
+class Code:
+    """A program as it runs: `files` by their paths, of which `main` is started.
+
+    `source` is the text of the program itself, `notes` say which choice was made and why, and `python` is the version
+    that the student's notebook or record names, or "".
+    """
+
+    files: Mapping[str, bytes]
+    main: str
+    source: str
+    notes: tuple[str, ...] = ()
+    python: str = ""
+
+
+@dataclass(frozen=True)
+class _Option:
+    """One program that can be meant: where it is from, its text, and how it is run."""
+
+    title: str
+    source: str
+    file: str = ""
+    function: str = ""
+    choice: Choice | None = None
+    python: str = ""
+
+
+@dataclass
+class _Reading:
+    """What is known while the files of one submission are read."""
+
+    files: Mapping[str, bytes]
+    exercise: Exercise
+    called: str = ""
+    notebooks: dict[str, Notebook] = field(default_factory=dict)
+    problems: list[str] = field(default_factory=list)
+    questions: list[str] = field(default_factory=list)
+
+
+def as_text(code: Code) -> str:
+    """Return a program as JSON, to hand it to another process."""
+    files = {name: content.decode("latin-1") for name, content in code.files.items()}
+    return json.dumps({**asdict(replace(code, files={})), "files": files})
+
+
+def from_text(text: str) -> Code:
+    """Return the program that `as_text` has written."""
+    fields = json.loads(text)
+    files = {name: content.encode("latin-1") for name, content in fields["files"].items()}
+    return Code(**{**fields, "files": files, "notes": tuple(fields["notes"])})
+
+
+def code_of(name: str, content: bytes, exercise: Exercise) -> Code:
+    """Return the program in a file with this name and content. Raises `Unreadable` and `Undecided`."""
+    kind = kind_of_content(content, kind_of(name))
+    if kind == "c++":
+        raise Unreadable(NO_CPP)
+    if kind == "archive":
+        return code_of_files(unpacked(content), exercise)
+    if kind == "notebook":
+        return code_of_notebook(read_notebook(content), exercise, posixpath.basename(name))
+    if kind == "python":
+        return code_of_python(content, exercise)
+    raise Unreadable(
+        f"{posixpath.basename(name)} is neither Python, nor a notebook, nor an archive. Hand in a .py, .ipynb or .zip "
+        "file."
+    )
+
+
+def targets(exercise: Exercise) -> tuple[ProgramFile, ...]:
+    """Return the programs that a submission has to have."""
+    return exercise.programs or (ProgramFile(exercise.file_name, exercise.node_name, exercise.class_name),)
+
+
+def code_of_python(content: bytes, exercise: Exercise) -> Code:
+    """Return the program in one Python file, which runs under the exercise's file name. Raises `Unreadable`."""
+    if problem := not_python(content) if content.strip() else "Your file is empty.":
+        raise Unreadable(problem)
+    source = content.decode("utf-8", errors="replace")
+    _refuse_conflict(content, "your file")
+    notes = newer_syntax(source)
+    if exercise.programs:
+        files = _parts(source, exercise)
+        return Code(files, next(iter(files)), source, notes)
+    return Code({exercise.file_name: content}, exercise.file_name, source, notes)
+
+
+def _refuse_conflict(content: bytes, where: str) -> None:
+    """Raise `Unreadable` for marks of a merge conflict, unless they are in a text of the program."""
+    if (line := merge_conflict(content)) and python_code.tree_of(content.decode("utf-8", errors="replace")) is None:
+        raise Unreadable(
+            f"Line {line} of {where} is a mark of a merge conflict from git. Choose one of the two versions there, and "
+            "delete the marks (<<<<<<<, =======, >>>>>>>)."
+        )
+
+
+def _parts(source: str, exercise: Exercise) -> dict[str, bytes]:
+    if files_in(source) > MOST_FILES:
+        raise Unreadable(f"There are more than {MOST_FILES} files in it. Hand in at most {MOST_FILES}.")
+    files = {file: text.encode() for file, text in parts(source).items()}
+    if absent := [one.file for one in exercise.programs if one.file not in files]:
+        raise Unreadable(f"There is no {absent[0]} in it. Begin its part of the file with a line: # file: {absent[0]}")
+    return files
+
+
+def code_of_notebook(notebook: Notebook, exercise: Exercise, name: str = "") -> Code:
+    """Return the program in a notebook. Raises `Unreadable` and `Undecided`."""
+    handed_out = starters(exercise)
+    if exercise.programs and (one := _one_cell(notebook, exercise)):
+        return replace(code_of_python(_storable(one), exercise), source=one, python=notebook.python)
+    choices = {one.file: choose(notebook, exercise, one, handed_out) for one in targets(exercise)}
+    files = {file: _storable(choice.code) for file, choice in choices.items()}
+    problem = next(filter(None, map(not_python, files.values())), "")
+    if problem:
+        raise Unreadable(problem)
+    for content in files.values():
+        _refuse_conflict(content, "the exercise's cell")
+    main = next(iter(files))
+    notes = [note for choice in choices.values() for note in choice.notes]
+    if name.removesuffix(".ipynb").endswith("-checkpoint"):
+        notes.insert(0, f"{name} is a copy that Jupyter makes by itself; your notebook may be newer.")
+    for text in list(files.values()):
+        notes += newer_syntax(text.decode())
+    files |= _modules(files, notebook)
+    source = choices[main].code if len(choices) == 1 else joined(files)
+    return Code(files, main, source, tuple(notes), notebook.python)
+
+
+def _one_cell(notebook: Notebook, exercise: Exercise) -> str:
+    """Return a cell that holds all programs of an exercise with several."""
+    names = {one.file for one in exercise.programs}
+    for cell in reversed(notebook.cells):
+        if cell.is_python and names <= parts(cell.code).keys():
+            return cell.code
+    return ""
+
+
+def uses_other_files(code: Code) -> bool:
+    """Return whether a program needs other files than the one with its text: it imports them, or there are several."""
+    if len(code.files) == 1:
+        return False
+    own = {path.partition("/")[0].removesuffix(".py") for path in code.files}
+    return any(module.partition(".")[0] in own for module in python_code.imported(code.source)) or (
+        re.search(r"^\s*from\s+\.", code.source, re.MULTILINE) is not None or "# file: " in code.source
+    )
+
+
+def _storable(code: str) -> bytes:
+    """Encode a program; raise `Unreadable` for half of a character, which JSON can hold and no file can."""
+    try:
+        return code.encode()
+    except UnicodeEncodeError as error:
+        line = code.count("\n", 0, error.start) + 1
+        text = f"Line {line} of the exercise's cell holds {code[error.start]!r}, half of a character."
+        raise Unreadable(f"{text} Delete it and type the character again.") from None
+
+
+def _modules(files: Mapping[str, bytes], notebook: Notebook) -> dict[str, bytes]:
+    """Return the other cells' modules that a program imports: beside it, and inside the notebook's package."""
+    package = next((name for cell in notebook.cells for name in _package(cell)), "notebook_nodes")
+    cells = {cell.name: cell for cell in notebook.cells if cell.name and cell.magic.name != "part"}
+    found: dict[str, bytes] = {}
+    todo = [code.decode(errors="replace") for code in files.values()]
+    while todo:
+        for module in python_code.imported(todo.pop()):
+            name = module.removeprefix(f"{package}.").partition(".")[0]
+            path = f"{package}/{name}.py" if module.startswith(f"{package}.") else f"{name}.py"
+            if name in cells and path not in {**files, **found}:
+                text = files.get(f"{name}.py") or cells[name].code.encode(errors="replace")
+                found[path] = text
+                todo.append(text.decode(errors="replace"))
+    return found
+
+
+def _package(cell: Cell) -> list[str]:
+    words = next((line.split() for line in cell.source.split("\n") if line.startswith("%chapter")), [])
+    return words[words.index("--package") + 1 : words.index("--package") + 2] if "--package" in words else []
+
+
+def code_of_files(contents: Contents, exercise: Exercise, called: str = "") -> Code:
+    """Return the program in a folder or an archive; `called` is the folder's name. Raises as `code_of`."""
+    reading = _Reading(contents.files, exercise, called)
+    handed_out = starters(exercise)
+    options = {one.file: _chosen(reading, one, handed_out) for one in targets(exercise)}
+    if not exercise.programs:
+        return _of_one(next(iter(options.values())), reading)
+    files: dict[str, bytes] = {}
+    for file, option in options.items():
+        files |= _files_of(option, reading, file)
+    notes = tuple(dict.fromkeys(note for option in options.values() for note in _notes(option, reading)))
+    shown = {file: files[file] for file in options} | files
+    return Code(files, next(iter(options)), joined({k: v for k, v in shown.items() if k.endswith(".py")}), notes)
+
+
+def _of_one(option: _Option, reading: _Reading) -> Code:
+    exercise = reading.exercise
+    notes = _notes(option, reading)
+    if option.choice:
+        code = code_of_notebook(reading.notebooks[option.file], exercise, posixpath.basename(option.file))
+        return replace(code, notes=(*notes, *code.notes))
+    files = _files_of(option, reading, exercise.file_name)
+    main = exercise.file_name
+    if main not in files:
+        main = packages.layout_of(option.file, reading.files, reading.called).main
+    if len(files) == 1:
+        return replace(code_of_python(files[main], exercise), notes=(*notes, *newer_syntax(option.source)))
+    if problem := not_python(reading.files[option.file]) if option.source.strip() else "Your file is empty.":
+        raise Unreadable(problem)
+    return Code(files, main, option.source, (*notes, *newer_syntax(option.source)))
+
+
+def _files_of(option: _Option, reading: _Reading, file: str) -> dict[str, bytes]:
+    """Return a program's files; one that is in a package is started by a small file called `file`."""
+    if option.choice:
+        return {file: option.choice.code.encode(errors="replace")}
+    layout = packages.layout_of(option.file, reading.files, reading.called)
+    function = option.function
+    if not function and not python_code.starts(option.source) and "main" in python_code.definitions(option.source):
+        function = "main"
+    files = dict(layout.files)
+    if layout.module or (function and not python_code.starts(option.source)):
+        files[file] = packages.launcher(layout.module or layout.main.removesuffix(".py"), function)
+    elif reading.exercise.programs and layout.main != file:
+        files[file] = packages.launcher(layout.main.removesuffix(".py"), "")
+    return files
+
+
+def _chosen(reading: _Reading, target: ProgramFile, handed_out: frozenset[str]) -> _Option:
+    """Return the program `target` among the files, by the first rule that any of them fits."""
+    options = [_of_python(name, reading) for name in packages.programs(reading.files)]
+    begun = [one for one in options if not python_code.is_empty(one.source) and digest_of(one.source) not in handed_out]
+    options = begun or options
+    named = [one for one in options if _is_called(one.file, target.file)]
+    cells = _of_notebooks(reading, target, handed_out)
+    its_own = [one for one in options if _is_it(one.source, target)]
+    if not (named or its_own or cells) and reading.questions:
+        raise Undecided(reading.questions[0])
+    for tier in (
+        [*named, *cells],
+        its_own,
+        _by_executable(reading, options, target),
+        [one for one in options if one.function] if not reading.exercise.programs else [],
+        [one for one in options if "rclpy" in one.source] if not reading.exercise.programs else [],
+        options if not reading.exercise.programs else [],
+    ):
+        if tier:
+            return _decided(tier, reading, target)
+    raise Unreadable(_nothing(reading, target))
+
+
+def _of_python(name: str, reading: _Reading) -> _Option:
+    source = reading.files[name].decode("utf-8", errors="replace")
+    entries = [entry for entry in packages.entry_points(reading.files) if entry.file == name]
+    title = f"{name}, the executable {entries[0].name}" if entries else name
+    return _Option(title, source, name, entries[0].function if entries else "")
+
+
+def _of_notebooks(reading: _Reading, target: ProgramFile, handed_out: frozenset[str]) -> list[_Option]:
+    found = []
+    for name in sorted(reading.files):
+        if kind_of(name) != "notebook":
+            continue
+        try:
+            notebook = reading.notebooks.setdefault(name, read_notebook(reading.files[name]))
+            choice = choose(notebook, reading.exercise, target, handed_out)
+        except Unreadable as error:
+            reading.problems.append(f"{name}: {error}")
+        except Undecided as error:
+            reading.questions.append(f"{name}: {error}")
+        else:
+            found.append(_Option(name, choice.code, name, choice=choice, python=notebook.python))
+    begun = [one for one in found if digest_of(one.source) not in handed_out]
+    return begun or found
+
+
+def _is_called(path: str, file: str) -> bool:
+    name = posixpath.basename(path).lower()
+    return name == file or (name.startswith(file) and name.removeprefix(file).startswith("."))
+
+
+def _is_it(source: str, target: ProgramFile) -> bool:
+    return python_code.defines(source, target.class_name) or python_code.creates(source, target.node)
+
+
+def _by_executable(reading: _Reading, options: Sequence[_Option], target: ProgramFile) -> list[_Option]:
+    """Return the programs that are installed under the exercise's name, or launched as its node."""
+    stem = target.file.removesuffix(".py")
+    wanted = {stem, target.node} | {
+        one.executable for one in packages.launched(reading.files) if one.name in (stem, target.node)
+    }
+    entries = [entry for entry in packages.entry_points(reading.files) if entry.name.removesuffix(".py") in wanted]
+    return [one for one in options if any(entry.file == one.file for entry in entries)]
+
+
+def _decided(options: Sequence[_Option], reading: _Reading, target: ProgramFile) -> _Option:
+    checked = {
+        digest
+        for notebook in reading.notebooks.values()
+        for cell in notebook.cells
+        for name, digest in (cell.checked or {}).items()
+        if name == reading.exercise.name and digest
+    }
+    launched = {one.executable for one in packages.launched(reading.files)}
+    entries = [entry for entry in packages.entry_points(reading.files) if entry.name in launched]
+    rules: tuple[Callable[[_Option], bool], ...] = (
+        lambda one: digest_of(one.source) in checked,
+        lambda one: _is_called(one.file, target.file),
+        lambda one: _is_it(one.source, target),
+        lambda one: bool(one.function),
+        lambda one: any(entry.file == one.file for entry in entries),
+    )
+    for fits in rules:
+        if len({digest_of(one.source) for one in options}) == 1:
+            break
+        options = [one for one in options if fits(one)] or options
+    if len({digest_of(one.source) for one in options}) == 1:
+        return min(options, key=lambda one: (one.choice is not None, one.file.count("/"), one.file))
+    titles = ", ".join(one.title for one in options[:5])
+    raise Undecided(
+        f"{len(options)} programs in it can be {target.file}, and they differ: {titles}. Which one counts? Hand in "
+        "only that one."
+    )
+
+
+def _notes(option: _Option, reading: _Reading) -> tuple[str, ...]:
+    """Return what to tell of the choice: nothing if there was none."""
+    notes = []
+    others = [name for name in packages.programs(reading.files) if name != option.file]
+    notebooks = [name for name in reading.files if kind_of(name) == "notebook" and name != option.file]
+    called = any(_is_called(option.file, one.file) for one in targets(reading.exercise))
+    if notebooks or ((others or option.function) and not called):
+        notes.append(f"Taken: {option.title}.")
+    used = python_code.imported(option.source)
+    for package in sorted(packages.own_interfaces(reading.files)):
+        if any(module.partition(".")[0] == package for module in used):
+            notes.append(
+                f"Your program imports {package}, a package of messages of your own. The grader does not build it: use "
+                "the types that the task names."
+            )
+    return tuple(notes)
+
+
+def _nothing(reading: _Reading, target: ProgramFile) -> str:
+    if reading.problems:
+        return reading.problems[0]
+    if any(kind_of(name) == "c++" for name in reading.files):
+        return NO_CPP
+    if reading.exercise.programs:
+        there = ", ".join(packages.programs(reading.files)[:5]) or "none"
+        return f"There is no {target.file} in it, and no program of the node {target.node}. Python files: {there}."
+    return f"There is no code for {reading.exercise.name} in it. Hand in the file that `spinbook submit` writes."
+
+
+def starters(exercise: Exercise) -> frozenset[str]:
+    """Return the digests of the starter as it was handed out, if that is known."""
+    course = exercise.folder.parent.parent
+    handed_out = course / ".spinbook" / "base" / "exercises" / exercise.name / exercise.file_name
+    texts = []
+    with suppress(OSError, ValueError, MarkerError):
+        if exercise.solution_file:
+            texts.append(starter(exercise.solution_file.read_text(encoding="utf-8")))
+    for file in (handed_out, exercise.folder / STARTER):
+        with suppress(OSError, ValueError):
+            texts.append(Path(file).read_text(encoding="utf-8"))
+    return frozenset(map(digest_of, texts))

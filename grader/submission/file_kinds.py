@@ -1,0 +1,68 @@
+"""What a file is, by its name and its first bytes: Python, a notebook, an archive, or another language."""
+
+from __future__ import annotations
+
+import re
+from typing import Literal
+
+Kind = Literal["python", "notebook", "archive", "c++", "other"]
+
+_SUFFIXES: dict[str, Kind] = {
+    ".py": "python",
+    ".pyw": "python",
+    ".ipynb": "notebook",
+    ".zip": "archive",
+    ".tar": "archive",
+    ".tgz": "archive",
+    ".tar.gz": "archive",
+    ".tar.bz2": "archive",
+    ".tar.xz": "archive",
+    ".txz": "archive",
+    **dict.fromkeys((".cpp", ".cc", ".cxx", ".c++", ".hpp", ".hh", ".hxx"), "c++"),
+}
+
+#: What browsers, mail programs and editors put after a file's own suffix.
+_ADDED = re.compile(
+    r"(?:\.(?:txt|text|json|download|bin|zip\.zip|py\.py))+$|(?: \(\d+\)| - copy| copy)$", re.IGNORECASE
+)
+
+#: What a submission of each kind may have (bytes).
+MOST_BYTES_OF: dict[Kind, int] = {
+    "python": 1_000_000,
+    "notebook": 30_000_000,
+    "archive": 30_000_000,
+    "c++": 1_000_000,
+    "other": 1_000_000,
+}
+
+_ARCHIVES = (b"PK\x03\x04", b"PK\x05\x06", b"\x1f\x8b", b"BZh", b"\xfd7zXZ\x00")
+
+
+def kind_of(name: str) -> Kind:
+    """Return the kind of a file by its name, in any case, also under what a browser added: `node.py.txt`."""
+    lower = name.rpartition("/")[2].strip().lower()
+    while True:
+        for suffix, kind in _SUFFIXES.items():
+            if lower.endswith(suffix):
+                return kind
+        shorter = _ADDED.sub("", lower)
+        if shorter == lower:
+            return "other"
+        lower = shorter
+
+
+def can_be_read(name: str) -> bool:
+    """Return whether a file of this name can be a submission, or is refused for its language."""
+    return kind_of(name) != "other"
+
+
+def kind_of_content(content: bytes, kind: Kind) -> Kind:
+    """Return the kind of a file whose name may mislead: a notebook that was saved as .py, a zip as .ipynb."""
+    if content.startswith(_ARCHIVES):
+        return "archive"
+    if kind == "other" and content.lstrip()[:1] != b"{":
+        return kind
+    cells = re.search(rb'"(?:cells|worksheets)"\s*:', content)
+    if kind in ("python", "other") and content.lstrip()[:1] == b"{" and cells:
+        return "notebook"
+    return kind

@@ -1,0 +1,127 @@
+"""IPython's own syntax in a cell: which lines are commands of the notebook, and what is left without them.
+
+The rules are those of IPython's `inputtransformer2`: a command begins a statement, so a line that begins with `%` or
+`!` inside a string or a bracket, or that continues the line before, is Python. Line numbers stay: a line without a
+program in it becomes an empty one, or `pass` where a block needs a statement.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+#: What moves the end of a statement: text in quotes, comments, brackets, continued and ended lines.
+_TOKEN = re.compile(
+    r"""
+    (?P<text>(?:'''(?:\\.|(?!''').)*+(?:'''|\Z)) | (?:\"\"\"(?:\\.|(?!\"\"\").)*+(?:\"\"\"|\Z))
+        | '(?:\\.|[^'\\\n])*+'? | "(?:\\.|[^"\\\n])*+"?)
+    | (?P<comment>\#[^\n]*) | (?P<open>[(\[{]) | (?P<close>[)\]}]) | (?P<continued>\\\r?\n) | (?P<end>\n)
+    """.replace("*+", "*"),
+    re.VERBOSE | re.DOTALL,
+)
+_COMMAND = re.compile(r"[ \t]*(?P<sign>%%?|!!?|\?\??)(?P<rest>.*)")
+_ASSIGNED = re.compile(r"(?P<target>[\w.,\[\]'\" \t]+=)[ \t]*(?:![^=]|%[ \t]*[A-Za-z])")
+_HELP = re.compile(r"[^'\"#]*[\w*\]]\?\??[ \t]*(?:#.*)?$")
+_TIMED = re.compile(r"%(?:time|prun)[ \t]+(?P<statement>[^-\s].*)$")
+#: No longer line (characters) is looked at for a command inside it: a pattern would take long.
+_LONGEST = 500
+_CELL = re.compile(r"%%(?P<name>\w+)[ \t]*(?P<line>.*)")
+_PROMPT = re.compile(r"^(?:>>> ?|\.\.\. ?|In \[\d+\]: ?|[ ]*\.\.\.: ?)")
+#: Commands that IPython understands without their `%`.
+_AUTOMAGIC = re.compile(r"(?:pip|conda|mamba|uv|cd|ls|pwd|mkdir|cat|cp|mv|rm)(?:[ \t]+[^=\s(.\[,:].*)?$")
+
+
+@dataclass(frozen=True)
+class Magic:
+    """What a cell begins with: `%%name line`, and the code below it. `name` is "" for an ordinary cell.
+
+    `code` has as many lines as the cell: the one with the magic is empty.
+    """
+
+    name: str
+    line: str
+    code: str
+
+
+def cell_magic(source: str) -> Magic:
+    """Split a cell's magic from its code. Empty lines and comments above the magic do not matter."""
+    lines = source.replace("\r\n", "\n").split("\n")
+    for number, line in enumerate(lines):
+        if match := _CELL.fullmatch(line.rstrip()):
+            return Magic(match["name"], match["line"], "\n" * (number + 1) + "\n".join(lines[number + 1 :]))
+        if line.strip() and not line.lstrip().startswith("#"):
+            break
+    return Magic("", "", "\n".join(_without_prompts(lines)))
+
+
+def _without_prompts(lines: list[str]) -> list[str]:
+    first = next((line for line in lines if line.strip()), "")
+    if _PROMPT.match(first):
+        return [_PROMPT.sub("", line) for line in lines]
+    indent = first[: len(first) - len(first.lstrip())]
+    if indent and all(line.startswith(indent) or not line.strip() for line in lines):
+        return [line[len(indent) :] for line in lines]
+    return lines
+
+
+def without_commands(code: str, automagic: bool = False) -> str:
+    """Return the code without the notebook's commands. `automagic`: also without those that lack their `%`."""
+    lines = code.split("\n")
+    for first, last in _commands(code, automagic):
+        text = "\n".join(lines[first : last + 1])
+        lines[first] = _replacement(text)
+        lines[first + 1 : last + 1] = [""] * (last - first)
+    return "\n".join(lines)
+
+
+def _replacement(text: str) -> str:
+    bare = text.lstrip()
+    indent = text[: len(text) - len(bare)]
+    if match := _ASSIGNED.match(bare):
+        return f"{indent}{match['target']} None"
+    if match := _TIMED.match(bare):
+        return indent + match["statement"]
+    return f"{indent}pass" if indent else ""
+
+
+def _commands(code: str, automagic: bool) -> Iterator[tuple[int, int]]:
+    """Yield the first and the last line, from 0, of each command."""
+    position, line, depth, begins = 0, 0, 0, True
+    while position <= len(code):
+        if begins:
+            if length := _command(code, position, automagic):
+                text = code[position : position + length]
+                yield line, line + text.count("\n")
+                line += text.count("\n") + 1
+                position += length + 1
+                continue
+            begins = False
+        token = _TOKEN.search(code, position)
+        if token is None:
+            return
+        depth += bool(token["open"]) - bool(token["close"] and depth)
+        line += token[0].count("\n")
+        begins = bool(token["end"]) and not depth
+        position = token.end()
+
+
+def _command(code: str, position: int, automagic: bool) -> int:
+    """Return how long the command is that begins here, 0 if a Python statement does."""
+    text = _line(code, position)
+    if _COMMAND.match(text):
+        length = len(text)
+        while code[position + length - 1] == "\\" and position + length < len(code):
+            length += 1 + len(_line(code, position + length + 1))
+        return length
+    if len(text) > _LONGEST:
+        return 0
+    bare = text.strip()
+    if _ASSIGNED.match(bare) or _HELP.match(bare) or (automagic and _AUTOMAGIC.match(bare)):
+        return len(text)
+    return 0
+
+
+def _line(code: str, position: int) -> str:
+    end = code.find("\n", position)
+    return code[position : end if end >= 0 else len(code)]

@@ -1,0 +1,187 @@
+"""Reads a notebook's file: its code cells, in any version of the format, or a sentence that says why not."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from grader.submission.magics import Magic, cell_magic, without_commands
+from grader.submission.problems import Unreadable, merge_conflict
+
+#: The key in the metadata of `%check`'s output: {"exercise": NAME, "code": DIGEST}.
+RECORD = "spinbook"
+
+#: Magics whose cells are Python that runs in the notebook itself.
+_IN_THE_NOTEBOOK = ("", "time", "capture", "prun")
+
+
+@dataclass(frozen=True, eq=False)
+class Cell:
+    """One code cell. `number` counts code cells from 1; `exercise` is the one that the chapter's cell is for, or "".
+
+    `ran` is the number of the run that its outputs are from, and `checked` are the digests of the code that `%check`
+    judged in it, by exercise; a check that an older Spinbook saved has an empty digest.
+    """
+
+    number: int
+    source: str
+    exercise: str = ""
+    ran: int | None = None
+    checked: Mapping[str, str] | None = None
+
+    @cached_property
+    def magic(self) -> Magic:
+        """The cell's magic, and its code as it was typed."""
+        return cell_magic(self.source)
+
+    @cached_property
+    def code(self) -> str:
+        """The cell's Python without the notebook's commands, line by line; "" if it has another language."""
+        if not self.is_python:
+            return ""
+        code = without_commands(self.magic.code)
+        return code if parses(code) else without_commands(self.magic.code, automagic=True)
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether it runs in the notebook itself."""
+        return self.magic.name in _IN_THE_NOTEBOOK
+
+    @property
+    def is_python(self) -> bool:
+        """Whether the cell holds Python at all."""
+        if self.magic.name in ("script", "file", "writefile"):
+            return "python" in self.magic.line or self.magic.line.rstrip().endswith(".py")
+        return self.is_plain or self.magic.name in ("node", "part", "python", "python3")
+
+    @property
+    def name(self) -> str:
+        """The module or part that the cell is, by its magic: NAME of `%%node NAME`; "" for others."""
+        if self.magic.name not in ("node", "part", "file", "writefile"):
+            return ""
+        words = [word for word in self.magic.line.split() if not word.startswith("-")]
+        return words[0].rpartition("/")[2].removesuffix(".py") if words else ""
+
+    @property
+    def title(self) -> str:
+        """Its place and its first line, for people."""
+        first = next((line.strip() for line in self.source.split("\n") if line.strip()), "")
+        return f'code cell {self.number} ("{first[:40]}")'
+
+
+@dataclass(frozen=True)
+class Notebook:
+    """A notebook: its code cells in their order, and the version of Python that saved it, if known."""
+
+    cells: tuple[Cell, ...]
+    python: str = ""
+
+
+def read_notebook(content: bytes) -> Notebook:
+    """Read a notebook's file. Raises `Unreadable`."""
+    data = _json(content)
+    cells = _cells(data)
+    metadata = data.get("metadata")
+    info = metadata.get("language_info") if isinstance(metadata, dict) else None
+    version = info.get("version") if isinstance(info, dict) else ""
+    return Notebook(
+        tuple(_cell(number, cell) for number, cell in enumerate(cells, start=1)),
+        version if isinstance(version, str) and re.fullmatch(r"3\.\d{1,2}(\.\w{1,8})?", version) else "",
+    )
+
+
+def _json(content: bytes) -> dict[str, Any]:
+    if not content.strip():
+        raise Unreadable("Your notebook's file is empty. Open the notebook, save it, and hand it in again.")
+    if line := merge_conflict(content):
+        raise Unreadable(
+            f"Line {line} of the notebook's file holds a mark of a merge conflict from git, so it is not a valid "
+            "notebook. Choose one version, such as with `git checkout --ours FILE` or `--theirs`, open it in Jupyter, "
+            "and hand it in again."
+        )
+    try:
+        data = json.loads(content)
+    except json.JSONDecodeError as error:
+        raise Unreadable(_not_json(content, error)) from None
+    except RecursionError:
+        raise Unreadable("It is not a valid notebook: its file is nested too deeply. Save it in Jupyter.") from None
+    except ValueError as error:
+        raise Unreadable(f"It is not a valid notebook: {error}. Open it in Jupyter and save it again.") from None
+    if not isinstance(data, dict):
+        raise Unreadable("It is not a valid notebook: its file holds no cells. Hand in the .ipynb that Jupyter saves.")
+    return data
+
+
+def _not_json(content: bytes, error: json.JSONDecodeError) -> str:
+    if content.lstrip()[:1] == b"<":
+        return "It is not a valid notebook but a web page. Download the notebook's own file, which ends with .ipynb."
+    if not content.lstrip().startswith(b"{"):
+        return "It is not a valid notebook. Open it in Jupyter, save it, and hand it in again."
+    if error.pos >= len(error.doc.rstrip()) or "Unterminated" in error.msg:
+        return (
+            f"It is not a valid notebook: the file ends in line {error.lineno}, in the middle. Was the download or the "
+            "upload cut off? Open it in Jupyter, save it, and hand it in again."
+        )
+    return (
+        f"It is not a valid notebook: line {error.lineno} of the file can't be read ({error.msg}). Open it in Jupyter, "
+        "save it, and hand it in again."
+    )
+
+
+def _cells(data: Mapping[str, Any]) -> list[dict[str, Any]]:
+    cells = data.get("cells")
+    if cells is None and isinstance(data.get("worksheets"), list):  # nbformat 3
+        sheets = [sheet.get("cells") for sheet in data["worksheets"] if isinstance(sheet, dict)]
+        cells = [cell for sheet in sheets if isinstance(sheet, list) for cell in sheet]
+    if not isinstance(cells, list):
+        raise Unreadable("It is not a valid notebook: its file holds no cells. Hand in the .ipynb that Jupyter saves.")
+    return [cell for cell in cells if isinstance(cell, dict) and cell.get("cell_type") == "code"]
+
+
+def _cell(number: int, cell: dict[str, Any]) -> Cell:
+    ran = cell.get("execution_count", cell.get("prompt_number"))
+    return Cell(
+        number,
+        _text(cell.get("source", cell.get("input", ""))),
+        _exercise(cell.get("metadata")),
+        ran if isinstance(ran, int) else None,
+        dict(_checked(cell.get("outputs"))),
+    )
+
+
+def _text(source: Any) -> str:
+    lines = source if isinstance(source, list) else [source]
+    return "".join(line for line in lines if isinstance(line, str)).replace("\r\n", "\n")
+
+
+def _exercise(metadata: Any) -> str:
+    spinbook = metadata.get(RECORD) if isinstance(metadata, dict) else None
+    name = spinbook.get("exercise") if isinstance(spinbook, dict) else ""
+    return name if isinstance(name, str) else ""
+
+
+_SAID = re.compile(r"^Checked: the cell %%node (?P<stem>\w+) as you ran it at ", re.MULTILINE)
+
+
+def _checked(outputs: Any) -> Iterator[tuple[str, str]]:
+    """Yield what the cell's `%check` judged: (exercise, digest), or (its module's name, "") from an older Spinbook."""
+    for output in outputs if isinstance(outputs, list) else ():
+        if not isinstance(output, dict):
+            continue
+        if match := _SAID.search(_text(output.get("text"))):
+            yield match["stem"], ""
+        metadata = output.get("metadata")
+        record = metadata.get(RECORD) if isinstance(metadata, dict) else None
+        if isinstance(record, dict) and all(isinstance(record.get(key), str) for key in ("exercise", "code")):
+            yield record["exercise"], record["code"]
+
+
+def parses(code: str) -> bool:
+    """Return whether this is valid Python, as far as the grader's version knows."""
+    from grader.submission.python_code import tree_of
+
+    return tree_of(code) is not None

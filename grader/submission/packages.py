@@ -1,0 +1,256 @@
+"""ROS 2 packages as students write them: what they install, what they launch, and how a module of them is run.
+
+Sources: setuptools' documentation ("Entry Points"), "Developing a ROS 2 package" and "Creating a launch file" in the
+ROS 2 documentation, and ament_cmake_python's for `install(PROGRAMS …)`. Nothing of a submission is run to find out.
+"""
+
+from __future__ import annotations
+
+import ast
+import configparser
+import posixpath
+import re
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from grader.submission import python_code
+from grader.submission.file_kinds import kind_of
+from grader.submission.places import LAUNCHER
+
+#: A line of an entry point: `beat = my_robot.beat_node:main`.
+_ENTRY = re.compile(r"\s*(?P<name>[\w.-]+)\s*=\s*(?P<module>[\w.]+)\s*(?::\s*(?P<function>\w+))?\s*")
+_PACKAGE_NAME = re.compile(rb"<name>\s*([\w-]+)\s*</name>")
+_MANIFESTS = ("package.xml", "setup.py", "setup.cfg", "pyproject.toml")
+
+#: Python that is never a program of the student's.
+_NOT_PROGRAMS = re.compile(r"(?:setup|conftest|__init__|test_\w*|\w*_test|\w*[._]launch)\.py", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class EntryPoint:
+    """An executable that a package installs: `name` runs `function` of the module in `file`."""
+
+    name: str
+    file: str
+    function: str
+
+
+@dataclass(frozen=True)
+class Launched:
+    """A node in a launch file: its executable, and the name that it gets there, if any."""
+
+    executable: str
+    name: str
+
+
+def programs(files: Mapping[str, bytes]) -> list[str]:
+    """Return the paths of the Python files that can be programs."""
+    return [name for name in sorted(files) if kind_of(name) == "python" and not _is_support(name)]
+
+
+def _is_support(name: str) -> bool:
+    *folders, file = name.split("/")
+    return bool(_NOT_PROGRAMS.fullmatch(file)) or any(folder in ("test", "tests", "launch") for folder in folders)
+
+
+def roots(files: Mapping[str, bytes]) -> list[str]:
+    """Return the folders of packages: those with a package.xml or a setup file. "" is the top."""
+    return sorted({posixpath.dirname(name) for name in files if posixpath.basename(name) in _MANIFESTS})
+
+
+def entry_points(files: Mapping[str, bytes]) -> list[EntryPoint]:
+    """Return the executables that the packages install, as far as their modules are there."""
+    return list(dict.fromkeys(entry for root in roots(files) for entry in _entry_points(files, root)))
+
+
+def _entry_points(files: Mapping[str, bytes], root: str) -> Iterator[EntryPoint]:
+    for line in (*_of_setup(files, root), *_of_configuration(files, root), *_of_pyproject(files, root)):
+        if match := _ENTRY.fullmatch(line):
+            path = match["module"].replace(".", "/")
+            for file in (f"{path}.py", f"src/{path}.py", f"{path}/__init__.py"):
+                if posixpath.join(root, file) in files:
+                    yield EntryPoint(match["name"], posixpath.join(root, file), match["function"] or "main")
+                    break
+    yield from _of_cmake(files, root)
+
+
+def _text(files: Mapping[str, bytes], root: str, name: str) -> str:
+    return files.get(posixpath.join(root, name), b"").decode("utf-8", errors="replace")
+
+
+def _of_setup(files: Mapping[str, bytes], root: str) -> Iterator[str]:
+    """Yield the strings of setup.py that have the form of an entry point: inside `entry_points` they all are."""
+    tree = python_code.tree_of(_text(files, root, "setup.py"))
+    for node in ast.walk(tree) if tree else ():
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and ":" in node.value:
+            yield from node.value.splitlines()
+
+
+def _of_configuration(files: Mapping[str, bytes], root: str) -> Iterator[str]:
+    reader = configparser.ConfigParser(interpolation=None, strict=False)
+    try:
+        reader.read_string(_text(files, root, "setup.cfg"))
+        yield from reader.get("options.entry_points", "console_scripts", fallback="").splitlines()
+    except configparser.Error:
+        return
+
+
+def _of_pyproject(files: Mapping[str, bytes], root: str) -> Iterator[str]:
+    section = re.search(r"^\[project\.scripts\]\s*$(.*?)(?=^\[|\Z)", _text(files, root, "pyproject.toml"), re.M | re.S)
+    yield from section[1].replace('"', "").replace("'", "").splitlines() if section else ()
+
+
+def _of_cmake(files: Mapping[str, bytes], root: str) -> Iterator[EntryPoint]:
+    """Yield the scripts that `install(PROGRAMS …)` names."""
+    for call in re.findall(r"install\s*\(\s*PROGRAMS([^)]*)\)", _text(files, root, "CMakeLists.txt"), re.IGNORECASE):
+        for word in call.split():
+            file = posixpath.join(root, word)
+            if file in files:
+                yield EntryPoint(posixpath.basename(word), file, "")
+
+
+def launched(files: Mapping[str, bytes]) -> list[Launched]:
+    """Return the nodes that launch files start: those whose executable is written as text."""
+    found: list[Launched] = []
+    for name in sorted(files):
+        text = files[name].decode("utf-8", errors="replace")
+        if re.search(r"launch\.py$", name):
+            found += _launched_by_python(text)
+        elif re.search(r"launch\.(xml|ya?ml)$|\.launch$", name):
+            for node in re.findall(r"<node\b[^>]*>|^\s*-\s*node:.*?(?=^\s*-|\Z)", text, re.DOTALL | re.MULTILINE):
+                values = dict(re.findall(r"""\b(exec|name)\s*[=:]\s*["']?([\w.-]+)""", node))
+                found.append(Launched(values.get("exec", ""), values.get("name", "")))
+    return [one for one in found if one.executable]
+
+
+def _launched_by_python(text: str) -> Iterator[Launched]:
+    tree = python_code.tree_of(text)
+    for node in ast.walk(tree) if tree else ():
+        if isinstance(node, ast.Call) and getattr(node.func, "id", getattr(node.func, "attr", "")).endswith("Node"):
+            values = {
+                keyword.arg: keyword.value.value
+                for keyword in node.keywords
+                if isinstance(keyword.value, ast.Constant) and isinstance(keyword.value.value, str)
+            }
+            yield Launched(values.get("executable", ""), values.get("name", ""))
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How a module is run: the files by the paths that they have then, and the module's path and dotted name."""
+
+    files: Mapping[str, bytes]
+    main: str
+    module: str
+
+
+def layout_of(file: str, files: Mapping[str, bytes], called: str = "") -> Layout:
+    """Return what belongs to a program: its package with its modules, and the packages that these import.
+
+    `called` is the name of the folder that was handed in, if it is known.
+    """
+    root = _import_root(file, files)
+    inside = posixpath.relpath(file, root) if root else file
+    chosen = {
+        posixpath.relpath(name, root) if root else name: data for name, data in files.items() if _below(name, root)
+    }
+    top = posixpath.dirname(file) == root and "/" not in inside
+    missing = _unknown_package(file, files) if top else ""
+    if missing and (
+        missing == (posixpath.basename(root) or called)
+        or "__init__.py" in chosen
+        or _fits(missing, chosen, files[file])
+    ):
+        # The content of a package's folder, without the folder.
+        chosen = {f"{missing}/{name}": data for name, data in chosen.items()}
+        inside = f"{missing}/{inside}"
+    chosen |= dict(_other_packages(chosen, files, root))
+    chosen = {name: data for name, data in chosen.items() if not _is_support(name) or name.endswith("__init__.py")}
+    return Layout(chosen, inside, inside.removesuffix(".py").replace("/", ".") if "/" in inside else "")
+
+
+def _below(name: str, root: str) -> bool:
+    return not root or name.startswith(f"{root}/")
+
+
+def _import_root(file: str, files: Mapping[str, bytes]) -> str:
+    """Return the folder that has to be on Python's path: the one above the program's own package."""
+    own = folder = posixpath.dirname(file)
+    while folder and f"{folder}/__init__.py" in files:
+        folder = posixpath.dirname(folder)
+    # A package without __init__.py.
+    if folder and folder == own and own not in roots(files) and _is_imported(posixpath.basename(own), file, files):
+        folder = posixpath.dirname(own)
+    return folder
+
+
+def _is_imported(package: str, file: str, files: Mapping[str, bytes]) -> bool:
+    beside = [name for name in files if posixpath.dirname(name) == posixpath.dirname(file) and name.endswith(".py")]
+    texts = [files[name].decode("utf-8", errors="replace") for name in beside]
+    return any(re.search(rf"^\s*(?:from|import)\s+{re.escape(package)}\b", text, re.MULTILINE) for text in texts)
+
+
+def _unknown_package(file: str, files: Mapping[str, bytes]) -> str:
+    """Return a package that the program imports modules of, and that neither is here nor belongs to Python."""
+    there = {name.removesuffix(".py").rpartition("/")[2] for name in files if name.endswith(".py")}
+    there |= {folder for name in files for folder in name.split("/")[:-1]}
+    for module in sorted(python_code.imported(files[file].decode("utf-8", errors="replace"))):
+        package, _, rest = module.partition(".")
+        is_known = package in sys.stdlib_module_names or package in there or package == "rclpy"
+        if not is_known and rest.partition(".")[0] in there:
+            return package
+    return ""
+
+
+def _fits(package: str, files: Mapping[str, bytes], code: bytes) -> bool:
+    wanted = {
+        m.split(".")[1] for m in python_code.imported(code.decode(errors="replace")) if m.startswith(f"{package}.")
+    }
+    return any(f"{name}.py" in files for name in wanted)
+
+
+def _other_packages(chosen: Mapping[str, bytes], files: Mapping[str, bytes], root: str) -> Iterator[tuple[str, bytes]]:
+    """Yield the files of the workspace's other packages."""
+    for other in roots(files):
+        if other == root or not _has_package(other, files):
+            continue
+        for name, data in files.items():
+            inside = posixpath.relpath(name, other) if other else name
+            if _below(name, other) and "/" in inside and inside not in chosen:
+                yield inside, data
+
+
+def _has_package(root: str, files: Mapping[str, bytes]) -> bool:
+    return any(_below(name, root) and name.endswith("/__init__.py") for name in files)
+
+
+def own_interfaces(files: Mapping[str, bytes]) -> set[str]:
+    """Return the packages in it that define messages, services or actions."""
+    found = set()
+    for root in roots(files):
+        manifest = _PACKAGE_NAME.search(files.get(posixpath.join(root, "package.xml"), b""))
+        kinds = [name for name in files if _below(name, root) and re.search(r"\.(msg|srv|action)$", name)]
+        if manifest and kinds:
+            found.add(manifest[1].decode())
+    return found
+
+
+#: Runs a module as `python -m` would, or its function as an installed executable does.
+_LAUNCHER = """\
+{note}
+import importlib, os, runpy, sys
+
+_here = os.path.dirname(os.path.abspath(__file__))
+sys.path[:1] = [_here, os.path.join(_here, {folder!r})]
+if {function!r}:
+    sys.exit(getattr(importlib.import_module({module!r}), {function!r})())
+runpy.run_module({module!r}, run_name="__main__", alter_sys=True)
+"""
+
+
+def launcher(module: str, function: str) -> bytes:
+    """Return a program that runs a module of a package, or one function of it."""
+    return _LAUNCHER.format(
+        note=LAUNCHER, module=module, function=function, folder=posixpath.dirname(module.replace(".", "/"))
+    ).encode()

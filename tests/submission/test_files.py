@@ -1,0 +1,219 @@
+"""A file is read whatever its name ends with; one that can't be read is named in a sentence that says what to do."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+from student_work import IMPORTS, NODE, PROGRAM, cell, notebook, zipped
+
+from grader.exercise import Exercise
+from grader.grading.grading import Grading
+from grader.submission import NoSubmission, read
+from grader.submission.choosing import digest_of
+from grader.submission.code import NO_CPP
+from grader.submission.file_kinds import can_be_read
+from grader.submission.python_version import newer_name, newer_syntax, running
+from grader.submission.reading import of_content
+
+NAMES = {
+    "heartbeat.py": PROGRAM.encode(),
+    "HEARTBEAT.PY": PROGRAM.encode(),
+    "heartbeat.py.txt": PROGRAM.encode(),
+    "heartbeat.Py.TXT": PROGRAM.encode(),
+    "heartbeat.py.py": PROGRAM.encode(),
+    "heartbeat (1).py": PROGRAM.encode(),
+    "heartbeat.py (1)": PROGRAM.encode(),
+    "heartbeat.py.download": PROGRAM.encode(),
+    "week3.IPYNB": notebook(NODE),
+    "week3.ipynb.json": notebook(NODE),
+    "week3.ipynb.txt": notebook(NODE),
+    "week3.json": notebook(NODE),
+    "week3.py": notebook(NODE),
+    "all.ZIP": zipped({"HEARTBEAT.PY": PROGRAM}),
+    "all.zip.zip": zipped({"heartbeat.py.txt": PROGRAM}),
+    "week3.zip.txt": zipped({"week3.IPYNB": notebook(NODE)}),
+    "renamed.py": zipped({"heartbeat.py": PROGRAM}),
+}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_any_suffix_in_any_case_is_read(name: str, tmp_path: Path, exercise: Exercise) -> None:
+    (tmp_path / name).write_bytes(NAMES[name])
+    submission = read(str(tmp_path / name), exercise)
+    assert submission.program, submission.problem
+    assert digest_of(submission.source) == digest_of(PROGRAM)
+    assert can_be_read(name) or name == "week3.json"
+
+
+SAVED = notebook(NODE)
+BROKEN = {
+    "cut off": (SAVED[: len(SAVED) // 2], "the file ends in line 1, in the middle. Was the download or the"),
+    "cut off after a cell": (SAVED[: SAVED.index(b'"metadata": {}, "nbformat"')], "in the middle"),
+    "a conflict": (
+        json.dumps(json.loads(SAVED), indent=1).replace('   "source": [', '<<<<<<< HEAD\n   "source": [', 1).encode()
+        + b"\n=======\n>>>>>>> theirs\n",
+        "Line 8 of the notebook's file holds a mark of a merge conflict from git",
+    ),
+    "empty": (b"", "Your notebook's file is empty. Open the notebook, save it, and hand it in again."),
+    "blank": (b" \n", "Your notebook's file is empty."),
+    "a web page": (b"<!DOCTYPE html>\n<html></html>", "a web page. Download the notebook's own file"),
+    "a comma": (SAVED.replace(b'"cells":', b'"cells",'), "line 1 of the file can't be read"),
+    "another JSON": (b'{"exercise": "heartbeat"}', "holds no cells. Hand in the .ipynb that Jupyter saves."),
+    "a list": (b"[1]", "It is not a valid notebook"),
+    "deeply nested": (b"[" * 100_000, "It is not a valid notebook"),
+    "deeply nested cells": (b'{"cells": ' + b"[" * 100_000, "It is not a valid notebook"),
+    "half of UTF-16": (SAVED.decode().encode("utf-16")[:201], "It is not a valid notebook"),
+    "text": (b"import rclpy\n", "It is not a valid notebook"),
+}
+
+
+@pytest.mark.parametrize(("content", "message"), BROKEN.values(), ids=BROKEN)
+def test_a_notebook_that_can_not_be_read_is_named_with_what_to_do(
+    content: bytes, message: str, exercise: Exercise
+) -> None:
+    submission = of_content("week3.ipynb", content, exercise)
+    assert message in submission.problem
+    assert "Error" not in submission.problem
+    assert "KeyError" not in submission.problem
+
+
+READABLE = {
+    "nbformat 3": json.dumps(
+        {
+            "metadata": {"name": ""},
+            "nbformat": 3,
+            "nbformat_minor": 0,
+            "worksheets": [
+                {"cells": [{"cell_type": "markdown", "source": "x"}]},
+                {"cells": [{"cell_type": "code", "input": NODE.splitlines(keepends=True), "prompt_number": 3}]},
+            ],
+        }
+    ).encode(),
+    "BOM": b"\xef\xbb\xbf" + SAVED,
+    "UTF-16": SAVED.decode().encode("utf-16"),
+    "text with line ends of Windows": json.dumps(
+        {"cells": [{**cell(""), "source": NODE.replace("\n", "\r\n")}], "metadata": {}, "nbformat": 4}
+    ).encode(),
+    "odd cells": json.dumps(
+        {"cells": [None, 3, {"cell_type": 4}, {"cell_type": "code", "source": {"a": 1}, "metadata": [1], "outputs": 7},
+                   {"cell_type": "code", "source": ["x = 1", 3], "outputs": [None, {"text": [1], "metadata": 2}]},
+                   cell(NODE)]}
+    ).encode(),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("content", READABLE.values(), ids=READABLE)
+def test_other_forms_of_a_notebook_are_read(content: bytes, exercise: Exercise) -> None:
+    assert digest_of(of_content("week3.ipynb", content, exercise).source) == digest_of(PROGRAM)
+
+
+def test_jupyters_own_copy_is_read_with_a_word(exercise: Exercise) -> None:
+    submission = of_content("03-checkpoint.ipynb", SAVED, exercise)
+    assert submission.program
+    assert "a copy that Jupyter makes by itself; your notebook may be newer" in submission.notes[0]
+
+
+def test_a_merge_conflict_in_the_program_is_named(exercise: Exercise) -> None:
+    conflict = PROGRAM.replace(IMPORTS, f"<<<<<<< HEAD\n{IMPORTS}=======\nimport os\n>>>>>>> theirs\n")
+    expected = "Line 1 of your file is a mark of a merge conflict from git."
+    assert of_content("heartbeat.py", conflict.encode(), exercise).problem.startswith(expected)
+    in_a_cell = of_content("week3.ipynb", notebook(f"%%node heartbeat\n{conflict}"), exercise)
+    assert "a mark of a merge conflict from git" in in_a_cell.problem
+    shown = PROGRAM + "TEXT = '''\n<<<<<<< HEAD\n>>>>>>> theirs\n'''\n"
+    assert of_content("heartbeat.py", shown.encode(), exercise).program
+
+
+@pytest.mark.parametrize("name", ["essay.docx", "notes.txt", "video.mp4", "nameless"])
+def test_a_file_of_another_kind_is_a_submission_with_a_problem(name: str, tmp_path: Path, exercise: Exercise) -> None:
+    (tmp_path / name).write_bytes(b"hello")
+    assert "is neither Python, nor a notebook, nor an archive." in read(str(tmp_path / name), exercise).problem
+    with pytest.raises(NoSubmission):
+        read(str(tmp_path / f"no-{name}"), exercise)
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("heartbeat.cpp", b"int main() {}\n"),
+        ("heartbeat.HPP", b""),
+        ("beat.zip", zipped({"p/package.xml": "<name>p</name>", "p/src/heartbeat.cpp": "int main() {}\n"})),
+    ],
+)
+def test_cpp_is_refused_by_name(name: str, content: bytes, exercise: Exercise, grading: Grading) -> None:
+    assert can_be_read(name)
+    grade = grading.grade(of_content(name, content, exercise))
+    assert (grade.outcome, grade.score, grade.message) == ("did-not-start", 0.0, NO_CPP)
+    assert NO_CPP == "C++ is not graded yet: hand in Python."
+
+
+#: Programs that only a newer Python reads -> its version.
+SYNTAX = {
+    "x = f'{f'{1}'}'\n": (3, 12),
+    'd = {"a": 1}\nx = f"{d["a"]}"\n': (3, 12),
+    "def first[T](x: T) -> T:\n    return x\n": (3, 12),
+    "class Box[T]:\n    pass\n": (3, 12),
+    "type Pair = tuple[int, int]\n": (3, 12),
+    "class Box[T = int]:\n    pass\n": (3, 13),
+    "name = t'hello'\n": (3, 14),
+    "try:\n    pass\nexcept ValueError, KeyError:\n    pass\n": (3, 14),
+}
+
+
+@pytest.mark.parametrize(("code", "version"), SYNTAX.items())
+def test_a_program_for_a_newer_python_is_told_both_versions(
+    code: str, version: tuple[int, int], exercise: Exercise
+) -> None:
+    this = f"The grader runs Python {sys.version_info[0]}.{sys.version_info[1]}."
+    for notes in (
+        newer_syntax(code),
+        of_content("heartbeat.py", code.encode(), exercise).notes,
+        of_content("week3.ipynb", notebook(f"%%node heartbeat\n{code}"), exercise).notes,
+    ):
+        if running() >= version:
+            assert notes == ()
+        else:
+            assert f"only Python {version[0]}.{version[1]} and newer can read. {this}" in notes[0]
+
+
+@pytest.mark.parametrize(
+    "code", ["x = (\n", "x = f'{'\n", "def f(:\n    pass\n", "x = 1\n", "try:\n  pass\nexcept A, B\n"]
+)
+def test_a_mistake_is_not_taken_for_a_newer_python(code: str) -> None:
+    assert "type" not in str(newer_syntax(code))
+    assert not any("3.13" in note or "3.14" in note for note in newer_syntax(code))
+
+
+NAMES_ADDED = {
+    "AttributeError: module 'itertools' has no attribute 'batched'": (3, 12),
+    "ImportError: cannot import name 'override' from 'typing' (/usr/lib/python3.11/typing.py)": (3, 12),
+    "ModuleNotFoundError: No module named 'annotationlib'": (3, 14),
+    "ImportError: cannot import name 'StrEnum' from 'enum'": (3, 11),
+    "AttributeError: 'PosixPath' object has no attribute 'walk'": (3, 12),
+}
+
+
+@pytest.mark.parametrize(("message", "version"), NAMES_ADDED.items())
+def test_a_name_of_a_newer_python_is_told_both_versions(message: str, version: tuple[int, int]) -> None:
+    if running() >= version:
+        assert newer_name(message) == ""
+    else:
+        assert f"is new in Python {version[0]}.{version[1]}. The grader runs Python" in newer_name(message)
+
+
+def test_a_name_that_no_python_has_is_not_excused() -> None:
+    assert newer_name("ImportError: cannot import name 'Nodes' from 'rclpy.node'") == ""
+    assert newer_name("AttributeError: module 'itertools' has no attribute 'batch'") == ""
+
+
+def test_a_notebook_that_names_a_newer_python_is_told_if_something_is_wrong(
+    exercise: Exercise, grading: Grading
+) -> None:
+    info = {"language_info": {"name": "python", "version": "3.99.1"}}
+    right = of_content("week3.ipynb", notebook(NODE, **info), exercise)
+    wrong = of_content("week3.ipynb", notebook(NODE.replace("0.25", "0.5"), **info), exercise)
+    assert right.newer_python.startswith("It was written with Python 3.99. The grader runs Python 3.")
+    assert grading.grade(right).message == ""
+    assert right.newer_python in grading.grade(wrong).message

@@ -1,0 +1,284 @@
+"""ROS 2 packages and workspaces are read as students zip them: the program is found, and brings its modules along."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from student_work import IMPORTS, NODE, OLD, PROGRAM, check_cell, notebook, tarred, written, zipped
+
+from grader.exercise import Exercise
+from grader.grading.grading import Grading
+from grader.submission import read
+from grader.submission.choosing import digest_of
+from grader.submission.reading import Submission, of_content
+
+SETUP = """\
+from setuptools import setup
+package_name = 'my_robot'
+setup(
+    name=package_name,
+    packages=[package_name],
+    data_files=[('share/' + package_name, ['package.xml'])],
+    entry_points={
+        'console_scripts': [
+            'beat = my_robot.beat_node:main',
+            'other = my_robot.other:main',
+        ],
+    },
+)
+"""
+MANIFEST = "<package format='3'><name>my_robot</name></package>\n"
+RATES = "RATE = 0.25\n"
+IN_PACKAGE = PROGRAM.replace(IMPORTS, f"{IMPORTS}from my_robot.rates import RATE\n").replace("0.25", "RATE")
+OTHER = "import rclpy\nfrom rclpy.node import Node\n\ndef main():\n    rclpy.init()\n    rclpy.spin(Node('other'))\n"
+
+PACKAGE = {
+    "package.xml": MANIFEST,
+    "setup.py": SETUP,
+    "setup.cfg": "[develop]\nscript_dir=$base/lib/my_robot\n",
+    "resource/my_robot": "",
+    "my_robot/__init__.py": "",
+    "my_robot/beat_node.py": IN_PACKAGE,
+    "my_robot/rates.py": RATES,
+    "my_robot/other.py": OTHER,
+    "launch/robot.launch.py": "from launch_ros.actions import Node\nNode(package='my_robot', executable='beat')\n",
+    "test/test_flake8.py": "def test(): pass\n",
+}
+
+
+def inside(folder: str, files: dict[str, str] | None = None) -> dict[str, str | bytes]:
+    return {f"{folder}/{name}": content for name, content in (files or PACKAGE).items()}
+
+
+#: What colcon, git, Python, editors and operating systems leave beside it.
+LEFT_BEHIND = {
+    "ws/build/my_robot/build/lib/my_robot/beat_node.py": OLD,
+    "ws/install/my_robot/lib/python3.12/site-packages/my_robot/beat_node.py": OLD,
+    "ws/install/my_robot/lib/my_robot/beat": "#!/usr/bin/python3\n",
+    "ws/log/latest_build/events.log": "x\n",
+    "ws/.git/HEAD": "ref: x\n",
+    "ws/src/my_robot/my_robot/__pycache__/beat_node.cpython-312.pyc": b"\0\0",
+    "ws/src/.DS_Store": b"\0",
+    "ws/src/my_robot/.vscode/settings.json": "{}",
+    "ws/.venv/lib/python3.12/site-packages/x.py": "x = 1\n",
+    "__MACOSX/ws/src/my_robot/my_robot/._beat_node.py": b"\0\5\26\7",
+}
+NO_ENTRIES = {name: content for name, content in PACKAGE.items() if name != "setup.py"}
+UPLOADS = {
+    "a package": ("beat.zip", zipped(inside("my_robot"))),
+    "the package's content": ("beat.zip", zipped(PACKAGE)),
+    "a workspace with what was built": ("ws.zip", zipped({**inside("ws/src/my_robot"), **LEFT_BEHIND})),
+    "a zip in a zip": ("all.zip", zipped({"homework/beat.zip": zipped(inside("my_robot"))})),
+    "a zip in a tar": ("all.tar.gz", tarred({"beat.zip": zipped(PACKAGE)})),
+    "a tar": ("beat.tar.gz", tarred(inside("my_robot"))),
+    "a tar of another kind": ("BEAT.TAR.XZ", tarred(inside("my_robot"), "xz")),
+    "without entry points": ("beat.zip", zipped(inside("my_robot", NO_ENTRIES))),
+    "the inner folder alone": (
+        "beat.zip",
+        zipped({f"my_robot/{name}.py": PACKAGE[f"my_robot/{name}.py"] for name in ("__init__", "beat_node", "rates")}),
+    ),
+    "the inner folder's content": (
+        "beat.zip",
+        zipped({f"{name}.py": PACKAGE[f"my_robot/{name}.py"] for name in ("__init__", "beat_node", "rates")}),
+    ),
+    "relative imports": (
+        "beat.zip",
+        zipped({**inside("p"), "p/my_robot/beat_node.py": IN_PACKAGE.replace("from my_robot.rates", "from .rates")}),
+    ),
+    "modules of another package": (
+        "ws.zip",
+        zipped(
+            {
+                **inside("src/my_robot"),
+                "src/my_robot/my_robot/beat_node.py": IN_PACKAGE.replace("from my_robot.rates", "from common.rates"),
+                "src/common/package.xml": MANIFEST.replace("my_robot", "common"),
+                "src/common/common/__init__.py": "",
+                "src/common/common/rates.py": RATES,
+            }
+        ),
+    ),
+    "installed by CMake": (
+        "beat.zip",
+        zipped(
+            {
+                "p/package.xml": MANIFEST,
+                "p/CMakeLists.txt": "install(PROGRAMS\n  scripts/beat.py\n  DESTINATION lib/${PROJECT_NAME})\n",
+                "p/my_robot/__init__.py": "",
+                "p/my_robot/rates.py": RATES,
+                "p/scripts/beat.py": IN_PACKAGE,
+                "p/src/main.cpp": "int main() {}\n",
+            }
+        ),
+    ),
+    "entry points in setup.cfg": (
+        "beat.zip",
+        zipped(
+            {
+                **inside("p", NO_ENTRIES),
+                "p/setup.cfg": "[options.entry_points]\nconsole_scripts =\n  beat = my_robot.beat_node:main\n",
+            }
+        ),
+    ),
+    "files beside each other": (
+        "beat.zip",
+        zipped({"beat.py": IN_PACKAGE.replace("my_robot.rates", "rates"), "rates.py": RATES}),
+    ),
+}
+
+
+@pytest.mark.parametrize(("name", "content"), UPLOADS.values(), ids=UPLOADS)
+def test_the_program_of_an_upload_is_found_with_its_modules(name: str, content: bytes, exercise: Exercise) -> None:
+    submission = of_content(name, content, exercise)
+    assert submission.program, submission
+    assert "self.create_timer(RATE, self.beat)" in submission.source
+    assert any(path.endswith("rates.py") for path in submission.program.files)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["a workspace with what was built", "the inner folder's content", "installed by CMake", "files beside each other"],
+)
+def test_the_program_of_an_upload_runs(name: str, exercise: Exercise, grading: Grading) -> None:
+    grade = grading.grade(of_content(*UPLOADS[name], exercise))
+    assert grade.full_marks, grade.message
+
+
+def test_a_folder_is_read_as_the_same_zip(tmp_path: Path, exercise: Exercise) -> None:
+    folder = written(tmp_path / "ws", {**inside("ws/src/my_robot"), **LEFT_BEHIND})
+    (folder / "ws" / "src" / "link.py").symlink_to("/etc/passwd")
+    submission = read(str(folder), exercise)
+    upload = of_content(*UPLOADS["a workspace with what was built"], exercise)
+    assert submission.program
+    assert upload.program
+    assert submission.program.files == upload.program.files
+    assert submission.notes == upload.notes == ("Taken: ws/src/my_robot/my_robot/beat_node.py, the executable beat.",)
+
+
+def test_a_package_of_a_file_called_as_the_exercise_needs_no_word(exercise: Exercise) -> None:
+    files = {**inside("p"), "p/my_robot/heartbeat.py": PROGRAM}
+    del files["p/my_robot/beat_node.py"]
+    assert of_content("p.zip", zipped(files), exercise).notes == ()
+
+
+def test_an_error_has_the_file_and_the_line_of_that_file(exercise: Exercise, grading: Grading) -> None:
+    broken = {**inside("p"), "p/my_robot/rates.py": "# the rates\n\nRATE = 1 / 0\n"}
+    message = grading.grade(of_content("p.zip", zipped(broken), exercise)).message
+    assert "ZeroDivisionError: division by zero in line 3 of my_robot/rates.py: RATE = 1 / 0" in message
+    unreadable = {**inside("p"), "p/my_robot/rates.py": "RATE = 0.25\n\nRATE = = 1\n"}
+    message = grading.grade(of_content("p.zip", zipped(unreadable), exercise)).message
+    assert "SyntaxError: invalid syntax in line 3 of my_robot/rates.py: RATE = = 1" in message
+
+
+COUNTER = """\
+import rclpy
+from rclpy.node import Node
+
+
+class Counter(Node):
+    def __init__(self):
+        super().__init__('counter')
+"""
+DOUBLER = COUNTER.replace("Counter", "Doubler").replace("counter", "doubler")
+
+
+def test_several_programs_are_found_in_a_package_by_what_they_define(pair: Exercise) -> None:
+    names = {**inside("p"), "p/my_robot/one.py": COUNTER, "p/my_robot/two.py": DOUBLER}
+    submission = of_content("p.zip", zipped(names), pair)
+    assert submission.program
+    assert {"counter.py", "doubler.py", "my_robot/one.py", "my_robot/two.py"} <= set(submission.program.files)
+    assert b"my_robot.one" in submission.program.files["counter.py"]
+
+
+def test_several_programs_keep_their_own_lines(pair: Exercise) -> None:
+    submission = of_content("both.zip", zipped({"counter.py": COUNTER, "doubler.py": DOUBLER}), pair)
+    assert submission.program
+    assert submission.program.files == {"counter.py": COUNTER.encode(), "doubler.py": DOUBLER.encode()}
+
+
+def test_a_program_that_is_missing_is_named(pair: Exercise) -> None:
+    submission = of_content("one.zip", zipped({"counter.py": COUNTER}), pair)
+    assert (
+        submission.problem
+        == "There is no doubler.py in it, and no program of the node doubler. Python files: counter.py."
+    )
+
+
+QUESTIONS = {
+    "two versions": {"a/heartbeat.py": PROGRAM, "b/heartbeat.py": OLD.partition("\n")[2]},
+    "two of other names": {"new.py": PROGRAM, "old.py": OLD.partition("\n")[2]},
+    "two notebooks": {"a.ipynb": notebook(NODE), "b.ipynb": notebook(OLD)},
+    "cells": {"a.ipynb": notebook(NODE, OLD)},
+}
+
+
+@pytest.mark.parametrize("files", QUESTIONS.values(), ids=QUESTIONS)
+def test_two_programs_that_differ_are_a_question_and_no_score(
+    files: dict[str, str | bytes], exercise: Exercise, grading: Grading
+) -> None:
+    submission = of_content("all.zip", zipped(files), exercise)
+    assert submission.question
+    assert not submission.program
+    grade = grading.grade(submission)
+    assert (grade.outcome, grade.score, grade.verdicts, grade.message) == ("undecided", 0.0, (), submission.question)
+    assert not grade.has_score
+
+
+def test_a_check_in_one_of_two_notebooks_says_which_counts(exercise: Exercise) -> None:
+    files = {"a.ipynb": notebook(NODE, check_cell(digest_of(PROGRAM))), "b.ipynb": notebook(OLD)}
+    assert digest_of(of_content("all.zip", zipped(files), exercise).source) == digest_of(PROGRAM)
+
+
+def test_the_whole_handout_in_a_zip_is_read_by_the_notebook_in_it(exercise: Exercise) -> None:
+    from grader.exercise import starter
+
+    assert exercise.solution_file
+    begin = starter(exercise.solution_file.read_text())
+    files = {
+        "course/03.ipynb": notebook(NODE),
+        "course/exercises/heartbeat/heartbeat.py": begin,
+        "course/exercises/heartbeat/checks.py": "def check(): pass\n",
+        "course/.spinbook/base/03.ipynb": notebook(OLD),
+        "course/.ipynb_checkpoints/03-checkpoint.ipynb": notebook(OLD),
+    }
+    submission = of_content("course.zip", zipped(files), exercise)
+    assert digest_of(submission.source) == digest_of(PROGRAM)
+
+
+HOSTILE = {
+    "a file that is also a folder": zipped({"a": "x", "a/heartbeat.py": PROGRAM}),
+    "names that lead elsewhere": zipped({"../../etc/heartbeat.py": PROGRAM, "/tmp/x.py": "x = 1\n"}),
+    "a long name": zipped({f"{'x' * 300}.py": "x = 1\n", "heartbeat.py": PROGRAM}),
+    "a deep path": zipped({f"{'d/' * 1500}x.py": "x = 1\n", "heartbeat.py": PROGRAM}),
+    "a zip that holds itself many times": zipped(
+        {f"{i}.zip": zipped({f"{j}.zip": zipped({"x.py": "x = 1\n"}) for j in range(9)}) for i in range(9)}
+    ),
+    "a broken zip beside": zipped({"x.zip": b"PK\3\4rubbish", "heartbeat.py": PROGRAM}),
+    "a bomb in a tar": tarred({"x.py": bytes(70_000_000), "heartbeat.py": PROGRAM}),
+    "a truncated tar": tarred({"heartbeat.py": PROGRAM})[:100],
+    "not an archive": b"PK\3\4",
+    "a setup.py without end": zipped({"setup.py": "(" * 100_000, "package.xml": "<", "heartbeat.py": PROGRAM}),
+    "a setup.cfg of rubbish": zipped({"setup.cfg": "[[[\n=\n", "heartbeat.py": PROGRAM}),
+}
+
+
+@pytest.mark.parametrize("content", HOSTILE.values(), ids=HOSTILE)
+@pytest.mark.timeout(60)
+def test_an_upload_made_to_do_harm_does_none(content: bytes, exercise: Exercise) -> None:
+    submission: Submission = of_content("x.zip", content, exercise)
+    assert bool(submission.program) != bool(submission.problem or submission.question)
+    if submission.program:
+        assert digest_of(submission.source) == digest_of(PROGRAM)
+
+
+def test_messages_of_their_own_are_named(exercise: Exercise) -> None:
+    files = {
+        **inside("src/my_robot"),
+        "src/my_msgs/package.xml": MANIFEST.replace("my_robot", "my_msgs"),
+        "src/my_msgs/msg/Beat.msg": "float64 rate\n",
+    }
+    assert "my_msgs" not in str(of_content("ws.zip", zipped(files), exercise).notes)
+    files["src/my_robot/my_robot/beat_node.py"] = f"from my_msgs.msg import Beat\n{IN_PACKAGE}"
+    assert "imports my_msgs, a package of messages of your own" in str(
+        of_content("ws.zip", zipped(files), exercise).notes
+    )
