@@ -75,7 +75,7 @@ def unpacked(archive: Path, into: Path) -> Iterator[File | Skipped]:
             if any(is_noise(part) for part in name.split("/")):
                 yield Skipped(name, WHY_NOISE)
                 continue
-            path = into / f"{number:05}{PurePosixPath(name).suffix[:20]}"
+            path = into / f"{number:05}{''.join(PurePosixPath(name).suffixes)[-20:]}"
             if stat.S_ISLNK(entry.external_attr >> 16):
                 path.symlink_to("nowhere")  # what reads it says so to the student
                 yield File(name, path)

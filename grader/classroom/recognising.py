@@ -10,9 +10,10 @@ from grader.classroom.formats.format import Export, Format, Parts, Upload
 from grader.classroom.formats.registry import FORMATS, PLAIN, PLATFORMS
 from grader.classroom.handed_in import File, SubmissionsError
 from grader.exercise.exercise import Exercise
+from grader.submission.file_kinds import kind_of
 
 #: What submissions can be, with any capitals; what else students save is read as well, and named.
-GRADABLE = (".py", ".ipynb", ".zip", ".py.txt", ".ipynb.json", ".ipynb.txt")
+GRADABLE = ("python", "notebook", "archive")
 
 #: A folder with one of these is one student's package, not a class.
 PACKAGE = {"package.xml", "setup.py", "setup.cfg", "CMakeLists.txt"}
@@ -20,7 +21,7 @@ PACKAGE = {"package.xml", "setup.py", "setup.cfg", "CMakeLists.txt"}
 
 def can_be_graded(name: str) -> bool:
     """Return whether submissions are called like this."""
-    return name.lower().endswith(GRADABLE)
+    return kind_of(name) in GRADABLE
 
 
 @dataclass(frozen=True)
