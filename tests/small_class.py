@@ -15,6 +15,9 @@ from typing import Any
 
 from prepared_python import run_prepared
 
+from grader.exercise import load
+from grader.exercise.mistakes import mistake_of
+
 ROOT = Path(__file__).parents[1]
 TEMPLATE = ROOT / "spinbook" / "new" / "template"
 EXERCISE = "speed_limit"
@@ -33,15 +36,13 @@ class SmallClass:
         self.exercise = folder / "exercises" / EXERCISE
         self.submissions = folder / "submissions"
         self.submissions.mkdir()
-        solutions = folder / "solutions" / EXERCISE
-        # Without what rclpy logs at most once a second of real time: that is more on a busy machine.
-        lines = (solutions / "solution.py").read_text(encoding="utf-8").splitlines(keepends=True)
-        right = "".join(line for line in lines if "throttle_duration_sec" not in line)
-        forwards = (solutions / "mistakes" / "only_forwards.py").read_text(encoding="utf-8")
+        exercise = load(self.exercise)
+        right = _quiet((folder / "solutions" / EXERCISE / "solution.py").read_text(encoding="utf-8"))
+        forwards = _quiet(mistake_of(exercise, "only_forwards").source)
         self.hand_in("ana", right)
         self.hand_in("bert", f"# mine\n{right}")
         self.hand_in("carl", forwards)
-        self.hand_in("dora", (solutions / "mistakes" / "trusts_every_number.py").read_text(encoding="utf-8"))
+        self.hand_in("dora", _quiet(mistake_of(exercise, "trusts_every_number").source))
         self.hand_in("emil", forwards.replace("0.0 if math.isnan(message.data) else ", ""))
         self.hand_in("fay", "import rclpy\n\nrclpy.spin(\n")
 
@@ -90,6 +91,11 @@ class SmallClass:
         """Return the points that count, by student."""
         students = sorted(file.parent.name for file in (self.folder / out).glob("students/*/grade.json"))
         return {student: self.entry(student, out)["final"] for student in students}
+
+
+def _quiet(source: str) -> str:
+    """Return the program without what rclpy logs at most once a second of real time: that is more on a busy machine."""
+    return "".join(line for line in source.splitlines(keepends=True) if "throttle_duration_sec" not in line)
 
 
 def wait_until(happened: Callable[[], object], timeout_s: float = 240) -> None:

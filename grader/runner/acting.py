@@ -153,11 +153,11 @@ class ScriptedActionServer:
     def _result(self, asked: Asked, now: int) -> None:
         request = deserialized(asked.cdr, self._kind.Impl.GetResultService.Request)
         goal = next((one for one in self._goals if one.id == bytes(request.goal_id.uuid)), None)
+        if goal is not None and goal.asked_result is None:
+            goal.asked_result = self._ends.at(asked.moment)
         if goal is None or not goal.accepted:
             self._send_result(asked, 0, {})
             return
-        if goal.asked_result is None:
-            goal.asked_result = self._ends.at(asked.moment)
         goal.waiting.append(asked)
         self._give_result(goal, now)
 

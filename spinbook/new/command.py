@@ -9,11 +9,12 @@ import click
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
 from spinbook.course.course import find_course
+from spinbook.new.kind import Kind
 from spinbook.new.writing import (
     BY_NAME,
     EXERCISE,
     KINDS,
-    Kind,
+    default_kind,
     exercise_name,
     package_name,
     title_of,
@@ -39,13 +40,14 @@ _EXERCISE = """\
 Made the exercise "{title}" ({kind}). It works as it is. Make it yours in this order, and grade the solution
 after each step:
 
-  exercises/{name}/task.md             what students read: every rule that a check relies on
-  exercises/{name}/exercise.toml       points, names, topics, services, actions, parameters
-  solutions/{name}/{solution:<19} your solution; the starter is made from it
-  exercises/{name}/scenarios.py        what the node is run against
-  exercises/{name}/checks.py           checks that students may read
-  exercises/{name}/hidden_checks.py    checks that they may not
-  solutions/{name}/right, mistakes     other right solutions, and usual mistakes with the checks that catch them
+  exercises/{name}/task.md            what students read: every rule that a check relies on
+  exercises/{name}/exercise.toml      points, names, topics, services, actions, parameters
+  solutions/{name}/solution.py        your solution; the starter is made from it
+  exercises/{name}/scenarios.py       what the node is run against
+  exercises/{name}/checks.py          checks that students may read
+  exercises/{name}/hidden_checks.py   checks that they may not
+  solutions/{name}/right/             other right solutions: {right}
+  solutions/{name}/mistakes.md        usual mistakes, as edits of the solution, with the checks that catch them
 
   spinbook grade {name} {path}
 
@@ -103,7 +105,7 @@ def new(course: Path | None, exercise: str | None, kind: Kind | None, solution: 
         _new_solution(solution)
         return
     assert exercise is not None
-    _new_exercise(exercise, kind or KINDS[0], title)
+    _new_exercise(exercise, kind or default_kind(), title)
 
 
 def _new_exercise(exercise: str, kind: Kind, title: str | None) -> None:
@@ -112,8 +114,9 @@ def _new_exercise(exercise: str, kind: Kind, title: str | None) -> None:
     title = title_of(title or words(name), root / "exercises" / name)
     write_exercise(root, name, title, kind)
     folder = root / "solutions" / name
-    solution = next(file for file in (folder / "solution.py", folder / "solution") if file.exists())
-    click.echo(_EXERCISE.format(title=title, kind=kind.name, name=name, solution=solution.name, path=_shown(solution)))
+    right = ", ".join(sorted(file.name for file in (folder / "right").glob("*.py")))
+    path = _shown(folder / "solution.py")
+    click.echo(_EXERCISE.format(title=title, kind=kind.name, name=name, right=right, path=path))
 
 
 def _new_solution(name: str) -> None:

@@ -9,60 +9,28 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from grader.exercise.exercise import Exercise
 from groundwork.files import write_if_changed
 from groundwork.problem import Problem
+from spinbook.new.kind import Kind, kinds
 from spinbook.new.skeleton import skeleton
 from spinbook.problem import SpinbookError
 
-#: A whole course, whose only exercise is the template of a filter.
+#: A whole course, with one exercise.
 COURSE = Path(__file__).parent / "template"
 
-_KINDS = Path(__file__).parent / "kinds"
-
-
-@dataclass(frozen=True)
-class Kind:
-    """One kind of exercise: what its node does, and its template.
-
-    `exercise` is the template's own name, and `title` its title. `root` contains its `exercises` and `solutions`.
-    """
-
-    name: str
-    summary: str
-    exercise: str
-    title: str
-    root: Path = _KINDS
-
-
-#: In the order in which a course would teach them.
-KINDS = (
-    Kind("filter", "one message in, one message out", "speed_limit", "A speed limit", COURSE),
-    Kind("publisher", "messages at a steady rate, by a timer", "lighthouse_beam", "The beam of a lighthouse"),
-    Kind(
-        "latched-topic",
-        "keeps its last message for late subscribers",
-        "departure_board",
-        "A board of departures",
-    ),
-    Kind(
-        "parameters",
-        "set at the start, changed while it runs",
-        "room_thermostat",
-        "A thermostat with parameters",
-    ),
-    Kind("service-server", "answers requests", "coin_turnstile", "A turnstile that takes coins"),
-    Kind("service-client", "calls a service and never waits", "fire_watch", "A fire watch that calls the sprinkler"),
-    Kind("action-server", "goals, feedback, results, cancel", "telescope_mount", "A telescope that turns on request"),
-    Kind("action-client", "sends goals that may fail", "night_observer", "An observer of the night sky"),
-    Kind("closed-loop", "steers a small simulated world", "ship_autopilot", "An autopilot that keeps a ship on course"),
-    Kind("several-nodes", "two programs that work together", "bottle_line", "A bottling line of two nodes"),
-)
+KINDS = kinds()
 
 BY_NAME = {kind.name: kind for kind in KINDS}
+
+
+def default_kind() -> Kind:
+    """Return the kind that `spinbook new --exercise NAME` makes. Raises `SpinbookError` if there are no kinds here."""
+    if not KINDS:
+        raise _without_templates()
+    return BY_NAME["filter"]
 
 
 def package_name(course: Path) -> str:
@@ -87,11 +55,6 @@ def exercise_name(name: str, course: Path) -> str:
         raise SpinbookError(Problem(file, None, found, fix))
     _refuse_taken(name, file)
     return name
-
-
-def class_name(exercise: str) -> str:
-    """Return the class name for an exercise's name: gripper_force -> GripperForce."""
-    return "".join(word.capitalize() for word in exercise.split("_"))
 
 
 def words(name: str) -> str:
@@ -144,17 +107,13 @@ def write_course(folder: Path, title: str, package: str) -> None:
 
 def write_exercise(course: Path, name: str, title: str, kind: Kind) -> None:
     """Make an exercise of a kind, and its solutions, in a course. Raises `SpinbookError` if its folder exists."""
-    names = {
-        kind.exercise: name,
-        class_name(kind.exercise): class_name(name),
-        kind.title: title,
-        words(kind.exercise).lower(): words(name).lower(),
-    }
     folders = {part: course / part / name for part in ("exercises", "solutions")}
     for folder in folders.values():
         _refuse_existing(folder)
+    files = kind.files(name, title)
     for part, folder in folders.items():
-        _put(_filled(kind.root / part / kind.exercise, names), folder)
+        inside = Path(part, name)
+        _put({path.relative_to(inside): text for path, text in files.items() if path.is_relative_to(inside)}, folder)
 
 
 def write_solution(course: Path, exercise: Exercise) -> Path:
@@ -181,8 +140,7 @@ def _refuse_existing(folder: Path) -> None:
 def _filled(template: Path, names: Mapping[str, str]) -> dict[Path, str]:
     """Return the template's files by their paths in the result, with other names in them. Raises `SpinbookError`."""
     if not template.is_dir():
-        found = "this installation has no templates of courses and exercises: it came with a handout, for students."
-        raise SpinbookError(Problem(template, None, found, _CHECKOUT))
+        raise _without_templates()
     files: dict[Path, str] = {}
     for file in sorted(template.rglob("*")):
         path = file.relative_to(template)
@@ -196,6 +154,11 @@ def _filled(template: Path, names: Mapping[str, str]) -> dict[Path, str]:
             text = text.replace(old, new)
         files[path] = text
     return files
+
+
+def _without_templates() -> SpinbookError:
+    found = "this installation has no templates of courses and exercises: it came with a handout, for students."
+    return SpinbookError(Problem(COURSE, None, found, _CHECKOUT))
 
 
 def _put(files: Mapping[Path, str], folder: Path) -> None:

@@ -8,8 +8,9 @@ from small_class import EXERCISE, TEMPLATE
 
 from grader.classroom.local import LocalBackend
 from grader.exercise import load
+from grader.exercise.mistakes import mistake_of
 from grader.grading import Options, grading_of
-from grader.submission import read
+from grader.submission.reading import of_source
 from grader.workers import Worker, WorkerPool
 
 
@@ -27,7 +28,7 @@ class Counting(WorkerPool):
 
 def test_whoever_has_no_submission_left_helps_with_the_last_one() -> None:
     exercise = load(TEMPLATE / "exercises" / EXERCISE)
-    submission = read(str(TEMPLATE / "solutions" / EXERCISE / "mistakes" / "only_forwards.py"), exercise)
+    submission = of_source("ada", mistake_of(exercise, "only_forwards").source.encode(), exercise)
     grades = []
     with Counting() as workers:
         grading = grading_of(exercise, Options(), workers)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import re
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -11,31 +10,18 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from grader.audit.mutants.making import mutants_of
-from grader.audit.survivors import listed
+from grader.checking.proofreading import problems_of
 from grader.exercise import load, starter
+from grader.exercise.mistakes import Mistake, mistakes_of
 from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
 from grader.submission import read
 from grader.submission.reading import of_source
 from grader.workers import WorkerPool
 from spinbook.new.command import new
-from spinbook.new.writing import BY_NAME, KINDS, write_course
+from spinbook.new.kind import Kind
+from spinbook.new.writing import BY_NAME, KINDS, write_course, write_exercise
 from spinbook.problem import SpinbookError
-
-#: For each kind, a usual mistake that the default suite grades. The soak grades all of them.
-MISTAKES = {
-    "filter": "one_message_late",
-    "publisher": "computers_clock",
-    "latched-topic": "volatile_board",
-    "parameters": "reads_once",
-    "service-server": "returns_nothing",
-    "service-client": "waits_in_the_callback",
-    "action-server": "forgets_succeed",
-    "action-client": "ignores_status",
-    "closed-loop": "wraps_the_angle",
-    "several-nodes": "never_closes",
-}
 
 
 def made(*words: str) -> Result:
@@ -71,7 +57,7 @@ LONG = ("publisher", "action-client", "closed-loop", "several-nodes")
 
 @pytest.fixture(
     scope="module",
-    params=[pytest.param(kind, marks=pytest.mark.soak if kind in LONG else ()) for kind in MISTAKES],
+    params=[pytest.param(kind, marks=pytest.mark.soak if kind in LONG else ()) for kind in BY_NAME],
 )
 def grading(request: pytest.FixtureRequest, course: Path, workers: WorkerPool) -> Grading:
     """A grading for the exercise of a kind: its solution has passed every check."""
@@ -83,32 +69,23 @@ def folder_of(grading: Grading) -> Path:
     return exercise.folder.parents[1] / "solutions" / exercise.name
 
 
-def caught_and_named(grading: Grading, mistake: Path) -> tuple[set[str], set[str]]:
-    """Return the checks that a mistake fails, and those that its docstring says it fails."""
-    grade = grading.grade(read(str(mistake), grading.runner.exercise))
-    return {verdict.name for verdict in grade.verdicts if verdict.status == "failed"}, named_by(mistake)
+def caught(grading: Grading, mistake: Mistake) -> set[str]:
+    """Return the checks that a mistake fails."""
+    grade = grading.grade(of_source(mistake.name, mistake.source.encode(), grading.runner.exercise))
+    return {verdict.name for verdict in grade.verdicts if verdict.status == "failed"}
 
 
-def named_by(mistake: Path) -> set[str]:
-    """Return the checks that a mistake's docstring says it fails."""
-    header = ast.get_docstring(ast.parse(mistake.read_text(encoding="utf-8"))) or ""
-    return set(re.findall(r"^- (test_\w+)$", header, re.MULTILINE))
-
-
-def test_the_starter_gets_nothing_and_a_usual_mistake_loses_what_it_names(
-    grading: Grading, request: pytest.FixtureRequest
-) -> None:
+def test_the_starter_gets_nothing_and_a_usual_mistake_loses_what_it_names(grading: Grading) -> None:
     source = starter((folder_of(grading) / "solution.py").read_text(encoding="utf-8"))
     assert grading.grade(of_source("starter", source.encode(), grading.runner.exercise)).score == 0
-    kind = next(kind for kind in MISTAKES if exercise_of(kind) == grading.runner.exercise.name)
-    failed, named = caught_and_named(grading, folder_of(grading) / "mistakes" / f"{MISTAKES[kind]}.py")
-    assert failed == named
+    mistake = mistakes_of(grading.runner.exercise)[-1]
+    assert caught(grading, mistake) == set(mistake.caught_by)
 
 
 @pytest.mark.soak
 def test_every_right_solution_gets_full_marks(grading: Grading) -> None:
     files = sorted((folder_of(grading) / "right").glob("*.py"))
-    assert len(files) >= 3
+    assert files
     for file in files:
         grade = grading.grade(read(str(file), grading.runner.exercise))
         assert grade.full_marks, (file.name, [v for v in grade.verdicts if v.status != "passed"])
@@ -116,45 +93,61 @@ def test_every_right_solution_gets_full_marks(grading: Grading) -> None:
 
 @pytest.mark.soak
 def test_every_mistake_loses_exactly_the_checks_that_it_names(grading: Grading) -> None:
-    files = sorted((folder_of(grading) / "mistakes").glob("*.py"))
-    assert len(files) >= 8
-    for file in files:
-        failed, named = caught_and_named(grading, file)
-        assert failed == named, file.name
+    mistakes = mistakes_of(grading.runner.exercise)
+    assert len(mistakes) >= 6
+    for mistake in mistakes:
+        assert caught(grading, mistake) == set(mistake.caught_by), mistake.name
 
 
 @pytest.mark.soak
 def test_a_class_of_six_gets_its_grades_side_by_side(grading: Grading) -> None:
     folder, exercise = folder_of(grading), grading.runner.exercise
-    right = [folder / "solution.py", *sorted((folder / "right").glob("*.py"))[:2]]
-    wrong = sorted((folder / "mistakes").glob("*.py"))[:2]
-    empty = of_source("starter", starter(right[0].read_text(encoding="utf-8")).encode(), exercise)
+    solution = folder / "solution.py"
+    right = [read(str(file), exercise) for file in (solution, *[*(folder / "right").glob("*.py")][:1])]
+    mistakes = mistakes_of(exercise)[:3]
+    wrong = [of_source(mistake.name, mistake.source.encode(), exercise) for mistake in mistakes]
+    empty = of_source("starter", starter(solution.read_text(encoding="utf-8")).encode(), exercise)
     with ThreadPoolExecutor(3) as desk:
-        grades = list(desk.map(grading.grade, [*(read(str(file), exercise) for file in (*right, *wrong)), empty]))
-    assert [grade.full_marks for grade in grades] == [True] * 3 + [False] * 3
-    assert [grade.score for grade in grades if grade.submission == "starter"] == [0]
-    for file, grade in zip(wrong, grades[3:5], strict=True):
-        assert {verdict.name for verdict in grade.verdicts if verdict.status == "failed"} == named_by(file)
+        grades = list(desk.map(grading.grade, [*right, *wrong, empty]))
+    assert [grade.full_marks for grade in grades] == [True] * 2 + [False] * 4
+    assert grades[-1].score == 0
+    for mistake, grade in zip(mistakes, grades[2:5], strict=True):
+        assert {verdict.name for verdict in grade.verdicts if verdict.status == "failed"} == set(mistake.caught_by)
 
 
-def test_the_exercise_has_its_own_names(course: Path) -> None:
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
+def test_an_exercise_of_each_kind_is_about_its_name_and_short(kind: Kind) -> None:
+    files = kind.files("gripper_force", "A gentle grip")
+    text = "".join(files.values())
+    assert f'"{kind.source.stem}"' not in text
+    assert files[Path("exercises/gripper_force/task.md")].startswith("# A gentle grip\n")
+    assert "gripper force" in files[Path("exercises/gripper_force/task.md")]
+    names = {name for name in re.findall(r'"/([\w/]+)"', text) if name not in OF_ROS}
+    assert {name.split("/")[0].removesuffix("_gain").removesuffix("_limit") for name in names} == {"gripper_force"}
+    assert len(files) <= 9
+    assert sum(len(text.splitlines()) for text in files.values()) <= 500
+
+
+#: What every node publishes or subscribes to.
+OF_ROS = ("clock", "parameter_events", "rosout")
+
+
+@pytest.mark.parametrize(
+    "name", ["node", "float64", "scenario", "checks", "x", "arm_7", "to_be_or_not_to_be_that_is_the_question"]
+)
+def test_an_exercise_of_each_kind_works_by_any_name(name: str, tmp_path: Path) -> None:
     for kind in KINDS:
-        name = exercise_of(kind.name)
-        files = [file for part in ("exercises", "solutions") for file in (course / part / name).rglob("*.*")]
-        text = "".join(file.read_text(encoding="utf-8") for file in files)
-        assert kind.exercise not in text
-        assert f'title = "{name.replace("_", " ").capitalize()}"' in text
+        write_exercise(tmp_path / kind.name, name, "Any title", kind)
+        folder = tmp_path / kind.name / "exercises" / name
+        assert problems_of(folder) == ()
+        assert mistakes_of(load(folder))
+        for file in folder.parents[1].rglob("*.py"):
+            compile(file.read_text(encoding="utf-8"), file, "exec")
 
 
-def test_the_listed_survivors_are_mutants_of_the_exercise_whatever_it_is_called(course: Path) -> None:
-    found = 0
-    for kind in KINDS:
-        exercise = load(course / "exercises" / exercise_of(kind.name))
-        if survivors := set(listed(exercise)):
-            source = (course / "solutions" / exercise.name / "solution.py").read_text(encoding="utf-8")
-            assert survivors <= {mutant.id for mutant in mutants_of(source, exercise)}, kind.name
-            found += len(survivors)
-    assert found
+def test_a_class_never_hides_what_the_program_imports(tmp_path: Path) -> None:
+    write_exercise(tmp_path, "float64", "Any title", BY_NAME["filter"])
+    assert load(tmp_path / "exercises" / "float64").class_name == "Float64Node"
 
 
 def test_the_command_says_what_it_made_and_how_to_grade_it(course: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -162,6 +155,8 @@ def test_the_command_says_what_it_made_and_how_to_grade_it(course: Path, monkeyp
     done = made("--exercise", "front_door", "--kind", "service-server", "--title", "A door")
     assert 'Made the exercise "A door" (service-server)' in done.output
     assert "spinbook grade front_door solutions/front_door/solution.py" in done.output
+    made_files = [file for part in ("exercises", "solutions") for file in (course / part / "front_door").rglob("*.*")]
+    assert all(file.name in done.output for file in made_files)
 
 
 def test_an_unknown_kind_is_answered_with_the_kinds_that_there_are(
@@ -190,4 +185,3 @@ def test_an_exercise_that_exists_is_refused_whatever_its_kind(course: Path, monk
     done = made("--exercise", exercise_of("filter"), "--kind", "publisher")
     assert isinstance(done.exception, SpinbookError)
     assert "already" in str(done.exception)
-    assert set(BY_NAME) == set(MISTAKES)

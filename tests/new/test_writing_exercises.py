@@ -1,4 +1,4 @@
-"""The guide to writing exercises shows what the templates really contain, and every kind has its page."""
+"""The guide to writing exercises shows what the exercises of all kinds really contain, and has a section for each."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from grader.exercise import load, starter
 from grader.grading import Options, grading_of
 from grader.submission.reading import of_source
 from grader.workers import WorkerPool
-from spinbook.new.writing import KINDS, Kind
+from spinbook.new.kind import Kind
+from spinbook.new.writing import KINDS
 
 DOCS = Path(__file__).parents[2] / "docs"
 FENCE = re.compile(r"^```(?:python|toml)\n(.*?)^```", re.MULTILINE | re.DOTALL)
@@ -26,30 +27,24 @@ def flat(text: str) -> str:
 
 
 def files_of(kind: Kind) -> str:
-    """Return everything in the template's author files."""
-    return "\n".join(flat(file.read_text()) for file in (kind.root / "exercises" / kind.exercise).glob("*.*"))
+    """Return everything in the files of an exercise of this kind."""
+    return "\n".join(flat(text) for text in kind.files("gripper_force", "Gripper force").values())
 
 
 @pytest.mark.parametrize("kind", OF_KIND)
-def test_every_example_stands_in_the_template_which_is_graded(kind: Kind) -> None:
-    page = (DOCS / "writing-exercises" / f"{kind.name}.md").read_text()
-    examples = FENCE.findall(page)
-    assert len(examples) >= 3
+def test_every_example_of_a_kind_stands_in_its_exercise_which_is_graded(kind: Kind) -> None:
+    page = (DOCS / "writing-exercises" / "kinds.md").read_text()
+    section = page.partition(f"\n## `{kind.name}`\n")[2].partition("\n## ")[0]
+    examples = FENCE.findall(section)
+    assert len(examples) >= 2
     for example in examples:
         assert flat(example) in files_of(kind), example
 
 
-@pytest.mark.parametrize("kind", OF_KIND)
-def test_every_page_names_its_command(kind: Kind) -> None:
-    page = (DOCS / "writing-exercises" / f"{kind.name}.md").read_text()
-    assert f"--kind {kind.name}" in page
-
-
-def test_the_guide_links_every_page_and_its_examples_stand_in_a_template() -> None:
+def test_every_example_of_the_guide_stands_in_an_exercise() -> None:
     guide = (DOCS / "writing-exercises.md").read_text()
-    assert [kind.name for kind in KINDS if f"(writing-exercises/{kind.name}.md)" not in guide] == []
     everything = "\n".join(files_of(kind) for kind in KINDS)
-    assert all(flat(example) in everything for example in FENCE.findall(guide))
+    assert [example for example in FENCE.findall(guide) if flat(example) not in everything] == []
 
 
 #: A mistake for each of the whole exercises on that page, and the check that has to catch it.

@@ -291,6 +291,17 @@ def test_a_scripted_action_server_does_with_a_goal_what_its_script_says(
     assert len(goal.cancels) == ("feedback [1, 2]" in [text for _, text in texts])
 
 
+def test_a_client_that_asks_for_the_result_of_a_rejected_goal_is_recorded(scripted: Scripted) -> None:
+    scenario = Scenario("s", "t", servers=ActionServer("/climb", goals=rejects()), duration=1.5)
+    (goal,) = scripted(program(ACTION_CLIENT), scenario).goals
+    assert goal.asked_result is None
+    asks = ACTION_CLIENT.replace("if self.goal.accepted:", "if True:")
+    recording = scripted(program(asks), scenario)
+    (goal,) = recording.goals
+    assert goal.asked_result is not None
+    assert received(recording, "/text")[-1][1] == "status 0 []"
+
+
 def test_a_turtle_goes_where_the_program_drives_it(scripted: Scripted) -> None:
     recording = scripted(program(GO_TO_GOAL), Scenario("s", "t", world=World(Turtle, x=5.0, y=7.0), duration=6.0))
     last = recording.sent[-1]

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import ast
-import re
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from grader.exercise import load, starter
+from grader.exercise.mistakes import mistakes_of
 from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
 from grader.submission import read
@@ -43,13 +42,11 @@ def test_every_right_solution_gets_full_marks(grading: Grading) -> None:
 
 
 def test_every_mistake_loses_exactly_the_checks_that_it_names(grading: Grading) -> None:
-    mistakes = files(grading, "mistakes/*.py")
+    mistakes = mistakes_of(grading.runner.exercise)
     assert mistakes, "write at least one usual mistake: it shows that the checks catch something"
-    for file in mistakes:
-        header = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
-        named = set(re.findall(r"^- (test_\w+)$", header, re.MULTILINE))
-        grade = grading.grade(read(str(file), grading.runner.exercise))
-        assert {v.name for v in grade.verdicts if v.status == "failed"} == named, file.name
+    for mistake in mistakes:
+        grade = grading.grade(of_source(mistake.name, mistake.source.encode(), grading.runner.exercise))
+        assert {v.name for v in grade.verdicts if v.status == "failed"} == set(mistake.caught_by), mistake.name
 
 
 def test_the_starter_runs_and_gets_nothing(grading: Grading) -> None:
