@@ -12,7 +12,7 @@ from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import NoExercise, find, load
 from grader.sandbox.middleware import to_be_compiled
 from grader.sandbox.program import Isolation, SandboxUnavailable
-from grader.submission.reading import NoSubmission, Submission, of_source, read
+from grader.submission.reading import NoSubmission, Submission, is_one, of_source, read
 from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
 
 if TYPE_CHECKING:
@@ -116,6 +116,7 @@ def grade(
       spinbook grade joint_velocity joint_velocity.py         a file
       spinbook grade joint_velocity week3.ipynb               the exercise's cell in a notebook
       spinbook grade joint_velocity upload.zip                what `spinbook submit` has written
+      spinbook grade joint_velocity my_workspace/             a ROS 2 package or workspace, as a folder or an archive
       spinbook grade joint_velocity my_package/joint_velocity an installed package's executable
       spinbook grade joint_velocity mine.py --plot mine.svg   see where it first goes wrong
       spinbook grade joint_velocity mine.py --verbose         see what the node logged
@@ -166,7 +167,8 @@ def grade(
                 "publish": publish,
             }
             sys.exit(_class(found, Path(submission), out, wanted, wishes))
-        if not mistake and (Path(submission).is_dir() or submission.endswith(".csv")):
+        is_class = submission.endswith(".csv") or (Path(submission).is_dir() and not is_one(Path(submission), found))
+        if not mistake and is_class:
             raise click.UsageError(f"{submission}: to grade a class, give a folder for the results with --out.")
         handed_in = _mistake(mistake, found) if mistake else read(submission, found)
         with WorkerPool() as workers:

@@ -9,7 +9,6 @@ What is printed Gradescope shows to instructors alone.
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import json
 import os
 import sys
@@ -79,16 +78,9 @@ def _entry(exercise: Exercise, root: Path, isolation: str) -> Entry:
 
 
 def submission(folder: Path, exercise: Exercise) -> Submission:
-    """What a student has uploaded: the file called as the exercise says, else the only one of its kind."""
-    files = sorted(file for file in folder.rglob("*") if file.is_file() and file.suffix in (".py", ".ipynb", ".zip"))
-    named = [file for file in files if file.name == exercise.file_name]
-    for found in (named, files):
-        if len(found) == 1:
-            return read(str(found[0]), exercise)
-    names = ", ".join(file.name for file in files[:5])
-    problem = f"Upload one file, called {exercise.file_name}. " + (f"There are {names}." if files else "There is none.")
-    digest = hashlib.sha256(problem.encode()).hexdigest()
-    return Submission(exercise.file_name, digest, exercise.file_name, "", None, problem)
+    """What a student has uploaded: its only file, or the program among several."""
+    files = [file for file in folder.rglob("*") if file.is_file() and not file.is_symlink()]
+    return read(str(files[0] if len(files) == 1 else folder), exercise)
 
 
 def _metadata(file: Path) -> tuple[Student, datetime | None]:

@@ -114,6 +114,13 @@ def read(given: str, exercise: Exercise) -> Submission:
     return of_content(given, content, exercise)
 
 
+def is_one(folder: Path, exercise: Exercise) -> bool:
+    """Return whether a folder is one submission and not a class: a package, a workspace, or the exercise's program."""
+    patterns = [f"{'*/' * depth}{name}" for depth in range(4) for name in ("package.xml", "setup.py")]
+    names = [exercise.file_name, *(program.file for program in exercise.programs)]
+    return any((folder / name).is_file() for name in names) or any(next(folder.glob(one), None) for one in patterns)
+
+
 def of_content(name: str, content: bytes, exercise: Exercise) -> Submission:
     """The submission in a file with this name and content."""
     if kind_of_content(content, kind_of(name)) == "archive":

@@ -8,10 +8,12 @@ import pytest
 from student_work import IMPORTS, NODE, OLD, PROGRAM, check_cell, notebook, tarred, written, zipped
 
 from grader.exercise import Exercise
+from grader.gradescope import run as gradescope
 from grader.grading.grading import Grading
 from grader.submission import read
 from grader.submission.choosing import digest_of
-from grader.submission.reading import Submission, of_content
+from grader.submission.code import code_of, uses_other_files
+from grader.submission.reading import Submission, is_one, of_content
 
 SETUP = """\
 from setuptools import setup
@@ -153,6 +155,33 @@ def test_a_folder_is_read_as_the_same_zip(tmp_path: Path, exercise: Exercise) ->
     assert upload.program
     assert submission.program.files == upload.program.files
     assert submission.notes == upload.notes == ("Taken: ws/src/my_robot/my_robot/beat_node.py, the executable beat.",)
+
+
+def test_a_folder_is_one_submission_or_a_class(tmp_path: Path, exercise: Exercise, pair: Exercise) -> None:
+    workspace = written(tmp_path / "ws", inside("ws/src/my_robot"))
+    programs = written(tmp_path / "programs", {"counter.py": "", "doubler.py": ""})
+    people = written(tmp_path / "class", {"anna.py": PROGRAM, "bert/heartbeat.py": PROGRAM})
+    assert is_one(workspace, exercise)
+    assert is_one(programs, pair)
+    assert not is_one(people, exercise)
+
+
+def test_what_gradescope_has_unpacked_is_read_as_a_folder(tmp_path: Path, exercise: Exercise) -> None:
+    assert gradescope.submission(written(tmp_path / "one", {"Beat.PY": PROGRAM}), exercise).source == PROGRAM
+    of_folder = gradescope.submission(written(tmp_path / "many", inside("ws/src/my_robot")), exercise)
+    assert of_folder.program
+    assert "my_robot/rates.py" in of_folder.program.files
+
+
+@pytest.mark.parametrize(
+    ("source", "needs"),
+    [(PROGRAM, False), (IN_PACKAGE, True), (PROGRAM.replace(IMPORTS, f"{IMPORTS}from . import rates\n"), True)],
+)
+def test_a_page_takes_a_program_alone_only_if_it_needs_no_other_file(
+    source: str, needs: bool, exercise: Exercise
+) -> None:
+    content = zipped({**inside("p"), "p/my_robot/beat_node.py": source})
+    assert uses_other_files(code_of("p.zip", content, exercise)) is needs
 
 
 def test_a_package_of_a_file_called_as_the_exercise_needs_no_word(exercise: Exercise) -> None:
