@@ -123,6 +123,7 @@ class Collector:
         chosen += [question for question in found.odd if normal(question.student.id) not in theirs]
         rows = match(self.wishes.roster, [one.student for one in chosen])
         missing = self._missing([one.student for one in chosen], rows)
+        missing = [student for student in missing if normal(student.id) not in theirs]
         ids = unique_ids([*(one.student.id for one in chosen), *(student.id for student in missing)])
         named = [_named(one, rows.get(one.student.id), ids) for one in chosen]
         handed_in = sorted((one for one in named if isinstance(one, HandedIn)), key=lambda one: one.student.id)

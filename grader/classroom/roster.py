@@ -44,7 +44,7 @@ def read_roster(table: Path, zone: tzinfo | None) -> tuple[RosterRow, ...]:
 
     Raises `SubmissionsError` for a table that has none of these columns, and for a row with a mistake.
     """
-    rows = []
+    rows: dict[str, RosterRow] = {}
     for number, row in table_rows(table, ()):
         student = _student(row)
         if student is None:
@@ -52,9 +52,9 @@ def read_roster(table: Path, zone: tzinfo | None) -> tuple[RosterRow, ...]:
                 f"{table}:{number}: nothing says who this is. Write a column student, or give the list of students, "
                 "grades or submissions that your platform exports."
             )
-        if student.id and student.id != "Points Possible":
-            rows.append(RosterRow(student, _time(row, f"{table}:{number}", zone)))
-    return tuple(rows)
+        if student.id:  # somebody in two sections is listed twice
+            rows.setdefault(student.id, RosterRow(student, _time(row, f"{table}:{number}", zone)))
+    return tuple(rows.values())
 
 
 def _student(row: Mapping[str, str]) -> Student | None:

@@ -264,6 +264,12 @@ def test_the_platforms_own_list_is_a_roster(tmp_path: Path, export: Callable[[],
         assert {one.file.submitted_from for one in found.handed_in} == {"Moodle's worksheet"}
 
 
+def test_a_roster_names_each_student_once_and_never_takes_a_submission_away(tmp_path: Path) -> None:
+    (tmp_path / "roster.csv").write_text("student,name\nanna,Anna\nanna,Anna\nbert,Anna\n", encoding="utf-8")
+    found = collected(folder(tmp_path / "class", ["anna.py"]), roster=read_roster(tmp_path / "roster.csv", None))
+    assert (list(files(found)), [student.id for student in found.missing]) == (["anna"], ["bert"])
+
+
 @pytest.mark.parametrize(
     ("name", "who"),
     [
