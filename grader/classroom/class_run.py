@@ -10,7 +10,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime
 from functools import partial
-from hashlib import sha256
 from pathlib import Path
 from types import FrameType
 
@@ -23,7 +22,7 @@ from grader.classroom.deadline import Adjusting, Deadline, deadline_of, override
 from grader.classroom.decisions import decisions, show_decisions
 from grader.classroom.gradebook import gradebook, write_gradebook
 from grader.classroom.groups import read_groups
-from grader.classroom.handed_in import File, HandedIn, Submissions, SubmissionsError
+from grader.classroom.handed_in import HandedIn, Submissions, SubmissionsError
 from grader.classroom.local import LocalBackend, at_once
 from grader.classroom.misconceptions import Signature, failures_of, grouped, signatures
 from grader.classroom.overview import overview_page
@@ -35,7 +34,7 @@ from grader.classroom.roster import read_roster
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Entry, Grade
 from grader.grading.grading import Grading, grading_of
-from grader.submission.reading import NoSubmission, Submission, read
+from grader.submission.reading import Submission, read
 from grader.workers.pool import WorkerPool
 from groundwork.files import write_if_changed
 
@@ -57,11 +56,11 @@ def grade_class(exercise: Exercise, class_request: ClassRequest, console: Consol
         adjusting = _adjusting(class_request, deadline, {student.id for student in collected.students})
         if deadline:
             say(console, f"Deadline: {deadline}.")
-        to_decide = decisions(collected, adjusting)
+        submissions, unreadable = _read(collected, exercise)
+        to_decide = decisions(collected, adjusting, submissions)
         show_decisions(console, to_decide, class_request.skip)
         if to_decide and not class_request.skip:
             return QUESTIONS
-        submissions, unreadable = _read(collected, exercise)
         collected = replace(
             collected, handed_in=tuple(one for one in collected.handed_in if one.student.id in submissions)
         )
@@ -185,18 +184,10 @@ def _read(collected: Submissions, exercise: Exercise) -> tuple[dict[str, Tries],
     submissions, unreadable = {}, []
     for one in collected.handed_in:
         try:
-            submissions[one.student.id] = tuple(_read_file(file, exercise) for file in one.files)
+            submissions[one.student.id] = tuple(read(str(file.path), exercise) for file in one.files)
         except Exception as error:
             unreadable.append((one, f"{type(error).__name__}: {error}"))
     return submissions, unreadable
-
-
-def _read_file(file: File, exercise: Exercise) -> Submission:
-    try:
-        return read(str(file.path), exercise)
-    except NoSubmission:
-        problem = f"{file.name}: hand in a .py file, a notebook, or the .zip that `spinbook submit` writes."
-        return Submission(file.name, sha256(problem.encode()).hexdigest(), exercise.file_name, "", None, problem)
 
 
 def _unread(grading: Grading, one: HandedIn) -> Grade:

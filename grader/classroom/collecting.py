@@ -17,7 +17,7 @@ from grader.classroom.formats.per_student import without_suffix
 from grader.classroom.groups import Attempt, Group, Unit, in_groups
 from grader.classroom.handed_in import File, HandedIn, Question, Submissions, SubmissionsError
 from grader.classroom.names import normal, unique_ids
-from grader.classroom.recognising import PACKAGE, Recognised, Recogniser, can_be_graded
+from grader.classroom.recognising import Recognised, Recogniser, can_be_graded
 from grader.classroom.roster import RosterRow, match, signs, with_row
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Skipped, Student
@@ -51,24 +51,28 @@ def collect(source: Path, exercise: Exercise, unpack_into: Path, wishes: Wishes 
         raise SubmissionsError(f"{source}: there is no such file or folder.")
     if source.suffix.lower() == ".csv":
         uploads, skipped = by_row(source, wishes.zone)
-        found = Found(f"the files that {source.name} names", uploads, skipped)
+        found = Found(f"the files that {source.name} names", uploads, skipped, together=False)
     else:
         found = _found(source, exercise, unpack_into, wishes)
     if not any(can_be_graded(file.name) or file.path.is_dir() for file, _ in found.uploads):
         text = "".join(f"\n  {skip.file}: {skip.why}" for skip in found.skipped[:10])
         raise SubmissionsError(f"There is no submission in it.{text}")
-    return Collector(exercise, unpack_into, wishes).submissions(found)
+    return Collector(unpack_into, wishes, found.together).submissions(found)
 
 
 @dataclass(frozen=True)
 class Found:
-    """The files of a class whose owners are known, and the others; see `Submissions`."""
+    """The files of a class whose owners are known, and the others; see `Submissions`.
+
+    `together` says that the files of an attempt are one submission, such as a package.
+    """
 
     kind: str
     uploads: Sequence[tuple[File, Upload]]
     skipped: Sequence[Skipped]
     odd: Sequence[Question] = ()
     dates: str = ""
+    together: bool = True
 
 
 def _found(source: Path, exercise: Exercise, unpack_into: Path, wishes: Wishes) -> Found:
@@ -107,9 +111,9 @@ def _odd(recognised: Recognised, why: str) -> list[Question]:
 class Collector:
     """From files whose owners are known to one submission per student."""
 
-    exercise: Exercise
     folder: Path
     wishes: Wishes
+    together: bool
 
     def submissions(self, found: Found) -> Submissions:
         """Return one submission per student; what is not clear becomes a question, never a guess."""
@@ -161,11 +165,8 @@ class Collector:
     def _submission(self, attempt: Attempt, name: str, extras: list[Skipped]) -> File | None:
         """Return one attempt's file, or the folder of its files; None if it is not clear which one counts."""
         several = [file for file, _ in attempt if can_be_graded(file.name)]
-        is_package = any(upload.inside[-1] in PACKAGE for _, upload in attempt)
-        if is_package or (self.exercise.programs and len(several) > 1):
-            return self._folder(attempt, name)
-        if len(several) > 1:
-            return None
+        if len(attempt) > 1 and len(several) != 1:
+            return self._folder(attempt, name) if self.together else None
         chosen = several[0] if several else attempt[0][0]
         extras += [Skipped(file.name, KINDS) for file, _ in attempt if several and file is not chosen]
         return replace(chosen, time=next(upload.time for file, upload in attempt if file is chosen))
@@ -177,6 +178,7 @@ class Collector:
             if file.path.is_symlink() or file.fault:
                 continue
             to = folder.joinpath(*(os.fsdecode(os.fsencode(part)[:200]) for part in upload.inside))
+            to = to if not to.exists() else to.with_name(f"{file.path.stem}_{to.name}")
             to.parent.mkdir(parents=True, exist_ok=True)
             try:
                 os.link(file.path, to)

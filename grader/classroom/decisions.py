@@ -3,7 +3,7 @@ silence."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rich.console import Console
@@ -11,6 +11,7 @@ from rich.console import Console
 from grader.classroom.class_display import counted, say
 from grader.classroom.deadline import Adjusting
 from grader.classroom.handed_in import File, HandedIn, Submissions, Unclear
+from grader.submission.reading import Submission
 
 
 @dataclass(frozen=True)
@@ -43,8 +44,11 @@ ASKED: dict[Unclear, tuple[str, str, str]] = {
 }
 
 
-def decisions(collected: Submissions, adjusting: Adjusting) -> list[Decision]:
-    """Return what is not clear about a class."""
+def decisions(
+    collected: Submissions, adjusting: Adjusting, submissions: Mapping[str, Sequence[Submission]]
+) -> list[Decision]:
+    """Return what is not clear about a class; `submissions` are those of `collected`, read, by student."""
+    programs = [f"{who}: {one.question}" for who, tries in submissions.items() for one in tries if one.question]
     unread = [f"{one.student.id}: {file.time.fault}" for one, file in _faults(collected.handed_in)]
     questions: dict[Unclear, list[str]] = {"name": [], "attempts": [], "files": [], "damaged": []}
     for question in collected.questions:
@@ -58,6 +62,11 @@ def decisions(collected: Submissions, adjusting: Adjusting) -> list[Decision]:
             f"{counted(len(unread), 'time')} of submission can't be read",
             tuple(unread),
             "Write them as 2026-11-22 23:59:00 UTC, or give them in a table with --roster.",
+        ),
+        Decision(
+            f"{counted(len(programs), 'submission')} may mean several programs",
+            tuple(programs),
+            "Ask the student which one counts, and keep only that one.",
         ),
         _undated(collected, adjusting),
     ]

@@ -63,13 +63,13 @@ def test_the_upload_that_spinbook_submit_writes_is_a_submission(tmp_path: Path) 
     assert files(taken(written(tmp_path / "s", "anna.zip"), tmp_path)) == {"anna": "anna.zip"}
 
 
-def test_two_files_of_one_student_are_a_question_and_not_a_guess(tmp_path: Path) -> None:
-    root = written(tmp_path / "s", "anna.py", "anna/node.py", "bert/a.py", "bert/b.ipynb", "cleo.py")
+def test_all_files_of_one_student_are_one_submission(tmp_path: Path) -> None:
+    root = written(tmp_path / "s", "anna.py", "anna/node.py", "bert/a.py", "bert/b.ipynb", "cleo.py", "cleo/cleo.py")
     collected = taken(root, tmp_path)
-    assert files(collected) == {"cleo": "cleo.py"}
-    assert [question.student.id for question in collected.questions] == ["anna", "bert"]
-    assert collected.questions[1].files == ("bert/a.py", "bert/b.ipynb")
-    assert "Which one counts?" in str(collected.questions[0])
+    assert files(collected) == {"anna": "anna.py", "bert": "bert", "cleo": "cleo.py"}
+    inside = [sorted(file.name for file in one.file.path.iterdir()) for one in collected.handed_in]
+    assert inside[:2] == [["anna.py", "node.py"], ["a.py", "b.ipynb"]]
+    assert len(inside[2]) == 2, "none hides the other"
 
 
 def test_a_students_name_becomes_the_name_of_a_folder(tmp_path: Path) -> None:

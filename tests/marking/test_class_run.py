@@ -142,18 +142,19 @@ def test_a_fault_of_ours_is_tried_again_listed_apart_and_never_scored(done: Smal
     assert done.finals()["carl"] is not None
 
 
-def test_two_files_of_one_student_are_a_question(done: SmallClass) -> None:
-    (done.submissions / "ana.ipynb").write_text("{}", encoding="utf-8")
+def test_two_programs_of_one_student_are_a_question(done: SmallClass) -> None:
+    (done.submissions / "ana").mkdir()
+    shutil.copy(done.submissions / "carl.py", done.submissions / "ana" / "other.py")
     code, printed = done.grade()
     assert code == 1
-    assert "ana handed in 2 files: ana.ipynb, ana.py. Which one counts?" in printed
+    assert "1 submission may mean several programs:" in printed
     assert "Nothing was graded. Decide, or grade all others with --skip." in printed
     assert done.finals() == POINTS, "what was graded stays"
     code, printed = done.grade("--skip")
     assert code == 1
     assert "5 unchanged since they were graded." in printed
     assert done.finals() == {**POINTS, "ana": None}
-    assert "ana.ipynb" in (done.folder / "results" / "index.html").read_text(encoding="utf-8")
+    assert "Waiting for your decision" in (done.folder / "results" / "index.html").read_text(encoding="utf-8")
 
 
 def test_late_work_loses_and_a_changed_due_date_needs_no_grading(done: SmallClass) -> None:
