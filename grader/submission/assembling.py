@@ -108,19 +108,19 @@ def _start(options: _Options) -> str:
 
 def _split(cell: Cell, cells: Sequence[Cell]) -> list[str]:
     """Return the cell's code, and that of the cells below which an editor split from it in the middle of a block."""
-    parts = [cell.code]
+    parts = [cell.code.rstrip("\n")]  # a kernel drops the last line ends, too
     for one in cells:
         if one.number != cell.number + len(parts) or not one.is_plain or one.magic.name:
             continue
         first = next((line for line in one.source.split("\n") if line.strip()), "")
-        whole = "\n".join([*parts, one.source])
-        if first[:1] in (" ", "\t", ")", "]", "}") or python_code.tree_of("\n".join(parts)) is None:
-            if python_code.tree_of(whole) is None and python_code.tree_of("\n".join(parts)) is not None:
+        whole = "".join([*parts, "\n", one.source])
+        if first[:1] in (" ", "\t", ")", "]", "}") or python_code.tree_of("".join(parts)) is None:
+            if python_code.tree_of(whole) is None and python_code.tree_of("".join(parts)) is not None:
                 break
-            parts.append(f"\n{one.source}")
-    if len(parts) > 1 and python_code.tree_of("".join(parts)) is None:
-        return parts[:1]
-    return parts
+            parts.append("\n" + one.source.rstrip("\n"))
+    if len(parts) > 1 and python_code.tree_of("".join(parts)) is not None:
+        return parts
+    return [cell.code]
 
 
 def _after(code: str, options: _Options, cell: Cell, cells: Sequence[Cell]) -> tuple[str, set[int]]:
