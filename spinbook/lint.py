@@ -10,7 +10,7 @@ from pathlib import Path
 
 import click
 
-from grader.checking.proofreading import problems_of
+from grader.checking.proofreader import problems_of
 from groundwork.problem import Problem, Severity
 from spinbook.chapter.classify import CellKind
 from spinbook.chapter.read import Reading

@@ -18,9 +18,9 @@ from grader.audit.candidates import (
     right_ones,
     seeds_of,
 )
-from grader.audit.listing import Check, ChecksJob, problems_in_text
-from grader.audit.mutants.making import Mutant, mutants_of
-from grader.audit.result import LEAST_SCORE, Audit, AuditProblem, MutantResult, Progress, Trial, Until, score_of
+from grader.audit.check_list import AuditedCheck, ChecksJob, problems_in_text
+from grader.audit.mutants.maker import Mutant, mutants_of
+from grader.audit.result import LEAST_SCORE, Audit, AuditProblem, AuditProgress, MutantResult, Trial, Until, score_of
 from grader.audit.store import RecordedRuns, Store, tidy
 from grader.audit.survivors import listed, problems_of_survivors, result_of, stale
 from grader.audit.trial import Trials
@@ -47,7 +47,7 @@ SAMPLE = 12
 
 
 @dataclass(frozen=True)
-class Plan:
+class AuditPlan:
     """Everything that an audit tries. `quick` is whether a trial ends as soon as its result is clear. `sampled` is
     whether there are more mutants than these.
     """
@@ -61,15 +61,15 @@ class Plan:
     sampled: bool
 
 
-def planned(trials: Trials, quick: bool, most: int | None, seeds: int = SEEDS) -> Plan:
-    """Plan everything; in a quick audit, leave out the other right solutions and the seeds. Take at most `most`
+def planned(trials: Trials, quick: bool, most: int | None, seeds: int = SEEDS) -> AuditPlan:
+    """AuditPlan everything; in a quick audit, leave out the other right solutions and the seeds. Take at most `most`
     mutants."""
     exercise = trials.grading.runner.exercise
     right = right_ones(exercise)
     every = mutants_of(solution_file(exercise).read_text(encoding="utf-8"), exercise)
     limit = SAMPLE if quick and most is None else most
     chosen = every if limit is None else sample(every, limit)
-    return Plan(
+    return AuditPlan(
         right=right[:1] if quick else right,
         seeds=[] if quick else seeds_of(trials, seeds),
         baselines=baselines(exercise),
@@ -105,7 +105,7 @@ class Tried:
         return [*self.programs.values(), *self.mutants.values()]
 
 
-def try_all(plan: Plan, trials: Trials, store: Store, progress: Progress) -> Tried:
+def try_all(plan: AuditPlan, trials: Trials, store: Store, progress: AuditProgress) -> Tried:
     """The trial of everything in the plan. Raises `HostFault` if the machine or the grader is at fault."""
     tried = Tried()
     work = _Work(plan, trials, store)
@@ -133,7 +133,7 @@ def try_all(plan: Plan, trials: Trials, store: Store, progress: Progress) -> Tri
     return tried
 
 
-def spin_on(plan: Plan, tried: Tried, trials: Trials, store: Store) -> None:
+def spin_on(plan: AuditPlan, tried: Tried, trials: Trials, store: Store) -> None:
     """Run through every scenario those mutants that settle a doubt about the checks."""
     evidence = {**{one.name: tried.programs[one.name] for one in plan.mistakes}, **tried.mutants}
     wanted = set(worth_spinning_on(trials.checks, evidence, tried.mutants))
@@ -150,13 +150,13 @@ def spin_on(plan: Plan, tried: Tried, trials: Trials, store: Store) -> None:
                 future.cancel()
 
 
-def _programs(plan: Plan) -> list[Candidate]:
+def _programs(plan: AuditPlan) -> list[Candidate]:
     return [*plan.right, *plan.baselines, *plan.mistakes]
 
 
 @dataclass(frozen=True)
 class _Work:
-    plan: Plan
+    plan: AuditPlan
     trials: Trials
     store: Store
 
@@ -177,7 +177,7 @@ def audit(
     exercise: Exercise,
     options: Options,
     workers: WorkerPool,
-    progress: Progress,
+    progress: AuditProgress,
     quick: bool = False,
     most: int | None = None,
     seeds: int = SEEDS,
@@ -192,7 +192,7 @@ def audit(
     began = time.monotonic()
     workers.prepare_to_judge()
     grading = grading_of(exercise, options, workers)
-    checks: tuple[Check, ...] = workers.do(ChecksJob(exercise, grading.references))
+    checks: tuple[AuditedCheck, ...] = workers.do(ChecksJob(exercise, grading.references))
     trials = Trials(grading, checks, RecordedRuns(grading))
     store = Store(grading.runner)
     reasons = listed(exercise)

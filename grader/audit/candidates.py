@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
-from grader.audit.listing import Check, problem_of
+from grader.audit.check_list import AuditedCheck, problem_of
 from grader.audit.result import AuditProblem, Judged, Trial
 from grader.audit.store import Store
 from grader.audit.trial import Trials
@@ -163,13 +163,13 @@ def _content(scenario: Scenario) -> Scenario:
     return replace(scenario, name="", title="", computer_time="apart")
 
 
-def judged(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> Judged:
+def judged(candidate: Candidate, trial: Trial, checks: tuple[AuditedCheck, ...]) -> Judged:
     """The result of a program."""
     return Judged(candidate.name, candidate.kind, candidate.title, trial.failed, _score(trial, checks))
 
 
 def problems_of(
-    candidates: list[Candidate], trials: dict[str, Trial], checks: tuple[Check, ...], seed: int | None = None
+    candidates: list[Candidate], trials: dict[str, Trial], checks: tuple[AuditedCheck, ...], seed: int | None = None
 ) -> list[AuditProblem]:
     """The results that are not as they must be; `seed` is set if it is not the default one."""
     found: list[AuditProblem] = []
@@ -199,7 +199,7 @@ def _right(candidate: Candidate, trial: Trial, seed: int | None) -> list[AuditPr
     ]
 
 
-def _nothing(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> list[AuditProblem]:
+def _nothing(candidate: Candidate, trial: Trial, checks: tuple[AuditedCheck, ...]) -> list[AuditProblem]:
     fix = "Let it depend on the check that requires any message at all."
     return [
         problem_of(
@@ -212,7 +212,7 @@ def _nothing(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> l
     ]
 
 
-def _mistake(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> list[AuditProblem]:
+def _mistake(candidate: Candidate, trial: Trial, checks: tuple[AuditedCheck, ...]) -> list[AuditProblem]:
     subject = f"the mistake {candidate.name} (“{candidate.title}”)"
     known = {check.name for check in checks}
 
@@ -243,5 +243,5 @@ def _mistake(candidate: Candidate, trial: Trial, checks: tuple[Check, ...]) -> l
     return found
 
 
-def _score(trial: Trial, checks: tuple[Check, ...]) -> float:
+def _score(trial: Trial, checks: tuple[AuditedCheck, ...]) -> float:
     return sum(check.points for check in checks if trial.statuses.get(check.name) == "passed")

@@ -97,7 +97,7 @@ def _score(audit: Audit) -> str:
     return text
 
 
-class Bar:
+class ProgressBar:
     """A bar on a terminal; otherwise, such as in a log, one line for each tenth."""
 
     def __init__(self, console: Console, bar: Progress) -> None:
@@ -122,7 +122,7 @@ class Bar:
 
 
 @contextmanager
-def on(console: Console) -> Iterator[Bar]:
+def on(console: Console) -> Iterator[ProgressBar]:
     """A bar on this console, which disappears afterwards."""
     columns = (
         TextColumn("{task.description:<40.40}"),
@@ -131,7 +131,7 @@ def on(console: Console) -> Iterator[Bar]:
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        yield Bar(console, bar)
+        yield ProgressBar(console, bar)
 
 
 def write_json(audits: list[Audit], faults: list[AuditProblem], file: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
-from grader.audit.mutants.making import Mutant
+from grader.audit.mutants.maker import Mutant
 from grader.checking.verdict import Finding, Status
 from groundwork.problem import Problem
 
@@ -18,7 +18,7 @@ Fate = Literal["caught", "equivalent", "listed", "survived"]
 
 
 @dataclass(frozen=True)
-class Difference:
+class RecordingDifference:
     """One thing that differs in one scenario, in words."""
 
     scenario: str
@@ -41,7 +41,7 @@ class Trial:
     findings: dict[str, Finding]
     spun: tuple[str, ...]
     messages: int
-    differences: tuple[Difference, ...]
+    differences: tuple[RecordingDifference, ...]
     seconds: dict[str, float] = field(default_factory=dict, compare=False)
 
     @property
@@ -173,7 +173,7 @@ def score_of(mutants: tuple[MutantResult, ...]) -> float:
     return sum(result.fate == "caught" for result in mutants) / many if many else 1.0
 
 
-class Progress(Protocol):
+class AuditProgress(Protocol):
     """Shows the progress of an audit."""
 
     def begin(self, exercise: str, total: int) -> None:

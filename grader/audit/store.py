@@ -19,11 +19,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from grader.audit.result import Difference, Trial
+from grader.audit.result import RecordingDifference, Trial
 from grader.checking.verdict import Finding
 from grader.grading.grading import Grading
 from grader.grading.reference import GRADER, cache_folder, digest_of, solution_file, versions
-from grader.grading.running import ScenarioRunner
+from grader.grading.scenario_runner import ScenarioRunner
 from grader.recording.recording import Recording, from_json, to_json
 from grader.scenario.scenario import Scenario
 from grader.submission.reading import Submission
@@ -44,7 +44,7 @@ KEPT_DAYS = 30
 LONGEST_LOG = 20_000
 
 
-class Stopped(Exception):
+class AuditStopped(Exception):
     """Raised instead of a recording when the audit must end at once."""
 
 
@@ -63,7 +63,7 @@ class RecordedRuns:
     def spin(self, submission: Submission, scenario: Scenario, turn: int, process: Worker) -> Recording:
         """The recording of a program in one scenario, kept or made now; `turn` chooses the core that it runs on.
 
-        Raises `HostFault` if the machine or the grader is at fault, `Stopped` when no more recordings are wanted.
+        Raises `HostFault` if the machine or the grader is at fault, `AuditStopped` when no more recordings are wanted.
         """
         runner = self._grading.runner
         made_by = (str(runner.isolation), engine())
@@ -79,7 +79,7 @@ class RecordedRuns:
             pass
         recording: Recording | None = process.do(runner.job(submission, scenario, turn), self.stopped)
         if recording is None:
-            raise Stopped
+            raise AuditStopped
         if len(recording.log) <= LONGEST_LOG:
             keep(file, gzip.compress(to_json({scenario.name: recording}).encode(), 5))
         return recording
@@ -160,6 +160,6 @@ def _from_json(text: str) -> Trial:
             **entries,
             "findings": {name: Finding(**finding) for name, finding in entries["findings"].items()},
             "spun": tuple(entries["spun"]),
-            "differences": tuple(Difference(**difference) for difference in entries["differences"]),
+            "differences": tuple(RecordingDifference(**difference) for difference in entries["differences"]),
         }
     )

@@ -6,7 +6,7 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from grader.audit.mutants.making import Mutant
+from grader.audit.mutants.maker import Mutant
 from grader.audit.result import AuditProblem, Fate, MutantResult, Trial
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.grading.reference import solution_file

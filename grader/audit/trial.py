@@ -9,18 +9,18 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from grader.audit.listing import Check
-from grader.audit.result import Difference, Trial, Until
+from grader.audit.check_list import AuditedCheck
+from grader.audit.result import RecordingDifference, Trial, Until
 from grader.audit.store import RecordedRuns
 from grader.checking.verdict import Finding, Status, Verdict
 from grader.grading.grading import Grading
-from grader.recording.recording import Ending, Received, Recording
+from grader.recording.recording import Ending, ReceivedMessage, Recording
 from grader.scenario.scenario import Scenario
 from grader.submission.reading import Submission
 from grader.workers.pool import Worker
 
 
-def differences(recording: Recording, reference: Recording) -> tuple[Difference, ...]:
+def differences(recording: Recording, reference: Recording) -> tuple[RecordingDifference, ...]:
     """Every difference that can be seen from outside a node: messages, graph, how it ended. Its log does not count."""
     found: list[str] = []
     if recording.ending != reference.ending:
@@ -32,7 +32,7 @@ def differences(recording: Recording, reference: Recording) -> tuple[Difference,
         found.append("its clock differs")
     found += _messages(recording.received, reference.received)
     found += _events(recording, reference)
-    return tuple(Difference(recording.scenario, what) for what in found)
+    return tuple(RecordingDifference(recording.scenario, what) for what in found)
 
 
 def _named(names: tuple[str, ...]) -> str:
@@ -49,7 +49,7 @@ def _ends(recording: Recording, reference: Recording) -> list[str]:
     ]
 
 
-def _messages(mine: tuple[Received, ...], its: tuple[Received, ...]) -> list[str]:
+def _messages(mine: tuple[ReceivedMessage, ...], its: tuple[ReceivedMessage, ...]) -> list[str]:
     if len(mine) != len(its):
         return [f"{len(mine)} messages, the solution's {len(its)}"]
     fields: Counter[str] = Counter()
@@ -88,7 +88,7 @@ class Trials:
     """Everything that trials of one exercise's programs need."""
 
     grading: Grading
-    checks: tuple[Check, ...]
+    checks: tuple[AuditedCheck, ...]
     runs: RecordedRuns
     _turn: itertools.count[int] = field(default_factory=itertools.count, compare=False)
 
@@ -201,7 +201,7 @@ class Trials:
         message: str,
         recordings: dict[str, Recording],
         verdicts: dict[str, Verdict],
-        decided: tuple[Check, ...],
+        decided: tuple[AuditedCheck, ...],
     ) -> Trial:
         statuses: dict[str, Status] = {}
         for check in self.checks:

@@ -6,7 +6,7 @@ import re
 from itertools import combinations
 from statistics import median
 
-from grader.audit.listing import Check, problem_of
+from grader.audit.check_list import AuditedCheck, problem_of
 from grader.audit.result import AuditProblem, CheckResult, ScenarioResult, Trial
 from grader.checking.verdict import Finding
 from grader.scenario.scenario import Scenario
@@ -18,18 +18,18 @@ WORDS = re.compile(r"expect|must|should|has to|have to|was to|were to|instead of
 EACH = 4
 
 
-def problems_of_checks(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
+def problems_of_checks(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
     """`trials` are those of mistakes and of mutants that differ from the solution, by name."""
     return [*_that_never_fail(checks, trials), *_that_fail_together(checks, trials), *messages(checks, trials)]
 
 
-def never_failing(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[Check]:
+def never_failing(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditedCheck]:
     """The checks that failed in none of these trials."""
     failed = {name for trial in trials.values() for name in trial.failed}
     return [check for check in checks if check.name not in failed]
 
 
-def alike(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[tuple[Check, Check, int]]:
+def alike(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[tuple[AuditedCheck, AuditedCheck, int]]:
     """Pairs of checks that always failed together, with the number of times."""
     found = []
     for one, other in combinations(checks, 2):
@@ -42,7 +42,9 @@ def alike(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[tuple[Che
     return found
 
 
-def worth_spinning_on(checks: tuple[Check, ...], trials: dict[str, Trial], mutants: dict[str, Trial]) -> list[str]:
+def worth_spinning_on(
+    checks: tuple[AuditedCheck, ...], trials: dict[str, Trial], mutants: dict[str, Trial]
+) -> list[str]:
     """The mutants that may show that a check can fail, or that two are not alike: a few for each such doubt.
 
     They were run until a check caught them, so nothing is known yet about the checks of other scenarios.
@@ -61,11 +63,11 @@ def worth_spinning_on(checks: tuple[Check, ...], trials: dict[str, Trial], mutan
     return [id_ for id_ in mutants if id_ in wanted]
 
 
-def _undecided(check: Check, trial: Trial) -> bool:
+def _undecided(check: AuditedCheck, trial: Trial) -> bool:
     return check.name not in trial.statuses and not set(check.depends) & set(trial.failed)
 
 
-def _that_never_fail(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
+def _that_never_fail(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
     return [
         problem_of(
             check,
@@ -76,7 +78,7 @@ def _that_never_fail(checks: tuple[Check, ...], trials: dict[str, Trial]) -> lis
     ]
 
 
-def _that_fail_together(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
+def _that_fail_together(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
     fix = "Write a mistake that fails only one, let one depend on the other, or make them one check."
     return [
         problem_of(
@@ -88,7 +90,7 @@ def _that_fail_together(checks: tuple[Check, ...], trials: dict[str, Trial]) -> 
     ]
 
 
-def problems_of_broken(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
+def problems_of_broken(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
     """Checks that crashed on what some program published; `trials` are those of all programs, by name."""
     found = []
     for check in checks:
@@ -106,7 +108,7 @@ def _broke_off(finding: Finding) -> bool:
     return bool(finding.scenario) and finding.message is None
 
 
-def messages(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
+def messages(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
     """Checks that failed and did not say what they expected."""
     found = []
     for check in checks:
@@ -120,7 +122,7 @@ def messages(checks: tuple[Check, ...], trials: dict[str, Trial]) -> list[AuditP
 
 
 def scenario_results(
-    scenarios: tuple[Scenario, ...], checks: tuple[Check, ...], trials: list[Trial]
+    scenarios: tuple[Scenario, ...], checks: tuple[AuditedCheck, ...], trials: list[Trial]
 ) -> tuple[ScenarioResult, ...]:
     """What each scenario costs, over all its runs in these trials."""
     return tuple(
@@ -137,7 +139,7 @@ def scenario_results(
 
 
 def check_results(
-    checks: tuple[Check, ...],
+    checks: tuple[AuditedCheck, ...],
     scenarios: tuple[ScenarioResult, ...],
     mutants: dict[str, Trial],
     mistakes: dict[str, Trial],

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from grader.checking.created import Created, created, texts
-from grader.exercise.declaring import line_of
 from grader.exercise.exercise import Exercise, ExerciseError, Qos
+from grader.exercise.exercise_toml import line_of
 from grader.exercise.starter import hidden_blocks
 
 #: The name of each kind in a sentence.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from grader.checking.recorded_run import RecordedRun, seconds
-from grader.recording.recording import Received, Sent
+from grader.recording.recording import ReceivedMessage, SentMessage
 from grader.scenario.times import SECOND, START
 from ros_in_python.field_path import field_of
 
@@ -17,7 +17,7 @@ Way = list[tuple[float, tuple[float, ...]]]
 
 def trajectory(run: RecordedRun, topic: str, *fields: str) -> Way:
     """(seconds after the start, values of `fields`) of each message on `topic`, whoever published it."""
-    messages: list[Sent | Received] = [*run.recording.sent]
+    messages: list[SentMessage | ReceivedMessage] = [*run.recording.sent]
     messages += [one for one in run.recording.received if not one.subscriber]
     on_it = sorted((one for one in messages if one.topic == topic), key=lambda one: one.at)
     if not on_it:

@@ -6,7 +6,7 @@ from typing import Literal, NoReturn
 
 from grader.checking.recorded_run import RecordedRun
 from grader.checking.verdict import Finding, Wrong
-from grader.recording.recording import EndPoint
+from grader.recording.recording import Endpoint
 
 Kind = Literal["publisher", "subscription", "server", "client", "action server", "action client"]
 
@@ -44,17 +44,17 @@ _KINDS: dict[str, Kind] = {
 }
 
 
-def end_points(run: RecordedRun, kind: Kind, name: str = "") -> list[EndPoint]:
+def end_points(run: RecordedRun, kind: Kind, name: str = "") -> list[Endpoint]:
     """The student's end points of a kind, such as "publisher" or "action server"; with `name`, of that topic."""
     return [end for end in run.recording.end_points if end.kind == kind and name in ("", end.topic)]
 
 
-def publishers(run: RecordedRun, topic: str) -> list[EndPoint]:
+def publishers(run: RecordedRun, topic: str) -> list[Endpoint]:
     """The student's publishers on `topic`."""
     return end_points(run, "publisher", topic)
 
 
-def subscriptions(run: RecordedRun, topic: str) -> list[EndPoint]:
+def subscriptions(run: RecordedRun, topic: str) -> list[Endpoint]:
     """The student's subscriptions of `topic`."""
     return end_points(run, "subscription", topic)
 
@@ -165,7 +165,7 @@ def _wrong(text: str, expected: str, got: str, at_all: str = "") -> NoReturn:
     raise Wrong(Finding(message, expected=expected, got=got))
 
 
-def _of_qos(end: EndPoint, durability: str) -> str:
+def _of_qos(end: Endpoint, durability: str) -> str:
     if durability == "transient_local" and end.kind == "publisher":
         return "A late subscriber gets nothing that it published before."
     if durability == "volatile" and end.durability == "transient_local" and end.kind == "subscription":

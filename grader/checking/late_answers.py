@@ -8,7 +8,7 @@ from grader.checking.comparator import equal
 from grader.checking.message import Exchange, Message
 from grader.checking.patterns import FEWEST
 from grader.checking.recorded_run import RecordedRun
-from grader.recording.recording import Received
+from grader.recording.recording import ReceivedMessage
 from grader.scenario.times import SECOND
 
 #: Fields that say when a message was sent, and nothing about its content.
@@ -82,7 +82,7 @@ def _timeless(value: Any) -> Any:
     return [_timeless(part) for part in value] if isinstance(value, list) else value
 
 
-def _is_in_time(run: RecordedRun, received: Received) -> bool:
+def _is_in_time(run: RecordedRun, received: ReceivedMessage) -> bool:
     """Whether a message is the right answer to the message that it came after."""
     expected = run.exchanges[received.after - 1].expected
     return bool(expected) and same(received.fields, expected[0]._fields)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from grader.recording.recording import Received, Recording, Sent
+from grader.recording.recording import ReceivedMessage, Recording, SentMessage
 from grader.scenario.times import SECOND, START
 from ros_in_python.field_path import field_of
 
@@ -34,12 +34,12 @@ class Message(Part):
     nanoseconds.
     """
 
-    def __init__(self, kept: Sent | Received) -> None:
+    def __init__(self, kept: SentMessage | ReceivedMessage) -> None:
         super().__init__(kept.fields)
-        self.heard = not isinstance(kept, Sent) or kept.heard
+        self.heard = not isinstance(kept, SentMessage) or kept.heard
         self.at = (kept.at - START) / SECOND
         self.at_ns = kept.at
-        self.after = kept.after if isinstance(kept, Received) else 0
+        self.after = kept.after if isinstance(kept, ReceivedMessage) else 0
         self.topic = kept.topic
 
     @property

@@ -8,7 +8,7 @@ from typing import Any
 
 from grader.checking.comparator import equal
 
-#: What a speed is multiplied with when its time is measured with the computer's clock: see `grader.runner.ends`.
+#: What a speed is multiplied with when its time is measured with the computer's clock: see `grader.runner.grader_side`.
 COMPUTER_CLOCK = 0.8
 
 #: A value this close to 0 says nothing about a ratio.

@@ -13,8 +13,8 @@ from grader.checking.comparator import difference, shown
 from grader.checking.message import Exchange, Message, exchanges
 from grader.checking.patterns import COMPUTER_CLOCK, common
 from grader.checking.verdict import Finding, Wrong
-from grader.exercise.exercise import Endpoint, Exercise, Role, Topic
-from grader.recording.recording import Ending, Received, Recording
+from grader.exercise.exercise import Exercise, Role, ServiceOrAction, Topic
+from grader.recording.recording import Ending, ReceivedMessage, Recording
 from grader.scenario.times import SECOND, START
 from ros_in_python.field_path import NoSuchField, field_of, steps_of
 
@@ -148,14 +148,16 @@ class RecordedRun:
 
     def unit_of(self, field: str, name: str = "") -> str:
         """The unit of a field by exercise.toml: of the topic, service or action `name`, or of any."""
-        declared: list[Topic | Endpoint] = [
+        declared: list[Topic | ServiceOrAction] = [
             *self.exercise.outputs,
             *self.exercise.endpoints,
             *self.exercise.inputs,
         ]
         return next((one.units[field] for one in declared if name in ("", one.name) and field in one.units), "")
 
-    def messages_on(self, topic: str = "", reference: bool = False, subscriber: str = "") -> tuple[Received, ...]:
+    def messages_on(
+        self, topic: str = "", reference: bool = False, subscriber: str = ""
+    ) -> tuple[ReceivedMessage, ...]:
         """What the student's node, or the solution, published on `topic`; without one, on the only output.
 
         With `subscriber`, only what that subscriber of the scenario got.

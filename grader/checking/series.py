@@ -9,7 +9,7 @@ from typing import Any
 from grader.checking.comparator import TOLERANCE, equal, shown
 from grader.checking.patterns import COMPUTER_CLOCK, shift
 from grader.checking.recorded_run import RecordedRun, seconds
-from grader.recording.recording import Received
+from grader.recording.recording import ReceivedMessage
 from grader.scenario.times import SECOND, START
 from ros_in_python.field_path import field_of
 
@@ -123,7 +123,7 @@ def must_stamp(run: RecordedRun, topic: str = "", field: str = "header.stamp", w
             run.wrong_at(one.at, text, f"message {number} on {name}", wanted, came, _of_stamps(stamps))
 
 
-def _values(messages: Sequence[Received], field: str) -> list[Any]:
+def _values(messages: Sequence[ReceivedMessage], field: str) -> list[Any]:
     return [field_of(one.fields, field) for one in messages]
 
 
@@ -143,7 +143,11 @@ def _never(run: RecordedRun, topic: str, expected: str, subscriber: str = "") ->
 
 
 def _wrong_time(
-    run: RecordedRun, part: str, wanted: Received, came: Received, pairs: Sequence[tuple[Received, Received]]
+    run: RecordedRun,
+    part: str,
+    wanted: ReceivedMessage,
+    came: ReceivedMessage,
+    pairs: Sequence[tuple[ReceivedMessage, ReceivedMessage]],
 ) -> None:
     late = [(got.at - expected.at) / SECOND for expected, got in pairs]
     at, general = seconds(wanted.at), ""
@@ -161,15 +165,15 @@ _WITH_THE_CLOCK = (
 )
 
 
-def _at_the_start(expected: Sequence[Received], got: Sequence[Received]) -> str:
+def _at_the_start(expected: Sequence[ReceivedMessage], got: Sequence[ReceivedMessage]) -> str:
     """Why there are more messages at the start than expected; empty if there are not."""
     mine, its = (sum(one.at <= START for one in series) for series in (got, expected))
     return _WITH_THE_CLOCK if mine > its else ""
 
 
 def _in_the_order_of(
-    expected: Sequence[Received], got: Sequence[Received], field: str, tolerance: float
-) -> list[Received]:
+    expected: Sequence[ReceivedMessage], got: Sequence[ReceivedMessage], field: str, tolerance: float
+) -> list[ReceivedMessage]:
     """`got`, with what several threads published at one moment in the order in which it was expected."""
     left, found = list(got), []
     for wanted in expected[: len(got)]:
@@ -180,7 +184,7 @@ def _in_the_order_of(
     return found + left
 
 
-def _begins_with_the_clock(series: Sequence[Received]) -> bool:
+def _begins_with_the_clock(series: Sequence[ReceivedMessage]) -> bool:
     """Whether the second message comes sooner than the third, as a timer's does; two at once are not one timer's."""
     return len(series) > 2 and 0 < series[1].at - series[0].at < series[2].at - series[1].at
 
@@ -218,7 +222,7 @@ def _stamp(nanoseconds: int) -> dict[str, int]:
     return dict(zip(("sec", "nanosec"), divmod(nanoseconds, SECOND), strict=True))
 
 
-def _stops(expected: Sequence[Received], got: Sequence[Received]) -> str:
+def _stops(expected: Sequence[ReceivedMessage], got: Sequence[ReceivedMessage]) -> str:
     """When the last message came, if more was expected long after it."""
     if not 0 < len(got) < len(expected) or expected[-1].at - got[-1].at <= SECOND:
         return ""

@@ -29,7 +29,7 @@ from grader.classroom.overview import overview_page
 from grader.classroom.publishing import publish
 from grader.classroom.rejudging import difference, rejudge
 from grader.classroom.request import Backend, ClassRequest, host_error, no_grade
-from grader.classroom.results import ClassGrading, NotWritable, Plan, Results, Tries, not_written
+from grader.classroom.results import ClassGrading, ClassPlan, NotWritable, Results, Tries, not_written
 from grader.classroom.roster import read_roster
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Entry, Grade
@@ -132,7 +132,7 @@ def _record_others(marking: ClassGrading, grading: Grading, collected: Submissio
         marking.record(question.student, no_grade(grading.runner, "undecided", str(question)))
 
 
-def _grade(marking: ClassGrading, plan: Plan, submissions: Mapping[str, Tries], console: Console) -> None:
+def _grade(marking: ClassGrading, plan: ClassPlan, submissions: Mapping[str, Tries], console: Console) -> None:
     if plan.unchanged:
         console.print(f"{len(plan.unchanged)} unchanged since they were graded.")
     if not plan.to_grade:

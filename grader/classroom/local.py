@@ -16,7 +16,7 @@ from grader.classroom.request import Graded, host_error
 from grader.classroom.results import grade_key
 from grader.exercise.exercise import ExerciseError
 from grader.grading.grading import Grading
-from grader.grading.running import WorkStealing
+from grader.grading.scenario_runner import WorkStealing
 from grader.report.feedback_plot import picture
 from grader.submission.reading import Submission
 from groundwork.files import claim_number

@@ -115,7 +115,7 @@ FITS, FITS_AMONG_OTHERS = 0.7, 0.9
 
 
 @dataclass(frozen=True)
-class Group:
+class MisconceptionGroup:
     """Students whose submissions fail in the same way as a known mistake."""
 
     signature: Signature
@@ -126,7 +126,7 @@ class Group:
 class Misconceptions:
     """Groups, the largest first; and under `other` the students who fail checks in ways that no known mistake does."""
 
-    groups: tuple[Group, ...]
+    groups: tuple[MisconceptionGroup, ...]
     other: tuple[Entry, ...]
 
     def of(self, entry: Entry) -> tuple[Signature, ...]:
@@ -145,7 +145,7 @@ def grouped(entries: Sequence[Entry], signatures: Sequence[Signature]) -> Miscon
             found.setdefault(number, []).append(entry)
         if failed and not made:
             other.append(entry)
-    groups = [Group(signatures[number], tuple(members)) for number, members in sorted(found.items())]
+    groups = [MisconceptionGroup(signatures[number], tuple(members)) for number, members in sorted(found.items())]
     return Misconceptions(tuple(sorted(groups, key=lambda group: -len(group.entries))), tuple(other))
 
 

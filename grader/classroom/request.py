@@ -10,7 +10,7 @@ from typing import Protocol
 
 from grader.grading.grade import Grade, Options, Outcome
 from grader.grading.reference import versions
-from grader.grading.running import ScenarioRunner
+from grader.grading.scenario_runner import ScenarioRunner
 from grader.submission.reading import Submission
 
 

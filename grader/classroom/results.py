@@ -226,7 +226,7 @@ Tries = tuple[Submission, ...]
 
 
 @dataclass(frozen=True)
-class Plan:
+class ClassPlan:
     """What a run is going to do. `former` are the entries of an earlier run, by student."""
 
     to_grade: tuple[HandedIn, ...]
@@ -246,7 +246,9 @@ class ClassGrading:
     """Set if recordings are to be stored."""
     entries: dict[str, Entry] = field(default_factory=dict)
 
-    def plan(self, collected: Submissions, submissions: Mapping[str, Tries], regrade: Callable[[str], bool]) -> Plan:
+    def plan(
+        self, collected: Submissions, submissions: Mapping[str, Tries], regrade: Callable[[str], bool]
+    ) -> ClassPlan:
         """Return what has to be graded: what has no grade yet, what has changed, and what `regrade` names.
 
         `submissions` are those of `collected`, read, by student.
@@ -261,7 +263,7 @@ class ClassGrading:
                 unchanged.append(self._still(handed_in, kept[0], kept[1]))
             else:
                 to_grade.append(handed_in)
-        return Plan(tuple(to_grade), tuple(unchanged), former)
+        return ClassPlan(tuple(to_grade), tuple(unchanged), former)
 
     def take_in(self, collected: Submissions) -> None:
         """Take over the stored entries of these students as they are, if there is no newer one."""
@@ -270,7 +272,7 @@ class ClassGrading:
             if kept and one.student.id not in self.entries:
                 self.entries[one.student.id] = kept[0]
 
-    def run(self, plan: Plan, submissions: Mapping[str, Tries]) -> Iterator[Entry]:
+    def run(self, plan: ClassPlan, submissions: Mapping[str, Tries]) -> Iterator[Entry]:
         """Grade what has to be graded, and yield each entry once it is stored.
 
         What several students handed in together is graded once. If we or the machine were at fault, the submission is

@@ -57,7 +57,7 @@ class Topic:
 
 
 @dataclass(frozen=True)
-class Endpoint:
+class ServiceOrAction:
     """A service or an action that the student's program serves (`role` "service", "action") or calls."""
 
     name: str
@@ -118,7 +118,7 @@ class Exercise:
     topics: tuple[Topic, ...]
     solution_folder: Path | None
     public_only: bool = False
-    endpoints: tuple[Endpoint, ...] = ()
+    endpoints: tuple[ServiceOrAction, ...] = ()
     parameters: tuple[Parameter, ...] = ()
     programs: tuple[ProgramFile, ...] = ()
     reference_node: str = REFERENCE_NODE
@@ -165,22 +165,22 @@ class Exercise:
         return next((topic.elements.called for topic in self.outputs if topic.elements), "element")
 
     @property
-    def services(self) -> tuple[Endpoint, ...]:
+    def services(self) -> tuple[ServiceOrAction, ...]:
         """The services that the program serves."""
         return tuple(one for one in self.endpoints if one.role == "service")
 
     @property
-    def clients(self) -> tuple[Endpoint, ...]:
+    def clients(self) -> tuple[ServiceOrAction, ...]:
         """The services that the program calls."""
         return tuple(one for one in self.endpoints if one.role == "client")
 
     @property
-    def actions(self) -> tuple[Endpoint, ...]:
+    def actions(self) -> tuple[ServiceOrAction, ...]:
         """The actions that the program serves."""
         return tuple(one for one in self.endpoints if one.role == "action")
 
     @property
-    def action_clients(self) -> tuple[Endpoint, ...]:
+    def action_clients(self) -> tuple[ServiceOrAction, ...]:
         """The actions that the program sends goals to."""
         return tuple(one for one in self.endpoints if one.role == "action_client")
 

@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from grader.exercise.declaring import Table, endpoints, parameters, programs, topics
 from grader.exercise.exercise import REFERENCE_NODE, Exercise, ExerciseError, ProgramFile
+from grader.exercise.exercise_toml import TomlTable, endpoints, parameters, programs, topics
 from interface_compiler.near import use_near
 
 if sys.version_info >= (3, 11):
@@ -34,7 +34,7 @@ def load(folder: Path | str) -> Exercise:
     task = folder / "task.md"
     if not task.exists():
         raise ExerciseError(task, "the exercise has no task text", "Write what the student is asked to do here.")
-    top = Table(file, "", 0, entries)
+    top = TomlTable(file, "", 0, entries)
     top.see_keys()
     parts = programs(entries, file)
     file_name, class_name, node_name = _main_program(top, parts)
@@ -62,7 +62,7 @@ def load(folder: Path | str) -> Exercise:
     return exercise
 
 
-def _main_program(top: Table, parts: tuple[ProgramFile, ...]) -> tuple[str, str, str]:
+def _main_program(top: TomlTable, parts: tuple[ProgramFile, ...]) -> tuple[str, str, str]:
     """The file that is handed in; class and node of the only program, or of the first of several."""
     if parts and "file" not in top.entries:
         fix = 'Give the name of a submission that is one file with all programs, such as file = "line.py", at the top.'
@@ -90,7 +90,7 @@ def _read(file: Path) -> dict[str, Any]:
         raise ExerciseError(file, f"it can't be read: {error}", "Write it as TOML, in UTF-8.") from None
 
 
-def _text(top: Table, key: str) -> str:
+def _text(top: TomlTable, key: str) -> str:
     if key not in top.entries:
         top.fault("", f"{key} is missing", f'Add a line such as {key} = "…" at the top.')
     value = top.entries[key]
@@ -99,7 +99,7 @@ def _text(top: Table, key: str) -> str:
     return value
 
 
-def _points(top: Table) -> float:
+def _points(top: TomlTable) -> float:
     value = top.entries.get("points")
     if isinstance(value, bool) or not isinstance(value, (int, float)) or value <= 0:
         top.fault("points", f"points = {value!r}", "Give the sum of all checks' points, such as points = 100.")

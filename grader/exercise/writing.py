@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from grader.exercise.exercise import REFERENCE_NODE, Endpoint, Exercise, Parameter, ProgramFile, Topic
+from grader.exercise.exercise import REFERENCE_NODE, Exercise, Parameter, ProgramFile, ServiceOrAction, Topic
 
 
 def to_toml(exercise: Exercise) -> str:
@@ -36,7 +36,7 @@ def _topic(one: Topic) -> dict[str, Any]:
     return {"topic": one.name, "type": one.type, **qos, "units": one.units, "elements": elements}
 
 
-def _endpoint(one: Endpoint) -> dict[str, Any]:
+def _endpoint(one: ServiceOrAction) -> dict[str, Any]:
     return {"name": one.name, "type": one.type, "units": one.units}
 
 

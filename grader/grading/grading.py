@@ -10,7 +10,7 @@ from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade, Options, Outcome, message_of
 from grader.grading.public import PublicPart, public_part
 from grader.grading.reference import reference, solution_file, versions
-from grader.grading.running import ScenarioRunner
+from grader.grading.scenario_runner import ScenarioRunner
 from grader.recording.recording import Ending, Recording
 from grader.sandbox.isolation import choose
 from grader.sandbox.program import Isolation, SandboxUnavailable

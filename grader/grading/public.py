@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.grading.grade import Options
 from grader.grading.reference import reference
-from grader.grading.running import ScenarioRunner
+from grader.grading.scenario_runner import ScenarioRunner
 from grader.recording.recording import Recording, from_plain, plain
 from grader.sandbox.program import Isolation
 from grader.scenario.declared import declared
@@ -27,7 +27,7 @@ from grader.workers.jobs import ListJob
 from grader.workers.pool import WorkerPool
 
 if TYPE_CHECKING:
-    from grader.checking.judging import Listed  # it imports pytest, which the judging process has anyway
+    from grader.checking.judge import Listed  # it imports pytest, which the judging process has anyway
 
 #: Changes when older versions can no longer read the file. Format 1 had messages only.
 FORMAT = 2

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.starter import MarkerError, starter
-from grader.grading.running import ScenarioRunner
+from grader.grading.scenario_runner import ScenarioRunner
 from grader.recording.recording import Recording, from_json, to_json
 from grader.submission.reading import of_source
 from groundwork.files import cached, write_if_changed
@@ -120,7 +120,7 @@ def _made(runner: ScenarioRunner) -> dict[str, Recording]:
 
 
 def _prove(runner: ScenarioRunner, recordings: dict[str, Recording]) -> None:
-    from grader.checking.proofreading import line_with, points_that_do_not_add_up, same_name_twice
+    from grader.checking.proofreader import line_with, points_that_do_not_add_up, same_name_twice
 
     exercise = runner.exercise
     verdicts = runner.judge(recordings, recordings)

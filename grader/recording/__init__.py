@@ -4,28 +4,28 @@ from grader.recording.events import (
     Call,
     Cancel,
     Event,
-    Exit,
     Feedback,
     Goal,
     GoalState,
     ParameterChange,
     ParameterReading,
+    ProgramExit,
 )
-from grader.recording.recording import Ending, EndPoint, Received, Recording, Sent
+from grader.recording.recording import Ending, Endpoint, ReceivedMessage, Recording, SentMessage
 
 __all__ = [
     "Call",
     "Cancel",
-    "EndPoint",
     "Ending",
+    "Endpoint",
     "Event",
-    "Exit",
     "Feedback",
     "Goal",
     "GoalState",
     "ParameterChange",
     "ParameterReading",
-    "Received",
+    "ProgramExit",
+    "ReceivedMessage",
     "Recording",
-    "Sent",
+    "SentMessage",
 ]

@@ -117,7 +117,7 @@ class ParameterReading:
 
 
 @dataclass(frozen=True)
-class Exit:
+class ProgramExit:
     """One of several programs ended. `by` is "grader" when the scenario killed it."""
 
     at: int

@@ -9,9 +9,9 @@ from functools import cache
 from typing import Any, Literal
 
 from grader.recording import events
-from grader.recording.events import Call, Event, Exit, Fields, Goal, ParameterChange, ParameterReading
+from grader.recording.events import Call, Event, Fields, Goal, ParameterChange, ParameterReading, ProgramExit
 
-__all__ = ["EndPoint", "Ending", "Fields", "Received", "Recording", "RunOutcome", "Sent"]
+__all__ = ["Ending", "Endpoint", "Fields", "ReceivedMessage", "Recording", "RunOutcome", "SentMessage"]
 
 #: How one run ended. `completed`: the node was there from the first message to the last.
 RunOutcome = Literal["completed", "did-not-start", "crashed", "timed-out", "over-limit"]
@@ -21,7 +21,7 @@ EndPointKind = Literal["publisher", "subscription", "server", "client", "action 
 
 
 @dataclass(frozen=True)
-class Sent:
+class SentMessage:
     """A message that a reference publisher published at `at` ns of simulated time.
 
     `heard` is whether the student's node subscribed to its topic then.
@@ -35,7 +35,7 @@ class Sent:
 
 
 @dataclass(frozen=True)
-class Received:
+class ReceivedMessage:
     """A message that came from the student's node at `at` ns of simulated time.
 
     `after` is how many messages had been sent by then: 3 means that it came after the third and before the fourth.
@@ -55,7 +55,7 @@ class Received:
 
 
 @dataclass(frozen=True)
-class EndPoint:
+class Endpoint:
     """An end point of the student's, as the ROS graph shows it; `topic` is also the name of a service or an action.
 
     `depth` is 0 for "keep all". `deadline` and `lifespan` are in ns, and None without a limit.
@@ -98,10 +98,10 @@ class Recording:
     """
 
     scenario: str
-    sent: tuple[Sent, ...]
-    received: tuple[Received, ...]
+    sent: tuple[SentMessage, ...]
+    received: tuple[ReceivedMessage, ...]
     nodes: tuple[str, ...]
-    end_points: tuple[EndPoint, ...]
+    end_points: tuple[Endpoint, ...]
     uses_sim_time: bool
     ending: Ending
     log: str = field(default="", compare=False)
@@ -111,7 +111,7 @@ class Recording:
     goals: tuple[Goal, ...] = ()
     parameters: tuple[ParameterChange, ...] = ()
     readings: tuple[ParameterReading, ...] = ()
-    exits: tuple[Exit, ...] = ()
+    exits: tuple[ProgramExit, ...] = ()
 
     @property
     def timeline(self) -> tuple[Event, ...]:
@@ -148,13 +148,13 @@ def _of_goal(goal: Goal) -> list[Event]:
 
 
 _TUPLES_OF = {
-    "sent": Sent,
-    "received": Received,
-    "end_points": EndPoint,
+    "sent": SentMessage,
+    "received": ReceivedMessage,
+    "end_points": Endpoint,
     "calls": events.Call,
     "parameters": events.ParameterChange,
     "readings": events.ParameterReading,
-    "exits": events.Exit,
+    "exits": events.ProgramExit,
 }
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from grader.grading.grade import Grade
 from grader.recording.events import Event
-from grader.recording.recording import Fields, Received, Recording, Sent
+from grader.recording.recording import Fields, ReceivedMessage, Recording, SentMessage
 from interface_compiler import prefixes
 
 #: The solution's answers are also in the bag, with this name before the topic's.
@@ -57,7 +57,7 @@ def _in_order(recording: Recording, reference: Recording) -> list[tuple[int, str
     messages += [(got.at, got.topic, got.type, got.fields) for got in recording.received]
     messages += [(got.at, REFERENCE + got.topic, got.type, got.fields) for got in reference.received]
     for prefix, one in (("", recording), (REFERENCE, reference)):
-        others = [event for event in one.timeline if not isinstance(event.item, (Sent, Received))]
+        others = [event for event in one.timeline if not isinstance(event.item, (SentMessage, ReceivedMessage))]
         messages += [(event.at, prefix + EVENTS, TEXT, {"data": _as_json(event)}) for event in others]
     return sorted(messages, key=lambda message: (message[0], message[1]))
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 
-from grader.runner.student import Stopped, Student
+from grader.runner.program import CannotContinue, RunningProgram
 
 #: The longest time between two looks that counts (s): a grader that did not run itself saw nothing.
 LONGEST_LOOK_S = 0.025
@@ -18,7 +18,7 @@ LONGEST_LOOK_S = 0.025
 CPU_S, BLOCKED_S = 3.0, 3.0
 
 
-class Gone(Exception):
+class ProgramExited(Exception):
     """Raised when the student's program has ended by itself."""
 
 
@@ -39,7 +39,7 @@ class Allowance:
 class Budget:
     """Checks the student's program from time to time while the runner waits for it: see `look`."""
 
-    def __init__(self, student: Student, pids: Callable[[], Collection[int]], allowance: Allowance) -> None:
+    def __init__(self, student: RunningProgram, pids: Callable[[], Collection[int]], allowance: Allowance) -> None:
         """`pids` returns the ids of the program's processes."""
         self._student, self._pids = student, pids
         self._began = self._looked = time.monotonic()
@@ -65,15 +65,18 @@ class Budget:
     def look(self) -> None:
         """Count the time since the last look; to be called every 20 ms.
 
-        Raises `Gone`, or `Stopped` when the step takes more than it may. Most steps end before the second call, and
-        nothing is read before that.
+        Most steps end before the second call, and nothing is read before that.
+
+        Raises:
+            ProgramExited: if the program has ended.
+            CannotContinue: if the step takes more than it may.
         """
         now = time.monotonic()
         passed = min(now - self._looked, LONGEST_LOOK_S)
         self._looked = now
         self._seen += passed
         if self._student.poll() is not None:
-            raise Gone
+            raise ProgramExited
         if self._cpu_start is None:
             self._cpu_start = self._student.cpu_seconds()
             return
@@ -85,10 +88,10 @@ class Budget:
     def _check(self) -> None:
         allowance = self._allowance
         if self.blocked >= allowance.blocked_s:
-            raise Stopped("timed-out", allowance.blocked)
+            raise CannotContinue("timed-out", allowance.blocked)
         # A program that has hit a limit of its sandbox is about to end, and its exit names the limit.
         if self._cpu >= allowance.cpu_s and not self._student.at_limit():
-            raise Stopped("timed-out", allowance.busy)
+            raise CannotContinue("timed-out", allowance.busy)
 
     def check_the_host(self) -> None:
         """Raise `HostStalled` when this machine ran too little for a limit in wall time to mean anything."""

@@ -11,7 +11,7 @@ from rclpy.serialization import serialize_message
 
 from grader.recording.events import Call, ParameterChange, ParameterReading
 from grader.runner.cdr import deserialized, fields_of, serialized
-from grader.runner.ends import Ends
+from grader.runner.grader_side import GraderSide
 from grader.runner.message import message_class
 from grader.scenario.scenario import GetParameter, Request, Scenario, SetParameter
 from rmw_lockstep.hub import Client
@@ -23,7 +23,7 @@ SET, GET = "rcl_interfaces/srv/SetParameters", "rcl_interfaces/srv/GetParameters
 
 
 @dataclass(frozen=True)
-class Made:
+class PendingCall:
     """A call that was made; `number` is None when there was no server."""
 
     step: Request | SetParameter | GetParameter
@@ -39,10 +39,10 @@ class Made:
 class Calls:
     """Makes calls, and records their outcomes. All clients exist from the beginning."""
 
-    def __init__(self, ends: Ends, scenario: Scenario) -> None:
+    def __init__(self, ends: GraderSide, scenario: Scenario) -> None:
         self._ends = ends
         self._clients: dict[str, Client] = {}
-        self._made: list[Made] = []
+        self._made: list[PendingCall] = []
         for step in scenario.steps:
             if isinstance(step, (Request, SetParameter, GetParameter)):
                 self._client(step)
@@ -56,9 +56,9 @@ class Calls:
     def make(self, step: CallStep) -> None:
         """Send one request."""
         client = self._client(step)
-        self._made.append(Made(step, client, client.call(_request_of(step))))
+        self._made.append(PendingCall(step, client, client.call(_request_of(step))))
 
-    def _answered(self, made: Made) -> int | None:
+    def _answered(self, made: PendingCall) -> int | None:
         if made.number is None or made.number not in made.client.moments:
             return None
         return max(made.step.at, self._ends.at(made.client.moments[made.number]))
@@ -67,7 +67,7 @@ class Calls:
         """Return all calls of the student's services, in the order in which they were made."""
         return tuple(self._call(made, made.step) for made in self._made if isinstance(made.step, Request))
 
-    def _call(self, made: Made, step: Request) -> Call:
+    def _call(self, made: PendingCall, step: Request) -> Call:
         kind = message_class(step.type).Response
         response = None if made.cdr is None else fields_of(made.cdr, kind)
         served = made.number is not None
@@ -77,7 +77,7 @@ class Calls:
         """Return the parameters that were set, and the node's answers."""
         return tuple(self._change(made, made.step) for made in self._made if isinstance(made.step, SetParameter))
 
-    def _change(self, made: Made, step: SetParameter) -> ParameterChange:
+    def _change(self, made: PendingCall, step: SetParameter) -> ParameterChange:
         results = [] if made.cdr is None else list(deserialized(made.cdr, SetParameters.Response).results)
         taken, reason = (bool(results[0].successful), str(results[0].reason)) if results else (None, "")
         return ParameterChange(step.at, step.node, step.name, step.value, taken, reason, self._answered(made))
@@ -86,7 +86,7 @@ class Calls:
         """Return the parameters that were read, and the node's answers."""
         return tuple(self._reading(made, made.step) for made in self._made if isinstance(made.step, GetParameter))
 
-    def _reading(self, made: Made, step: GetParameter) -> ParameterReading:
+    def _reading(self, made: PendingCall, step: GetParameter) -> ParameterReading:
         values = [] if made.cdr is None else list(deserialized(made.cdr, GetParameters.Response).values)
         value = from_parameter_value(values[0]) if values else None
         return ParameterReading(step.at, step.node, step.name, value, self._answered(made))

@@ -8,7 +8,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 
 from grader.recording.recording import Fields
 from grader.runner.message import filled, to_fields
-from grader.runner.student import Stopped
+from grader.runner.program import CannotContinue
 
 
 def serialized(kind: Any, fields: Fields) -> bytes:
@@ -18,16 +18,20 @@ def serialized(kind: Any, fields: Fields) -> bytes:
 
 
 def deserialized(cdr: bytes, kind: Any) -> Any:
-    """Return what a program sent as a message of the class `kind`. Raises `Stopped` if the bytes are not one."""
+    """Return what a program sent as a message of the class `kind`. Raises `CannotContinue` if the bytes are not one."""
     try:
         return deserialize_message(cdr, kind)
     except Exception as error:  # made-up bytes can raise anything
-        raise Stopped("over-limit", f"Your node published bytes that are not a message: {error}") from None
+        raise CannotContinue("over-limit", f"Your node published bytes that are not a message: {error}") from None
 
 
 def fields_of(cdr: bytes, kind: Any) -> Fields:
-    """Return what a program sent as plain fields. Raises `Stopped` for bytes that are not a message of class `kind`."""
+    """Return what a program sent as plain fields.
+
+    Raises:
+        CannotContinue: for bytes that are not a message of class `kind`.
+    """
     try:
         return to_fields(deserialize_message(cdr, kind))
     except Exception as error:  # made-up bytes can raise anything
-        raise Stopped("over-limit", f"Your node published bytes that are not a message: {error}") from None
+        raise CannotContinue("over-limit", f"Your node published bytes that are not a message: {error}") from None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from grader.recording.recording import EndPoint, EndPointKind
+from grader.recording.recording import Endpoint, EndPointKind
 from grader.recording.types import OWN_SERVICES
 from rmw_lockstep.hub import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, Hub
 from rmw_lockstep.hub import EndPoint as OnHub
@@ -34,7 +34,7 @@ def nodes(graph: Graph, ours: Callable[[int], bool] = _nobody) -> tuple[str, ...
     return tuple(node.full_name for node in graph.program_nodes() if not ours(node.id >> 32))
 
 
-def end_points(graph: Graph, ours: Callable[[int], bool] = _nobody) -> tuple[EndPoint, ...]:
+def end_points(graph: Graph, ours: Callable[[int], bool] = _nobody) -> tuple[Endpoint, ...]:
     """Return the student's end points, sorted, without those that every node has; those of an action count as one."""
     found = [
         recorded
@@ -44,7 +44,7 @@ def end_points(graph: Graph, ours: Callable[[int], bool] = _nobody) -> tuple[End
     return tuple(sorted(found, key=lambda one: (one.topic, one.kind, one.node)))
 
 
-def _recorded(end_point: OnHub, node: str) -> EndPoint | None:
+def _recorded(end_point: OnHub, node: str) -> Endpoint | None:
     kind, name, type_name = _KINDS[end_point.kind], end_point.name, end_point.type
     if name.endswith(SEND_GOAL) and end_point.kind in (SERVER, CLIENT):
         kind = "action server" if end_point.kind == SERVER else "action client"
@@ -56,7 +56,7 @@ def _recorded(end_point: OnHub, node: str) -> EndPoint | None:
     ):
         return None
     qos = end_point.qos
-    return EndPoint(
+    return Endpoint(
         node=node,
         kind=kind,
         topic=name,

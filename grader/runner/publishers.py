@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from grader.recording.recording import Sent
+from grader.recording.recording import SentMessage
 from grader.runner.cdr import serialized
-from grader.runner.ends import hub_qos
+from grader.runner.grader_side import hub_qos
 from grader.runner.message import message_class
 from grader.scenario.scenario import Message, Scenario
 from rmw_lockstep.hub import HubNode, Publisher, Qos
@@ -42,7 +42,7 @@ class ReferencePublishers:
             self._add(message)
         prepared = _prepared.get(id(scenario))
         self._serialized = prepared[1] if prepared else _serialized(scenario)
-        self.sent: list[Sent] = []
+        self.sent: list[SentMessage] = []
         self.stages: list[int] = []
         """The number of each message among everything the hub has published."""
 
@@ -74,7 +74,7 @@ class ReferencePublishers:
         publisher = self._ready[message.topic, message.publisher]
         content = self._serialized.get(id(message)) or serialized(message_class(message.type), message.fields)
         self.stages.append(publisher.publish(content))
-        self.sent.append(Sent(message.at, message.topic, message.type, message.fields, subscribed))
+        self.sent.append(SentMessage(message.at, message.topic, message.type, message.fields, subscribed))
         return self.stages[-1]
 
     def leave(self, topic: str) -> None:

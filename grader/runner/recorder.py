@@ -7,12 +7,12 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from grader.recording.recording import Received
+from grader.recording.recording import ReceivedMessage
 from grader.runner.cdr import fields_of
-from grader.runner.ends import ACCEPT_ANY, Clocks
+from grader.runner.grader_side import ACCEPT_ANY, Clocks
 from grader.runner.message import message_class
-from grader.runner.order import in_canonical_order, place_of, unordered_sources, without_order
-from grader.runner.student import Stopped, Task
+from grader.runner.message_order import in_canonical_order, place_of, unordered_sources, without_order
+from grader.runner.program import CannotContinue, Task
 from rmw_lockstep.hub import Heard, HubNode, Qos, Subscription
 
 #: No exercise needs more than this from a node in one scenario.
@@ -35,7 +35,7 @@ def recorded_topics(task: Task) -> tuple[tuple[str, str], ...]:
 
 
 @dataclass(frozen=True)
-class Listening:
+class RecordedTopic:
     """What one of the grader's subscriptions receives; `subscriber` is its name if it is one of the scenario's own."""
 
     topic: str
@@ -58,24 +58,24 @@ class Recorder:
         What arrives from a process that is `ours` is not recorded.
         """
         self._node, self._earliest, self._ours = node, earliest, ours
-        self._listening: list[Listening] = []
+        self._listening: list[RecordedTopic] = []
         self._heard: list[tuple[int, Heard]] = []
         self._own: dict[str, Subscription] = {}
         self._paused = False
         for name, type_name in topics:
-            self._subscribe(Listening(name, type_name), ACCEPT_ANY)
+            self._subscribe(RecordedTopic(name, type_name), ACCEPT_ANY)
 
     def join(self, name: str, topic: str, type_name: str, qos: Qos) -> None:
         """Add a subscriber of the scenario's own."""
         self.leave(name)
-        self._own[name] = self._subscribe(Listening(topic, type_name, name), qos)
+        self._own[name] = self._subscribe(RecordedTopic(topic, type_name, name), qos)
 
     def leave(self, name: str) -> None:
         """Remove it."""
         if name in self._own:
             self._own.pop(name).close()
 
-    def _subscribe(self, listening: Listening, qos: Qos) -> Subscription:
+    def _subscribe(self, listening: RecordedTopic, qos: Qos) -> Subscription:
         number = len(self._listening)
         self._listening.append(listening)
 
@@ -85,7 +85,7 @@ class Recorder:
             self._heard.append((number, heard))
             if len(self._heard) > MOST_MESSAGES:
                 self._heard.pop()
-                raise Stopped("over-limit", f"Your node published more than {MOST_MESSAGES:,} messages.")
+                raise CannotContinue("over-limit", f"Your node published more than {MOST_MESSAGES:,} messages.")
 
         return self._node.subscription(listening.topic, listening.type, qos, keep)
 
@@ -102,8 +102,8 @@ class Recorder:
         """Return whether anything has arrived since number `stage` of what the hub has published."""
         return any(heard.stage >= stage for _, heard in self._heard)
 
-    def received(self, clocks: Clocks, stages: Sequence[int]) -> tuple[Received, ...]:
-        """Return what has arrived, in order. Raises `Stopped` for bytes that are not a message.
+    def received(self, clocks: Clocks, stages: Sequence[int]) -> tuple[ReceivedMessage, ...]:
+        """Return what has arrived, in order. Raises `CannotContinue` for bytes that are not a message.
 
         `stages` has the number of each message sent, among everything the hub has published; see `Heard.stage`.
         """
@@ -116,5 +116,5 @@ class Recorder:
             after = bisect_right(stages, heard.stage)
             fields = fields_of(heard.cdr, message_class(to.type))
             any_order = place_of(number, heard) in unordered
-            found.append(Received(at, after, to.topic, to.type, fields, to.subscriber, heard.node, any_order))
+            found.append(ReceivedMessage(at, after, to.topic, to.type, fields, to.subscriber, heard.node, any_order))
         return tuple(found)

@@ -15,17 +15,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from grader.recording.recording import Ending, EndPoint, Received, Recording
-from grader.runner.budget import Allowance, Budget, Gone
-from grader.runner.ending import cut_short, interrupted, message_of_violation
-from grader.runner.ends import Clocks, Ends, clock_message, nanoseconds
+from grader.recording.recording import Ending, Endpoint, ReceivedMessage, Recording
+from grader.runner.budget import Allowance, Budget, ProgramExited
+from grader.runner.grader_side import Clocks, GraderSide, clock_message, nanoseconds
 from grader.runner.graph import end_points, nodes
+from grader.runner.program import CannotContinue, RunningProgram, Task
+from grader.runner.program_end import cut_short, interrupted, message_of_violation
 from grader.runner.publishers import OFFER, ReferencePublishers
+from grader.runner.readiness import START as STARTING
+from grader.runner.readiness import Parameters, wait_until_up
 from grader.runner.recorder import Recorder, recorded_topics
 from grader.runner.script import Script
-from grader.runner.starting import START as STARTING
-from grader.runner.starting import Parameters, wait_until_up
-from grader.runner.student import Stopped, Student, Task
 from grader.runner.team import Start, Team
 from grader.scenario.scenario import SECOND, START, Content, Message
 from rmw_lockstep.hub import Hub, Limits, Violation
@@ -68,23 +68,23 @@ def run(
     folder = Path(tempfile.mkdtemp(prefix="spinbook-hub-"))
     try:
         with Hub(folder, limits) as hub:
-            student: Student
+            student: RunningProgram
             if programs or companions:
                 student = Team(hub, folder, task.scenario, programs or {task.file_name: start}, companions)
             else:
                 student = start(hub.path)
             try:
-                return Run(task, student, hub).run(began)
+                return ScenarioRun(task, student, hub).run(began)
             finally:
                 student.kill()
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-class Run:
+class ScenarioRun:
     """One run: the hub's ends of the graph around one program."""
 
-    def __init__(self, task: Task, student: Student, hub: Hub) -> None:
+    def __init__(self, task: Task, student: RunningProgram, hub: Hub) -> None:
         self._task, self._student, self._hub = task, student, hub
         runner = hub.node("runner")
         self._clock = runner.publisher("/clock", "rosgraph_msgs/msg/Clock", OFFER)
@@ -98,14 +98,14 @@ class Run:
         self._clocks = Clocks(task.scenario.computer_time)
         self._script: Script | None = None
         if not task.scenario.is_filter:
-            ends = Ends(hub, reference, self._clocks)
+            ends = GraderSide(hub, reference, self._clocks)
             self._script = Script(ends, task, self._publishers, self._recorder, self._publish, self._team)
         for message in task.scenario.messages:
             if message.at < START:
                 self._publishers.publish(message)
         self._is_up = False
         self._nodes: tuple[str, ...] = ()
-        self._end_points: tuple[EndPoint, ...] = ()
+        self._end_points: tuple[Endpoint, ...] = ()
         self._sim_time = False
         self._asks_in_vain = False
         self._lockstep_seconds = 0.0
@@ -171,11 +171,11 @@ class Run:
             if task.scenario.interrupt:
                 return interrupted(self._hub, self._budget, self._student, sources)
             return Ending("completed")
-        except Stopped as stopped:
+        except CannotContinue as stopped:
             return Ending(stopped.outcome, stopped.message)
         except Violation as violation:
             return Ending("over-limit", message_of_violation(violation))
-        except Gone:
+        except ProgramExited:
             self._check_that_it_was_the_program()
             return cut_short(self._student, sources, self._is_up, self._when() if self._is_up else "before the start")
 
@@ -191,17 +191,17 @@ class Run:
         if exit_ and exit_.limit == "wall":
             self._budget.check_the_host()
 
-    def _take_everything(self, ending: Ending) -> tuple[Ending, tuple[Received, ...]]:
+    def _take_everything(self, ending: Ending) -> tuple[Ending, tuple[ReceivedMessage, ...]]:
         """Return everything that the program published before its end, which may be too much after all."""
         try:
             self._hub.drain()
         except Violation as violation:
             ending = _first(ending, Ending("over-limit", message_of_violation(violation)))
-        except Stopped as stopped:
+        except CannotContinue as stopped:
             ending = _first(ending, Ending(stopped.outcome, stopped.message))
         try:
             received = self._recorder.received(self._clocks, self._publishers.stages)
-        except Stopped as stopped:
+        except CannotContinue as stopped:
             return _first(ending, Ending(stopped.outcome, stopped.message)), ()
         return ending, received
 
@@ -263,7 +263,7 @@ class Run:
         if not scenario.servers:
             self._check_that_it_still_answers()
 
-    def _all_end_points(self) -> tuple[EndPoint, ...]:
+    def _all_end_points(self) -> tuple[Endpoint, ...]:
         """Return the current end points; with several programs, also those of one that was killed."""
         found = end_points(self._hub.graph, self._is_ours)
         if not self._team:
@@ -300,7 +300,7 @@ class Run:
         self._clocks.set(at, self._hub.now, self._clock.publish(clock_message(at)))
 
     def _check_that_it_listens(self, message: Message) -> None:
-        """Raise `Stopped` when the program neither waits in ROS 2 nor is about to go on, and answers no call either."""
+        """Raise `CannotContinue` if the program neither waits in ROS 2 nor will continue soon, nor answers a call."""
         hub = self._hub
         if hub.in_ros or self._asks_in_vain or not self._publishers.has_subscriber(message):
             return
@@ -311,8 +311,9 @@ class Run:
         self._asks_in_vain = True  # an executor with its own way of waiting, such as rclpy's EventsExecutor
 
     def _check_that_it_still_answers(self) -> None:
-        """Raise `Stopped` when the program has answered no message at the end, does not wait in ROS 2, and answers no
-        call in the next seconds either: for example because it keeps reading the clock."""
+        """Raise `CannotContinue` if the program has answered no message by the end, does not wait in ROS 2, and answers
+        no call in the next seconds: for example because it keeps reading the clock.
+        """
         subscribed = [
             stage for stage, sent in zip(self._publishers.stages, self._publishers.sent, strict=True) if sent.heard
         ]
@@ -322,7 +323,7 @@ class Run:
 
     def _ask(self, until: int) -> None:
         if not all(self._parameters.answers(node, until) for node in self._nodes):
-            raise Stopped("timed-out", UNRESPONSIVE)
+            raise CannotContinue("timed-out", UNRESPONSIVE)
 
     def _keep_pace(self, began: float, at: int) -> None:
         if self._task.pace:

@@ -6,15 +6,15 @@ from collections.abc import Callable
 
 from grader.exercise.exercise import ExerciseError
 from grader.recording.events import Call, Goal, ParameterChange, ParameterReading
-from grader.runner.acting import ScriptedActionServer
+from grader.runner.action_clients import CancelStep, Goals
+from grader.runner.action_servers import ScriptedActionServer
 from grader.runner.calls import Calls, CallStep
-from grader.runner.ends import Ends, Schedule, hub_qos, nanoseconds
-from grader.runner.goals import CancelStep, Goals
-from grader.runner.playing import RunningWorld
+from grader.runner.grader_side import GraderSide, Schedule, hub_qos, nanoseconds
+from grader.runner.program import Task
 from grader.runner.publishers import ReferencePublishers
 from grader.runner.recorder import Recorder
-from grader.runner.serving import AuthorFault, ServiceServer, unserved
-from grader.runner.student import Task
+from grader.runner.running_world import RunningWorld
+from grader.runner.service_servers import AuthorFault, ServiceServer, unserved
 from grader.runner.team import Team
 from grader.scenario.scenario import (
     START,
@@ -22,7 +22,7 @@ from grader.scenario.scenario import (
     Kill,
     Leave,
     Message,
-    Program,
+    ProgramArguments,
     SendGoal,
     StartProgram,
     Step,
@@ -39,7 +39,7 @@ class Script:
 
     def __init__(
         self,
-        ends: Ends,
+        ends: GraderSide,
         task: Task,
         publishers: ReferencePublishers,
         recorder: Recorder,
@@ -61,7 +61,7 @@ class Script:
         if scenario.world:
             self._world = RunningWorld(ends, self._schedule, scenario.world, publishers, publish)
 
-    def _plan_program(self, one: Program) -> None:
+    def _plan_program(self, one: ProgramArguments) -> None:
         team = self._team
         assert team
         if one.starts > 0:

@@ -6,17 +6,17 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from grader.recording.events import Exit as Recorded
-from grader.runner.student import Exit, Output, Student
+from grader.recording.events import ProgramExit
+from grader.runner.program import ExitStatus, PrintedOutput, RunningProgram
 from grader.scenario.scenario import Scenario
 from rmw_lockstep.hub import Hub
 
 #: Starts a program, which has to connect to the hub at this socket.
-Start = Callable[[Path], Student]
+Start = Callable[[Path], RunningProgram]
 
 
 @dataclass(frozen=True)
-class Together:
+class ProgramsTogether:
     """The outputs of several programs, one after another."""
 
     text: str
@@ -33,12 +33,12 @@ class Team:
         # The first one connects to the hub's own socket.
         self._paths = {name: _socket(hub, folder, number) for number, name in enumerate(programs)}
         self._listeners = {name: number for number, name in enumerate(programs)}
-        self._running: dict[str, Student] = {}
-        self._stopped: list[Student] = []
+        self._running: dict[str, RunningProgram] = {}
+        self._stopped: list[RunningProgram] = []
         self._interrupted = False
         self.ended = ""
         """The program that ended by itself."""
-        self.exits: list[Recorded] = []
+        self.exits: list[ProgramExit] = []
         later = {one.file for one in scenario.programs if one.starts > 0}
         self._companions = [
             start(_socket(hub, folder, len(programs) + number)) for number, start in enumerate(companions)
@@ -62,7 +62,7 @@ class Team:
         self._see()
         exit_ = student.kill()
         self._stopped.append(student)
-        self.exits.append(Recorded(now, name, exit_.code, exit_.signal, "grader"))
+        self.exits.append(ProgramExit(now, name, exit_.code, exit_.signal, "grader"))
         while any(link.listener == self._listeners[name] for link in self._hub.links):
             self._hub.pause()
 
@@ -75,7 +75,7 @@ class Team:
         first = len(self._programs)
         return any(link.number == process and link.listener >= first for link in self._hub.links)
 
-    # --- as one program: see `Student`
+    # --- as one program: see `RunningProgram`
 
     @property
     def pid(self) -> int:
@@ -86,14 +86,14 @@ class Team:
         """Return the ids of all the student's processes."""
         return [pid for one in self._running.values() for pid in one.pids()]
 
-    def output(self) -> Output:
+    def output(self) -> PrintedOutput:
         """Return what all programs printed."""
         outputs = [one.output() for one in (*self._stopped, *self._running.values())]
-        return Together("".join(one.text for one in outputs), sum(one.dropped for one in outputs))
+        return ProgramsTogether("".join(one.text for one in outputs), sum(one.dropped for one in outputs))
 
-    def poll(self) -> Exit | None:
+    def poll(self) -> ExitStatus | None:
         """Return how a student's program ended by itself; once they were asked to end, how the last one did."""
-        found: Exit | None = None
+        found: ExitStatus | None = None
         for name, student in self._running.items():
             exit_ = student.poll()
             if exit_ is None and self._interrupted:
@@ -102,7 +102,7 @@ class Team:
                 found, self.ended = exit_, name
         return found
 
-    def wait(self, timeout_s: float) -> Exit | None:
+    def wait(self, timeout_s: float) -> ExitStatus | None:
         """Wait for the end of the first program."""
         first = next(iter(self._running.values()), None)
         return first.wait(timeout_s) if first else None
@@ -121,7 +121,7 @@ class Team:
         """Return whether one of them is being ended because of a limit."""
         return any(one.at_limit() for one in self._running.values())
 
-    def kill(self) -> Exit:
+    def kill(self) -> ExitStatus:
         """Kill all; return the exit of the program that had ended by itself, or of the first."""
         exits = {name: one.kill() for name, one in self._running.items()}
         for one in self._companions:

@@ -6,23 +6,23 @@ with server.start(Program("node.py", {"node.py": source}, hub=socket), isolation
     ...
 """
 
-from grader.sandbox.fork_server import ForkServer, Student
+from grader.sandbox.fork_server import ForkServer, SandboxedProgram
 from grader.sandbox.isolation import available, choose
 from grader.sandbox.middleware import MiddlewareUnavailable, require_middleware, to_be_compiled
-from grader.sandbox.monitor import Exit, Output
+from grader.sandbox.monitor import ProcessExit, ProgramOutput
 from grader.sandbox.program import Isolation, Limits, Program, SandboxError, SandboxUnavailable
 
 __all__ = [
-    "Exit",
     "ForkServer",
     "Isolation",
     "Limits",
     "MiddlewareUnavailable",
-    "Output",
+    "ProcessExit",
     "Program",
+    "ProgramOutput",
     "SandboxError",
     "SandboxUnavailable",
-    "Student",
+    "SandboxedProgram",
     "available",
     "choose",
     "require_middleware",

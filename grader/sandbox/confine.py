@@ -15,7 +15,7 @@ _DESCRIPTORS = 1024
 
 
 @dataclass(frozen=True)
-class Start:
+class StartRequest:
     """What a runner requests.
 
     Attributes:
@@ -36,7 +36,7 @@ class Start:
 
 
 def confine(
-    start: Start,
+    start: StartRequest,
     paths: Paths,
     other_processes: int,
     output: int,

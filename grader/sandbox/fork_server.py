@@ -14,17 +14,17 @@ from collections.abc import Sequence
 from types import TracebackType
 
 from grader.sandbox import bubblewrap, filesystem, namespaces
-from grader.sandbox.confine import Start
+from grader.sandbox.confine import StartRequest
 from grader.sandbox.isolation import forget
 from grader.sandbox.middleware import variables
-from grader.sandbox.monitor import Exit, Monitor, Output
+from grader.sandbox.monitor import Monitor, ProcessExit, ProgramOutput
 from grader.sandbox.program import START_REQUEST, Isolation, Limits, Program, SandboxError
 
 _START_S = 30.0
 _DEATH_S = 30.0
 
 
-class Student:
+class SandboxedProgram:
     """A student's program in its sandbox. Leaving the `with` block kills all of it."""
 
     def __init__(self, control: socket.socket, output: int, limits: Limits) -> None:
@@ -56,20 +56,20 @@ class Student:
         self._monitor = Monitor(control, output, limits, self.pid, answer["init"], frozenset(answer["own_processes"]))
 
     @property
-    def exit(self) -> Exit | None:
+    def exit(self) -> ProcessExit | None:
         """How the node's process ended; None while it runs."""
         return self._monitor.exit
 
-    def poll(self) -> Exit | None:
+    def poll(self) -> ProcessExit | None:
         """Return the same as `exit`."""
         return self._monitor.exit
 
-    def wait(self, timeout_s: float) -> Exit | None:
+    def wait(self, timeout_s: float) -> ProcessExit | None:
         """Wait for the end of the node's process, at most this many seconds; return None if it still runs."""
         self._monitor.ended.wait(timeout_s)
         return self._monitor.exit
 
-    def output(self) -> Output:
+    def output(self) -> ProgramOutput:
         """Return what it has printed so far."""
         return self._monitor.output()
 
@@ -100,7 +100,7 @@ class Student:
         """Return how many processes it has now."""
         return len(self._monitor.members())
 
-    def kill(self) -> Exit:
+    def kill(self) -> ProcessExit:
         """Kill every process of it, daemons too, and return when all are dead. A second call returns the same.
 
         Raises:
@@ -111,9 +111,9 @@ class Student:
         if not self._monitor.dead.wait(_DEATH_S):
             raise SandboxError(f"the student's process {self.pid} did not die within {_DEATH_S:g} s of being killed")
         self._monitor.join()
-        return self._monitor.exit or Exit(None, int(signal.SIGKILL), None)
+        return self._monitor.exit or ProcessExit(None, int(signal.SIGKILL), None)
 
-    def __enter__(self) -> Student:
+    def __enter__(self) -> SandboxedProgram:
         """Return itself: it runs already."""
         return self
 
@@ -146,7 +146,7 @@ class ForkServer:
     """Starts students. One serves a whole worker: create it before the runners are forked; each of them may use it."""
 
     def __init__(self, preload: Sequence[str] = PRELOAD) -> None:
-        """Start the process that students are forked from; it imports while the caller goes on.
+        """StartRequest the process that students are forked from; it imports while the caller goes on.
 
         Args:
             preload: the modules to import beforehand; those that are not installed are left out.
@@ -155,7 +155,7 @@ class ForkServer:
             MiddlewareUnavailable: if the middleware has not been compiled here.
         """
         self._preload = set(preload)
-        self._zygote = _Process(preload)
+        self._zygote = _Zygote(preload)
 
     def preload(self, module: str) -> None:
         """Import one more module for the programs that are started from now on: the types that an exercise uses."""
@@ -165,7 +165,7 @@ class ForkServer:
 
     def start(
         self, program: Program, isolation: Isolation, limits: Limits | None = None, core: int | None = None
-    ) -> Student:
+    ) -> SandboxedProgram:
         """Start a student's program in a new sandbox, without a network.
 
         Args:
@@ -178,7 +178,7 @@ class ForkServer:
             SandboxError: if the sandbox could not be made: our fault or the machine's, never the student's.
         """
         limits = limits or Limits()
-        start = Start(program, isolation, limits, core, *_root(program, isolation, limits))
+        start = StartRequest(program, isolation, limits, core, *_root(program, isolation, limits))
         passed = [_memory_file(pickle.dumps(start))]
         if isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
             passed.append(os.dup(namespaces.user_namespace_of_this_process()))
@@ -196,7 +196,7 @@ class ForkServer:
             for number in passed:
                 os.close(number)
         try:
-            return Student(ours, output, limits)
+            return SandboxedProgram(ours, output, limits)
         except SandboxError:
             forget()
             raise
@@ -216,7 +216,7 @@ class ForkServer:
         self.close()
 
 
-class _Process:
+class _Zygote:
     """The process from which students are forked, as this process and its forks hold it."""
 
     def __init__(self, preload: Sequence[str]) -> None:

@@ -20,7 +20,7 @@ TAIL_BYTES = 64 * 1024
 
 
 @dataclass(frozen=True)
-class Output:
+class ProgramOutput:
     """What a program printed on standard output and error, in order.
 
     Attributes:
@@ -58,10 +58,10 @@ class OutputBuffer:
         self._tail += piece[room:]
         del self._tail[:-TAIL_BYTES]
 
-    def output(self) -> Output:
+    def output(self) -> ProgramOutput:
         """Return what has been kept so far."""
         data = bytes(self._head + self._tail)
-        return Output(data, self.total - len(data))
+        return ProgramOutput(data, self.total - len(data))
 
 
 _TICK_S = 0.05
@@ -69,7 +69,7 @@ _PIECE = 1 << 18
 
 
 @dataclass(frozen=True)
-class Exit:
+class ProcessExit:
     """How a program ended.
 
     Attributes:
@@ -118,7 +118,7 @@ class Monitor:
         """Set when the first process has ended."""
         self.dead = threading.Event()
         """Set when all processes are dead."""
-        self.exit: Exit | None = None
+        self.exit: ProcessExit | None = None
         self.others: frozenset[int] = frozenset()
         """The other processes, as last seen."""
         self._control, self._pipe, self._limits = control, output, limits
@@ -131,7 +131,7 @@ class Monitor:
         self._thread = threading.Thread(target=self._watch, name="monitor", daemon=True)
         self._thread.start()
 
-    def output(self) -> Output:
+    def output(self) -> ProgramOutput:
         """Return what has been printed so far."""
         with self._lock:
             return self._buffer.output()
@@ -216,7 +216,7 @@ class Monitor:
             code, number = None, os.WTERMSIG(status)
         else:
             code, number = os.WEXITSTATUS(status), None
-        self.exit = Exit(code, number, self._limit or self._limit_of(code, number))
+        self.exit = ProcessExit(code, number, self._limit or self._limit_of(code, number))
         self.ended.set()
 
     def _finish(self) -> None:

@@ -13,19 +13,19 @@ from typing import NoReturn
 
 from grader.sandbox import bubblewrap, filesystem, landlock, namespaces, processes, syscalls
 from grader.sandbox import program as limits
-from grader.sandbox.confine import Start, confine
+from grader.sandbox.confine import StartRequest, confine
 from grader.sandbox.program import HUB, SUBMISSION, Isolation, Paths, Program
 
 
 @dataclass(frozen=True)
-class Request:
+class StudentToRun:
     """What a freshly made student process has to run."""
 
     program: Program
     paths: Paths
 
 
-def supervise(start: Start, control: int, output: int, users: int = -1) -> Request:
+def supervise(start: StartRequest, control: int, output: int, users: int = -1) -> StudentToRun:
     """Start a student and stay with it until it is dead. Returns only in the student itself; the supervisor exits.
 
     Args:
@@ -44,7 +44,7 @@ def supervise(start: Start, control: int, output: int, users: int = -1) -> Reque
             _admit_student_alone(start.program.hub, _owner(start.isolation))
         sandbox, paths = _build(start, users)
         child = _fork_student(start, paths, sandbox, other_tasks, output)
-        if isinstance(child, Request):
+        if isinstance(child, StudentToRun):
             return child
         os.close(output)
         started = {"event": "started", "pid": child, "folder": paths.folder}
@@ -65,7 +65,7 @@ def refuse(control: int, reason: str) -> NoReturn:
     os._exit(0)
 
 
-def _build(start: Start, users: int) -> tuple[namespaces.Namespaces | processes.ProcessTree, Paths]:
+def _build(start: StartRequest, users: int) -> tuple[namespaces.Namespaces | processes.ProcessTree, Paths]:
     program = start.program
     if start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
         if start.isolation is Isolation.BUBBLEWRAP:
@@ -92,8 +92,12 @@ def _admit_student_alone(hub: Path, owner: int | None) -> None:
 
 
 def _fork_student(
-    start: Start, paths: Paths, sandbox: namespaces.Namespaces | processes.ProcessTree, other_tasks: int, output: int
-) -> int | Request:
+    start: StartRequest,
+    paths: Paths,
+    sandbox: namespaces.Namespaces | processes.ProcessTree,
+    other_tasks: int,
+    output: int,
+) -> int | StudentToRun:
     """Fork the student. Returns its pid in the parent, and what to run in the child, once it has been confined."""
     fault_at, fault_to = os.pipe()
     child = os.fork()
@@ -106,7 +110,7 @@ def _fork_student(
             os.write(fault_to, str(fault).encode() or repr(fault).encode())
             os._exit(1)
         os.close(fault_to)
-        return Request(start.program, paths)
+        return StudentToRun(start.program, paths)
     os.close(fault_to)
     with os.fdopen(fault_at, "rb") as stream:
         fault_text = stream.read()
@@ -162,7 +166,7 @@ def _report(control: int, message: dict[str, object]) -> None:
         os.write(control, json.dumps(message).encode())
 
 
-def _other_tasks(start: Start) -> int:
+def _other_tasks(start: StartRequest) -> int:
     """Return how many processes of the same user RLIMIT_NPROC will count besides the student's."""
     apart = start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES)
     if apart and (os.geteuid() == 0 or limits.counts_for_each_user_namespace()):

@@ -24,7 +24,7 @@ from grader.sandbox import callers, filesystem, heap, middleware, seccomp, sysca
 from grader.sandbox import middleware as type_support
 from grader.sandbox.middleware import choosable
 from grader.sandbox.program import START_REQUEST, Paths, Program
-from grader.sandbox.supervisor import Request, refuse, supervise
+from grader.sandbox.supervisor import StudentToRun, refuse, supervise
 from rmw_lockstep import IDENTIFIER
 
 #: The number of cores that a program sees. It runs on one, but rclpy's MultiThreadedExecutor uses this as its number of
@@ -152,7 +152,7 @@ def _prepare_for_forks() -> None:
     heap.fill_gaps()
 
 
-def serve(requests: int, fault: str | None) -> Request | None:
+def serve(requests: int, fault: str | None) -> StudentToRun | None:
     """Fork a supervisor for each request for one, and import the modules that others name.
 
     Return what to run in each student, and None at the end of all requests.

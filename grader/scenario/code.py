@@ -1,4 +1,4 @@
-"""Code of the author's that runs inside the grader: a function or a class of a file in the exercise's folder."""
+"""AuthorCode of the author's that runs inside the grader: a function or a class of a file in the exercise's folder."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from typing import Any
 
 
 @dataclass(frozen=True)
-class Code:
+class AuthorCode:
     """A function or a class called `name`, in `file`, or in a module of the grader's such as `grader.scenario.models`.
 
     `digest` is the SHA-256 of the file's text. The code is named and not held, because it has to reach a process in
@@ -37,27 +37,27 @@ class Code:
         """Whether it comes with the grader, and not from an author's file."""
         return self.file.startswith("grader.")
 
-    def for_students(self) -> Code:
+    def for_students(self) -> AuthorCode:
         """The same by its file's name alone, as in a student's copy of the exercise's folder."""
-        return self if self.is_the_graders else Code(Path(self.file).name, self.name)
+        return self if self.is_the_graders else AuthorCode(Path(self.file).name, self.name)
 
-    def in_folder(self, folder: Path) -> Code:
+    def in_folder(self, folder: Path) -> AuthorCode:
         """The same in a student's copy of the exercise's folder. Raises OSError where the file is missing."""
         if self.is_the_graders:
             return self
         file = folder / Path(self.file).name
-        return Code(str(file), self.name, digest_of(file))
+        return AuthorCode(str(file), self.name, digest_of(file))
 
 
-def code_of(given: Callable[..., Any]) -> Code:
+def code_of(given: Callable[..., Any]) -> AuthorCode:
     """Where a function or a class is. Raises `ValueError` for one that has no name of its own, such as a lambda."""
     name = getattr(given, "__qualname__", "")
     if not name.isidentifier():
         raise ValueError(f"{name or given!r} is not a function or a class at the top level of a file")
     if given.__module__.startswith("grader."):
-        return Code(given.__module__, name)
+        return AuthorCode(given.__module__, name)
     file = Path(inspect.getfile(given)).resolve()
-    return Code(str(file), name, digest_of(file))
+    return AuthorCode(str(file), name, digest_of(file))
 
 
 def digest_of(file: Path) -> str:

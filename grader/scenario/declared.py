@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.exercise.exercise import Exercise, ExerciseError
-from grader.scenario.resolving import resolved
+from grader.scenario.resolver import resolved
 from grader.scenario.scenario import Scenario
 
 

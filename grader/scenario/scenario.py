@@ -21,7 +21,7 @@ from grader.scenario.world import World
 #: How often /clock is published between steps, unless the author says otherwise (Hz).
 RATE = 100.0
 
-#: What the computer's own clock shows while simulated time goes by: see `grader.runner.ends`.
+#: What the computer's own clock shows while simulated time goes by: see `grader.runner.grader_side`.
 ComputerTime = Literal["apart", "simulated"]
 
 
@@ -137,7 +137,7 @@ class StartProgram(Step):
 
 
 @dataclass(frozen=True)
-class Program:
+class ProgramArguments:
     """One of a submission's several programs, by its file: when it starts and when it is killed (s after the start)."""
 
     file: str
@@ -199,7 +199,7 @@ class Scenario:
     servers: tuple[Server | ActionServer, ...] = ()
     world: World | None = None
     qos: dict[str, Qos] = field(default_factory=dict)
-    programs: tuple[Program, ...] = ()
+    programs: tuple[ProgramArguments, ...] = ()
     companions: tuple[Companion, ...] = ()
     steps: tuple[Step, ...] = ()
     line: int = field(default_factory=line_of_the_author, compare=False, repr=False)
@@ -222,7 +222,7 @@ class Scenario:
             servers: Server | ActionServer | Iterable[Server | ActionServer] = (),
             world: World | None = None,
             qos: dict[str, Qos] = ...,
-            programs: Program | Iterable[Program] = (),
+            programs: ProgramArguments | Iterable[ProgramArguments] = (),
             companions: Companion | Iterable[Companion] = (),
             steps: tuple[Step, ...] = (),
             line: int = 0,

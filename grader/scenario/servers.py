@@ -8,7 +8,7 @@ from functools import wraps
 from typing import Any, Literal, ParamSpec
 
 from grader.recording.recording import Fields
-from grader.scenario.code import Code, code_of, line_of_the_author
+from grader.scenario.code import AuthorCode, code_of, line_of_the_author
 
 #: How an action server takes a request to cancel. "ignore": it accepts, but continues anyway.
 OnCancel = Literal["accept", "refuse", "ignore"]
@@ -49,7 +49,7 @@ class Server:
 
     service: str
     type: str = ""
-    replies: tuple[Reply, ...] | Code = ()
+    replies: tuple[Reply, ...] | AuthorCode = ()
     appears: float | None = None
     gone: float | None = None
     back: float | None = None
@@ -59,7 +59,7 @@ class Server:
         self,
         service: str,
         type: str = "",
-        replies: Reply | Sequence[Reply] | Callable[..., Any] | Code = (),
+        replies: Reply | Sequence[Reply] | Callable[..., Any] | AuthorCode = (),
         appears: float | None = None,
         gone: float | None = None,
         back: float | None = None,
@@ -71,10 +71,10 @@ class Server:
             object.__setattr__(self, name, value)
 
 
-def _replies(given: Any) -> tuple[Reply, ...] | Code:
+def _replies(given: Any) -> tuple[Reply, ...] | AuthorCode:
     if isinstance(given, Reply):
         return (given,)
-    if isinstance(given, Code):
+    if isinstance(given, AuthorCode):
         return given
     return code_of(given) if callable(given) else tuple(given)
 

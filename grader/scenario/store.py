@@ -9,8 +9,8 @@ from typing import Any
 
 from grader.exercise.exercise import Qos
 from grader.scenario import scenario as steps
-from grader.scenario.code import Code
-from grader.scenario.scenario import Companion, Message, Program, Scenario
+from grader.scenario.code import AuthorCode
+from grader.scenario.scenario import Companion, Message, ProgramArguments, Scenario
 from grader.scenario.servers import ActionServer, GoalScript, Reply, Server
 from grader.scenario.world import World, restored
 
@@ -29,7 +29,19 @@ _STEPS = (
 )
 _CLASSES: dict[str, Any] = {
     one.__name__: one
-    for one in (*_STEPS, Companion, Message, Program, Scenario, ActionServer, GoalScript, Reply, Server, Qos, Code)
+    for one in (
+        *_STEPS,
+        Companion,
+        Message,
+        ProgramArguments,
+        Scenario,
+        ActionServer,
+        GoalScript,
+        Reply,
+        Server,
+        Qos,
+        AuthorCode,
+    )
 }
 
 
@@ -41,9 +53,9 @@ class NotForStudents(ValueError):
 HIDDEN_FILES = ("scenarios.py", "hidden_checks.py")
 
 
-def code_in(value: Any) -> Iterator[Code]:
+def code_in(value: Any) -> Iterator[AuthorCode]:
     """The author's code in a scenario, or in a part of one: a world's class, a server's function."""
-    if isinstance(value, Code):
+    if isinstance(value, AuthorCode):
         yield from () if value.is_the_graders else (value,)
     elif isinstance(value, (list, tuple, dict)):
         for one in value.values() if isinstance(value, dict) else value:
@@ -55,7 +67,7 @@ def code_in(value: Any) -> Iterator[Code]:
 
 def plain(value: Any) -> Any:
     """Dictionaries, lists, texts and numbers of a scenario, or of a part of one. Raises `NotForStudents`."""
-    if isinstance(value, Code):
+    if isinstance(value, AuthorCode):
         if Path(value.file).name in HIDDEN_FILES:
             raise NotForStudents(value.name)
         value = value.for_students()
@@ -80,8 +92,8 @@ def from_plain(value: Any, folder: Path) -> Any:
     entries = {key: _entry(key, one, folder) for key, one in value.items() if key != "is"}
     if value["is"] == World.__name__:
         return restored(entries["code"], entries["period"], entries["arguments"], 0)
-    if value["is"] == Code.__name__:
-        return Code(**entries).in_folder(folder)
+    if value["is"] == AuthorCode.__name__:
+        return AuthorCode(**entries).in_folder(folder)
     return _CLASSES[value["is"]](**entries)
 
 

@@ -13,7 +13,7 @@ _LIST = re.compile(r"sequence<(?P<of>.+?)(, (?P<most>\d+))?>|(?P<array>.+)\[(?P<
 _TEXT = re.compile(r"w?string(<(?P<most>\d+)>)?")
 
 
-class Invalid(ValueError):
+class InvalidValue(ValueError):
     """Raised for a value that does not fit; `field` is its full name, such as linear.x."""
 
     def __init__(self, field: str, problem: str, fix: str) -> None:
@@ -24,16 +24,16 @@ class Invalid(ValueError):
 def check_fields(kind: Any, fields: Fields, name: str, at: str = "") -> None:
     """See that a message, request or goal of the class `kind`, called `name` in messages, may have these fields.
 
-    Raises `Invalid`.
+    Raises `InvalidValue`.
     """
     if not isinstance(fields, dict):
-        raise Invalid(at or name, f"{_shown(fields)} is given for a {name}", "Give a dictionary of its fields.")
+        raise InvalidValue(at or name, f"{_shown(fields)} is given for a {name}", "Give a dictionary of its fields.")
     known = kind.get_fields_and_field_types()
     for field, value in fields.items():
         where = f"{at}.{field}" if at else field
         if field not in known:
             fix = f"Its fields: {', '.join(known)}." if known else "It has no fields."
-            raise Invalid(where, f"{name} has no field {field!r}", fix)
+            raise InvalidValue(where, f"{name} has no field {field!r}", fix)
         _check_value(known[field], value, where, name)
 
 
@@ -77,7 +77,7 @@ def _check_integer(type_name: str, value: Any, field: str, name: str) -> None:
 
 def _expect(fits: bool, type_name: str, value: Any, field: str, name: str, fix: str) -> None:
     if not fits:
-        raise Invalid(field, f"{_shown(value)} is given for {field}, which is {type_name} in {name}", fix)
+        raise InvalidValue(field, f"{_shown(value)} is given for {field}, which is {type_name} in {name}", fix)
 
 
 def _shown(value: Any) -> str:

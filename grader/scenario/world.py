@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from grader.recording.recording import Fields
-from grader.scenario.code import Code, code_of, line_of_the_author
+from grader.scenario.code import AuthorCode, code_of, line_of_the_author
 
 #: The duration of one step of a world, unless the author says otherwise (s).
 PERIOD = 0.02
@@ -37,14 +37,14 @@ class Model(Protocol):
 class World:
     """A model, by its class and what its constructor gets; it is stepped every `period` s of simulated time."""
 
-    code: Code
+    code: AuthorCode
     arguments: dict[str, Any] = field(default_factory=dict)
     period: float = PERIOD
     line: int = field(default_factory=line_of_the_author, compare=False, repr=False)
 
-    def __init__(self, model: Callable[..., Any] | Code, period: float = PERIOD, **arguments: Any) -> None:
+    def __init__(self, model: Callable[..., Any] | AuthorCode, period: float = PERIOD, **arguments: Any) -> None:
         """Take the class itself, and whatever its constructor is to get."""
-        given = {"code": model if isinstance(model, Code) else code_of(model), "arguments": arguments}
+        given = {"code": model if isinstance(model, AuthorCode) else code_of(model), "arguments": arguments}
         for name, value in {**given, "period": period, "line": line_of_the_author()}.items():
             object.__setattr__(self, name, value)
 
@@ -58,7 +58,7 @@ class World:
         return restored, (self.code, self.period, self.arguments, self.line)
 
 
-def restored(code: Code, period: float, arguments: dict[str, Any], line: int) -> World:
+def restored(code: AuthorCode, period: float, arguments: dict[str, Any], line: int) -> World:
     """A world from its parts."""
     world = World(code, period, **arguments)
     object.__setattr__(world, "line", line)

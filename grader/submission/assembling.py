@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from grader.exercise.exercise import Exercise
 from grader.submission import python_code
-from grader.submission.notebook import Cell
+from grader.submission.notebook import NotebookCell
 from grader.submission.places import mark
 
 #: What a cell with `%%node NAME --class A` is started by; `--main` calls its `main`.
@@ -57,7 +57,9 @@ class _Options:
     classes: tuple[str, ...] = ()
 
 
-def assemble(cell: Cell, cells: Sequence[Cell], exercise: Exercise, others: Collection[int] = ()) -> Assembled:
+def assemble(
+    cell: NotebookCell, cells: Sequence[NotebookCell], exercise: Exercise, others: Collection[int] = ()
+) -> Assembled:
     """Return the program of this cell, with what it needs of the others. `others` are cells that must not be used."""
     options = _options(cell)
     pieces = {cell.number: _split(cell, cells)}
@@ -79,7 +81,7 @@ def assemble(cell: Cell, cells: Sequence[Cell], exercise: Exercise, others: Coll
     return Assembled(code, tuple(sorted({*taken, *used, *(one.number for one in more)})))
 
 
-def _options(cell: Cell) -> _Options:
+def _options(cell: NotebookCell) -> _Options:
     if cell.magic.name != "node":
         return _Options()
     try:
@@ -106,7 +108,7 @@ def _start(options: _Options) -> str:
     return _MAIN if options.main else ""
 
 
-def _split(cell: Cell, cells: Sequence[Cell]) -> list[str]:
+def _split(cell: NotebookCell, cells: Sequence[NotebookCell]) -> list[str]:
     """Return the cell's code, and that of the cells below which an editor split from it in the middle of a block."""
     parts = [cell.code.rstrip("\n")]  # a kernel drops the last line ends, too
     for one in cells:
@@ -123,7 +125,7 @@ def _split(cell: Cell, cells: Sequence[Cell]) -> list[str]:
     return [cell.code]
 
 
-def _after(code: str, options: _Options, cell: Cell, cells: Sequence[Cell]) -> tuple[str, set[int]]:
+def _after(code: str, options: _Options, cell: NotebookCell, cells: Sequence[NotebookCell]) -> tuple[str, set[int]]:
     """Return what the code uses of the cells that `--after` names, with all that this uses itself, and those cells."""
     named = [_named(name, cell, cells) for name in options.after]
     pieces = [one for one in named if one is not None]
@@ -144,14 +146,14 @@ def _after(code: str, options: _Options, cell: Cell, cells: Sequence[Cell]) -> t
     return "".join(texts), {pieces[number].number for number, _ in chosen}
 
 
-def _named(name: str, cell: Cell, cells: Sequence[Cell]) -> Cell | None:
+def _named(name: str, cell: NotebookCell, cells: Sequence[NotebookCell]) -> NotebookCell | None:
     """Return the last cell above that has this name, or the last below."""
     same = [one for one in cells if one.name == name and one.number != cell.number]
     above = [one for one in same if one.number < cell.number]
     return next(reversed(above or same), None)
 
 
-def _binding(name: str, pieces: Sequence[Cell]) -> list[tuple[Cell, ast.stmt]]:
+def _binding(name: str, pieces: Sequence[NotebookCell]) -> list[tuple[NotebookCell, ast.stmt]]:
     for piece in reversed(pieces):
         tree = python_code.tree_of(piece.code)
         found = [one for one in tree.body if name in python_code.bound([one])] if tree else []
@@ -161,12 +163,12 @@ def _binding(name: str, pieces: Sequence[Cell]) -> list[tuple[Cell, ast.stmt]]:
     return []
 
 
-def _text(piece: Cell, statement: ast.stmt) -> str:
+def _text(piece: NotebookCell, statement: ast.stmt) -> str:
     first = min([statement.lineno, *(item.lineno for item in getattr(statement, "decorator_list", []))])
     return "\n".join(piece.code.split("\n")[first - 1 : statement.end_lineno])
 
 
-def _can_be_used(one: Cell, cell: Cell) -> bool:
+def _can_be_used(one: NotebookCell, cell: NotebookCell) -> bool:
     return (
         (one.is_plain or one.magic.name == "part")
         and not python_code.is_empty(one.code)
@@ -178,9 +180,9 @@ def _can_be_used(one: Cell, cell: Cell) -> bool:
 _MOST_CELLS = 1000
 
 
-def _needed(code: str, cell: Cell, cells: Sequence[Cell]) -> list[Cell]:
+def _needed(code: str, cell: NotebookCell, cells: Sequence[NotebookCell]) -> list[NotebookCell]:
     """Return the ordinary cells without which the code is no whole program: what it uses, and what starts it."""
-    chosen: list[Cell] = []
+    chosen: list[NotebookCell] = []
     is_whole = cell.magic.name and python_code.starts(code) and not python_code.missing(code)
     if is_whole or len(cells) > _MOST_CELLS:
         return []
@@ -194,7 +196,7 @@ def _needed(code: str, cell: Cell, cells: Sequence[Cell]) -> list[Cell]:
         chosen += more
 
 
-def _definers(names: set[str], cell: Cell, plain: Sequence[Cell]) -> list[Cell]:
+def _definers(names: set[str], cell: NotebookCell, plain: Sequence[NotebookCell]) -> list[NotebookCell]:
     found = []
     for name in sorted(names):
         trees = [(one, python_code.tree_of(one.code)) for one in plain]
@@ -204,7 +206,7 @@ def _definers(names: set[str], cell: Cell, plain: Sequence[Cell]) -> list[Cell]:
     return list(dict.fromkeys(found))
 
 
-def _starters(whole: str, cell: Cell, plain: Sequence[Cell]) -> list[Cell]:
+def _starters(whole: str, cell: NotebookCell, plain: Sequence[NotebookCell]) -> list[NotebookCell]:
     """Return the cells that use what the program defines, and those that set rclpy up, unless it starts by itself."""
     if cell.magic.name and python_code.starts(whole):
         return []
@@ -212,7 +214,7 @@ def _starters(whole: str, cell: Cell, plain: Sequence[Cell]) -> list[Cell]:
     return [one for one in plain if own & python_code.missing(one.code) or python_code.calls_module(one.code, "rclpy")]
 
 
-def _in_order(cell: Cell, text: str, more: Iterable[Cell]) -> str:
+def _in_order(cell: NotebookCell, text: str, more: Iterable[NotebookCell]) -> str:
     """Return all of it in the notebook's order, except that what another cell needs at once comes above it."""
     pieces = [(cell.number, text), *((one.number, one.code) for one in more)]
     pieces.sort()

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from grader.exercise.exercise import Exercise, ProgramFile
 from grader.submission import python_code
 from grader.submission.assembling import Assembled, assemble
-from grader.submission.notebook import Cell, Notebook
+from grader.submission.notebook import Notebook, NotebookCell
 from grader.submission.places import without_marks
 from grader.submission.problems import Undecided, Unreadable
 
@@ -48,7 +48,7 @@ def choose(notebook: Notebook, exercise: Exercise, target: ProgramFile, starters
     return Choice(program.code, program.cells, tuple(_notes(cell, program, candidates, why)))
 
 
-def _candidates(cells: Sequence[Cell], exercise: Exercise, target: ProgramFile) -> list[Cell]:
+def _candidates(cells: Sequence[NotebookCell], exercise: Exercise, target: ProgramFile) -> list[NotebookCell]:
     """Return the cells that can be the program, by the first rule that any of them fits."""
     stem = target.file.removesuffix(".py")
     named = [one for one in cells if one.name == stem and one.magic.name != "part"]
@@ -69,18 +69,18 @@ def _candidates(cells: Sequence[Cell], exercise: Exercise, target: ProgramFile) 
 
 
 def _decided(
-    programs: Sequence[tuple[Cell, Assembled]],
+    programs: Sequence[tuple[NotebookCell, Assembled]],
     notebook: Notebook,
     exercise: Exercise,
     target: ProgramFile,
     starters: frozenset[str],
-) -> tuple[tuple[Cell, Assembled], str]:
+) -> tuple[tuple[NotebookCell, Assembled], str]:
     """Return the cell that counts with its program, and why."""
     if len({digest_of(program.code) for _, program in programs}) == 1:
         return programs[-1], ""
     if checked := _checked(programs, notebook, exercise, target):
         return checked, "it is the one that %check judged last"
-    rules: tuple[tuple[str, Callable[[Cell, Assembled], bool]], ...] = (
+    rules: tuple[tuple[str, Callable[[NotebookCell, Assembled], bool]], ...] = (
         ("the others are still the starter", lambda cell, program: digest_of(program.code) not in starters),
         (f"only it has the program {target.node}", lambda cell, program: _is_it(program.code, target)),
         ("it is the whole of which the others are parts", lambda cell, program: not _is_inside(cell, programs)),
@@ -102,13 +102,13 @@ def _is_it(code: str, target: ProgramFile) -> bool:
     return python_code.defines(code, target.class_name) or python_code.creates(code, target.node)
 
 
-def _is_inside(cell: Cell, programs: Sequence[tuple[Cell, Assembled]]) -> bool:
+def _is_inside(cell: NotebookCell, programs: Sequence[tuple[NotebookCell, Assembled]]) -> bool:
     return any(cell.number in program.cells for other, program in programs if other != cell)
 
 
 def _checked(
-    programs: Sequence[tuple[Cell, Assembled]], notebook: Notebook, exercise: Exercise, target: ProgramFile
-) -> tuple[Cell, Assembled] | None:
+    programs: Sequence[tuple[NotebookCell, Assembled]], notebook: Notebook, exercise: Exercise, target: ProgramFile
+) -> tuple[NotebookCell, Assembled] | None:
     """Return what `%check` judged last, by the record in its saved output; None if it does not say so."""
     stem = target.file.removesuffix(".py")
     checks = [one for one in notebook.cells if one.checked and {exercise.name, stem} & one.checked.keys()]
@@ -126,7 +126,7 @@ def _checked(
     return max(ran, key=lambda one: one[0].ran or 0) if ran else None
 
 
-def _notes(cell: Cell, program: Assembled, candidates: Sequence[Cell], why: str) -> list[str]:
+def _notes(cell: NotebookCell, program: Assembled, candidates: Sequence[NotebookCell], why: str) -> list[str]:
     notes = []
     others = [one for one in candidates if one.number not in program.cells and one.code.strip() != cell.code.strip()]
     if others:

@@ -20,7 +20,7 @@ from grader.submission import packages, python_code
 from grader.submission.archive import Contents, unpacked
 from grader.submission.choosing import Choice, choose, digest_of
 from grader.submission.file_kinds import kind_of, kind_of_content
-from grader.submission.notebook import Cell, Notebook, read_notebook
+from grader.submission.notebook import Notebook, NotebookCell, read_notebook
 from grader.submission.problems import Undecided, Unreadable, merge_conflict
 from grader.submission.python_version import newer_syntax
 from grader.submission.several_files import MOST_FILES, files_in, joined, parts
@@ -206,7 +206,7 @@ def _modules(files: Mapping[str, bytes], notebook: Notebook) -> dict[str, bytes]
     return found
 
 
-def _package(cell: Cell) -> list[str]:
+def _package(cell: NotebookCell) -> list[str]:
     words = next((line.split() for line in cell.source.split("\n") if line.startswith("%chapter")), [])
     return words[words.index("--package") + 1 : words.index("--package") + 2] if "--package" in words else []
 

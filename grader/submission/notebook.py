@@ -20,7 +20,7 @@ _IN_THE_NOTEBOOK = ("", "time", "capture", "prun")
 
 
 @dataclass(frozen=True, eq=False)
-class Cell:
+class NotebookCell:
     """One code cell. `number` counts code cells from 1; `exercise` is the one that the chapter's cell is for, or "".
 
     `ran` is the number of the run that its outputs are from, and `checked` are the digests of the code that `%check`
@@ -77,7 +77,7 @@ class Cell:
 class Notebook:
     """A notebook: its code cells in their order, and the version of Python that saved it, if known."""
 
-    cells: tuple[Cell, ...]
+    cells: tuple[NotebookCell, ...]
     python: str = ""
 
 
@@ -142,9 +142,9 @@ def _cells(data: Mapping[str, Any]) -> list[dict[str, Any]]:
     return [cell for cell in cells if isinstance(cell, dict) and cell.get("cell_type") == "code"]
 
 
-def _cell(number: int, cell: dict[str, Any]) -> Cell:
+def _cell(number: int, cell: dict[str, Any]) -> NotebookCell:
     ran = cell.get("execution_count", cell.get("prompt_number"))
-    return Cell(
+    return NotebookCell(
         number,
         _text(cell.get("source", cell.get("input", ""))),
         _exercise(cell.get("metadata")),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from grader.exercise.exercise import Exercise
 from grader.recording.recording import Recording
-from grader.runner.student import Task
+from grader.runner.program import Task
 from grader.sandbox.program import Isolation, Limits, Program
 from grader.scenario.scenario import Scenario
 from grader.submission.places import is_launcher
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from grader.checking.run import Run
     from grader.sandbox.fork_server import (
         ForkServer,  # the worker hands it in
-        Student,
+        SandboxedProgram,
     )
 
 
@@ -61,7 +61,7 @@ class RunJob:
         from grader.runner.run import run
         from rmw_lockstep.hub import Limits as HubLimits
 
-        def start(program: Program, hub: Path) -> Student:
+        def start(program: Program, hub: Path) -> SandboxedProgram:
             return fork_server.start(replace(program, hub=hub), self.isolation, self.limits, self.core)
 
         ready()
@@ -85,14 +85,14 @@ class JudgeJob:
 
     def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Any:
         """Return the verdicts."""
-        from grader.checking.judging import judge
+        from grader.checking.judge import judge
 
         ready()
         return judge(self.exercise, self.recordings, self.references, self.titles)
 
     def runs(self) -> dict[str, Run]:
         """Return what is judged, for a process that has collected the checks."""
-        from grader.checking.judging import runs_of
+        from grader.checking.judge import runs_of
 
         return runs_of(self.exercise, self.recordings, self.references, self.titles)
 
@@ -105,7 +105,7 @@ class ListJob:
 
     def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Any:
         """Return the checks, as `Listed`."""
-        from grader.checking.judging import listed
+        from grader.checking.judge import listed
 
         ready()
         return listed(self.exercise)

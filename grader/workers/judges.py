@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, NoReturn
 
 from grader.workers.answers import Answer, answer_of
-from grader.workers.forking import fork
+from grader.workers.fork import fork
 from grader.workers.shared import what_to_collect
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ class Judges:
 
 
 def _judge(requests: socket.socket, collected: bytes) -> NoReturn:
-    from grader.checking.judging import judge_when_collected
+    from grader.checking.judge import judge_when_collected
 
     exercise, scenarios = what_to_collect(collected)
     judging = _Judging(requests)

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, NoReturn
 from grader.sandbox import filesystem, middleware
 from grader.sandbox.fork_server import ForkServer
 from grader.workers.answers import answer_of
-from grader.workers.forking import fork
+from grader.workers.fork import fork
 from grader.workers.judges import Judges
 from grader.workers.pool import JUDGE, PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, SHARE
 from grader.workers.shared import receive
@@ -58,7 +58,7 @@ LONGEST_COMMAND = 65536
 @functools.cache
 def preload_judging() -> None:
     """Do the same for what judging needs."""
-    from grader.checking.judging import load_pytest
+    from grader.checking.judge import load_pytest
 
     load_pytest()
     _share()

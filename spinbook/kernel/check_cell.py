@@ -19,7 +19,7 @@ from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import NoExercise, find, load
 from grader.submission.choosing import digest_of
 from grader.submission.code import Code, as_text, code_of_notebook
-from grader.submission.notebook import RECORD, Cell, Notebook, read_notebook
+from grader.submission.notebook import RECORD, Notebook, NotebookCell, read_notebook
 from grader.submission.problems import Undecided, Unreadable
 from grader.submission.python_code import definitions
 from spinbook.kernel.process import CellFailed, KeptProcess
@@ -70,21 +70,21 @@ def code_of(exercise: Exercise, session: Session, shell: Any, notebook: Path | N
     raise CellFailed(f"Run the cell that begins with %%node {node} first. Then run this one again.")
 
 
-def cells_as_run(session: Session, shell: Any) -> tuple[Cell, ...]:
+def cells_as_run(session: Session, shell: Any) -> tuple[NotebookCell, ...]:
     """The cells that the kernel has run, each as it ran last: one that a later one replaces in full is left out."""
     history = enumerate(shell.history_manager.input_hist_raw)
-    cells = [Cell(number, source) for number, source in history if source.strip()]
+    cells = [NotebookCell(number, source) for number, source in history if source.strip()]
     ran = {cell.name: cell for cell in cells if cell.name}
     # What another way than a cell has run, a test or an extension, is not in the history.
     cells += [
-        Cell(len(cells) + 1, f"%%node {name}\n{code}")
+        NotebookCell(len(cells) + 1, f"%%node {name}\n{code}")
         for name, code in session.ran.items()
         if name not in ran or ran[name].magic.code.strip() != code.strip()
     ]
     return tuple(reversed(list(_not_replaced(cells))))
 
 
-def _not_replaced(cells: Sequence[Cell]) -> Iterator[Cell]:
+def _not_replaced(cells: Sequence[NotebookCell]) -> Iterator[NotebookCell]:
     names, defined = set[str](), set[str]()
     for cell in reversed(cells):
         own = definitions(cell.code) if cell.is_plain else set()

@@ -14,12 +14,12 @@ from dataclasses import dataclass
 from grader.exercise.exercise import (
     Direction,
     Durability,
-    Endpoint,
     Exercise,
     Parameter,
     ProgramFile,
     Reliability,
     Role,
+    ServiceOrAction,
     Topic,
 )
 
@@ -115,7 +115,7 @@ def _program(
     title: str,
     node: ProgramFile,
     topics: Sequence[Topic],
-    endpoints: Sequence[Endpoint],
+    endpoints: Sequence[ServiceOrAction],
     parameters: Sequence[Parameter],
 ) -> str:
     ends = [line for topic in topics for line in _topic(topic)]
@@ -158,11 +158,11 @@ def _quality(one: Topic) -> str:
     return f"QoSProfile({', '.join([f'depth={one.depth}', *policies])})" if policies else str(one.depth)
 
 
-def _end(one: Endpoint) -> str:
+def _end(one: ServiceOrAction) -> str:
     return _ENTRY[one.role].format(name=_name(one.name), type=one.type.rpartition("/")[2], topic=_quoted(one.name))
 
 
-def _callbacks(topics: Sequence[Topic], endpoints: Sequence[Endpoint]) -> Iterator[_Callback]:
+def _callbacks(topics: Sequence[Topic], endpoints: Sequence[ServiceOrAction]) -> Iterator[_Callback]:
     for topic in topics:
         if topic.direction == "subscribe":
             yield _Callback(f"on_{_name(topic.name)}", "message", f"Called once for each message on {topic.name}.")
@@ -188,7 +188,7 @@ def _marked(todo: Sequence[str], last: str = "") -> list[str]:
     return [*todo, "        # BEGIN SOLUTION", *inside, "        # END SOLUTION"]
 
 
-def _imports(topics: Sequence[Topic], endpoints: Sequence[Endpoint]) -> str:
+def _imports(topics: Sequence[Topic], endpoints: Sequence[ServiceOrAction]) -> str:
     threads = {"MultiThreadedExecutor" for one in endpoints if one.role == "action"}
     found = {
         "rclpy.executors": {"ExternalShutdownException", *threads},

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from grader.exercise.exercise import Endpoint, Exercise, Parameter, Topic
+from grader.exercise.exercise import Exercise, Parameter, ServiceOrAction, Topic
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ _VERBS = {
 }
 
 
-def _endpoint_row(endpoint: Endpoint) -> str:
+def _endpoint_row(endpoint: ServiceOrAction) -> str:
     return f"| {_VERBS[endpoint.role]} | `{endpoint.name}` | `{endpoint.type}` | {_units(endpoint.units)} |"
 
 

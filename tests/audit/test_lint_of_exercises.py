@@ -8,7 +8,7 @@ import pytest
 from prepared_python import run_prepared
 from small_exercise import SmallExercise
 
-from grader.checking.proofreading import rules_that_the_task_lacks
+from grader.checking.proofreader import rules_that_the_task_lacks
 
 #: A sentence of the small exercise on which a hidden check is based.
 RULE = "Publish nothing on /numbers or /clock."

@@ -9,7 +9,7 @@ from small_exercise import SmallExercise
 
 from grader.checking.agreement import disagreements
 from grader.checking.created import Created, created
-from grader.checking.proofreading import problems_of
+from grader.checking.proofreader import problems_of
 from grader.exercise.exercise import Qos
 from grader.exercise.loading import load
 from spinbook.new.kind import Kind

@@ -11,7 +11,7 @@ from small_exercise import SmallExercise
 
 from grader.audit.audit import sample
 from grader.audit.mutants import Mutant, mutants_of
-from grader.audit.result import Difference, MutantResult, Trial, score_of
+from grader.audit.result import MutantResult, RecordingDifference, Trial, score_of
 from grader.audit.survivors import listed, problems_of_survivors, result_of, stale
 from grader.checking.verdict import Finding
 from grader.exercise import ExerciseError, load
@@ -224,7 +224,7 @@ def trial(failed: bool = False, different: bool = False) -> Trial:
         findings={"test_a": Finding("1 was expected")} if failed else {},
         spun=("positive", "any"),
         messages=7,
-        differences=(Difference("any", "3 of 3 messages differ in data"),) if different else (),
+        differences=(RecordingDifference("any", "3 of 3 messages differ in data"),) if different else (),
     )
 
 

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from grader.audit.listing import Check
+from grader.audit.check_list import AuditedCheck
 from grader.audit.result import Trial
 from grader.audit.worth import problems_of_checks, worth_spinning_on
 from grader.checking.verdict import Finding, Status
 
 
-def check(name: str, depends: tuple[str, ...] = ()) -> Check:
+def check(name: str, depends: tuple[str, ...] = ()) -> AuditedCheck:
     """Return a check of its own scenario."""
-    return Check(name, name, 1.0, "", depends, "", False, (name,), Path("checks.py"), 1, 0.0)
+    return AuditedCheck(name, name, 1.0, "", depends, "", False, (name,), Path("checks.py"), 1, 0.0)
 
 
 def trial(**statuses: Status) -> Trial:

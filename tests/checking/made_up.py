@@ -12,8 +12,8 @@ import pytest
 from grader.checking.run import Run
 from grader.checking.verdict import Finding, Wrong
 from grader.exercise import Exercise
-from grader.exercise.exercise import Endpoint, Parameter, Topic
-from grader.recording import Ending, EndPoint, Received, Recording, Sent
+from grader.exercise.exercise import Parameter, ServiceOrAction, Topic
+from grader.recording import Ending, Endpoint, ReceivedMessage, Recording, SentMessage
 from grader.scenario.scenario import SECOND, START
 
 FLOAT, STAMPED = "std_msgs/msg/Float64", "geometry_msgs/msg/PointStamped"
@@ -22,16 +22,16 @@ ADD, COUNT = "example_interfaces/srv/AddTwoInts", "test_msgs/action/Fibonacci"
 EXERCISE = Exercise(
     "all", Path(), "", 10.0, "node.py", "", "worker", "", (Topic("/in", FLOAT, "subscribe"),
     Topic("/out", FLOAT, "publish", units={"data": "m"})), None,
-    endpoints=(Endpoint("/add", ADD, "service", {"sum": "m"}), Endpoint("/count", COUNT, "action")),
+    endpoints=(ServiceOrAction("/add", ADD, "service", {"sum": "m"}), ServiceOrAction("/count", COUNT, "action")),
     parameters=(Parameter("gain", "double", 1.0, "1/s"),),
 )  # fmt: skip
 
 #: A node with everything that the exercise asks for.
 ENDS = (
-    EndPoint("/worker", "subscription", "/in", FLOAT, "reliable", "volatile"),
-    EndPoint("/worker", "publisher", "/out", FLOAT, "reliable", "volatile"),
-    EndPoint("/worker", "server", "/add", ADD, "reliable", "volatile"),
-    EndPoint("/worker", "action server", "/count", COUNT, "reliable", "volatile"),
+    Endpoint("/worker", "subscription", "/in", FLOAT, "reliable", "volatile"),
+    Endpoint("/worker", "publisher", "/out", FLOAT, "reliable", "volatile"),
+    Endpoint("/worker", "server", "/add", ADD, "reliable", "volatile"),
+    Endpoint("/worker", "action server", "/count", COUNT, "reliable", "volatile"),
 )
 
 EMPTY = Recording("plain", (), (), ("/worker",), ENDS, True, Ending("completed"))
@@ -45,14 +45,15 @@ def ns(seconds: float) -> int:
 def published(times: Iterable[float], values: Iterable[float], topic: str = "/out", subscriber: str = "") -> Recording:
     """Return a recording of a node that published these numbers."""
     received = tuple(
-        Received(ns(at), 0, topic, FLOAT, {"data": value}, subscriber) for at, value in zip(times, values, strict=True)
+        ReceivedMessage(ns(at), 0, topic, FLOAT, {"data": value}, subscriber)
+        for at, value in zip(times, values, strict=True)
     )
     return replace(EMPTY, received=received)
 
 
 def moved(*way: tuple[float, float, float]) -> Recording:
     """Return a recording of a world that published where it was: (time, x, y)."""
-    return replace(EMPTY, sent=tuple(Sent(ns(at), "/pose", FLOAT, {"x": x, "y": y}) for at, x, y in way))
+    return replace(EMPTY, sent=tuple(SentMessage(ns(at), "/pose", FLOAT, {"x": x, "y": y}) for at, x, y in way))
 
 
 def run(mine: Recording, reference: Recording | None = None, exercise: Exercise = EXERCISE) -> Run:

@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 from made_up import COUNT, EMPTY, EXERCISE, finding, ns, run, says
 
-from grader.exercise.exercise import Endpoint
+from grader.exercise.exercise import ServiceOrAction
 from grader.recording import Recording
 from grader.recording.events import Cancel, Feedback, Goal, GoalState
 
-CLIENT = replace(EXERCISE, endpoints=(Endpoint("/count", COUNT, "action_client"),))
+CLIENT = replace(EXERCISE, endpoints=(ServiceOrAction("/count", COUNT, "action_client"),))
 
 
 def goal(*states: tuple[float, str], **fields: Any) -> Recording:

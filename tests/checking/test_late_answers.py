@@ -12,7 +12,7 @@ from grader.checking.run import Run
 from grader.checking.verdict import Wrong
 from grader.exercise import Exercise
 from grader.exercise.exercise import Durability, Topic
-from grader.recording import Ending, EndPoint, Received, Recording, Sent
+from grader.recording import Ending, Endpoint, ReceivedMessage, Recording, SentMessage
 from grader.scenario.scenario import SECOND, START
 
 FLOAT = "std_msgs/msg/Float64"
@@ -23,17 +23,17 @@ EXERCISE = Exercise(
 COUNT = 8
 
 
-def recording(*received: Received) -> Recording:
+def recording(*received: ReceivedMessage) -> Recording:
     """Return a recording of messages 0.1 s apart, and their answers."""
-    sent = tuple(Sent(START + i * SECOND // 10, "/in", FLOAT, {"data": float(i)}) for i in range(COUNT))
+    sent = tuple(SentMessage(START + i * SECOND // 10, "/in", FLOAT, {"data": float(i)}) for i in range(COUNT))
     return Recording("plain", sent, received, ("/doubler",), (), True, Ending("completed"))
 
 
-def answer(number: int, value: float, later: float = 0.0) -> Received:
+def answer(number: int, value: float, later: float = 0.0) -> ReceivedMessage:
     """Return an answer to message `number`, counted from 1, that arrives `later` (s)."""
     at = START + (number - 1) * SECOND // 10 + round(later * SECOND)
     after = min(COUNT, 1 + (at - START) * 10 // SECOND)
-    return Received(at, after, "/out", FLOAT, {"data": value})
+    return ReceivedMessage(at, after, "/out", FLOAT, {"data": value})
 
 
 def right(number: int) -> float:
@@ -43,7 +43,7 @@ def right(number: int) -> float:
 REFERENCE = recording(*(answer(n, right(n)) for n in range(1, COUNT + 1)))
 
 
-def message(received: list[Received], check: Callable[[Run], None]) -> str:
+def message(received: list[ReceivedMessage], check: Callable[[Run], None]) -> str:
     """Return what a check says about this."""
     with pytest.raises(Wrong) as caught:
         check(Run(EXERCISE, recording(*received), REFERENCE))
@@ -105,7 +105,7 @@ def test_another_factor_is_no_sign_of_a_clock() -> None:
 )
 def test_no_answer_at_all_is_explained_by_the_subscription(durability: Durability, message: str) -> None:
     silent = recording()
-    end = EndPoint("/doubler", "subscription", "/in", FLOAT, "reliable", durability)
+    end = Endpoint("/doubler", "subscription", "/in", FLOAT, "reliable", durability)
     unheard = replace(silent, sent=tuple(replace(one, heard=False) for one in silent.sent), end_points=(end,))
     with pytest.raises(Wrong) as caught:
         Run(EXERCISE, unheard, REFERENCE).must_match("data")

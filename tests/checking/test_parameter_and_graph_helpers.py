@@ -10,7 +10,7 @@ from made_up import EMPTY, ENDS, EXERCISE, ns, run, says
 
 from grader.exercise.exercise import ProgramFile, Topic
 from grader.recording import Ending, Recording
-from grader.recording.events import Exit, ParameterChange, ParameterReading
+from grader.recording.events import ParameterChange, ParameterReading, ProgramExit
 
 
 def set_to(*changes: tuple[Any, bool | None]) -> Recording:
@@ -159,7 +159,9 @@ def test_ends() -> None:
     assert says(run(loud).must_end_on_ctrl_c) == "After Ctrl-C your program printed a traceback: RCLError: no"
     with pytest.raises(ValueError, match="sends no Ctrl-C"):
         run(EMPTY).must_end_on_ctrl_c()
-    ended = replace(EMPTY, exits=(Exit(ns(2), "a.py", signal=9, by="grader"), Exit(ns(3), "b.py", code=1)))
+    ended = replace(
+        EMPTY, exits=(ProgramExit(ns(2), "a.py", signal=9, by="grader"), ProgramExit(ns(3), "b.py", code=1))
+    )
     run(ended).must_survive("a.py")
     assert (
         says(run(ended).must_survive) == "At 3.00 s (as usual): b.py ended by itself, with code 1, but must continue."

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 from made_up import EMPTY, ENDS, STAMPED, finding, ns, published, run, says
 
-from grader.recording import Received, Recording
+from grader.recording import ReceivedMessage, Recording
 from grader.scenario.scenario import SECOND
 
 TIMES = [i / 10 for i in range(1, 51)]
@@ -21,7 +21,9 @@ SILENT = published([], [])
 def stamped(*stamps: float) -> Recording:
     """Return a recording with one message every 0.1 s, with these stamps (s of simulated time)."""
     fields = [{"header": {"stamp": {"sec": int(s), "nanosec": round(s % 1 * SECOND)}}} for s in stamps]
-    return replace(EMPTY, received=tuple(Received(ns(i / 10), 0, "/out", STAMPED, f) for i, f in enumerate(fields)))
+    return replace(
+        EMPTY, received=tuple(ReceivedMessage(ns(i / 10), 0, "/out", STAMPED, f) for i, f in enumerate(fields))
+    )
 
 
 def test_a_right_publisher_passes_everything() -> None:

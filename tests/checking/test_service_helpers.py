@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from made_up import ADD, EMPTY, ENDS, EXERCISE, finding, ns, published, run, says
 
-from grader.exercise.exercise import Endpoint
+from grader.exercise.exercise import ServiceOrAction
 from grader.recording import Recording
 from grader.recording.events import Call
 
@@ -27,7 +27,7 @@ def calls(*sums: int | None, late: float = 0.0, by: str = "grader", served: bool
 
 
 RIGHT = calls(2, 3, 4, 5)
-CLIENT = replace(EXERCISE, endpoints=(Endpoint("/add", ADD, "client"),))
+CLIENT = replace(EXERCISE, endpoints=(ServiceOrAction("/add", ADD, "client"),))
 
 
 def test_a_right_server_passes() -> None:

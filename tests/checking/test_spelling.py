@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.checking.judging import with_spelling
+from grader.checking.judge import with_spelling
 from grader.checking.verdict import Finding, Verdict
 
 TOPICS, NODE = ("/joint_commands", "/joint_velocities"), "/joint_velocity"

@@ -10,7 +10,7 @@ from small_class import EXERCISE, TEMPLATE
 from grader.checking.verdict import Finding
 from grader.exercise import load
 from grader.recording import Ending, Recording
-from grader.recording.recording import Received, Sent
+from grader.recording.recording import ReceivedMessage, SentMessage
 from grader.report.feedback_plot import feedback_plot
 from grader.scenario.scenario import SECOND, START
 
@@ -20,9 +20,9 @@ FLOAT = "std_msgs/msg/Float64"
 def recording(*answers: float) -> Recording:
     """Return a recording of numbers that were sent every 0.1 s, and their answers."""
     times = [START + i * SECOND // 10 for i in range(len(answers))]
-    sent = tuple(Sent(at, "/wanted_speed", FLOAT, {"data": 3.0}) for at in times)
+    sent = tuple(SentMessage(at, "/wanted_speed", FLOAT, {"data": 3.0}) for at in times)
     received = tuple(
-        Received(at, i + 1, "/safe_speed", FLOAT, {"data": answer})
+        ReceivedMessage(at, i + 1, "/safe_speed", FLOAT, {"data": answer})
         for i, (at, answer) in enumerate(zip(times, answers, strict=True))
     )
     return Recording("gentle", sent, received, (), (), "parameters", True, Ending("completed", ""))

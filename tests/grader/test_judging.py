@@ -12,8 +12,8 @@ EXERCISE = Path(__file__).parents[2] / "exercises" / "joint_velocity"
 LOADED_BEFORE = """
 import signal, sys, threading
 from pathlib import Path
-from grader.checking.judging import load_pytest
-from grader.checking.judging import listed
+from grader.checking.judge import load_pytest
+from grader.checking.judge import listed
 from grader.exercise import load
 
 def handlers():
@@ -39,7 +39,7 @@ def test_a_process_that_has_loaded_pytest_loads_nothing_more_of_it_for_the_check
 LISTED = """
 import sys
 from pathlib import Path
-from grader.checking.judging import listed
+from grader.checking.judge import listed
 from grader.exercise import load
 
 print(len(listed(load(Path(sys.argv[1])))))

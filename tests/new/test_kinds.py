@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from grader.checking.proofreading import problems_of
+from grader.checking.proofreader import problems_of
 from grader.exercise import load, starter
 from grader.exercise.mistakes import Mistake, mistakes_of
 from grader.grading import Options, grading_of

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.checking.proofreading import problems_of
+from grader.checking.proofreader import problems_of
 from grader.exercise import load, starter
 from grader.grading import Options, grading_of
 from grader.submission.reading import of_source

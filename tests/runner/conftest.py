@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 from runner_programs import EXERCISE, RunProgram, numbers
 
-from grader.grading.running import ARGUMENTS
+from grader.grading.scenario_runner import ARGUMENTS
 from grader.recording import Recording
+from grader.runner.program import Task
 from grader.runner.run import run
-from grader.runner.student import Task
-from grader.sandbox import ForkServer, Limits, Program, Student, choose
+from grader.sandbox import ForkServer, Limits, Program, SandboxedProgram, choose
 from grader.scenario import Scenario
 from grader.workers.pool import STUDENT_ENVIRONMENT
 from rmw_lockstep.hub import Limits as HubLimits
@@ -30,7 +30,7 @@ def run_program(fork_server: ForkServer) -> RunProgram:
     level = choose(None)
 
     def run_it(source: str, scenario: Scenario | None = None, limits: HubLimits | None = None) -> Recording:
-        def start(hub: Path) -> Student:
+        def start(hub: Path) -> SandboxedProgram:
             program = Program("node.py", {"node.py": source.encode()}, ARGUMENTS, STUDENT_ENVIRONMENT, hub=hub)
             return fork_server.start(program, level, Limits())
 

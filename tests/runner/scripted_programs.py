@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from grader.exercise import Exercise
-from grader.exercise.exercise import Endpoint, Topic
+from grader.exercise.exercise import ServiceOrAction, Topic
 from grader.scenario import Scenario
-from grader.scenario.resolving import resolved
+from grader.scenario.resolver import resolved
 
 FLOAT, STRING = "std_msgs/msg/Float64", "std_msgs/msg/String"
 SET_BOOL, FIBONACCI = "std_srvs/srv/SetBool", "test_msgs/action/Fibonacci"
@@ -29,10 +29,10 @@ EXERCISE = Exercise(
     ),
     solution_folder=None,
     endpoints=(
-        Endpoint("/switch", SET_BOOL, "service"),
-        Endpoint("/lamp", SET_BOOL, "client"),
-        Endpoint("/count", FIBONACCI, "action"),
-        Endpoint("/climb", FIBONACCI, "action_client"),
+        ServiceOrAction("/switch", SET_BOOL, "service"),
+        ServiceOrAction("/lamp", SET_BOOL, "client"),
+        ServiceOrAction("/count", FIBONACCI, "action"),
+        ServiceOrAction("/climb", FIBONACCI, "action_client"),
     ),
 )
 

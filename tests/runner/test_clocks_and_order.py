@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.runner.budget import Allowance, Budget, HostStalled
-from grader.runner.ends import BETWEEN_MESSAGES, Clocks
-from grader.runner.order import (
+from grader.runner.grader_side import BETWEEN_MESSAGES, Clocks
+from grader.runner.message_order import (
     Place,
     in_canonical_order,
     place_of,

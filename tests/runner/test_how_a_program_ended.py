@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from grader.runner.ending import of_exit
-from grader.sandbox.monitor import Exit
+from grader.runner.program_end import of_exit
+from grader.sandbox.monitor import ProcessExit
 
 SOURCE = "import rclpy\nrclpy.spin(node)\n"
 
@@ -50,19 +50,31 @@ NO_RESULT = (
 @pytest.mark.parametrize(
     ("log", "exit_", "message"),
     [
-        (NO_RESPONSE, Exit(1, None, None), "end each way through it with `return response`"),
+        (NO_RESPONSE, ProcessExit(1, None, None), "end each way through it with `return response`"),
         (
             NO_RESULT,
-            Exit(None, 6, None),
+            ProcessExit(None, 6, None),
             "has to return a Result, such as `return RotateAbsolute.Result()`",
         ),
-        (RAISES, Exit(1, None, None), "coins in line 3. An exception in a callback ends the whole node: say in the"),
-        (UNDECLARED, Exit(1, None, None), "(s): gain. Declare it first, in __init__: self.declare_parameter(…)."),
-        (OF_ANOTHER_TYPE, Exit(1, None, None), "type is INTEGER. A parameter has the type of its default: 1 declares"),
-        ("", Exit(None, 6, None), "killed by signal 6"),
+        (
+            RAISES,
+            ProcessExit(1, None, None),
+            "coins in line 3. An exception in a callback ends the whole node: say in the",
+        ),
+        (
+            UNDECLARED,
+            ProcessExit(1, None, None),
+            "(s): gain. Declare it first, in __init__: self.declare_parameter(…).",
+        ),
+        (
+            OF_ANOTHER_TYPE,
+            ProcessExit(1, None, None),
+            "type is INTEGER. A parameter has the type of its default: 1 declares",
+        ),
+        ("", ProcessExit(None, 6, None), "killed by signal 6"),
     ],
 )
-def test_an_end_far_from_its_cause_says_what_to_do(log: str, exit_: Exit, message: str) -> None:
+def test_an_end_far_from_its_cause_says_what_to_do(log: str, exit_: ProcessExit, message: str) -> None:
     assert message in of_exit(exit_, log, {"turnstile.py": SOURCE})[0]
 
 
@@ -90,7 +102,7 @@ RuntimeError: stuck
 
 def test_the_advice_to_return_a_result_is_not_for_an_error_of_the_students_own() -> None:
     returned, raised = (
-        of_exit(Exit(1, None, None), log, {"turnstile.py": SOURCE})[0] for log in (NOTHING_RETURNED, GOAL_RAISES)
+        of_exit(ProcessExit(1, None, None), log, {"turnstile.py": SOURCE})[0] for log in (NOTHING_RETURNED, GOAL_RAISES)
     )
 
     assert "has to return a Result" in returned
@@ -119,10 +131,12 @@ HEADER, FIRST, *OTHERS = OF_A_GOAL.splitlines(keepends=True)
     ids=["before", "after", "around", "the rest after"],
 )
 def test_an_error_that_another_thread_prints_is_not_the_one_that_ended_the_program(log: str) -> None:
-    expected = of_exit(Exit(1, None, None), RAISES, {"turnstile.py": SOURCE + "raise ValueError('no coins')"})
+    expected = of_exit(ProcessExit(1, None, None), RAISES, {"turnstile.py": SOURCE + "raise ValueError('no coins')"})
 
     assert expected[1] == 3
-    assert of_exit(Exit(1, None, None), log, {"turnstile.py": SOURCE + "raise ValueError('no coins')"}) == expected
+    assert (
+        of_exit(ProcessExit(1, None, None), log, {"turnstile.py": SOURCE + "raise ValueError('no coins')"}) == expected
+    )
 
 
 FORGED = "Traceback (most recent call last):\n"
@@ -139,13 +153,13 @@ FORGED = "Traceback (most recent call last):\n"
     ids=["blank lines", "names without an end", "a line number without an end", "no errors"],
 )
 def test_a_forged_traceback_is_read_and_changes_nothing(log: str) -> None:
-    assert of_exit(Exit(1, None, None), log, {"turnstile.py": SOURCE})[0] == "it gave up with exit code 1."
+    assert of_exit(ProcessExit(1, None, None), log, {"turnstile.py": SOURCE})[0] == "it gave up with exit code 1."
 
 
 def test_of_an_error_as_long_as_a_book_the_beginning_is_told() -> None:
     log = RAISES.replace("no coins", "1" * 60_000)
 
-    text, line = of_exit(Exit(1, None, None), log, {"turnstile.py": SOURCE})
+    text, line = of_exit(ProcessExit(1, None, None), log, {"turnstile.py": SOURCE})
 
     assert line == 3
     assert text.startswith("ValueError: 11111")

@@ -12,14 +12,14 @@ import pytest
 from scripted_programs import EXERCISE, program
 
 from grader.exercise.exercise import ProgramFile
-from grader.grading.running import arguments
+from grader.grading.scenario_runner import arguments
 from grader.recording import Recording
+from grader.runner.program import Task
 from grader.runner.run import run
-from grader.runner.student import Task
-from grader.sandbox import ForkServer, Limits, Student, choose
-from grader.sandbox import Program as Sandboxed
+from grader.sandbox import ForkServer, Limits, SandboxedProgram, choose
+from grader.sandbox import ProgramArguments as Sandboxed
 from grader.scenario import Program, Scenario, at
-from grader.scenario.resolving import resolved
+from grader.scenario.resolver import resolved
 from grader.scenario.scenario import SECOND, START
 from grader.workers.pool import STUDENT_ENVIRONMENT
 from interface_compiler.near import use_near
@@ -50,7 +50,7 @@ def together(fork_server: ForkServer) -> Together:
         exercise = EXERCISE if companion else PAIR
         complete = resolved(exercise, scenario)
 
-        def start(name: str, hub: Path) -> Student:
+        def start(name: str, hub: Path) -> SandboxedProgram:
             given = Sandboxed(name, files, arguments(complete), STUDENT_ENVIRONMENT, hub=hub)
             return fork_server.start(given, level, Limits())
 

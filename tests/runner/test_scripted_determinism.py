@@ -21,11 +21,11 @@ from scripted_programs import (
     ready,
 )
 
-from grader.grading.running import arguments
+from grader.grading.scenario_runner import arguments
 from grader.recording import Recording
+from grader.runner.program import Task
 from grader.runner.run import run
-from grader.runner.student import Task
-from grader.sandbox import ForkServer, Limits, Program, Student, choose
+from grader.sandbox import ForkServer, Limits, Program, SandboxedProgram, choose
 from grader.scenario import ActionServer, Scenario, Server, Turtle, World, at, no_reply, reply, succeeds
 from grader.workers.pool import STUDENT_ENVIRONMENT
 from interface_compiler.near import use_near
@@ -65,7 +65,7 @@ def recorded(fork_server: ForkServer, name: str) -> Recording:
     body, scenario = CASES[name]
     source, complete, level = program(body, threads=4), ready(scenario), choose(None)
 
-    def start(hub: Path) -> Student:
+    def start(hub: Path) -> SandboxedProgram:
         given = Program("node.py", {"node.py": source.encode()}, arguments(complete), STUDENT_ENVIRONMENT, hub=hub)
         return fork_server.start(given, level, Limits())
 

@@ -25,11 +25,11 @@ from scripted_programs import (
 )
 
 from grader.exercise import ExerciseError
-from grader.grading.running import arguments
+from grader.grading.scenario_runner import arguments
 from grader.recording import Call, Recording
+from grader.runner.program import Task
 from grader.runner.run import run
-from grader.runner.student import Task
-from grader.sandbox import ForkServer, Limits, Program, Student, choose
+from grader.sandbox import ForkServer, Limits, Program, SandboxedProgram, choose
 from grader.scenario import (
     ActionServer,
     JointChain,
@@ -67,7 +67,7 @@ def scripted(fork_server: ForkServer) -> Scripted:
     def run_it(source: str, scenario: Scenario) -> Recording:
         complete = ready(scenario)
 
-        def start(hub: Path) -> Student:
+        def start(hub: Path) -> SandboxedProgram:
             given = Program("node.py", {"node.py": source.encode()}, arguments(complete), STUDENT_ENVIRONMENT, hub=hub)
             return fork_server.start(given, level, Limits())
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from sandbox_runner import Runner
 
-from grader.sandbox import Exit, ForkServer, Isolation, Limits, Program
+from grader.sandbox import ForkServer, Isolation, Limits, ProcessExit, Program
 from rmw_lockstep.hub import Hub
 
 SECOND = 1_000_000_000
@@ -20,7 +20,7 @@ SECOND = 1_000_000_000
 class HubRun:
     """How a program ended, and what it printed."""
 
-    exit: Exit | None
+    exit: ProcessExit | None
     text: str
 
 

@@ -18,7 +18,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
-from grader.sandbox import Exit, ForkServer, Isolation, Limits, Program, available, syscalls
+from grader.sandbox import ForkServer, Isolation, Limits, ProcessExit, Program, available, syscalls
 
 NOBODY = 65534
 
@@ -27,7 +27,7 @@ NOBODY = 65534
 class Run:
     """How a program ended and what it printed."""
 
-    exit: Exit | None
+    exit: ProcessExit | None
     text: str
 
 

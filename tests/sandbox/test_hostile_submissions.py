@@ -19,9 +19,9 @@ from submissions import HONEST, SUBMISSIONS
 
 from grader.exercise import load
 from grader.recording.recording import RunOutcome
+from grader.runner.program import RunningProgram as RunningProgram
+from grader.runner.program import Task
 from grader.runner.run import run
-from grader.runner.student import Student as RunningProgram
-from grader.runner.student import Task
 from grader.sandbox import ForkServer, Isolation, Limits, Program
 from grader.scenario.command_line import arguments
 from grader.scenario.declared import declared

@@ -7,7 +7,7 @@ import signal
 import pytest
 from sandbox_runner import Runner
 
-from grader.sandbox import Exit, ForkServer, Isolation, Program
+from grader.sandbox import ForkServer, Isolation, ProcessExit, Program
 
 #: Prints the modules of ROS that are there, and those that their packages have as attributes.
 SHOW = """
@@ -105,7 +105,7 @@ def test_the_traceback_that_ends_a_program_is_not_mixed_with_what_other_threads_
     run = either_runner.run(PRINTS_MEANWHILE)
 
     traceback = run.text[run.text.index("Traceback") : run.text.index("in the depth")]
-    assert run.exit == Exit(1, None, None)
+    assert run.exit == ProcessExit(1, None, None)
     assert traceback.count('  File "') > 100
     assert "meanwhile" not in traceback
 
@@ -119,7 +119,7 @@ def test_the_source_may_declare_its_encoding(either_runner: Runner) -> None:
 def test_source_that_is_not_utf8_is_a_syntax_error_of_the_student(either_runner: Runner) -> None:
     run = either_runner.run("print('größer')".encode("latin-1"))
 
-    assert run.exit == Exit(1, None, None)
+    assert run.exit == ProcessExit(1, None, None)
     assert "SyntaxError" in run.text
     assert "grader" not in run.text
 
@@ -177,7 +177,7 @@ def test_a_module_that_can_not_be_preloaded_is_the_programs_own_business(either_
     assert text.splitlines()[-1] == "ModuleNotFoundError: No module named 'there_is_none'"
 
 
-def interrupt_a_spinning_node(fork_server: ForkServer, level: Isolation) -> tuple[Exit | None, str]:
+def interrupt_a_spinning_node(fork_server: ForkServer, level: Isolation) -> tuple[ProcessExit | None, str]:
     code = "import time\ntry:\n    print('ready')\n    while True: time.sleep(0.01)\nfinally:\n    print('finally')\n"
     with fork_server.start(Program("n.py", {"n.py": code.encode()}), level) as student:
         while "ready" not in student.output().text:
@@ -189,7 +189,7 @@ def interrupt_a_spinning_node(fork_server: ForkServer, level: Isolation) -> tupl
 def test_an_interrupt_is_what_ctrl_c_is(any_runner: Runner) -> None:
     end, text = any_runner.do(interrupt_a_spinning_node)
 
-    assert end == Exit(None, signal.SIGINT, None)
+    assert end == ProcessExit(None, signal.SIGINT, None)
     assert "finally" in text
     assert text.rstrip().endswith("KeyboardInterrupt")
 

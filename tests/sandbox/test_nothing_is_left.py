@@ -11,7 +11,7 @@ import psutil
 import pytest
 from sandbox_runner import Runner, reason_against
 
-from grader.sandbox import Exit, ForkServer, Isolation, Program
+from grader.sandbox import ForkServer, Isolation, ProcessExit, Program
 
 #: Says that its daemons started only when the last of them has said so, in a pipe: it may end right after.
 DAEMON = """
@@ -41,7 +41,9 @@ def alive(name: str) -> int:
     return sum(process.info["name"] == name for process in psutil.process_iter(["name"]))
 
 
-def start_daemons(fork_server: ForkServer, level: Isolation, name: str, end: str) -> tuple[Exit | None, int, int]:
+def start_daemons(
+    fork_server: ForkServer, level: Isolation, name: str, end: str
+) -> tuple[ProcessExit | None, int, int]:
     """Start daemons that ignore every signal, and kill them; return how many there were before and after.
 
     Where the program ends by itself, those before are counted while others end.
@@ -65,7 +67,7 @@ def test_daemons_do_not_outlive_a_killed_program(any_runner: Runner, end: str) -
     assert before >= 3 or "exit" in end
     assert after == 0
     assert alive(name) == 0
-    assert ended == (Exit(0, None, None) if "exit" in end else Exit(None, 9, None))
+    assert ended == (ProcessExit(0, None, None) if "exit" in end else ProcessExit(None, 9, None))
 
 
 def test_a_program_that_kills_all_that_it_can_see_kills_only_itself(confined_runner: Runner) -> None:

@@ -1,5 +1,5 @@
 """Mutants: copies of a right program, each changed in one place, as a student might get it wrong."""
 
-from grader.audit.mutants.making import Mutant, mutants_of
+from grader.audit.mutants.maker import Mutant, mutants_of
 
 __all__ = ["Mutant", "mutants_of"]

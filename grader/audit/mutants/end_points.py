@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import libcst as cst
 
-from grader.audit.mutants.program import Change, Program, called, expression, with_body
+from grader.audit.mutants.program import Change, ParsedProgram, called, expression, with_body
 
 #: Method -> positions and names of its arguments: type, topic, callback, quality of service.
 ENDS = {
@@ -42,7 +42,7 @@ PROFILES = (
 )
 
 
-def topic_name(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def topic_name(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """An end has another topic: misspelled, below a namespace, or another of the exercise's."""
     place = _argument(node, "topic")
     if place is None or not isinstance(place.value, cst.SimpleString):
@@ -56,7 +56,7 @@ def topic_name(node: cst.CSTNode, program: Program) -> Iterator[Change]:
         yield Change(node, place.value, expression(repr(other)), f"has the {word} {other} for {name}")
 
 
-def message_type(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def message_type(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """An end has another type."""
     place = _argument(node, "type")
     if place is not None:
@@ -65,7 +65,7 @@ def message_type(node: cst.CSTNode, program: Program) -> Iterator[Change]:
         yield Change(node, place.value, expression(other), what, (module,))
 
 
-def quality_of_service(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def quality_of_service(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """An end has another depth, is not reliable, is transient local."""
     place = _argument(node, "qos")
     if place is not None:
@@ -73,14 +73,14 @@ def quality_of_service(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             yield Change(node, place.value, expression(new), f"{called(node)} {what}", imports)
 
 
-def callback_left_out(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def callback_left_out(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """Messages that arrive are not passed to the callback."""
     place = _argument(node, "callback")
     if place is not None:
         yield Change(node, place.value, expression("lambda *_: None"), f"does not call {program.text(place.value)}")
 
 
-def timer_period(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def timer_period(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A timer has twice or half its period."""
     place = _argument(node, "period")
     if place is not None:
@@ -89,7 +89,7 @@ def timer_period(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             yield Change(node, place.value, expression(new), f"has the period {new}")
 
 
-def node_name(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def node_name(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """The node has another name, or a namespace."""
     if isinstance(node, cst.Call) and called(node) in ("__init__", "create_node", "Node") and node.args:
         first = node.args[0]
@@ -103,7 +103,7 @@ def node_name(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             yield Change(node, node, new, "the node has a namespace")
 
 
-def one_publisher_a_message(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def one_publisher_a_message(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """The publisher is created again for each message."""
     if isinstance(node, cst.SimpleStatementLine) and "self.create_publisher(" in program.text(node):
         for callback in program.callbacks():
@@ -113,7 +113,7 @@ def one_publisher_a_message(node: cst.CSTNode, program: Program) -> Iterator[Cha
                 yield Change(callback, callback.body, with_body(callback.body, body), what)
 
 
-def publisher_on_other_topic(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def publisher_on_other_topic(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """There is one more publisher, on another node's topic."""
     if isinstance(node, cst.SimpleStatementLine) and "self.create_publisher(" in program.text(node):
         kinds = {topic.name: topic.type for topic in program.exercise.inputs} | {"/clock": "rosgraph_msgs/msg/Clock"}
@@ -124,7 +124,7 @@ def publisher_on_other_topic(node: cst.CSTNode, program: Program) -> Iterator[Ch
             yield program.instead(node, what, node, new, imports=(f"{package}.msg",))
 
 
-def spinning(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def spinning(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """The node spins once; it shuts down although the signal has already done so."""
     if isinstance(node, cst.Call) and isinstance(node.func, cst.Attribute):
         for old, new in (("spin", "spin_once"), ("try_shutdown", "shutdown")):

@@ -6,14 +6,22 @@ from collections.abc import Iterator
 
 import libcst as cst
 
-from grader.audit.mutants.program import Change, Program, called, expression, only_assignment, only_call, with_body
-from grader.exercise.exercise import Endpoint, Topic
+from grader.audit.mutants.program import (
+    Change,
+    ParsedProgram,
+    called,
+    expression,
+    only_assignment,
+    only_call,
+    with_body,
+)
+from grader.exercise.exercise import ServiceOrAction, Topic
 
 NODE_CLOCK = "self.get_clock().now().to_msg()"
 WALL_CLOCK = "rclpy.clock.Clock().now().to_msg()"
 
 
-def other_clock(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def other_clock(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """The node's clock or the computer's is used instead of a message's stamp."""
     if isinstance(node, cst.Attribute) and program.text(node).endswith(".header.stamp"):
         if isinstance(program.parent(node), cst.AssignTarget):
@@ -23,14 +31,14 @@ def other_clock(node: cst.CSTNode, program: Program) -> Iterator[Change]:
         yield Change(node, node, expression(WALL_CLOCK), "takes the computer's clock for the stamp", ("rclpy.clock",))
 
 
-def part_of_stamp(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def part_of_stamp(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """sec is used instead of nanosec, and the reverse."""
     if isinstance(node, cst.Attribute) and node.attr.value in ("sec", "nanosec"):
         other = "nanosec" if node.attr.value == "sec" else "sec"
         yield Change(node, node.attr, cst.Name(other), f"takes {other} for {node.attr.value}")
 
 
-def header(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def header(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """When a header is copied, the stamp or the frame is dropped, or the stamp is the current time."""
     assignment = only_assignment(node)
     if assignment is None:
@@ -44,9 +52,9 @@ def header(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             yield program.instead(node, "stamps with the node's clock", node, now)
 
 
-def unit(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def unit(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A field that has a unit is given in degrees, or in thousandths."""
-    declared: tuple[Topic | Endpoint, ...] = (*program.exercise.outputs, *program.exercise.endpoints)
+    declared: tuple[Topic | ServiceOrAction, ...] = (*program.exercise.outputs, *program.exercise.endpoints)
     fields = {field for one in declared for field in one.units}
     value: cst.BaseExpression | None = None
     field = ""
@@ -68,7 +76,7 @@ def unit(node: cst.CSTNode, program: Program) -> Iterator[Change]:
 _EACH = ("[math.degrees(v) for v in {}]", "[v * 1000.0 for v in {}]")
 
 
-def before_publishing(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def before_publishing(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """The message is changed before it is published: its stamp, its frame, its order, one entry too few or too many."""
     call = only_call(node, "publish")
     if call is None or not call.args or not isinstance(call.args[0].value, cst.Name):
@@ -87,7 +95,7 @@ def before_publishing(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     yield program.instead(node, "publishes an empty message", f"{name} = type({name})()", node)
 
 
-def _lists(program: Program, name: str) -> list[str]:
+def _lists(program: ParsedProgram, name: str) -> list[str]:
     """The fields of the message `name` that are appended to or assigned."""
     found: dict[str, None] = {}
     for node in program.nodes():
@@ -98,7 +106,7 @@ def _lists(program: Program, name: str) -> list[str]:
     return list(found)
 
 
-def publishing(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def publishing(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """Published in the wrong place: in the loop, before the message is filled, without its guard, every second time."""
     call = only_call(node, "publish")
     if call is None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import libcst as cst
 
-from grader.audit.mutants.program import Change, Program, called, expression, only_assignment, with_body
+from grader.audit.mutants.program import Change, ParsedProgram, called, expression, only_assignment, with_body
 
 ARITHMETIC = {
     "+": ("-",),
@@ -22,7 +22,7 @@ ARITHMETIC = {
 NANOSECONDS, MISTAKEN = 10**9, (10**6, 10**3)
 
 
-def arithmetic(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def arithmetic(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """`a + b` becomes `a - b`, `a / b` becomes `a * b` and `a // b`, and so on."""
     if isinstance(node, cst.BinaryOperation):
         sign = program.text(node.operator).strip()
@@ -32,7 +32,7 @@ def arithmetic(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             yield Change(node, node, node.with_changes(operator=template.operator), f"takes {other} for {sign}")
 
 
-def operand(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def operand(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """`a - b` becomes `b - a`, `a` alone, `b` alone."""
     if isinstance(node, cst.BinaryOperation):
         if program.text(node.operator).strip() in ("-", "/", "//", "%", "**"):
@@ -41,7 +41,7 @@ def operand(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             yield Change(node, node, kept, f"leaves out {program.text(left_out)}")
 
 
-def divisor(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def divisor(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """`a / b` becomes `a / round(b, 1)`, and `b` is kept from becoming small or large."""
     if isinstance(node, cst.BinaryOperation) and isinstance(node.operator, cst.Divide):
         if isinstance(node.right, (cst.Integer, cst.Float)) or program.text(node.right).isupper():
@@ -55,7 +55,7 @@ def divisor(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             yield Change(node, node.right, expression(new), what)
 
 
-def constant(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def constant(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A number is one more, one less, nothing, twice as large; a text has more in it; None is 0; True is False."""
     if isinstance(node, cst.Integer):
         value = node.evaluated_value
@@ -75,7 +75,7 @@ def constant(node: cst.CSTNode, program: Program) -> Iterator[Change]:
                 yield Change(node, node, expression(new), f"{old} is {new}")
 
 
-def time_unit(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def time_unit(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A second has a million nanoseconds, or a thousand."""
     is_it = isinstance(node, (cst.Integer, cst.Float)) and node.evaluated_value == NANOSECONDS
     is_power = isinstance(node, cst.BinaryOperation) and program.text(node).replace(" ", "") == "10**9"
@@ -84,7 +84,7 @@ def time_unit(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             yield Change(node, node, expression(f"{other:_}"), f"takes {other:,} for the nanoseconds of a second")
 
 
-def without_call(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def without_call(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """`f(a)` becomes `a`, where what is called is a plain function of one value."""
     if isinstance(node, cst.Call) and len(node.args) == 1 and not node.args[0].keyword and called(node).islower():
         modules = ("math", "np", "numpy")
@@ -96,7 +96,7 @@ def without_call(node: cst.CSTNode, program: Program) -> Iterator[Change]:
 NUMBERS = (arithmetic, operand, divisor, constant, time_unit, without_call)
 
 
-def remembered(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def remembered(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """What is remembered is one message too old, never renewed, too early, too much, or only after publishing."""
     assignment = only_assignment(node)
     function = program.function(node)
@@ -115,7 +115,7 @@ def remembered(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     yield from _elsewhere(node, program, name)
 
 
-def _begins_as_dictionary(program: Program, name: str) -> bool:
+def _begins_as_dictionary(program: ParsedProgram, name: str) -> bool:
     for node in program.nodes():
         function = program.function(node)
         begins = isinstance(node, cst.Assign) and function is not None and function.name.value == "__init__"
@@ -124,7 +124,7 @@ def _begins_as_dictionary(program: Program, name: str) -> bool:
     return False
 
 
-def _elsewhere(node: cst.CSTNode, program: Program, name: str) -> Iterator[Change]:
+def _elsewhere(node: cst.CSTNode, program: ParsedProgram, name: str) -> Iterator[Change]:
     """The statement in the `if` above it, and above that `if`."""
     block = program.parent(node)
     if not isinstance(block, cst.IndentedBlock):

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import libcst as cst
 
-from grader.audit.mutants.program import Change, Program, called, expression, with_body
+from grader.audit.mutants.program import Change, ParsedProgram, called, expression, with_body
 
 #: How a goal ends -> another way to end.
 OUTCOMES = {"succeed": ("abort", "canceled"), "canceled": ("succeed", "abort"), "abort": ("succeed",)}
@@ -49,21 +49,21 @@ CALLBACKS: dict[str, tuple[tuple[int, str], ...]] = {
 }
 
 
-def outcome(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def outcome(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A goal ends in another way."""
     if isinstance(node, cst.Call) and isinstance(node.func, cst.Attribute) and not node.args:
         for other in OUTCOMES.get(called(node), ()):
             yield Change(node, node.func.attr, cst.Name(other), f"calls {other}() for {called(node)}()")
 
 
-def choice(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def choice(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A goal or a request to cancel is rejected instead of accepted; a policy is the other one."""
     if isinstance(node, cst.Attribute) and node.attr.value in CHOICES:
         other = CHOICES[node.attr.value]
         yield Change(node, node.attr, cst.Name(other), f"takes {other} for {node.attr.value}")
 
 
-def not_asked(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def not_asked(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """The node assumes that a goal is canceled or accepted, or that a server is there, without asking."""
     above = program.parent(node)
     is_called = isinstance(above, cst.Call) and above.func is node  # the call itself is looked at
@@ -74,7 +74,7 @@ def not_asked(node: cst.CSTNode, program: Program) -> Iterator[Change]:
         yield Change(node, node, expression(answer), f"takes {answer} for {name}")
 
 
-def blocking(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def blocking(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A call that waits for its answer instead of one that does not; one thread instead of several."""
     name = called(node)
     if not isinstance(node, cst.Call) or name not in CALLS:
@@ -87,7 +87,7 @@ def blocking(node: cst.CSTNode, program: Program) -> Iterator[Change]:
         yield Change(node, node.func, expression(f"{module}.{other}"), what, (module,))
 
 
-def slow_callback(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def slow_callback(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A callback sleeps, or raises."""
     if not isinstance(node, cst.FunctionDef) or not isinstance(node.body, cst.IndentedBlock):
         return
@@ -98,7 +98,7 @@ def slow_callback(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             yield Change(node, node.body, body, f"{node.name.value}() {what}", imports)
 
 
-def empty_result(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def empty_result(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A callback returns an empty response or result."""
     function = program.function(node)
     if not isinstance(node, cst.Return) or not isinstance(node.value, cst.Name) or function is None:
@@ -108,7 +108,7 @@ def empty_result(node: cst.CSTNode, program: Program) -> Iterator[Change]:
         yield Change(node, node.value, expression(f"type({name})()"), f"returns an empty {name}")
 
 
-def declared_type(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def declared_type(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A parameter is declared as an integer instead of a double, or without a value."""
     if not isinstance(node, cst.Call) or called(node) != "declare_parameter" or len(node.args) < 2:
         return
@@ -119,7 +119,7 @@ def declared_type(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     yield Change(node, value, expression("None"), f"declares no default for {program.text(node.args[0].value)}")
 
 
-def timer_clock(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def timer_clock(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A timer uses the computer's clock."""
     if not isinstance(node, cst.Call) or called(node) != "create_timer" or "clock=" in program.text(node):
         return
@@ -131,7 +131,7 @@ def timer_clock(node: cst.CSTNode, program: Program) -> Iterator[Change]:
     yield Change(node, node, node.with_changes(args=args), what, ("rclpy.clock",))
 
 
-def _called_back(program: Program) -> set[str]:
+def _called_back(program: ParsedProgram) -> set[str]:
     """The names of the functions that are passed as callbacks."""
     found = set()
     calls = [node for node in program.nodes() if isinstance(node, cst.Call)]

@@ -25,7 +25,7 @@ class Change:
     imports: tuple[str, ...] = ()
 
 
-class Program:
+class ParsedProgram:
     """A parsed program of an exercise. Raises `libcst.ParserSyntaxError` if the source is not valid Python."""
 
     def __init__(self, source: str, exercise: Exercise) -> None:

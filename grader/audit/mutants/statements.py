@@ -6,16 +6,16 @@ from collections.abc import Iterator
 
 import libcst as cst
 
-from grader.audit.mutants.program import Change, Program, expression, with_body
+from grader.audit.mutants.program import Change, ParsedProgram, expression, with_body
 
 
-def statement_dropped(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def statement_dropped(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A statement is left out."""
     if _does_something(node, program):
         yield program.instead(node, f"leaves out {_first_line(node, program)}")
 
 
-def statement_twice(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def statement_twice(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A call is made twice. Not so a node's own making: nobody writes that, and the second one takes its place."""
     making = "super().__init__" in program.text(node)
     if _does_something(node, program) and isinstance(node, cst.SimpleStatementLine) and not making:
@@ -25,7 +25,7 @@ def statement_twice(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             yield program.instead(node, f"does {_first_line(node, program)} twice", node, again)
 
 
-def statements_swapped(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def statements_swapped(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A statement comes before the one above it."""
     block = program.parent(node)
     if not isinstance(node, cst.SimpleStatementLine) or not isinstance(block, cst.IndentedBlock):
@@ -37,7 +37,7 @@ def statements_swapped(node: cst.CSTNode, program: Program) -> Iterator[Change]:
         yield Change(node, block, with_body(block, body), f"does {_first_line(node, program)} too early")
 
 
-def guard_removed(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def guard_removed(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """What stands under an `if` is done in any case, or not at all; a `try` or `finally` loses its guard."""
     block = program.parent(node)
     if not isinstance(block, (cst.IndentedBlock, cst.Module)):
@@ -57,7 +57,7 @@ def _without_finally(node: cst.Try) -> cst.Try:
     return node.with_changes(finalbody=None, handlers=handlers)
 
 
-def handler(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def handler(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """An exception is not caught, or is raised again."""
     if isinstance(node, cst.ExceptHandler):
         if isinstance(node.type, cst.Tuple):
@@ -70,7 +70,7 @@ def handler(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             yield Change(node, node.body, raised, "raises again what it caught")
 
 
-def argument(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def argument(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """Two arguments are swapped; one that has a name is left out."""
     if not isinstance(node, cst.Call):
         return
@@ -84,7 +84,7 @@ def argument(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             yield Change(node, node, node.with_changes(args=rest), f"leaves out {arg.keyword.value}=")
 
 
-def result(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def result(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A function does nothing; what it returns is None."""
     if isinstance(node, cst.Return) and node.value is not None:
         yield Change(node, node.value, expression("None"), f"returns None for {program.text(node.value)}")
@@ -93,7 +93,7 @@ def result(node: cst.CSTNode, program: Program) -> Iterator[Change]:
         yield Change(node, node.body, with_body(node.body, body), f"{node.name.value}() does nothing")
 
 
-def wrong_name(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def wrong_name(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """In a calculation or a condition, one name is taken for another of the same function, or of the same object."""
     above = program.parent(node)
     if not isinstance(above, (cst.BinaryOperation, cst.Comparison, cst.ComparisonTarget, cst.Index)):
@@ -109,7 +109,7 @@ def wrong_name(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             yield Change(node, node, expression(other), f"takes {other} for {program.text(node)}")
 
 
-def _names(program: Program, function: cst.FunctionDef | None) -> list[str]:
+def _names(program: ParsedProgram, function: cst.FunctionDef | None) -> list[str]:
     """The function's arguments and what it assigns."""
     if function is None:
         return []
@@ -121,7 +121,7 @@ def _names(program: Program, function: cst.FunctionDef | None) -> list[str]:
     return sorted(names)
 
 
-def _attributes(program: Program) -> list[str]:
+def _attributes(program: ParsedProgram) -> list[str]:
     """What the object remembers: everything assigned to `self.…`, without what ROS made."""
     found: set[str] = set()
     for node in program.nodes():
@@ -130,7 +130,7 @@ def _attributes(program: Program) -> list[str]:
     return sorted(name for name in found if name.startswith("self."))
 
 
-def _does_something(node: cst.CSTNode, program: Program) -> bool:
+def _does_something(node: cst.CSTNode, program: ParsedProgram) -> bool:
     if not isinstance(node, (cst.SimpleStatementLine, cst.For)):
         return False
     if not isinstance(program.parent(node), (cst.IndentedBlock, cst.Module)):
@@ -144,7 +144,7 @@ def _does_something(node: cst.CSTNode, program: Program) -> bool:
     return not isinstance(inner, idle) and "get_logger" not in program.text(node)
 
 
-def _first_line(node: cst.CSTNode, program: Program) -> str:
+def _first_line(node: cst.CSTNode, program: ParsedProgram) -> str:
     text = program.text(node.with_changes(leading_lines=[]) if hasattr(node, "leading_lines") else node)
     return text.strip().splitlines()[0].split("  #")[0]
 
@@ -176,7 +176,7 @@ COMPARISONS = {
 }
 
 
-def comparison(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def comparison(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """`a < b` becomes `a <= b`, `a > b`, `a != b`."""
     if isinstance(node, cst.Comparison) and len(node.comparisons) == 1 and "__name__" not in program.text(node):
         target = node.comparisons[0]
@@ -188,7 +188,7 @@ def comparison(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             yield Change(node, target, new, f"compares with {other} and not with {sign}")
 
 
-def part_of_condition(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def part_of_condition(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """`a and b` becomes `a or b`, `a` alone, `b` alone."""
     if isinstance(node, cst.BooleanOperation):
         is_and = isinstance(node.operator, cst.And)
@@ -198,7 +198,7 @@ def part_of_condition(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             yield Change(node, node, kept, f"leaves {program.text(left_out)} out of the condition")
 
 
-def condition(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def condition(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A condition is turned round, always holds, never holds."""
     if isinstance(node, (cst.If, cst.While, cst.IfExp, cst.CompIf)):
         text = program.text(node.test)
@@ -208,7 +208,7 @@ def condition(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             yield Change(node, node.test, expression("False"), f"never goes where {text} leads")
 
 
-def without_not(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def without_not(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """`not a` becomes `a`."""
     if isinstance(node, cst.UnaryOperation) and isinstance(node.operator, cst.Not):
         yield Change(node, node, node.expression, "leaves out not")
@@ -225,7 +225,7 @@ TAKEN = (
 )
 
 
-def loop(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def loop(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A loop or a comprehension leaves out the first or the last, goes backwards, or sorts."""
     if isinstance(node, (cst.For, cst.CompFor)):
         text = program.text(node.iter)
@@ -233,7 +233,7 @@ def loop(node: cst.CSTNode, program: Program) -> Iterator[Change]:
             yield Change(node, node.iter, expression(template.format(text)), what.format(text))
 
 
-def end_of_loop(node: cst.CSTNode, program: Program) -> Iterator[Change]:
+def end_of_loop(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """A loop ends after its first turn."""
     if isinstance(node, (cst.For, cst.While)) and isinstance(node.body, cst.IndentedBlock):
         body = [*node.body.body, cst.parse_statement("break")]

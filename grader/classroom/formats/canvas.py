@@ -14,7 +14,7 @@ from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 
-from grader.classroom.formats.format import Export, Format, Parts, Table, Understood, Upload, last_first, person
+from grader.classroom.formats.format import Export, ExportTable, Format, Parts, Understood, Upload, last_first, person
 from grader.classroom.tables import Cell, csv_text
 from grader.classroom.times import Time
 from grader.exercise.exercise import Exercise
@@ -105,5 +105,5 @@ FORMAT = Format(
     read,
     of_row=of_row,
     dates="Canvas writes no dates, only LATE.",
-    table=Table("canvas.csv", table),
+    table=ExportTable("canvas.csv", table),
 )

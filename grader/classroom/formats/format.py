@@ -62,7 +62,7 @@ class Export:
 
 
 @dataclass(frozen=True)
-class Table:
+class ExportTable:
     """A table of grades: the file's name, and its content for some entries and the due date."""
 
     file: str
@@ -86,7 +86,7 @@ class Format:
     beside: tuple[str, ...] = ()
     of_row: Callable[[Mapping[str, str]], Student | None] | None = None
     dates: str = ""
-    table: Table | None = None
+    table: ExportTable | None = None
 
 
 def person(unique: str, name: str = "", email: str = "", **lms: str) -> Student:

@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 from html import escape
 
-from grader.classroom.formats.format import Export, Format, Parts, Table, Understood, Upload, person
+from grader.classroom.formats.format import Export, ExportTable, Format, Parts, Understood, Upload, person
 from grader.classroom.tables import Cell, csv_text, number
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Entry, Student
@@ -111,5 +111,5 @@ FORMAT = Format(
     read,
     of_row=of_row,
     dates="Moodle's download has no dates; its grading worksheet has them.",
-    table=Table("moodle.csv", table),
+    table=ExportTable("moodle.csv", table),
 )

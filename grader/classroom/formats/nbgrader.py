@@ -11,9 +11,9 @@ from datetime import datetime, timezone
 
 from grader.classroom.formats.format import (
     Export,
+    ExportTable,
     Format,
     Parts,
-    Table,
     Understood,
     Upload,
     last_and_first,
@@ -86,5 +86,5 @@ FORMAT = Format(
     inside=(SUBMITTED,),
     beside=("source", "release", "autograded", "feedback", "nbgrader_config.py", "gradebook.db"),
     dates=f"Each STUDENT/ASSIGNMENT folder may have a {TIMESTAMP}.",
-    table=Table("nbgrader.csv", table),
+    table=ExportTable("nbgrader.csv", table),
 )

@@ -13,7 +13,7 @@ from grader.classroom.formats import (
     per_student,
     sakai,
 )
-from grader.classroom.formats.format import Format, Table
+from grader.classroom.formats.format import ExportTable, Format
 
 PLATFORMS: tuple[Format, ...] = (
     nbgrader.FORMAT,
@@ -32,4 +32,4 @@ PLAIN = per_student.FORMAT
 FORMATS = {form.name: form for form in (*PLATFORMS, PLAIN)}
 
 #: The tables of grades that platforms import.
-TABLES: tuple[Table, ...] = tuple(form.table for form in PLATFORMS if form.table)
+TABLES: tuple[ExportTable, ...] = tuple(form.table for form in PLATFORMS if form.table)

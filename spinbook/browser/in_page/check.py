@@ -116,7 +116,7 @@ def verdicts(
     exercise: Exercise, scenarios: list[Scenario], recordings: dict[str, Recording], references: dict[str, Recording]
 ) -> tuple[Verdict, ...]:
     """Return the checks' verdicts."""
-    from grader.checking.judging import judge
+    from grader.checking.judge import judge
 
     _forget_modules_of(_FOLDER)
     return judge(exercise, recordings, references, {scenario.name: scenario.title for scenario in scenarios})

@@ -23,8 +23,8 @@ from dataclasses import dataclass
 
 from grader.exercise.exercise import Exercise
 from grader.recording.recording import Recording
-from grader.runner.run import Run
-from grader.runner.student import Task
+from grader.runner.program import Task
+from grader.runner.run import ScenarioRun
 from grader.scenario.command_line import arguments
 from grader.scenario.scenario import Scenario
 from rcl_python import abort, logs
@@ -59,7 +59,7 @@ class Printed:
 
 
 class PageStudent:
-    """The program as the grader's runner sees it: see grader/runner/student.py."""
+    """The program as the grader's runner sees it: see grader/runner/program.py."""
 
     pid = 0
 
@@ -107,7 +107,7 @@ class PageStudent:
 
 
 def run(exercise: Exercise, scenario: Scenario, program: Program) -> Recording:
-    """Run the program. Every fault of it is in the recording. Raises for faults of ours."""
+    """ScenarioRun the program. Every fault of it is in the recording. Raises for faults of ours."""
     gc.collect()  # what the program before has left behind must not leave this one's graph
     turns, log = Turns(), io.StringIO()
     hub, student = PageHub(turns), PageStudent(turns, log)
@@ -120,7 +120,7 @@ def run(exercise: Exercise, scenario: Scenario, program: Program) -> Recording:
 
     def grade() -> None:
         try:
-            found.append(Run(task, student, hub).run(time.monotonic()))
+            found.append(ScenarioRun(task, student, hub).run(time.monotonic()))
         except BaseException as fault:
             found.append(fault)
             student.kill()
@@ -137,7 +137,7 @@ def run(exercise: Exercise, scenario: Scenario, program: Program) -> Recording:
 
 
 def _main(program: Program, student: PageStudent, log: io.StringIO) -> None:
-    """Run the program as Python runs a script, up to its exit status."""
+    """ScenarioRun the program as Python runs a script, up to its exit status."""
     program_imports.begin_program()
     try:
         try:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import libcst as cst
 
 from grader.audit.mutants import end_points, messages, numbers, peers, statements
-from grader.audit.mutants.program import Change, Program
+from grader.audit.mutants.program import Change, ParsedProgram
 from grader.exercise.exercise import Exercise
 
 
@@ -34,7 +34,7 @@ class Mutant:
     diff: str
 
 
-Operator = Callable[[cst.CSTNode, Program], Iterator[Change]]
+Operator = Callable[[cst.CSTNode, ParsedProgram], Iterator[Change]]
 
 #: What may go wrong in one place, in the order in which it is tried.
 OPERATORS: tuple[Operator, ...] = (
@@ -53,7 +53,7 @@ def mutants_of(source: str, exercise: Exercise) -> tuple[Mutant, ...]:
     """Every mutant of a program, in the order of its lines; none twice, and none that means the same to Python. All of
     them compile, because Python itself reports the others to a student.
     """
-    program = Program(source, exercise)
+    program = ParsedProgram(source, exercise)
     seen = {_meaning(source)}
     ids: dict[str, int] = {}
     mutants: list[Mutant] = []
@@ -68,7 +68,7 @@ def mutants_of(source: str, exercise: Exercise) -> tuple[Mutant, ...]:
     return tuple(sorted(mutants, key=lambda mutant: mutant.line))
 
 
-def _mutant(program: Program, operator: str, change: Change, changed: str, ids: dict[str, int]) -> Mutant:
+def _mutant(program: ParsedProgram, operator: str, change: Change, changed: str, ids: dict[str, int]) -> Mutant:
     old, new = program.source.splitlines(), changed.splitlines()
     file = program.exercise.file_name
     diff = list(difflib.unified_diff(old, new, file, file, lineterm=""))

@@ -87,7 +87,7 @@ def clock_message(at: int) -> bytes:
 
 
 @dataclass(frozen=True)
-class Ends:
+class GraderSide:
     """The hub, the grader's node on it, and both clocks."""
 
     hub: Hub

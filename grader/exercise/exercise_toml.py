@@ -11,12 +11,12 @@ from grader.exercise.exercise import (
     PUBLIC_FILE,
     Durability,
     Elements,
-    Endpoint,
     ExerciseError,
     Parameter,
     ProgramFile,
     Reliability,
     Role,
+    ServiceOrAction,
     Topic,
 )
 from interface_compiler import prefixes, shipped
@@ -58,7 +58,7 @@ _PYTHON_FILE = re.compile(r"[a-z_][a-z0-9_]*\.py")
 
 
 @dataclass(frozen=True)
-class Table:
+class TomlTable:
     """One table of exercise.toml: its `kind` such as "subscribe", its number among those, and its entries."""
 
     file: Path
@@ -148,12 +148,12 @@ class Table:
         return value
 
 
-def tables(entries: dict[str, Any], kind: str, file: Path) -> list[Table]:
+def tables(entries: dict[str, Any], kind: str, file: Path) -> list[TomlTable]:
     """Every `[[kind]]`, with its keys checked."""
     given = entries.get(kind, [])
     if not isinstance(given, list) or not all(isinstance(one, dict) for one in given):
         raise ExerciseError(file, f"{kind} is not a list of tables", f"Write [[{kind}]] above each.")
-    found = [Table(file, kind, number, one) for number, one in enumerate(given)]
+    found = [TomlTable(file, kind, number, one) for number, one in enumerate(given)]
     for table in found:
         table.see_keys()
     return found
@@ -164,7 +164,7 @@ def topics(entries: dict[str, Any], file: Path) -> tuple[Topic, ...]:
     return tuple(_topic(table) for direction in ("subscribe", "publish") for table in tables(entries, direction, file))
 
 
-def _topic(table: Table) -> Topic:
+def _topic(table: TomlTable) -> Topic:
     depth = table.entries.get("depth", 10)
     if isinstance(depth, bool) or not isinstance(depth, int) or depth < 1:
         table.fault("depth", f"depth = {depth!r}", "Give a whole number of messages, such as depth = 10.")
@@ -180,7 +180,7 @@ def _topic(table: Table) -> Topic:
     )
 
 
-def _elements(table: Table) -> Elements | None:
+def _elements(table: TomlTable) -> Elements | None:
     value = table.entries.get("elements")
     if value is None:
         return None
@@ -189,14 +189,14 @@ def _elements(table: Table) -> Elements | None:
     return Elements(str(value["called"]), str(value["named_by"]))
 
 
-def endpoints(entries: dict[str, Any], file: Path) -> tuple[Endpoint, ...]:
+def endpoints(entries: dict[str, Any], file: Path) -> tuple[ServiceOrAction, ...]:
     """The services and actions that the program serves or calls."""
     found = []
     for role in get_args(Role):
         kind, example = ("action", "example_interfaces/action/Fibonacci"), ("srv", "std_srvs/srv/SetBool")
         interface = kind if role.startswith("action") else example
         for table in tables(entries, role, file):
-            found.append(Endpoint(table.name("name"), table.type(*interface), role, table.units()))
+            found.append(ServiceOrAction(table.name("name"), table.type(*interface), role, table.units()))
     return tuple(found)
 
 
@@ -205,7 +205,7 @@ def parameters(entries: dict[str, Any], file: Path) -> tuple[Parameter, ...]:
     return tuple(_parameter(table) for table in tables(entries, "parameter", file))
 
 
-def _parameter(table: Table) -> Parameter:
+def _parameter(table: TomlTable) -> Parameter:
     name, kind = table.text("name"), table.one_of("type", tuple(PARAMETER_TYPES), "")
     if not _NAME.fullmatch(name):
         table.fault("name", f"name = {name!r}", "Write the parameter's name, such as max_speed.")

@@ -10,11 +10,11 @@ from action_msgs.srv import CancelGoal as CancelService
 from rclpy.serialization import serialize_message
 
 from grader.recording.events import STATES, Cancel, Feedback, Goal, GoalState
+from grader.runner.action_clients import CANCEL, STATUS
 from grader.runner.cdr import deserialized
-from grader.runner.ends import Ends, Schedule, nanoseconds
-from grader.runner.goals import CANCEL, STATUS
+from grader.runner.grader_side import GraderSide, Schedule, nanoseconds
 from grader.runner.message import filled, message_class, to_fields
-from grader.runner.order import requests_in_order
+from grader.runner.message_order import requests_in_order
 from grader.scenario.scenario import SECOND
 from grader.scenario.servers import ActionServer as Declared
 from grader.scenario.servers import GoalScript
@@ -33,7 +33,7 @@ def _without_id(cdr: bytes) -> bytes:
 
 
 @dataclass
-class Running:
+class RunningGoal:
     """One goal that arrived."""
 
     number: int
@@ -61,11 +61,11 @@ class Running:
 class ScriptedActionServer:
     """One of the grader's action servers, which handles each goal as the scenario says."""
 
-    def __init__(self, ends: Ends, schedule: Schedule, declared: Declared) -> None:
+    def __init__(self, ends: GraderSide, schedule: Schedule, declared: Declared) -> None:
         self.name = declared.action
         self._ends, self._schedule, self._declared = ends, schedule, declared
         self._kind = message_class(declared.type)
-        self._goals: list[Running] = []
+        self._goals: list[RunningGoal] = []
         self._servers: tuple[Server, Server, Server] | None = None
         self._publishers: tuple[Publisher, Publisher] | None = None
 
@@ -107,11 +107,11 @@ class ScriptedActionServer:
         number = len(self._goals) + 1
         script = self._declared.scripts[min(number, len(self._declared.scripts)) - 1]
         goal_id = bytes(request.goal_id.uuid)
-        goal = Running(number, goal_id, self._ends.at(asked.moment), script, asked, to_fields(request.goal))
+        goal = RunningGoal(number, goal_id, self._ends.at(asked.moment), script, asked, to_fields(request.goal))
         self._goals.append(goal)
         self._later(goal.at + nanoseconds(script.answers_after), now, lambda moment: self._answer(goal, moment))
 
-    def _answer(self, goal: Running, now: int) -> None:
+    def _answer(self, goal: RunningGoal, now: int) -> None:
         goal.accepted, goal.answered = goal.script.accept, now
         response = self._kind.Impl.SendGoalService.Response(accepted=goal.accepted)
         response.stamp.sec, response.stamp.nanosec = divmod(now, SECOND)
@@ -163,7 +163,7 @@ class ScriptedActionServer:
 
     # --- what happens to a goal
 
-    def _plan(self, goal: Running, at: int, act: Any) -> None:
+    def _plan(self, goal: RunningGoal, at: int, act: Any) -> None:
         """Plan `act`; it is dropped if the goal has ended or the server is gone by then."""
 
         def when_due(now: int) -> None:
@@ -181,7 +181,7 @@ class ScriptedActionServer:
 
         self._schedule.plan(max(at, now), when_due)
 
-    def _enter(self, goal: Running, state: str, now: int) -> None:
+    def _enter(self, goal: RunningGoal, state: str, now: int) -> None:
         goal.states.append(GoalState(now, state))
         message = GoalStatusArray()
         for one in self._goals:
@@ -190,7 +190,7 @@ class ScriptedActionServer:
         assert self._publishers
         self._publishers[1].publish(serialize_message(message))
 
-    def _feed(self, goal: Running, fields: dict[str, Any], now: int) -> None:
+    def _feed(self, goal: RunningGoal, fields: dict[str, Any], now: int) -> None:
         message = self._kind.Impl.FeedbackMessage()
         message.goal_id.uuid = list(goal.id)
         filled(message.feedback, fields)
@@ -198,12 +198,12 @@ class ScriptedActionServer:
         assert self._publishers
         self._publishers[0].publish(serialize_message(message))
 
-    def _end(self, goal: Running, state: str, now: int) -> None:
+    def _end(self, goal: RunningGoal, state: str, now: int) -> None:
         goal.finished = now
         self._enter(goal, state, now)
         self._give_result(goal, now)
 
-    def _give_result(self, goal: Running, now: int) -> None:
+    def _give_result(self, goal: RunningGoal, now: int) -> None:
         if goal.finished is None:
             return
         for asked in goal.waiting:
@@ -221,7 +221,7 @@ class ScriptedActionServer:
         """Return every goal that arrived, with its outcome."""
         return tuple(self._recorded(one) for one in self._goals)
 
-    def _recorded(self, goal: Running) -> Goal:
+    def _recorded(self, goal: RunningGoal) -> Goal:
         given = goal.result_sent is not None
         result = filled(self._kind.Result(), goal.script.result) if given else None
         return Goal(
@@ -244,7 +244,7 @@ class ScriptedActionServer:
         )
 
 
-def _info(goal: Running) -> GoalInfo:
+def _info(goal: RunningGoal) -> GoalInfo:
     info = GoalInfo()
     info.goal_id.uuid = list(goal.id)
     info.stamp.sec, info.stamp.nanosec = divmod(goal.answered or goal.at, SECOND)

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from grader.audit.result import AuditProblem
-from grader.checking.judging import run_pytest
+from grader.checking.judge import run_pytest
 from grader.checking.plugin import Checks
-from grader.checking.proofreading import rule_that_the_task_lacks
+from grader.checking.proofreader import rule_that_the_task_lacks
 from grader.checking.run import Run
 from grader.checking.verdict import check_options
 from grader.exercise.exercise import Exercise
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Check:
+class AuditedCheck:
     """One check as its author wrote it.
 
     `scenarios` are those that it uses, `rule` is the sentence of the task that it is based on. `seconds` is the time it
@@ -58,7 +58,7 @@ class ChecksJob:
     references: dict[str, Recording]
 
     def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Any:
-        """A tuple of `Check`. Raises `ExerciseError` if the files of checks are unusable."""
+        """A tuple of `AuditedCheck`. Raises `ExerciseError` if the files of checks are unusable."""
         ready()
         runs = {name: Run(self.exercise, recording, recording) for name, recording in self.references.items()}
         listing = _Listing(set(runs))
@@ -71,7 +71,7 @@ class _Listing(Checks):
     def __init__(self, scenarios: set[str]) -> None:
         super().__init__()
         self._scenarios = scenarios
-        self.listed: dict[str, Check] = {}
+        self.listed: dict[str, AuditedCheck] = {}
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_call(self, item: pytest.Item) -> Any:
@@ -82,11 +82,11 @@ class _Listing(Checks):
         finally:
             self.listed[item.name] = self._listed(item, time.perf_counter() - began)
 
-    def _listed(self, item: Any, seconds: float) -> Check:
+    def _listed(self, item: Any, seconds: float) -> AuditedCheck:
         function = inspect.unwrap(item.function)
         mark = check_options(function)
         assert mark
-        return Check(
+        return AuditedCheck(
             name=item.name,
             title=(inspect.getdoc(function) or "").replace("\n", " "),
             points=mark.points,
@@ -105,17 +105,17 @@ class _Listing(Checks):
 SHORTEST = 12
 
 
-def problem_of(check: Check, found: str, fix: str) -> AuditProblem:
+def problem_of(check: AuditedCheck, found: str, fix: str) -> AuditProblem:
     """Something to fix in a check."""
     return AuditProblem(check.file, check.line, found, fix, about=check.name)
 
 
-def problems_in_text(exercise: Exercise, checks: tuple[Check, ...]) -> list[AuditProblem]:
+def problems_in_text(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> list[AuditProblem]:
     """Hidden checks without their sentence in the task; hints and titles that contain a line of the solution."""
     return [*_rules(exercise, checks), *_giveaways(exercise, checks)]
 
 
-def _rules(exercise: Exercise, checks: tuple[Check, ...]) -> list[AuditProblem]:
+def _rules(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> list[AuditProblem]:
     found = []
     for check in checks:
         if check.hidden and not check.rule:
@@ -127,7 +127,7 @@ def _rules(exercise: Exercise, checks: tuple[Check, ...]) -> list[AuditProblem]:
     return found
 
 
-def _giveaways(exercise: Exercise, checks: tuple[Check, ...]) -> list[AuditProblem]:
+def _giveaways(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> list[AuditProblem]:
     source = solution_file(exercise).read_text(encoding="utf-8")
     given = {_squeezed(line) for line in starter(source).splitlines()}
     lines = {line.split("  #")[0].strip() for line in source.splitlines() if not line.strip().startswith("#")}

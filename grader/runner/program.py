@@ -11,7 +11,7 @@ from grader.recording.recording import RunOutcome
 from grader.scenario.scenario import Scenario
 
 
-class Exit(Protocol):
+class ExitStatus(Protocol):
     """How a program ended; `limit` names the limit that ended it."""
 
     @property
@@ -22,7 +22,7 @@ class Exit(Protocol):
     def limit(self) -> str | None: ...
 
 
-class Output(Protocol):
+class PrintedOutput(Protocol):
     """What a program printed, up to a cap; `dropped` is the number of bytes beyond it."""
 
     @property
@@ -31,19 +31,19 @@ class Output(Protocol):
     def dropped(self) -> int: ...
 
 
-class Student(Protocol):
+class RunningProgram(Protocol):
     """A student's running program."""
 
     @property
     def pid(self) -> int: ...
     def pids(self) -> Collection[int]: ...
-    def output(self) -> Output: ...
-    def poll(self) -> Exit | None: ...
-    def wait(self, timeout_s: float) -> Exit | None: ...
+    def output(self) -> PrintedOutput: ...
+    def poll(self) -> ExitStatus | None: ...
+    def wait(self, timeout_s: float) -> ExitStatus | None: ...
     def interrupt(self) -> None: ...
     def cpu_seconds(self) -> float: ...
     def at_limit(self) -> bool: ...
-    def kill(self) -> Exit: ...
+    def kill(self) -> ExitStatus: ...
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class Task:
         return self.files or {self.file_name: self.source}
 
 
-class Stopped(Exception):
+class CannotContinue(Exception):
     """Raised inside a runner when the student's program can't be run any further; `message` is for the student."""
 
     def __init__(self, outcome: RunOutcome, message: str) -> None:

@@ -10,7 +10,7 @@ from rclpy.serialization import serialize_message
 
 from grader.runner.budget import BLOCKED_S, Allowance
 from grader.runner.graph import deaf_to_the_clock
-from grader.runner.student import Stopped
+from grader.runner.program import CannotContinue
 from grader.scenario.scenario import SECOND
 from rmw_lockstep.hub import SERVER, Hub, HubNode
 
@@ -44,13 +44,13 @@ def wait_until_up(hub: Hub, connected: Callable[[], bool], has_nodes: Callable[[
     returns whether the program has created any.
 
     Raises:
-        Stopped: when there will be no node.
+        CannotContinue: when there will be no node.
     """
     try:
         _wait_until_up(hub, connected, has_nodes)
-    except Stopped as stopped:
+    except CannotContinue as stopped:
         if stopped.message == NO_NODE_BUSY and has_nodes():
-            raise Stopped(stopped.outcome, NOT_SPUN_BUSY) from None
+            raise CannotContinue(stopped.outcome, NOT_SPUN_BUSY) from None
         raise
 
 
@@ -65,7 +65,7 @@ def _wait_until_up(hub: Hub, connected: Callable[[], bool], has_nodes: Callable[
         hub.advance(wakes)
         hub.wait_until_idle()
     if not has_nodes():
-        raise Stopped("did-not-start" if hub.next is None else "timed-out", NO_NODE_BLOCKED)
+        raise CannotContinue("did-not-start" if hub.next is None else "timed-out", NO_NODE_BLOCKED)
 
 
 class Parameters:

@@ -11,7 +11,7 @@ from rclpy.serialization import serialize_message
 
 from grader.recording.events import STATES, Cancel, Feedback, Goal, GoalState
 from grader.runner.cdr import deserialized
-from grader.runner.ends import ACCEPT_ANY, Ends
+from grader.runner.grader_side import ACCEPT_ANY, GraderSide
 from grader.runner.message import filled, message_class, to_fields
 from grader.scenario.scenario import CancelAll, CancelGoal, Scenario, SendGoal
 from rmw_lockstep.hub import Client, Subscription
@@ -23,7 +23,7 @@ CANCEL, STATUS = "action_msgs/srv/CancelGoal", "action_msgs/msg/GoalStatusArray"
 
 
 @dataclass
-class Sent:
+class SentGoal:
     """A goal that was sent, and the numbers of the requests for it."""
 
     step: SendGoal
@@ -39,10 +39,10 @@ class Sent:
         return self.number.to_bytes(16, "big")
 
 
-class ActionClient:
+class ScriptedActionClient:
     """The grader's end of one of the student's actions."""
 
-    def __init__(self, ends: Ends, action: str, type_name: str) -> None:
+    def __init__(self, ends: GraderSide, action: str, type_name: str) -> None:
         self._ends, self.action, self.type = ends, action, type_name
         self._kind = message_class(type_name)
         node, base = ends.node, f"{action}/_action"
@@ -51,14 +51,14 @@ class ActionClient:
         self._result: Client = node.client(f"{base}/get_result", f"{type_name}_GetResult")
         self._feedback: Subscription = node.subscription(f"{base}/feedback", f"{type_name}_FeedbackMessage", ACCEPT_ANY)
         self._status: Subscription = node.subscription(f"{base}/status", STATUS, ACCEPT_ANY)
-        self._goals: list[Sent] = []
+        self._goals: list[SentGoal] = []
 
     def send(self, step: SendGoal, number: int) -> None:
         """Send a goal."""
         request = self._kind.Impl.SendGoalService.Request()
         request.goal_id.uuid = list(number.to_bytes(16, "big"))
         filled(request.goal, step.fields)
-        self._goals.append(Sent(step, number, self._send.call(serialize_message(request))))
+        self._goals.append(SentGoal(step, number, self._send.call(serialize_message(request))))
 
     def cancel(self, at: int, number: int) -> None:
         """Request to cancel goal `number`, or every goal for 0."""
@@ -90,7 +90,7 @@ class ActionClient:
         states, feedback = self._states(), self._feedbacks()
         return [self._goal(goal, states.get(goal.id, ()), feedback.get(goal.id, ())) for goal in self._goals]
 
-    def _goal(self, sent: Sent, states: tuple[GoalState, ...], feedback: tuple[Feedback, ...]) -> Goal:
+    def _goal(self, sent: SentGoal, states: tuple[GoalState, ...], feedback: tuple[Feedback, ...]) -> Goal:
         status, result = self._result_of(sent)
         step = sent.step
         return Goal(
@@ -114,14 +114,14 @@ class ActionClient:
         moment: Moment | None = None if number is None else client.moments.get(number)
         return None if moment is None else self._ends.at(moment)
 
-    def _result_of(self, sent: Sent) -> tuple[str, dict[str, Any] | None]:
+    def _result_of(self, sent: SentGoal) -> tuple[str, dict[str, Any] | None]:
         cdr = None if sent.result is None else self._result.answers.get(sent.result)
         if cdr is None:
             return "", None
         response = deserialized(cdr, self._kind.Impl.GetResultService.Response)
         return state_name(response.status), to_fields(response.result)
 
-    def _cancelled(self, sent: Sent, at: int, number: int | None) -> Cancel:
+    def _cancelled(self, sent: SentGoal, at: int, number: int | None) -> Cancel:
         cdr = None if number is None else self._cancel.answers.get(number)
         if cdr is None:
             return Cancel(at)
@@ -156,12 +156,12 @@ def state_name(number: int) -> str:
 class Goals:
     """All goals of a scenario, for all actions."""
 
-    def __init__(self, ends: Ends, scenario: Scenario) -> None:
-        self._clients: dict[str, ActionClient] = {}
+    def __init__(self, ends: GraderSide, scenario: Scenario) -> None:
+        self._clients: dict[str, ScriptedActionClient] = {}
         self._actions: dict[int, str] = {}
         for step in scenario.steps:
             if isinstance(step, SendGoal) and step.action not in self._clients:
-                self._clients[step.action] = ActionClient(ends, step.action, step.type)
+                self._clients[step.action] = ScriptedActionClient(ends, step.action, step.type)
 
     def send(self, step: SendGoal) -> None:
         """Send the next goal."""

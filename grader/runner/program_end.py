@@ -7,8 +7,8 @@ import re
 from collections.abc import Mapping
 
 from grader.recording.recording import Ending
-from grader.runner.budget import Allowance, Budget, Gone
-from grader.runner.student import Exit, Stopped, Student
+from grader.runner.budget import Allowance, Budget, ProgramExited
+from grader.runner.program import CannotContinue, ExitStatus, RunningProgram
 from grader.runner.tracebacks import LastError, error_on_interrupt, last_error
 from grader.scenario.scenario import SECOND
 from rmw_lockstep.hub import TICK_S, Hub, Violation
@@ -57,7 +57,7 @@ def _of_signal(signal: int, log: str) -> str:
     return f"it was killed by signal {signal}."
 
 
-def of_exit(exit_: Exit, log: str, sources: Mapping[str, str]) -> tuple[str, int | None]:
+def of_exit(exit_: ExitStatus, log: str, sources: Mapping[str, str]) -> tuple[str, int | None]:
     """Return why a program ended, as a clause that follows "Your program ended: ", and the line to blame."""
     if exit_.limit:
         return f"{LIMITS.get(exit_.limit, exit_.limit)}.", None
@@ -78,7 +78,7 @@ def of_exit(exit_: Exit, log: str, sources: Mapping[str, str]) -> tuple[str, int
 MAY_TAKE_S = 2.0
 
 
-def cut_short(student: Student, sources: Mapping[str, str], met: bool, when: str) -> Ending:
+def cut_short(student: RunningProgram, sources: Mapping[str, str], met: bool, when: str) -> Ending:
     """Return the ending of a program that ended by itself, `when`; `met` is whether it had become ready."""
     exit_ = student.poll() or student.kill()
     log = student.output().text
@@ -95,7 +95,7 @@ def cut_short(student: Student, sources: Mapping[str, str], met: bool, when: str
 _ALLOWANCE = Allowance("", "", MAY_TAKE_S, MAY_TAKE_S)
 
 
-def interrupted(hub: Hub, budget: Budget, student: Student, sources: Mapping[str, str]) -> Ending:
+def interrupted(hub: Hub, budget: Budget, student: RunningProgram, sources: Mapping[str, str]) -> Ending:
     """Return how the program ends. It has 2 s, of CPU time and blocked time together.
 
     The signal wakes the program in ways that the hub does not see. So the computer's clock goes on only while none of
@@ -113,8 +113,8 @@ def interrupted(hub: Hub, budget: Budget, student: Student, sources: Mapping[str
 
 def _ends(hub: Hub, budget: Budget) -> bool:
     granted = budget.blocked
-    with contextlib.suppress(Gone):
-        with contextlib.suppress(Stopped):
+    with contextlib.suppress(ProgramExited):
+        with contextlib.suppress(CannotContinue):
             while budget.used < MAY_TAKE_S:
                 hub.pause()
                 if budget.blocked - granted >= TICK_S and hub.is_idle():

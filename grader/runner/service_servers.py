@@ -8,13 +8,13 @@ from typing import Any
 from grader.exercise.exercise import Exercise
 from grader.recording.events import Call
 from grader.runner.cdr import deserialized, fields_of, serialized
-from grader.runner.ends import Ends, Schedule, nanoseconds
+from grader.runner.grader_side import GraderSide, Schedule, nanoseconds
 from grader.runner.message import message_class, to_fields
-from grader.runner.order import requests_in_order
-from grader.scenario.code import Code
+from grader.runner.message_order import requests_in_order
+from grader.scenario.code import AuthorCode
 from grader.scenario.servers import Reply
 from grader.scenario.servers import Server as Declared
-from grader.scenario.values import Invalid, check_fields
+from grader.scenario.values import InvalidValue, check_fields
 from rmw_lockstep.hub import Asked, Server
 
 
@@ -23,7 +23,7 @@ class AuthorFault(Exception):
 
 
 @dataclass
-class Exchange:
+class ServiceExchange:
     """A request that arrived, and the answer as soon as there is one."""
 
     asked: Asked
@@ -36,13 +36,13 @@ class Exchange:
 class ServiceServer:
     """One reference server."""
 
-    def __init__(self, ends: Ends, schedule: Schedule, declared: Declared) -> None:
+    def __init__(self, ends: GraderSide, schedule: Schedule, declared: Declared) -> None:
         self.name = declared.service
         self._ends, self._schedule, self._declared = ends, schedule, declared
         self._kind = message_class(declared.type)
-        self._answer = declared.replies.load() if isinstance(declared.replies, Code) else None
+        self._answer = declared.replies.load() if isinstance(declared.replies, AuthorCode) else None
         self._server: Server | None = None
-        self._exchanges: list[Exchange] = []
+        self._exchanges: list[ServiceExchange] = []
 
     def open(self) -> None:
         """Start the server."""
@@ -66,7 +66,7 @@ class ServiceServer:
     def _take(self, asked: Asked, now: int) -> None:
         request = deserialized(asked.cdr, self._kind.Request)
         at = self._ends.at(asked.moment)
-        exchange = Exchange(asked, at, to_fields(request))
+        exchange = ServiceExchange(asked, at, to_fields(request))
         self._exchanges.append(exchange)
         reply = self._reply(request, len(self._exchanges))
         if reply.fields is not None:
@@ -74,7 +74,7 @@ class ServiceServer:
             due = max(now, at + nanoseconds(reply.after))
             self._schedule.plan(due, lambda moment: self._respond(server, exchange, reply, moment))
 
-    def _respond(self, server: Server | None, exchange: Exchange, reply: Reply, now: int) -> None:
+    def _respond(self, server: Server | None, exchange: ServiceExchange, reply: Reply, now: int) -> None:
         if server is None or server is not self._server:
             return
         fields = reply.fields or {}
@@ -95,7 +95,7 @@ class ServiceServer:
             reply = found if isinstance(found, Reply) else Reply(0.0, found)
             if reply.fields is not None:
                 check_fields(self._kind.Response, reply.fields, f"{self._declared.type}_Response")
-        except Invalid as error:
+        except InvalidValue as error:
             raise AuthorFault(f"{self._place(answer, request)}: {error.problem}. {error.fix}") from None
         except Exception as error:
             raise AuthorFault(f"{self._place(answer, request)}: {type(error).__name__}: {error}") from None
@@ -114,7 +114,7 @@ class ServiceServer:
         )
 
 
-def unserved(ends: Ends, exercise: Exercise) -> tuple[Call, ...]:
+def unserved(ends: GraderSide, exercise: Exercise) -> tuple[Call, ...]:
     """Return the student's requests for which there was no server, of the services that the exercise declares."""
     types = {one.name: one.type for one in exercise.clients}
     everything = requests_in_order(ends.hub.unserved)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NoReturn, TypeVar
 
-from grader.exercise.exercise import Endpoint, Exercise, ExerciseError
+from grader.exercise.exercise import Exercise, ExerciseError, ServiceOrAction
 from grader.recording.recording import Fields
 from grader.recording.types import message_class
 from grader.scenario.scenario import (
@@ -29,7 +29,7 @@ from grader.scenario.scenario import (
     Subscribe,
 )
 from grader.scenario.servers import ActionServer, Reply, Server
-from grader.scenario.values import Invalid, check_fields
+from grader.scenario.values import InvalidValue, check_fields
 from interface_compiler import prefixes
 
 _TYPE = re.compile(r"[a-z][a-z0-9_]*/(?P<kind>msg|srv|action)/[A-Z][A-Za-z0-9]*")
@@ -123,13 +123,13 @@ class Resolver:
             self._known[package] = prefixes.interfaces_of(package, prefixes.installed())
         return self._known[package]
 
-    def _type_of(self, name: str, endpoints: Sequence[Endpoint]) -> str | None:
+    def _type_of(self, name: str, endpoints: Sequence[ServiceOrAction]) -> str | None:
         return next((one.type for one in endpoints if one.name == name), None)
 
     def _check(self, line: int, name: str, kind: Any, fields: Fields, type_name: str) -> None:
         try:
             check_fields(kind, fields, type_name)
-        except Invalid as error:
+        except InvalidValue as error:
             self._fault(line, f"{name}: {error.problem}", error.fix)
 
     # --- messages and steps

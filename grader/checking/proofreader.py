@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from grader.checking.agreement import disagreements
-from grader.checking.judging import Listed, listed
+from grader.checking.judge import Listed, listed
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
 from grader.exercise.mistakes import each_mistake
@@ -30,7 +30,7 @@ TIME_LIMIT_S = 60
 def problems_of(folder: Path) -> tuple[Problem, ...]:
     """Everything that is wrong in the files of the exercise in `folder`, as far as can be seen without running a
     node."""
-    command = [sys.executable, "-m", "grader.checking.proofreading", str(folder)]
+    command = [sys.executable, "-m", "grader.checking.proofreader", str(folder)]
     try:
         run = run_program(command, TIME_LIMIT_S)
         entries = json.loads(run.stdout.splitlines()[-1])

@@ -6,13 +6,13 @@ from collections.abc import Callable
 from functools import partial
 
 from grader.runner.cdr import deserialized
-from grader.runner.ends import ACCEPT_ANY, Ends, Schedule, nanoseconds
+from grader.runner.grader_side import ACCEPT_ANY, GraderSide, Schedule, nanoseconds
 from grader.runner.message import message_class
-from grader.runner.order import in_canonical_order, unordered_sources
+from grader.runner.message_order import in_canonical_order, unordered_sources
 from grader.runner.publishers import ReferencePublishers
-from grader.runner.serving import AuthorFault
+from grader.runner.service_servers import AuthorFault
 from grader.scenario.scenario import START, Message
-from grader.scenario.values import Invalid, check_fields
+from grader.scenario.values import InvalidValue, check_fields
 from grader.scenario.world import World
 from rmw_lockstep.hub import Heard
 
@@ -21,7 +21,7 @@ class RunningWorld:
     """One world. `publish` publishes a message of the grader's."""
 
     def __init__(
-        self, ends: Ends, schedule: Schedule, world: World, publishers: ReferencePublishers,
+        self, ends: GraderSide, schedule: Schedule, world: World, publishers: ReferencePublishers,
         publish: Callable[[Message], None],
     ) -> None:  # fmt: skip
         self._model, self._world = world.begin(), world
@@ -59,7 +59,7 @@ class RunningWorld:
                 raise AuthorFault(f"the world {self._world.code.name} does not list {topic} in its publishes")
             try:
                 check_fields(message_class(type_name), fields, type_name)
-            except Invalid as error:
+            except InvalidValue as error:
                 raise AuthorFault(f"{self._world.code.name}.state(), {topic}: {error.problem}. {error.fix}") from None
         return state
 
